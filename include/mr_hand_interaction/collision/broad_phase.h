@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// Axis-aligned boxes of bodies; finds those that a box touches. A cache of the state, not part of it.
+class BroadPhase {
+ public:
+  explicit BroadPhase(std::size_t bodies);
+  ~BroadPhase();
+  BroadPhase(BroadPhase&&) noexcept;
+
+  /// Places body `index` as a sphere about `centre` [m].
+  void update(int index, const Vector3& centre, double radius);
+  /// Indices, ascending, of bodies whose box touches min..max. Valid until the next call.
+  const std::vector<int>& query(const Vector3& min, const Vector3& max);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// Which surfaces touch. Ordered, so that contacts are always treated in the same order.
+struct ContactKey {
+  std::uint16_t body;    ///< index in Scene::bodies
+  std::uint8_t hand;     ///< index of the hand's track
+  std::uint8_t capsule;  ///< of the hand
+  std::uint8_t shape;    ///< of the body
+  std::uint8_t point;    ///< 0, and 1 where a capsule lies along a face and touches at two points
+
+  friend bool operator<(const ContactKey& a, const ContactKey& b) { return a.order() < b.order(); }
+  friend bool operator==(const ContactKey& a, const ContactKey& b) { return a.order() == b.order(); }
+  std::uint64_t order() const {
+    return (std::uint64_t(body) << 32) | (std::uint64_t(hand) << 24) | (std::uint64_t(capsule) << 16) |
+           (std::uint64_t(shape) << 8) | std::uint64_t(point);
+  }
+};
+
+/// Eq. 8's three cases.
+enum class Approach : std::uint8_t { separating, resting, colliding };
+
+enum class Friction : std::uint8_t { sticking, slipping };
+
+/// One touch of a hand (body 1) with an object (body 2): the god object with its memory, where things are in
+/// this step, and what acts. World frame unless said otherwise; n points from the object to the hand; impulse
+/// and force act on the OBJECT.
+struct Contact {
+  ContactKey key{};
+
+  // Memory: lasts while the surfaces touch.
+  Vector3 god_object = Vector3::Zero();     ///< c, on the object's surface, body frame
+  Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
+  double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
+  Friction friction = Friction::sticking;
+  bool struck = false;   ///< the impulse of this approach has been given
+  bool ignored = false;  ///< overlapped when the hand appeared: touches nothing until it has separated
+
+  // This step.
+  Vector3 point = Vector3::Zero();          ///< c in world
+  Vector3 normal = Vector3::UnitZ();        ///< n
+  Vector3 hand_point = Vector3::Zero();     ///< p: the phalanx's surface point that entered at c
+  Vector3 hand_velocity = Vector3::Zero();  ///< of p [m/s]
+  double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
+  double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
+  Approach approach = Approach::separating;
+  bool touching() const { return depth > 0.0 && !ignored; }
+
+  // What the contact model made of it in this step.
+  Vector3 force = Vector3::Zero();    ///< [N]
+  Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
+};
+
+}  // namespace mrhi

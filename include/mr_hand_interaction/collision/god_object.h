@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "mr_hand_interaction/collision/contact.h"
+#include "mr_hand_interaction/collision/moving_hand.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/scene/body.h"
+
+namespace mrhi {
+
+/// Surfaces that have come apart by more than this forget each other [m].
+constexpr double kSeparation = 0.0005;
+
+/// One capsule of a hand near one shape of a body.
+struct TouchingPair {
+  const MovingHand& hand;
+  int capsule;
+  int body_index;
+  int shape_index;
+  const Body& body;
+  const BodyState& state;
+};
+
+/// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now
+/// (world) into one contact, or two where the capsule lies along a face, and carries the memory of `before`
+/// (this pair's contacts in the last step) over. A god object stays on the face that the phalanx entered by,
+/// however deep the phalanx goes, and moves with it only where friction lets it (response) or where the
+/// phalanx rolls.
+void update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+                        const Contact* before, int count, std::vector<Contact>& contacts);
+
+/// Eq. 8 sorted: v = n.(c1' - c2') [m/s], < 0 approaches.
+Approach classify(double normal_velocity);
+
+/// Velocity of the object's point c in world (Eq. 7) [m/s].
+Vector3 object_velocity(const Twist& twist, const Vector3& centre, const Vector3& point);
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/material.h"
+
+namespace mrhi {
+
+enum class ContactModelKind { seed, penetration, impulse };
+enum class FilterKind { none, window };
+
+struct FilterConfiguration {
+  FilterKind type = FilterKind::window;
+  int window = 3;  ///< F of Eq. 1, frames
+};
+
+struct TrackingConfiguration {
+  double hold_time = 0.2;  ///< a lost hand keeps its last pose this long [s]
+  double max_speed =
+      12.0;  ///< a joint faster than this has jumped: the hand touches nothing until clear [m/s]
+};
+
+/// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.
+struct Configuration {
+  ContactModelKind contact_model = ContactModelKind::seed;
+  double step = 0.001;             ///< longest step of the simulation [s]
+  std::optional<Vector3> gravity;  ///< overrides the scene's [m/s^2]
+  FilterConfiguration filter;
+  Material material;  ///< of every body that the scene says nothing else about
+  double hand_radius_scale = 1.0;
+  TrackingConfiguration tracking;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/body.h"
+
+namespace mrhi {
+
+/// What changes about one body. Momentum is the state, so that free flight conserves it to the last bit.
+struct BodyState {
+  Pose pose;                                   ///< of the body frame (centre of mass) in world
+  Vector3 linear_momentum = Vector3::Zero();   ///< [kg m/s], world axes
+  Vector3 angular_momentum = Vector3::Zero();  ///< about the centre of mass [kg m^2/s], world axes
+};
+
+/// Inverse inertia about the centre of mass in world axes [1/(kg m^2)].
+Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation);
+
+/// Velocity that belongs to the momenta.
+Twist twist_of(const Body& body, const BodyState& state);
+
+/// At rest, or with the body's start twist, at its start pose.
+BodyState start_state(const Body& body);
+
+/// Kinetic energy [J].
+double kinetic_energy(const Body& body, const BodyState& state);
+
+}  // namespace mrhi

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/configuration.h"
+
+namespace mrhi {
+
+/// A parameter that cannot be taken. what() is one line: its name, the value, and what is allowed.
+class ParameterError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Sets one parameter by its public name ("filter/window") from YAML text ("3", "[0, 0, -9.81]").
+/// Throws ParameterError for an unknown name, a wrong type or a value out of range; configuration is
+/// unchanged.
+void set_parameter(Configuration& configuration, const std::string& name, const std::string& yaml_value);
+
+/// Sets every parameter of a YAML file; nested maps and slashes both work. Throws ParameterError.
+void load_parameters(Configuration& configuration, const std::string& yaml_file);
+
+/// Checks what only shows when all are set (dynamic friction at most static). Throws ParameterError.
+void validate(const Configuration& configuration);
+
+/// All public names, sorted.
+std::vector<std::string> parameter_names();
+
+}  // namespace mrhi

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// A command line that cannot be followed. what() is one line: the option, what it says, what is allowed.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The command line of `replay`.
+struct ReplayArguments {
+  bool help = false;
+  std::string scene;   ///< name or URDF file
+  std::string input;   ///< .bag or .csv
+  std::string output;  ///< folder
+  std::optional<std::string> topic;
+  std::optional<std::string> parameter_file;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< name, YAML value
+  std::vector<std::pair<std::string, Pose>> object_poses;     ///< of the centre of mass, in world
+  std::vector<std::pair<std::string, Twist>> object_twists;   ///< world axes
+  std::optional<Pose> hand_transform;                         ///< of the device frame in world
+};
+
+/// Arguments without the program's name. Throws UsageError. Whether scene, objects and parameters exist is
+/// not checked here.
+ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments);
+
+/// What --help says.
+const char* replay_help();
+
+}  // namespace mrhi

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "mr_hand_interaction/replay/frame_source.h"
+
+namespace mrhi {
+
+/// A bag that cannot be replayed. what() is one line.
+class BagError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Hands from one topic of a bag: leap_motion/Human in any version (by the definition that the bag carries),
+/// geometry_msgs/PoseArray of 21 joints (a right hand), or HandFrame in world. Reads message by message.
+class BagInput : public FrameSource {
+ public:
+  /// Without a topic: /leap_motion/leap_device, else /hands/pose_array, else the only one of a fitting type.
+  /// Without a device pose: the bag's /tf_static, else the default mount. Throws BagError.
+  BagInput(const std::string& file, const std::optional<std::string>& topic,
+           const std::optional<Pose>& device_in_world);
+  ~BagInput() override;
+
+  std::optional<SourceFrame> next() override;
+  std::size_t position() const override;
+  std::size_t size() const override;
+  const std::string& topic() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mrhi

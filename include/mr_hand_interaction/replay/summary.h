@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/replay/duration_histogram.h"
+
+namespace mrhi {
+
+/// What summary.json says of a replay.
+struct ReplaySummary {
+  std::string scene, input, topic, contact_model;
+  std::uint64_t frames = 0;  ///< taken
+  double simulated_seconds = 0.0;
+  std::uint64_t steps = 0;
+  DurationHistogram step_time;
+  double deepest_rendered = 0.0;                  ///< [m]
+  std::uint64_t restarts = 0;                     ///< times that the recording's stamps began anew
+  std::map<std::string, std::uint64_t> rejected;  ///< frames, by reason
+  std::uint64_t hands_left_out = 0;               ///< unusable hands in frames that were taken
+  std::map<std::string, std::uint64_t> events;
+  std::vector<std::string> held_at_end;
+  std::uint64_t state_hash = 0;
+  std::string error;  ///< why it ended early; empty if it did not
+};
+
+/// As JSON. All but step_time_us is the same for the same input.
+std::string to_json(const ReplaySummary& summary);
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Transform.h>
+#include <mr_hand_interaction/HandFrame.h>
+#include <ros/time.h>
+
+#include <array>
+#include <string>
+
+#include "mr_hand_interaction/tracking/hand.h"
+
+namespace mrhi {
+
+/// Which capsules touch an object.
+using Touching = std::array<bool, kCapsules>;
+
+/// Capsules that are absent, and the palm's, are left out.
+mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching = {});
+mr_hand_interaction::HandFrame to_message(const HandFrame& frame, const std::string& frame_id);
+
+/// The same bits that to_message was given. Throws std::invalid_argument naming the hand and what is wrong
+/// with it: a value that is not finite or out of range, an unknown side, finger or bone, a bone given twice.
+HandFrame from_message(const mr_hand_interaction::HandFrame& message);
+
+geometry_msgs::Point to_message(const Vector3& point);
+geometry_msgs::Pose to_message(const Pose& pose);
+Vector3 from_message(const geometry_msgs::Point& point);
+Pose from_message(const geometry_msgs::Pose& pose);
+/// With the quaternion brought to unit length.
+Pose from_message(const geometry_msgs::Transform& transform);
+
+ros::Time to_ros_time(Nanoseconds stamp);
+Nanoseconds from_ros_time(const ros::Time& stamp);
+
+}  // namespace mrhi

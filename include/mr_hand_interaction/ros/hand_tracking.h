@@ -1,0 +1,59 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseArray.h>
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "mr_hand_interaction/ros/input_statistics.h"
+#include "mr_hand_interaction/ros/leap_human.h"
+
+namespace mrhi {
+
+/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2.
+/// Parameters: ~fixed_frame (world), ~side of hands/pose_array (right). Throws std::invalid_argument for a
+/// bad one.
+class HandTracking {
+ public:
+  HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
+
+ private:
+  using LeapEvent = ros::MessageEvent<const topic_tools::ShapeShifter>;
+
+  void subscribe_leap();
+  /// roscpp keeps a topic to the version that it met first, so a driver of another version needs a new
+  /// subscription.
+  void welcome_other_versions();
+  void take_leap(const LeapEvent& event);
+  void take_pose_array(const ros::MessageEvent<const geometry_msgs::PoseArray>& event);
+  void take(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
+
+  const LeapHumanDecoder& decoder(const topic_tools::ShapeShifter& message);
+  bool accept_stamp(Nanoseconds stamp);
+  /// Pose of a tracker's frame in the fixed frame: at the stamp, else the latest. Throws
+  /// tf2::TransformException.
+  Pose device_pose(const std::string& frame_id, Nanoseconds stamp) const;
+
+  std::string fixed_frame_;
+  Side pose_array_side_ = Side::right;
+  Nanoseconds last_stamp_ = -1;
+  bool leap_seen_ = false;  ///< a driver, by the present subscription
+  std::map<std::string, std::unique_ptr<const LeapHumanDecoder>> decoders_;  ///< by md5
+  InputStatistics statistics_;
+
+  ros::NodeHandle node_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_;
+  ros::Publisher publisher_;
+  ros::Subscriber leap_subscriber_, pose_array_subscriber_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace mrhi

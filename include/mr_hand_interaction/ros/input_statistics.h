@@ -1,0 +1,41 @@
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mrhi {
+
+/// Counts what a node takes and refuses, for /diagnostics, and logs each kind of refusal at most every five
+/// seconds.
+class InputStatistics {
+ public:
+  /// Reasons that are listed from the start; others are added as they occur.
+  explicit InputStatistics(const std::vector<std::string>& reasons);
+
+  /// Latency: from the frame's stamp until now.
+  void taken(double latency);
+  void rejected(const std::string& reason, const std::string& detail);
+  /// Counts since the start; rate and latency since the last report.
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+ private:
+  struct Refusals {
+    std::uint64_t count = 0;
+    std::uint64_t reported = 0;
+    std::string last;
+    ros::WallTime logged;
+  };
+
+  std::uint64_t taken_ = 0;
+  std::map<std::string, Refusals> rejected_;
+  std::uint64_t taken_in_period_ = 0;
+  double latency_sum_ = 0.0, latency_max_ = 0.0;
+  ros::WallTime period_start_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <string>
+
+#include "mr_hand_interaction/replay/duration_histogram.h"
+#include "mr_hand_interaction/ros/input_statistics.h"
+
+namespace mrhi {
+
+/// What the interaction node tells on /diagnostics once a second: rate, latency, step time, what it took and
+/// refused.
+class InteractionDiagnostics {
+ public:
+  InteractionDiagnostics(ros::NodeHandle node, ros::NodeHandle parameters, const std::string& scene);
+
+  /// Latency: from the frame's stamp until its results are published [s].
+  void taken(double latency) { input_.taken(latency); }
+  void rejected(const std::string& reason, const std::string& detail) { input_.rejected(reason, detail); }
+  void dropped_while_paused() { ++dropped_; }
+  void step(Nanoseconds duration) { step_times_.add(duration); }
+
+ private:
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  InputStatistics input_;
+  DurationHistogram step_times_;  ///< since the last report
+  std::uint64_t dropped_ = 0;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <geometry_msgs/TransformStamped.h>
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/InteractionEvent.h>
+#include <mr_hand_interaction/ObjectStateArray.h>
+#include <std_msgs/Header.h>
+
+#include <vector>
+
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi {
+
+const char* to_string(ContactModelKind kind);
+
+/// The tracker's id of the contact's hand.
+std::uint32_t hand_id(const Contact& contact, const SimulationState& state);
+/// A phase of Contact.msg.
+std::uint8_t phase(const Contact& contact);
+/// Whether any hand grasps the body.
+bool is_held(std::size_t body, const SimulationState& state);
+
+/// What has happened, as messages in world (header.frame_id).
+mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header);
+mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const SimulationState& state,
+                                                      const std_msgs::Header& header);
+mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
+                                                   const SimulationState& state,
+                                                   const std_msgs::Header& header);
+mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Event& event,
+                                                    const std_msgs::Header& header);
+/// The frame of each object's URDF link, named after the object; fixtures too.
+std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
+                                                               const SimulationState& state,
+                                                               const std_msgs::Header& header);
+
+}  // namespace mrhi

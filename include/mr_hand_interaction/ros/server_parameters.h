@@ -1,0 +1,24 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "mr_hand_interaction/configuration.h"
+
+namespace mrhi {
+
+/// What the interaction node is told on the parameter server.
+struct ServerParameters {
+  std::string scene = "cube";         ///< ~scene: name or URDF file
+  std::string fixed_frame = "world";  ///< ~fixed_frame
+  Configuration configuration;        ///< every name of parameters.h
+};
+
+/// Reads the private parameters of a node. Throws ParameterError naming one that is unknown or not allowed.
+ServerParameters read_server_parameters(const ros::NodeHandle& private_node);
+
+/// A value of the parameter server as YAML text; a string as it stands.
+std::string yaml_text(XmlRpc::XmlRpcValue value);
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// Time of the hand stream between and beyond its frames: the last stamp, and what has passed since it
+/// arrived. So stamps may come from another clock, as those of a bag do. The simulation's time is that
+/// without pauses.
+class StampClock {
+ public:
+  /// A frame with this stamp has arrived.
+  void take(Nanoseconds stamp, const ros::Time& now);
+  /// Stamp that a frame of now would have; now itself before the first frame. Does not go back if ROS time
+  /// does.
+  Nanoseconds stamp(const ros::Time& now) const;
+
+  void pause(const ros::Time& now);
+  void resume(const ros::Time& now);
+  bool paused() const { return paused_; }
+
+  Nanoseconds to_simulation(Nanoseconds stamp) const { return stamp - pauses_; }
+  Nanoseconds to_stamp(Nanoseconds simulation_time) const { return simulation_time + pauses_; }
+
+ private:
+  bool started_ = false;
+  Nanoseconds last_stamp_ = 0;
+  ros::Time arrival_;
+  bool paused_ = false;
+  Nanoseconds pause_begin_ = 0;
+  Nanoseconds pauses_ = 0;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/shape.h"
+
+namespace mrhi {
+
+/// What does not change about one object. The body frame has its origin at the centre of mass and the axes of
+/// the URDF link.
+struct Body {
+  std::string name;
+  bool fixed = false;                     ///< a fixture: never moves, mass and inertia are not used
+  double mass = 1.0;                      ///< [kg], > 0
+  Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass, body axes [kg m^2], positive definite
+  Matrix3 inverse_inertia = Matrix3::Identity();
+  Pose start;         ///< of the body frame in world
+  Twist start_twist;  ///< world axes
+  Pose link_in_body;  ///< the URDF link's frame in the body frame (rotation is identity)
+  Material material;
+  std::vector<PlacedShape> shapes;  ///< for collision
+  std::vector<Visual> visuals;
+  double bounding_radius = 0.0;  ///< of all shapes, about the body frame's origin [m]
+};
+
+/// Fills inverse_inertia (zero for a fixture) and bounding_radius from the rest. Throws std::invalid_argument
+/// naming the body and the value if a free body's mass or inertia is not positive (definite).
+void complete(Body& body);
+
+}  // namespace mrhi

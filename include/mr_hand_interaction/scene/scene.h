@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/body.h"
+
+namespace mrhi {
+
+/// Axis-aligned box in world [m].
+struct Bounds {
+  Vector3 min{-1.5, -1.5, -1.0};
+  Vector3 max{1.5, 1.5, 2.0};
+};
+
+/// All that exists besides hands. Immutable once loaded.
+struct Scene {
+  std::string name;
+  std::vector<Body> bodies;           ///< free bodies and fixtures, in the URDF's order
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
+  Bounds bounds;                      ///< a free body whose centre leaves is put back where it started
+};
+
+/// Index of the body of that name, or nothing.
+std::optional<int> find_body(const Scene& scene, const std::string& name);
+
+}  // namespace mrhi

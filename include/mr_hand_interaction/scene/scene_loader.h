@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/scene/scene.h"
+
+namespace mrhi {
+
+/// A scene that cannot be loaded. what() is one line: the file, the thing in it, and what is allowed.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a loader needs beside the files themselves.
+struct SceneOptions {
+  Material default_material;
+  std::optional<Vector3> gravity;  ///< overrides the scene's own [m/s^2]
+  /// Turns "package://NAME/PATH" into a file path; empty result: package not found.
+  std::function<std::string(const std::string& uri)> resolve_package_uri;
+};
+
+/// The URDF file that `scene` means: a path to a URDF, or a name looked up as DIRECTORY/NAME.urdf.
+/// Throws SceneError that lists the names known.
+std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories);
+
+/// Reads FILE.urdf, and FILE.yaml beside it where present: links on `floating` joints are free bodies (the
+/// joint's origin is the link's pose), links on `fixed` joints to `world` are fixtures. Throws SceneError.
+Scene load_scene(const std::string& urdf_file, const SceneOptions& options);
+
+}  // namespace mrhi

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/simulation_state.h"
+#include "mr_hand_interaction/tracking/hand.h"
+
+namespace mrhi {
+
+/// What a frame of input led to. `none` means that it was taken.
+enum class Rejection : std::uint8_t {
+  none,
+  stamp_not_increasing,  ///< repeats or goes back; a stream that has really restarted is taken from its third
+                         ///< frame
+};
+const char* to_string(Rejection rejection);
+
+/// What one frame led to. Valid until the next frame.
+struct FrameResult {
+  Nanoseconds stamp = 0;
+  std::vector<Hand> tracked;           ///< filtered
+  std::vector<RenderedHand> rendered;  ///< same order
+  std::vector<Contact> contacts;       ///< touching at the frame's end, or struck since the frame before
+  std::vector<Event> events;
+  double deepest_rendered = 0.0;  ///< deepest penetration of a rendered capsule in any object [m], >= 0
+  bool restarted = false;         ///< time went back (a looping bag): everything is at its start
+};
+
+/// Hands and objects through time. One call per frame:
+///   if (simulation.begin(frame) == Rejection::none) { while (simulation.step()) {} use(simulation.end()); }
+/// or advance(), which does just that. Copyable by copying state().
+class Simulation {
+ public:
+  /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)).
+  Simulation(Scene scene, const Configuration& configuration);
+  ~Simulation();
+
+  /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one.
+  Rejection begin(const HandFrame& frame);
+  /// Advances by one step of at most Configuration::step; false, without a step, once the frame's stamp is reached.
+  bool step();
+  /// Renders hands, derives events. Call after step() has returned false.
+  const FrameResult& end();
+
+  Rejection advance(const HandFrame& frame);
+  const FrameResult& result() const;
+
+  /// With no frames coming: moves on to `time`, which the next frame then continues from with the same bits
+  /// as if this had not been called. Does nothing until hold_time after the last frame. True if a new result
+  /// is there.
+  bool advance_without_hands(Nanoseconds time);
+
+  /// Everything back to its start; the next frame may have any stamp.
+  void reset();
+
+  const Scene& scene() const;
+  const Configuration& configuration() const;
+  const SimulationState& state() const;
+  void set_state(const SimulationState& state);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mr_hand_interaction/collision/contact.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
+
+namespace mrhi {
+
+/// All that changes. A copy of it is a checkpoint: continuing from a copy gives the same bits.
+struct SimulationState {
+  bool started = false;                   ///< a frame has been taken
+  Nanoseconds time = 0;                   ///< stamp up to which bodies have been advanced
+  Nanoseconds last_frame = 0;             ///< stamp of the last frame taken
+  Nanoseconds restart_stamp = 0;          ///< newest of the frames that went back in time and were refused
+  int restart_frames = 0;                 ///< how many in a row followed on from each other
+  std::vector<BodyState> bodies;          ///< one per Scene::bodies, fixtures too
+  std::vector<HandTrack> hands;           ///< slots; see HandTrack::active
+  std::vector<Contact> contacts;          ///< sorted by key
+  std::vector<Interaction> interactions;  ///< one per body and hand slot: hand * bodies + body
+};
+
+/// FNV-1a over the bits of everything that matters to the future.
+std::uint64_t hash(const SimulationState& state);
+
+}  // namespace mrhi

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mr_hand_interaction/tracking/hand.h"
+
+namespace mrhi {
+
+constexpr int kMaxFilterWindow = 16;  ///< frames
+constexpr int kMaxHands = 4;          ///< followed at once
+
+/// The last raw samples of one hand, newest first.
+struct SampleHistory {
+  std::array<Hand, kMaxFilterWindow> samples;
+  int size = 0;
+
+  /// Puts `sample` in front and forgets all but the newest `keep`.
+  void push(const Hand& sample, int keep);
+  void clear() { size = 0; }
+};
+
+/// After a short loss the hand does not snap from where it was held to where it is: it catches up in as much
+/// time as it was away.
+struct Rejoin {
+  Hand from;                 ///< pose that was held
+  Nanoseconds begin = 0;     ///< stamp of the first frame after the loss
+  Nanoseconds duration = 0;  ///< 0: not catching up
+};
+
+/// One hand followed through time.
+struct HandTrack {
+  bool active = false;    ///< false: this slot is free
+  bool held = false;      ///< not in the last frame: keeps its pose until hold_time is over
+  bool appeared = false;  ///< at the last frame it came from nowhere, or jumped: it was not there before
+  bool emerged = false;   ///< at the frame before: what it overlaps as it begins to move is ignored
+  Hand previous;          ///< filtered pose at the frame before
+  Hand current;           ///< filtered pose at the last frame
+  Nanoseconds last_seen = 0;
+  SampleHistory history;
+  Rejoin rejoin;
+};
+
+/// Pose between two of one hand: all points move on straight lines.
+Hand blend(const Hand& from, const Hand& to, double fraction);
+
+}  // namespace mrhi

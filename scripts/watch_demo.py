@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+"""Watches a running demo until the hand has done what its motion is for, takes rviz's picture at that moment and
+writes a summary beside it. Exits with 0 if it was done in time, else with 1."""
+import argparse
+import math
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import rosgraph
+import rospy
+from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, ObjectStateArray
+
+STRIKES = ("nudge", "tap", "slap")
+CARRIED = 0.04  # m from where it was taken: clearly so in the picture
+STRUCK = 0.01  # m
+COLOURS = 500  # fewer: rviz has not drawn the scene yet
+
+
+def distance(a, b):
+    return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
+
+
+class Demo:
+    """What has been seen of it; `changed` is notified with every message."""
+
+    def __init__(self):
+        self.changed = threading.Condition()
+        self.frames = 0
+        self.touched = set()
+        self.grasped = set()
+        self.most_contacts = 0
+        self.objects = {}
+        self.start = {}
+        self.last_event = None
+        rospy.Subscriber("hand_frame", HandFrame, self.take_frame, queue_size=100)
+        rospy.Subscriber("contacts", ContactArray, self.take_contacts, queue_size=100)
+        rospy.Subscriber("interaction_events", InteractionEvent, self.take_event, queue_size=100)
+        rospy.Subscriber("objects", ObjectStateArray, self.take_objects, queue_size=10)
+
+    def take_frame(self, _):
+        with self.changed:
+            self.frames += 1
+
+    def take_contacts(self, message):
+        with self.changed:
+            self.most_contacts = max(self.most_contacts, len(message.contacts))
+
+    def take_event(self, event):
+        with self.changed:
+            if event.kind == InteractionEvent.CONTACT_BEGIN:
+                self.touched.add(event.object)
+            if event.kind == InteractionEvent.GRASP_BEGIN:
+                self.grasped.add(event.object)
+
+    def take_objects(self, message):
+        with self.changed:
+            for thing in message.objects:
+                self.start.setdefault(thing.name, thing.pose.position)
+                self.objects[thing.name] = thing
+            self.changed.notify_all()
+
+    def moved(self, name):
+        return distance(self.objects[name].pose.position, self.start[name])
+
+    def carried(self):
+        return any(thing.held and name in self.grasped and self.moved(name) > CARRIED
+                   for name, thing in self.objects.items())
+
+    def struck(self):
+        return any(name in self.touched and self.moved(name) > STRUCK for name in self.objects)
+
+    def wait_for(self, condition, deadline):
+        with self.changed:
+            return self.changed.wait_for(condition, max(0.0, deadline - time.monotonic()))
+
+
+def rviz_listens():
+    subscribers = rosgraph.Master("/watch_demo").getSystemState()[1]
+    return any(topic == "/markers" and "/rviz" in nodes for topic, nodes in subscribers)
+
+
+def take_picture(file):
+    """Whether the screen shows more than an empty window; if so, its picture is in the file."""
+    subprocess.run(["import", "-silent", "-window", "root", file], check=True)
+    colours = subprocess.run(["identify", "-format", "%k", file], check=True, stdout=subprocess.PIPE)
+    return int(colours.stdout) >= COLOURS
+
+
+def summary(demo, motion, done, picture):
+    lines = [f"motion: {motion}",
+             f"done: {'yes' if done else 'no'}",
+             f"frames: {demo.frames}",
+             f"contacts: {demo.most_contacts} at once at most",
+             f"touched: {', '.join(sorted(demo.touched)) or 'nothing'}",
+             f"grasped: {', '.join(sorted(demo.grasped)) or 'nothing'}"]
+    for name, thing in sorted(demo.objects.items()):
+        p = thing.pose.position
+        lines.append(f"{name}: at {p.x:.3f} {p.y:.3f} {p.z:.3f} m, {100 * demo.moved(name):.1f} cm from its start"
+                     f"{', held' if thing.held else ''}")
+    lines.append(f"picture: {picture if os.path.exists(picture) else 'none'}")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--motion", required=True)
+    parser.add_argument("--picture", required=True)
+    parser.add_argument("--time-limit", type=float, default=120.0)
+    options = parser.parse_args()
+    deadline = time.monotonic() + options.time_limit
+    os.makedirs(os.path.dirname(options.picture) or ".", exist_ok=True)
+    if os.path.exists(options.picture):
+        os.remove(options.picture)
+
+    rospy.init_node("watch_demo", disable_signals=True)
+    demo = Demo()
+    what = demo.struck if options.motion in STRIKES else demo.carried
+    done = False
+    while not done and demo.wait_for(lambda: what() and rviz_listens(), deadline):
+        done = take_picture(options.picture)
+    if not done:
+        take_picture(options.picture)
+    with demo.changed:
+        text = summary(demo, options.motion, done, options.picture)
+    print(text, end="")
+    with open(os.path.join(os.path.dirname(options.picture), "demo_summary.txt"), "w", encoding="utf-8") as file:
+        file.write(text)
+    if not done:
+        print(f"watch_demo: {options.motion} was not seen done within {options.time_limit:.0f} s", file=sys.stderr)
+    sys.stdout.flush()
+    os._exit(0 if done else 1)
+
+
+if __name__ == "__main__":
+    main()

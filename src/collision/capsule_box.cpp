@@ -1,0 +1,102 @@
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "segment.h"
+
+namespace mrhi {
+namespace {
+
+/// Half the derivative of the squared distance from the box by s.
+double slope(const Segment& axis, const Vector3& half, double s) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += axis.along[i] * excess(axis.start[i] + s * axis.along[i], half[i]);
+  return sum;
+}
+
+/// Where the axis is nearest to the box. The slope grows with s, linearly between the planes of the faces.
+double nearest(const Segment& axis, const Vector3& half) {
+  ConvexMinimum minimum(slope(axis, half, 0.0), slope(axis, half, 1.0));
+  if (minimum.done()) return minimum.linear();
+  for (int i = 0; i < 3; ++i) {
+    if (axis.along[i] == 0.0) continue;
+    const double inverse = 1.0 / axis.along[i];
+    for (const double face : {-half[i], half[i]}) {
+      const double s = (face - axis.start[i]) * inverse;
+      if (minimum.holds(s)) minimum.add(s, slope(axis, half, s));
+    }
+  }
+  return minimum.linear();
+}
+
+/// A direction in which the axis can leave the box: `separation` < 0 is how far it has to go.
+struct WayOut {
+  double separation = -1e300;
+  Vector3 normal;
+  int dimension = 0;
+  bool by_face = true;
+};
+
+/// The box swept along the axis is a polytope: its faces are those of the box, and those that an edge of the box
+/// sweeps out. The axis leaves the box by the nearest.
+WayOut way_out(const Segment& axis, const Vector3& half) {
+  const Vector3 middle = axis.middle(), reach = 0.5 * axis.along.cwiseAbs();
+  WayOut best;
+  for (int i = 0; i < 3; ++i) {
+    const double separation = std::abs(middle[i]) - reach[i] - half[i];
+    if (separation > best.separation) {
+      best = {separation, (middle[i] < 0.0 ? -1.0 : 1.0) * Vector3::Unit(i), i, true};
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    Vector3 normal = Vector3::Unit(i).cross(axis.along);
+    const double length = normal.norm();
+    if (length == 0.0) continue;
+    normal *= (normal.dot(middle) < 0.0 ? -1.0 : 1.0) / length;
+    const double separation = normal.dot(middle) - normal.cwiseAbs().dot(half);
+    // Strictly better: an edge beside a face must not win by rounding.
+    if (separation > best.separation + 1e-15) best = {separation, normal, i, false};
+  }
+  return best;
+}
+
+ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const WayOut& way) {
+  const int i = way.dimension;
+  double s = way.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
+  if (axis.along[i] == 0.0) {
+    Stretch over;
+    for (const int j : {(i + 1) % 3, (i + 2) % 3}) over.clip_to_slab(axis.start[j], axis.along[j], half[j]);
+    s = over.middle();
+  }
+  Vector3 point = axis.at(s).cwiseMax(-half).cwiseMin(half);
+  point[i] = way.normal[i] * half[i];
+  return {way.separation, way.normal, point, s};
+}
+
+ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const WayOut& way) {
+  const int i = way.dimension;
+  Vector3 edge;
+  for (int j = 0; j < 3; ++j) edge[j] = way.normal[j] < 0.0 ? -half[j] : half[j];
+  Vector3 across = axis.along;
+  across[i] = 0.0;
+  double s = across.dot(edge - axis.start) / across.squaredNorm();
+  s = std::max(0.0, std::min(s, 1.0));
+  edge[i] = std::max(-half[i], std::min(axis.at(s)[i], half[i]));
+  return {way.separation, way.normal, edge, s};
+}
+
+}  // namespace
+
+ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
+  const Segment axis(capsule);
+  const Vector3& half = box.half_extents;
+  const double s = nearest(axis, half);
+  const Vector3 axis_point = axis.at(s);
+  const Vector3 point = axis_point.cwiseMax(-half).cwiseMin(half);
+  const Vector3 gap = axis_point - point;
+  const double distance = gap.norm();
+  if (distance > kOnSurface) return {distance - capsule.radius, gap / distance, point, s};
+  const WayOut way = way_out(axis, half);
+  ClosestFeatures features = way.by_face ? leave_by_face(axis, half, way) : leave_by_edge(axis, half, way);
+  features.distance -= capsule.radius;
+  return features;
+}
+
+}  // namespace mrhi

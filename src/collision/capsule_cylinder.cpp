@@ -1,0 +1,105 @@
+#include "cylinder_penetration.h"
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "segment.h"
+
+namespace mrhi {
+namespace {
+
+/// The axis of a capsule and what it is seen from a cylinder's own axis, z.
+struct AxisByCylinder {
+  const Segment& axis;
+  const Cylinder& cylinder;
+  Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();
+  double along_squared = along.squaredNorm();
+
+  double beyond_cap(double s) const {
+    return excess(axis.start.z() + s * axis.along.z(), cylinder.half_length);
+  }
+  /// Half the derivative of the squared distance from the cylinder by s, and the derivative of that.
+  double slope(double s, double* change = nullptr) const {
+    const Eigen::Vector2d place = start + s * along;
+    const double from_axis = place.norm(), run = place.dot(along);
+    const double beyond_side = std::max(0.0, excess(from_axis, cylinder.radius));
+    double sum = axis.along.z() * beyond_cap(s);
+    if (beyond_side > 0.0) sum += beyond_side * run / from_axis;
+    if (change != nullptr && beyond_side > 0.0) {
+      const double turn = run / from_axis;
+      *change = axis.along.z() * axis.along.z() + along_squared -
+                cylinder.radius / from_axis * (along_squared - turn * turn);
+    }
+    return sum;
+  }
+};
+
+/// Beyond the rim: a quartic, by Newton's method held in its bracket.
+double nearest_to_rim(const AxisByCylinder& seen, double lo, double hi) {
+  double s = 0.5 * (lo + hi);
+  for (int i = 0; i < 100 && hi - lo > 1e-16; ++i) {
+    double change = 0.0;
+    const double slope = seen.slope(s, &change);
+    if (slope == 0.0) return s;
+    (slope < 0.0 ? lo : hi) = s;
+    const double newton = change > 0.0 ? s - slope / change : lo;
+    const double next = newton > lo && newton < hi ? newton : 0.5 * (lo + hi);
+    if (std::abs(next - s) < 1e-16) return next;
+    s = next;
+  }
+  return s;
+}
+
+/// Where the axis crosses the planes of the caps and the side's surface, the slope changes its form.
+void add_crossings(const AxisByCylinder& seen, ConvexMinimum& minimum) {
+  const auto add = [&](double s) {
+    if (minimum.holds(s)) minimum.add(s, seen.slope(s));
+  };
+  const double rise = seen.axis.along.z();
+  if (rise != 0.0) {
+    add((-seen.cylinder.half_length - seen.axis.start.z()) / rise);
+    add((seen.cylinder.half_length - seen.axis.start.z()) / rise);
+  }
+  if (seen.along_squared == 0.0) return;
+  const double nearest = -seen.start.dot(seen.along) / seen.along_squared;
+  const double miss = (seen.start + nearest * seen.along).squaredNorm();
+  const double half_chord_squared = seen.cylinder.radius * seen.cylinder.radius - miss;
+  if (half_chord_squared <= 0.0) return;
+  const double half_chord = std::sqrt(half_chord_squared / seen.along_squared);
+  add(nearest - half_chord);
+  add(nearest + half_chord);
+}
+
+double nearest(const Segment& axis, const Cylinder& cylinder) {
+  const AxisByCylinder seen{axis, cylinder};
+  ConvexMinimum minimum(seen.slope(0.0), seen.slope(1.0));
+  if (minimum.done()) return minimum.linear();
+  add_crossings(seen, minimum);
+  if (minimum.has_zero()) return minimum.linear();
+  const double middle = 0.5 * (minimum.lo() + minimum.hi());
+  if ((seen.start + middle * seen.along).norm() <= cylinder.radius) return minimum.linear();
+  if (seen.beyond_cap(middle) != 0.0) return nearest_to_rim(seen, minimum.lo(), minimum.hi());
+  return std::max(minimum.lo(), std::min(-seen.start.dot(seen.along) / seen.along_squared, minimum.hi()));
+}
+
+Vector3 clamp(const Vector3& place, const Cylinder& cylinder) {
+  Vector3 point = place;
+  const double from_axis = point.head<2>().norm();
+  if (from_axis > cylinder.radius) point.head<2>() *= cylinder.radius / from_axis;
+  point.z() = std::max(-cylinder.half_length, std::min(point.z(), cylinder.half_length));
+  return point;
+}
+
+}  // namespace
+
+ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinder) {
+  const Segment axis(capsule);
+  const double s = nearest(axis, cylinder);
+  const Vector3 axis_point = axis.at(s);
+  const Vector3 point = clamp(axis_point, cylinder);
+  const Vector3 gap = axis_point - point;
+  const double distance = gap.norm();
+  if (distance > kOnSurface) return {distance - capsule.radius, gap / distance, point, s};
+  ClosestFeatures features = leave_cylinder(axis, cylinder);
+  features.distance -= capsule.radius;
+  return features;
+}
+
+}  // namespace mrhi

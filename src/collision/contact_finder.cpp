@@ -1,0 +1,141 @@
+#include "mr_hand_interaction/collision/contact_finder.h"
+
+#include <algorithm>
+#include <limits>
+#include <variant>
+
+#include "mr_hand_interaction/collision/god_object.h"
+
+namespace mrhi {
+namespace {
+
+/// Contacts are followed from this gap on, plus what the pair can close within a step [m].
+constexpr double kMargin = 0.001;
+/// Room for what bodies may do between two frames beyond flying on [m].
+constexpr double kBroadMargin = 0.02;
+
+struct LocalClosest {
+  const Capsule& capsule;
+  const MeshCollider* mesh;
+  double margin;
+
+  std::optional<ClosestFeatures> operator()(const Sphere& s) const { return capsule_sphere(capsule, s); }
+  std::optional<ClosestFeatures> operator()(const Box& b) const { return capsule_box(capsule, b); }
+  std::optional<ClosestFeatures> operator()(const Cylinder& c) const { return capsule_cylinder(capsule, c); }
+  std::optional<ClosestFeatures> operator()(const Mesh&) const { return mesh->closest(capsule, margin); }
+};
+
+Capsule to_local(const Capsule& capsule, const Pose& pose) {
+  return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
+}
+
+bool spheres_apart(const Capsule& capsule, const Vector3& centre, double radius) {
+  const double reach = radius + capsule.radius;
+  // Distance to the axis is at least distance to its middle less half its length.
+  const double half_length = 0.5 * (capsule.end - capsule.start).norm();
+  return (capsule.centre() - centre).norm() > reach + half_length;
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(const Scene& scene)
+    : scene_(scene), broad_phase_(scene.bodies.size()), meshes_(scene.bodies.size()), near_(kMaxHands) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (const PlacedShape& placed : scene.bodies[b].shapes) {
+      const Mesh* mesh = std::get_if<Mesh>(&placed.shape);
+      meshes_[b].push_back(mesh != nullptr ? std::make_unique<MeshCollider>(*mesh->triangles) : nullptr);
+    }
+  }
+  for (std::vector<int>& near : near_) near.reserve(scene.bodies.size());
+  found_.reserve(64 * kMaxHands);
+}
+
+void ContactFinder::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
+                                double seconds) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const double way = twist_of(scene_.bodies[b], bodies[b]).linear.norm() * seconds;
+    broad_phase_.update(static_cast<int>(b), bodies[b].pose.position,
+                        scene_.bodies[b].bounding_radius + way + kBroadMargin);
+  }
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+    near_[slot].clear();
+    if (!hands[slot].active) continue;
+    Vector3 min = Vector3::Constant(std::numeric_limits<double>::max()), max = -min;
+    for (const Hand* hand : {&hands[slot].previous, &hands[slot].current}) {
+      for (const Capsule& capsule : hand->capsules) {
+        if (capsule.radius <= 0.0) continue;
+        const Vector3 reach = Vector3::Constant(capsule.radius);
+        min = min.cwiseMin(capsule.start.cwiseMin(capsule.end) - reach);
+        max = max.cwiseMax(capsule.start.cwiseMax(capsule.end) + reach);
+      }
+    }
+    near_[slot] = broad_phase_.query(min, max);
+  }
+}
+
+void ContactFinder::find(const std::vector<MovingHand>& hands, const std::vector<BodyState>& bodies,
+                         double step, std::vector<Contact>& contacts) {
+  found_.clear();
+  for (const MovingHand& hand : hands) {
+    for (const int body : near_[static_cast<std::size_t>(hand.slot)]) {
+      find_pair(hand, body, bodies[static_cast<std::size_t>(body)], step, contacts);
+    }
+  }
+  std::sort(found_.begin(), found_.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  contacts.swap(found_);
+}
+
+std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,
+                                                      const Pose& body_pose, double margin) const {
+  const auto b = static_cast<std::size_t>(body), i = static_cast<std::size_t>(shape);
+  const PlacedShape& placed = scene_.bodies[b].shapes[i];
+  const Pose pose = body_pose * placed.pose;
+  std::optional<ClosestFeatures> features =
+      std::visit(LocalClosest{to_local(capsule, pose), meshes_[b][i].get(), margin}, placed.shape);
+  if (!features || features->distance > margin) return std::nullopt;
+  features->normal = pose.orientation * features->normal;
+  features->point = pose * features->point;
+  return features;
+}
+
+void ContactFinder::find_pair(const MovingHand& hand, int body_index, const BodyState& state, double step,
+                              const std::vector<Contact>& before) {
+  const Body& body = scene_.bodies[static_cast<std::size_t>(body_index)];
+  const Twist twist = twist_of(body, state);
+  for (int c = 0; c < kCapsules; ++c) {
+    const auto ci = static_cast<std::size_t>(c);
+    const Capsule& capsule = hand.capsules[ci];
+    if (capsule.radius <= 0.0) continue;
+    const double speed = std::max(hand.start_velocity[ci].norm(), hand.end_velocity[ci].norm()) +
+                         twist.linear.norm() + twist.angular.norm() * body.bounding_radius;
+    const double margin = kMargin + speed * step;
+    if (spheres_apart(capsule, state.pose.position, body.bounding_radius + margin)) continue;
+    for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
+      const auto features = closest(capsule, body_index, shape, state.pose, margin);
+      if (!features) continue;
+      ContactKey key{static_cast<std::uint16_t>(body_index), static_cast<std::uint8_t>(hand.slot),
+                     static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(shape), 0};
+      const auto first = std::lower_bound(before.begin(), before.end(), key,
+                                          [](const Contact& a, const ContactKey& k) { return a.key < k; });
+      auto last = first;
+      const std::uint64_t pair = key.order() >> 8;
+      while (last != before.end() && last->key.order() >> 8 == pair) ++last;
+      const bool apart = features->distance > kSeparation;
+      const int count = apart ? 0 : static_cast<int>(last - first);
+      const PlacedShape& placed = body.shapes[static_cast<std::size_t>(shape)];
+      const Pose pose = state.pose * placed.pose;
+      ClosestFeatures local = *features;
+      local.normal = pose.orientation.conjugate() * local.normal;
+      local.point = pose.to_local(local.point);
+      const AxisSpan span = contact_span(to_local(capsule, pose), placed.shape, local);
+      const std::size_t size = found_.size();
+      update_god_objects({hand, c, body_index, shape, body, state}, *features, span,
+                         count > 0 ? &*first : nullptr, count, found_);
+      for (std::size_t i = size; i < found_.size(); ++i) {
+        if (apart) found_[i].ignored = found_[i].struck = false;
+      }
+    }
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,148 @@
+#include "mr_hand_interaction/collision/god_object.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mrhi {
+namespace {
+
+/// The surface's normal may turn by this much from one step to the next while a phalanx slides over it; a
+/// larger turn means that the nearest way out is no longer the way in, and the entry face is kept (cosine).
+constexpr double kSameFace = 0.5;
+/// Below this a contact is at rest [m/s].
+constexpr double kRestingSpeed = 1e-9;
+
+struct Plane {
+  Vector3 point;   // on the surface, world
+  Vector3 normal;  // world
+  bool entry;      // the face that the phalanx entered by, which is not the nearest any more
+};
+
+/// The plane of the face that the phalanx pushes on.
+Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
+  if (memory == nullptr) return {features.point, features.normal, false};
+  const Vector3 entry = pair.state.pose.orientation * memory->entry_normal;
+  if (entry.dot(features.normal) >= kSameFace) return {features.point, features.normal, false};
+  return {pair.state.pose * memory->god_object, entry, true};
+}
+
+const Contact* nearest_memory(const Contact* before, int count, double s) {
+  const Contact* nearest = nullptr;
+  for (int i = 0; i < count; ++i) {
+    if (nearest == nullptr ||
+        std::abs(before[i].axis_parameter - s) < std::abs(nearest->axis_parameter - s)) {
+      nearest = before + i;
+    }
+  }
+  return nearest;
+}
+
+const Contact* memory_of_point(const Contact* before, int count, int point) {
+  for (int i = 0; i < count; ++i) {
+    if (before[i].key.point == point) return before + i;
+  }
+  return nullptr;
+}
+
+Contact make_contact(const TouchingPair& pair, int point) {
+  Contact contact;
+  contact.key = {static_cast<std::uint16_t>(pair.body_index), static_cast<std::uint8_t>(pair.hand.slot),
+                 static_cast<std::uint8_t>(pair.capsule), static_cast<std::uint8_t>(pair.shape_index),
+                 static_cast<std::uint8_t>(point)};
+  contact.ignored = pair.hand.emerged;
+  return contact;
+}
+
+/// When another point of the phalanx comes to press, the god object moves along by as much: the stretch
+/// between the two, which is what friction has stored, stays.
+void roll(const TouchingPair& pair, const Capsule& capsule, const Plane& plane, double s, Contact& contact) {
+  const Vector3 shift = (s - contact.axis_parameter) * (capsule.end - capsule.start);
+  const Vector3 along = shift - plane.normal.dot(shift) * plane.normal;
+  Vector3 point = pair.state.pose * contact.god_object + along;
+  point -= plane.normal.dot(point - plane.point) * plane.normal;
+  contact.god_object = pair.state.pose.to_local(point);
+}
+
+void place(const TouchingPair& pair, const Plane& plane, double s, bool remembered, Contact& contact) {
+  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
+  const Vector3 offset = -capsule.radius * plane.normal;
+  contact.hand_point = capsule.axis_point(s) + offset;
+  contact.depth = plane.normal.dot(plane.point - contact.hand_point);
+  // A god object that has not been pressed yet follows the finger: the stretch begins at the touch.
+  if (remembered && contact.depth > 0.0) {
+    roll(pair, capsule, plane, s, contact);
+  } else {
+    contact.god_object = pair.state.pose.to_local(contact.hand_point + contact.depth * plane.normal);
+    contact.friction = Friction::sticking;
+  }
+  contact.entry_normal = pair.state.pose.orientation.conjugate() * plane.normal;
+  contact.axis_parameter = s;
+  contact.point = pair.state.pose * contact.god_object;
+  contact.normal = plane.normal;
+  contact.hand_velocity = pair.hand.surface_velocity(pair.capsule, s, offset);
+  const Vector3 point_velocity =
+      object_velocity(twist_of(pair.body, pair.state), pair.state.pose.position, contact.point);
+  contact.approach = classify(contact.normal.dot(contact.hand_velocity - point_velocity));
+}
+
+bool reaches_surface(const TouchingPair& pair, const Plane& plane, double s) {
+  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
+  return plane.normal.dot(capsule.axis_point(s) - plane.point) - capsule.radius < kSeparation;
+}
+
+double deepest_end(const TouchingPair& pair, const Plane& plane) {
+  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
+  return plane.normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;
+}
+
+/// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a
+/// phalanx that lies flat and for one that stands on its tip.
+void share_load(Contact& a, Contact& b) {
+  const double da = std::max(a.depth, 0.0), db = std::max(b.depth, 0.0);
+  a.share = da + db > 0.0 ? da / (da + db) : 0.5;
+  b.share = 1.0 - a.share;
+}
+
+}  // namespace
+
+void update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+                        const Contact* before, int count, std::vector<Contact>& contacts) {
+  const Contact* nearest = nearest_memory(before, count, features.axis_parameter);
+  const Plane plane = contact_plane(pair, features, nearest);
+  const bool lies_flat =
+      span.s1 > span.s0 && reaches_surface(pair, plane, span.s0) && reaches_surface(pair, plane, span.s1);
+  if (!lies_flat) {
+    const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
+    Contact contact = nearest != nullptr ? *nearest : make_contact(pair, point);
+    const double s = plane.entry ? deepest_end(pair, plane) : features.axis_parameter;
+    place(pair, plane, s, nearest != nullptr && nearest->depth > 0.0, contact);
+    contact.share = 1.0;
+    contacts.push_back(contact);
+    return;
+  }
+  const std::array<double, 2> ends{{span.s0, span.s1}};
+  for (int point = 0; point < 2; ++point) {
+    const Contact* memory = memory_of_point(before, count, point);
+    Contact contact = memory != nullptr ? *memory : make_contact(pair, point);
+    if (memory == nullptr && nearest != nullptr) {
+      contact.struck = nearest->struck;
+      contact.ignored = nearest->ignored;
+    }
+    place(pair, plane, ends[static_cast<std::size_t>(point)], memory != nullptr && memory->depth > 0.0,
+          contact);
+    contacts.push_back(contact);
+  }
+  share_load(contacts[contacts.size() - 2], contacts.back());
+}
+
+Approach classify(double normal_velocity) {
+  if (normal_velocity < -kRestingSpeed) return Approach::colliding;
+  return normal_velocity > kRestingSpeed ? Approach::separating : Approach::resting;
+}
+
+Vector3 object_velocity(const Twist& twist, const Vector3& centre, const Vector3& point) {
+  return twist.linear + twist.angular.cross(point - centre);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#include "mr_hand_interaction/collision/moving_hand.h"
+
+namespace mrhi {
+
+Vector3 MovingHand::surface_velocity(int capsule, double s, const Vector3& offset) const {
+  const auto c = static_cast<std::size_t>(capsule);
+  const Vector3 axis = capsules[c].end - capsules[c].start;
+  const Vector3 spread = end_velocity[c] - start_velocity[c];
+  const double length_squared = axis.squaredNorm();
+  Vector3 velocity = start_velocity[c] + s * spread;
+  if (length_squared > 0.0) velocity += (axis.cross(spread) / length_squared).cross(offset);
+  return velocity;
+}
+
+MovingHand moving_hand(const HandTrack& track, int slot, double fraction, double seconds) {
+  MovingHand hand;
+  hand.slot = slot;
+  hand.emerged = track.emerged && fraction == 0.0;
+  const double rate = seconds > 0.0 ? 1.0 / seconds : 0.0;
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    const Capsule &from = track.previous.capsules[c], &to = track.current.capsules[c];
+    Capsule& capsule = hand.capsules[c];
+    capsule = to;
+    if (to.radius <= 0.0 || from.radius <= 0.0) {
+      hand.start_velocity[c] = hand.end_velocity[c] = Vector3::Zero();
+      continue;
+    }
+    capsule.start = from.start + fraction * (to.start - from.start);
+    capsule.end = from.end + fraction * (to.end - from.end);
+    hand.start_velocity[c] = rate * (to.start - from.start);
+    hand.end_velocity[c] = rate * (to.end - from.end);
+  }
+  return hand;
+}
+
+}  // namespace mrhi

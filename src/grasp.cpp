@@ -1,0 +1,59 @@
+#include "grasp.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kHoverBegins = 0.03;  // [m]
+constexpr double kHoverEnds = 0.045;   // [m]
+/// What is left of the pushes when they are added as vectors, relative to their sum as numbers.
+constexpr double kBalanced = 0.6;
+
+struct Pressing {
+  Vector3 sum = Vector3::Zero();
+  double total = 0.0;
+  int capsules = 0;
+};
+
+Pressing pressing(int slot, int body, const std::vector<Contact>& contacts) {
+  Pressing result;
+  int last_capsule = -1;
+  for (const Contact& contact : contacts) {
+    if (contact.key.hand != slot || contact.key.body != body || !contact.touching()) continue;
+    result.sum += contact.share * contact.depth * contact.normal;
+    result.total += contact.share * contact.depth;
+    if (contact.key.capsule != last_capsule) ++result.capsules;
+    last_capsule = contact.key.capsule;
+  }
+  return result;
+}
+
+bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
+             double distance) {
+  for (int c = 0; c < kCapsules; ++c) {
+    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(c)];
+    if (capsule.radius <= 0.0) continue;
+    const double reach = shape_of.bounding_radius + capsule.radius + distance;
+    if ((capsule.centre() - pose.position).norm() > reach + 0.5 * (capsule.end - capsule.start).norm())
+      continue;
+    for (int shape = 0; shape < static_cast<int>(shape_of.shapes.size()); ++shape) {
+      if (finder.closest(capsule, body, shape, pose, distance)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
+                            const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
+                            InteractionLevel before) {
+  const Pressing press = pressing(slot, body, contacts);
+  if (press.capsules >= 2 && press.sum.norm() <= kBalanced * press.total) return InteractionLevel::grasp;
+  if (press.capsules >= 1) return InteractionLevel::contact;
+  const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
+  const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];
+  return is_near(hand, body, finder, shape_of, body_pose, distance) ? InteractionLevel::hover
+                                                                    : InteractionLevel::none;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,33 @@
+#include "mr_hand_interaction/integration/body_state.h"
+
+namespace mrhi {
+
+Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation) {
+  const Matrix3 rotation = orientation.toRotationMatrix();
+  return rotation * body.inverse_inertia * rotation.transpose();
+}
+
+Twist twist_of(const Body& body, const BodyState& state) {
+  if (body.fixed) return {};
+  const Quaternion& q = state.pose.orientation;
+  const Vector3 body_momentum = q.conjugate() * state.angular_momentum;
+  return {state.linear_momentum / body.mass, q * (body.inverse_inertia * body_momentum)};
+}
+
+BodyState start_state(const Body& body) {
+  BodyState state;
+  state.pose = body.start;
+  if (body.fixed) return state;
+  const Quaternion& q = state.pose.orientation;
+  state.linear_momentum = body.mass * body.start_twist.linear;
+  state.angular_momentum = q * (body.inertia * (q.conjugate() * body.start_twist.angular));
+  return state;
+}
+
+double kinetic_energy(const Body& body, const BodyState& state) {
+  if (body.fixed) return 0.0;
+  const Twist twist = twist_of(body, state);
+  return 0.5 * (state.linear_momentum.dot(twist.linear) + state.angular_momentum.dot(twist.angular));
+}
+
+}  // namespace mrhi

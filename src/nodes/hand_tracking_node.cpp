@@ -1,0 +1,17 @@
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "mr_hand_interaction/ros/hand_tracking.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "hand_tracking_node");
+  try {
+    const mrhi::HandTracking tracking(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}

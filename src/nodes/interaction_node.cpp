@@ -1,0 +1,19 @@
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "mr_hand_interaction/ros/interaction_server.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "interaction_node");
+  try {
+    const ros::NodeHandle private_node("~");
+    const mrhi::InteractionServer server(ros::NodeHandle(), private_node,
+                                         mrhi::read_server_parameters(private_node));
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}

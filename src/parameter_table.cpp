@@ -1,0 +1,101 @@
+#include "parameter_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "scene/material_fields.h"
+#include "scene/text.h"
+#include "scene/yaml_values.h"
+
+namespace mrhi {
+namespace {
+
+template <class T>
+using Member = std::function<T&(Configuration&)>;
+
+ParameterEntry number(const std::string& name, const std::string& unit, Range range, Member<double> member) {
+  return {name, range.describe() + unit, [=](Configuration& configuration, const YAML::Node& node) {
+            const std::optional<double> value = yaml_number(node);
+            if (!value || !range.contains(*value)) return false;
+            member(configuration) = *value;
+            return true;
+          }};
+}
+
+ParameterEntry integer(const std::string& name, int min, int max, Member<int> member) {
+  const std::string allowed = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
+  return {name, allowed, [=](Configuration& configuration, const YAML::Node& node) {
+            const std::optional<int> value = yaml_integer(node);
+            if (!value || *value < min || *value > max) return false;
+            member(configuration) = *value;
+            return true;
+          }};
+}
+
+template <class T>
+ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
+                      Member<T> member) {
+  std::vector<std::string> words;
+  for (const auto& option : choices) words.push_back(option.first);
+  return {name, text::joined(words), [=](Configuration& configuration, const YAML::Node& node) {
+            for (const auto& option : choices) {
+              if (!node.IsScalar() || node.Scalar() != option.first) continue;
+              member(configuration) = option.second;
+              return true;
+            }
+            return false;
+          }};
+}
+
+bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
+  const bool of_the_scene = node.IsScalar() && node.Scalar() == "scene";
+  const std::optional<Vector3> value = yaml_vector(node);
+  if (!value && !of_the_scene) return false;
+  configuration.gravity = value;
+  return true;
+}
+
+std::vector<ParameterEntry> make_table() {
+  using C = Configuration;
+  const double no_limit = std::numeric_limits<double>::infinity();
+  std::vector<ParameterEntry> table{
+      choice<ContactModelKind>(
+          "contact_model",
+          {{"seed", ContactModelKind::seed},
+           {"penetration", ContactModelKind::penetration},
+           {"impulse", ContactModelKind::impulse}},
+          [](C & c) -> auto& { return c.contact_model; }),
+      number(
+          "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
+      {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity},
+      choice<FilterKind>(
+          "filter/type", {{"none", FilterKind::none}, {"window", FilterKind::window}},
+          [](C & c) -> auto& { return c.filter.type; }),
+      integer(
+          "filter/window", 1, 16, [](C & c) -> auto& { return c.filter.window; }),
+      number(
+          "hand/radius_scale", "", {0.1, 10}, [](C & c) -> auto& { return c.hand_radius_scale; }),
+      number(
+          "tracking/hold_time", " [s]", {0, 10}, [](C & c) -> auto& { return c.tracking.hold_time; }),
+      number(
+          "tracking/max_speed", " [m/s]", {0, no_limit, false},
+          [](C & c) -> auto& { return c.tracking.max_speed; }),
+  };
+  for (const MaterialField& field : material_fields()) {
+    const auto member = field.value;
+    table.push_back(number(
+        std::string("material/") + field.name, field.unit,
+        field.range, [member](C & c) -> auto& { return c.material.*member; }));
+  }
+  std::sort(table.begin(), table.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return table;
+}
+
+}  // namespace
+
+const std::vector<ParameterEntry>& parameter_table() {
+  static const std::vector<ParameterEntry> table = make_table();
+  return table;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/configuration.h"
+
+namespace mrhi {
+
+/// One public parameter: all that setting, listing and refusing it needs.
+struct ParameterEntry {
+  std::string name;
+  std::string allowed;  ///< what it may be, for messages
+  /// False, and nothing changed, if the value is of a wrong type or out of range.
+  std::function<bool(Configuration&, const YAML::Node&)> assign;
+};
+
+/// All parameters, sorted by name.
+const std::vector<ParameterEntry>& parameter_table();
+
+}  // namespace mrhi

@@ -1,0 +1,98 @@
+#include "mr_hand_interaction/parameters.h"
+
+#include <set>
+
+#include "parameter_table.h"
+#include "scene/material_fields.h"
+#include "scene/text.h"
+#include "scene/yaml_values.h"
+
+namespace mrhi {
+namespace {
+
+void assign(Configuration& configuration, const std::string& name, const YAML::Node& node) {
+  for (const ParameterEntry& entry : parameter_table()) {
+    if (entry.name != name) continue;
+    if (entry.assign(configuration, node)) return;
+    throw ParameterError("parameter '" + name + "': " + yaml_text(node) +
+                         " is not allowed; allowed: " + entry.allowed);
+  }
+  throw ParameterError("unknown parameter '" + text::one_line(name, 60) +
+                       "'; allowed: " + text::joined(parameter_names()));
+}
+
+/// Sets what a map holds; maps in it are name spaces.
+class FileReader {
+ public:
+  FileReader(const std::string& file, Configuration& configuration)
+      : file_(file), configuration_(configuration) {}
+
+  void read(const YAML::Node& map, const std::string& prefix) {
+    for (const auto& entry : map) {
+      const std::string name = prefix + yaml_text(entry.first);
+      if (entry.second.IsMap()) {
+        read(entry.second, name + "/");
+      } else {
+        set(name, entry.second);
+      }
+    }
+  }
+
+ private:
+  void set(const std::string& name, const YAML::Node& node) {
+    try {
+      if (!seen_.insert(name).second) {
+        throw ParameterError("parameter '" + name + "' is given twice; allowed: once");
+      }
+      assign(configuration_, name, node);
+    } catch (const ParameterError& error) {
+      throw ParameterError(yaml_place(file_, node.Mark()) + ": " + error.what());
+    }
+  }
+
+  const std::string& file_;
+  Configuration& configuration_;
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+void set_parameter(Configuration& configuration, const std::string& name, const std::string& yaml_value) {
+  try {
+    assign(configuration, name, YAML::Load(yaml_value));
+  } catch (const YAML::Exception& error) {
+    throw ParameterError("parameter '" + text::one_line(name, 60) + "': '" + text::one_line(yaml_value, 60) +
+                         "' is not YAML: " + text::one_line(error.msg));
+  }
+}
+
+void load_parameters(Configuration& configuration, const std::string& yaml_file) {
+  try {
+    const YAML::Node root = YAML::LoadFile(yaml_file);
+    if (!root.IsMap() && !root.IsNull()) {
+      throw ParameterError(yaml_file + ": " + yaml_text(root) +
+                           " is not allowed; allowed: a map of parameters");
+    }
+    Configuration changed = configuration;
+    FileReader(yaml_file, changed).read(root, "");
+    configuration = changed;
+  } catch (const YAML::BadFile&) {
+    throw ParameterError(yaml_file + ": cannot be read; allowed: a readable YAML file");
+  } catch (const YAML::Exception& error) {
+    throw ParameterError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
+  }
+}
+
+void validate(const Configuration& configuration) {
+  if (const auto conflict = material_conflict(configuration.material)) {
+    throw ParameterError("parameter 'material/dynamic_friction': " + *conflict);
+  }
+}
+
+std::vector<std::string> parameter_names() {
+  std::vector<std::string> names;
+  for (const ParameterEntry& entry : parameter_table()) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace mrhi

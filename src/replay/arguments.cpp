@@ -1,0 +1,178 @@
+#include "mr_hand_interaction/replay/arguments.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+
+namespace mrhi {
+namespace {
+
+constexpr double kShortestQuaternion = 1e-6;
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> fields;
+  std::size_t begin = 0;
+  for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) {
+    fields.push_back(text.substr(begin, comma - begin));
+  }
+  fields.push_back(text.substr(begin));
+  return fields;
+}
+
+/// The values of one option, for reading and for saying what is wrong with them.
+struct OptionText {
+  std::string option, form, text;
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw UsageError(option + " " + text + ": " + what + "; allowed: " + option + " " + form);
+  }
+
+  std::vector<double> numbers(const std::vector<std::string>& fields, std::size_t first,
+                              std::size_t count) const {
+    if (fields.size() != first + count) {
+      refuse(std::to_string(fields.size()) + " fields instead of " + std::to_string(first + count));
+    }
+    std::vector<double> values;
+    for (std::size_t i = first; i < fields.size(); ++i) {
+      char* end = nullptr;
+      values.push_back(std::strtod(fields[i].c_str(), &end));
+      if (fields[i].empty() || *end != '\0' || !std::isfinite(values.back())) {
+        refuse("'" + fields[i] + "' is no finite number");
+      }
+    }
+    return values;
+  }
+
+  Pose pose(const std::vector<std::string>& fields, std::size_t first) const {
+    const std::vector<double> v = numbers(fields, first, 7);
+    Quaternion orientation(v[6], v[3], v[4], v[5]);
+    const double length = orientation.norm();
+    if (!std::isfinite(length) || length < kShortestQuaternion) refuse("the quaternion has no direction");
+    orientation.coeffs() /= length;
+    return {{v[0], v[1], v[2]}, orientation};
+  }
+
+  Twist twist(const std::vector<std::string>& fields, std::size_t first) const {
+    const std::vector<double> v = numbers(fields, first, 6);
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  }
+
+  const std::string& object_name(const std::vector<std::string>& fields) const {
+    if (fields.front().empty()) refuse("the object's name is missing");
+    return fields.front();
+  }
+};
+
+struct Option {
+  std::string form;
+  bool repeatable;
+  std::function<void(ReplayArguments&, const OptionText&)> read;
+};
+
+void read_setting(ReplayArguments& arguments, const OptionText& value) {
+  const std::size_t equals = value.text.find('=');
+  if (equals == std::string::npos || equals == 0) value.refuse("no KEY=VALUE");
+  arguments.settings.emplace_back(value.text.substr(0, equals), value.text.substr(equals + 1));
+}
+
+const std::map<std::string, Option>& options() {
+  using A = ReplayArguments;
+  static const std::map<std::string, Option> table{
+      {"--scene", {"NAME|FILE", false, [](A& a, const OptionText& v) { a.scene = v.text; }}},
+      {"--input", {"FILE.bag|FILE.csv", false, [](A& a, const OptionText& v) { a.input = v.text; }}},
+      {"--output", {"DIR", false, [](A& a, const OptionText& v) { a.output = v.text; }}},
+      {"--topic", {"TOPIC", false, [](A& a, const OptionText& v) { a.topic = v.text; }}},
+      {"--params", {"FILE.yaml", false, [](A& a, const OptionText& v) { a.parameter_file = v.text; }}},
+      {"--set", {"KEY=VALUE", true, read_setting}},
+      {"--object-pose",
+       {"NAME,x,y,z,qx,qy,qz,qw", true,
+        [](A& a, const OptionText& v) {
+          const auto fields = split(v.text);
+          a.object_poses.emplace_back(v.object_name(fields), v.pose(fields, 1));
+        }}},
+      {"--object-twist",
+       {"NAME,vx,vy,vz,wx,wy,wz", true,
+        [](A& a, const OptionText& v) {
+          const auto fields = split(v.text);
+          a.object_twists.emplace_back(v.object_name(fields), v.twist(fields, 1));
+        }}},
+      {"--hand-transform", {"x,y,z,qx,qy,qz,qw", false, [](A& a, const OptionText& v) {
+                              a.hand_transform = v.pose(split(v.text), 0);
+                            }}}};
+  return table;
+}
+
+std::string option_names() {
+  std::string names = "--help";
+  for (const auto& entry : options()) names += ", " + entry.first;
+  return names;
+}
+
+void check(const ReplayArguments& arguments) {
+  for (const auto& [option, value] : {std::pair<const char*, const std::string&>{"--scene", arguments.scene},
+                                      {"--input", arguments.input},
+                                      {"--output", arguments.output}}) {
+    if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
+  }
+  const auto ends_with = [&](const std::string& end) {
+    const std::string& input = arguments.input;
+    return input.size() > end.size() && input.compare(input.size() - end.size(), end.size(), end) == 0;
+  };
+  if (!ends_with(".bag") && !ends_with(".csv")) {
+    throw UsageError("--input " + arguments.input + ": unknown kind of file; allowed: FILE.bag or FILE.csv");
+  }
+  if (arguments.topic && !ends_with(".bag")) throw UsageError("--topic: only a bag has topics");
+}
+
+}  // namespace
+
+ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments) {
+  ReplayArguments parsed;
+  std::map<std::string, int> seen;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& name = arguments[i];
+    if (name == "--help" || name == "-h") {
+      parsed.help = true;
+      return parsed;
+    }
+    const auto option = options().find(name);
+    if (option == options().end()) {
+      throw UsageError("unknown argument '" + name + "'; allowed: " + option_names());
+    }
+    const auto& [form, repeatable, read] = option->second;
+    if (++seen[name] > 1 && !repeatable) throw UsageError(name + " is given twice; allowed: once");
+    if (i + 1 == arguments.size() || arguments[i + 1].empty() || options().count(arguments[i + 1]) > 0) {
+      throw UsageError(name + " needs a value: " + name + " " + form);
+    }
+    read(parsed, {name, form, arguments[++i]});
+  }
+  check(parsed);
+  return parsed;
+}
+
+const char* replay_help() {
+  return R"(usage: replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
+
+Runs a recording of hands through a scene as fast as the machine goes; needs no ROS master.
+
+  --scene NAME|FILE         a shipped scene, or a URDF file
+  --input FILE              a bag (leap_motion/Human, geometry_msgs/PoseArray or HandFrame), or a CSV recording
+  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json
+  --topic TOPIC             of the bag; else /leap_motion/leap_device, /hands/pose_array, or the only one that fits
+  --params FILE.yaml        parameters, under the names of the parameter server
+  --set KEY=VALUE           one parameter; stands above --params; repeatable
+  --object-pose NAME,x,y,z,qx,qy,qz,qw
+                            where an object's centre of mass starts, in world [m]; repeatable
+  --object-twist NAME,vx,vy,vz,wx,wy,wz
+                            how it moves at the start, world axes [m/s, rad/s]; repeatable
+  --hand-transform x,y,z,qx,qy,qz,qw
+                            pose of the device frame in world; else the bag's /tf_static, else at the origin
+                            and turned by +90 degrees about x
+  --help                    this text
+
+Exit status: 0 done, 1 bad data (what was written stays), 2 bad usage.
+)";
+}
+
+}  // namespace mrhi

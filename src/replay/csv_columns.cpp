@@ -1,0 +1,72 @@
+#include "csv_columns.h"
+
+#include <locale.h>
+#include <stdlib.h>
+
+#include <utility>
+
+#include "mr_hand_interaction/replay/recording_csv.h"
+
+namespace mrhi {
+namespace {
+
+std::vector<std::string> split(std::string line) {
+  while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
+  std::vector<std::string> cells;
+  std::size_t begin = 0;
+  for (std::size_t comma; (comma = line.find(',', begin)) != std::string::npos; begin = comma + 1)
+    cells.push_back(line.substr(begin, comma - begin));
+  cells.push_back(line.substr(begin));
+  return cells;
+}
+
+/// strtod that takes the decimal point whatever the process's locale.
+double parse(const char* text, char** end) {
+  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  return strtod_l(text, end, c_locale);
+}
+
+}  // namespace
+
+CsvColumns::CsvColumns(std::string file, const std::string& header)
+    : file_(std::move(file)), names_(split(header)) {}
+
+void CsvColumns::take(const std::string& line, std::size_t line_number) {
+  line_number_ = line_number;
+  cells_ = split(line);
+  if (cells_.size() != names_.size())
+    throw RecordingError(file_ + ":" + std::to_string(line_number_) + ": has " +
+                         std::to_string(cells_.size()) + " cells; the header names " +
+                         std::to_string(names_.size()) + " columns");
+}
+
+std::optional<double> CsvColumns::number(const std::string& column) const {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (names_[i] != column) continue;
+    if (cells_[i].empty()) return std::nullopt;
+    char* end = nullptr;
+    const double value = parse(cells_[i].c_str(), &end);
+    if (*end != '\0') fail(column, "'" + cells_[i] + "' is not a number");
+    return value;
+  }
+  return std::nullopt;
+}
+
+double CsvColumns::required(const std::string& column) const {
+  const auto value = number(column);
+  if (!value) fail(column, "a number is needed");
+  return *value;
+}
+
+std::optional<Vector3> CsvColumns::point(const std::string& prefix) const {
+  const auto x = number(prefix + "_x"), y = number(prefix + "_y"), z = number(prefix + "_z");
+  if (!x && !y && !z) return std::nullopt;
+  if (!x || !y || !z) fail(prefix, "x, y and z are needed, or none of them");
+  return Vector3(*x, *y, *z);
+}
+
+void CsvColumns::fail(const std::string& column, const std::string& what) const {
+  throw RecordingError(file_ + ":" + std::to_string(line_number_) + ": " + column + ": " + what);
+}
+
+}  // namespace mrhi

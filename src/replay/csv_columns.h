@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// Columns of a CSV file by name. Errors are RecordingError.
+class CsvColumns {
+ public:
+  CsvColumns(std::string file, const std::string& header);
+
+  /// Makes this line the one that is read from.
+  void take(const std::string& line, std::size_t line_number);
+
+  /// The cell's number; nothing if it is empty or there is no such column.
+  std::optional<double> number(const std::string& column) const;
+  double required(const std::string& column) const;
+  /// Columns PREFIX_x, PREFIX_y, PREFIX_z: all three or none.
+  std::optional<Vector3> point(const std::string& prefix) const;
+
+  [[noreturn]] void fail(const std::string& column, const std::string& what) const;
+
+ private:
+  std::string file_;
+  std::vector<std::string> names_, cells_;
+  std::size_t line_number_ = 1;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,61 @@
+#include <functional>
+
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/replay/replay.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+
+namespace mrhi {
+namespace {
+
+Configuration configured(const ReplayArguments& arguments) {
+  Configuration configuration;
+  if (arguments.parameter_file) load_parameters(configuration, *arguments.parameter_file);
+  try {
+    for (const auto& [name, value] : arguments.settings) set_parameter(configuration, name, value);
+    validate(configuration);
+  } catch (const ParameterError& error) {
+    throw UsageError(error.what());
+  }
+  return configuration;
+}
+
+Body& free_body(Scene& scene, const std::string& option, const std::string& name) {
+  std::string names;
+  for (Body& body : scene.bodies) {
+    if (body.fixed) continue;
+    if (body.name == name) return body;
+    names += (names.empty() ? "" : ", ") + body.name;
+  }
+  throw UsageError(option + ": scene '" + scene.name + "' has no free object '" + name +
+                   "'; allowed: " + (names.empty() ? "none" : names));
+}
+
+void place(Scene& scene, const std::string& name, const Pose& pose) {
+  Body& body = free_body(scene, "--object-pose", name);
+  const Bounds& bounds = scene.bounds;
+  if ((pose.position.array() < bounds.min.array()).any() ||
+      (pose.position.array() > bounds.max.array()).any()) {
+    throw UsageError("--object-pose " + name + ": is out of the scene's bounds");
+  }
+  body.start = pose;
+}
+
+}  // namespace
+
+Simulation prepare_simulation(const ReplayArguments& arguments) {
+  const Configuration configuration = configured(arguments);
+  std::string file;
+  try {
+    file = find_scene_file(arguments.scene, scene_folders());
+  } catch (const SceneError& error) {
+    throw UsageError(std::string("--scene: ") + error.what());
+  }
+  Scene scene = load_scene(file, scene_options(configuration));
+  for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
+  for (const auto& [name, twist] : arguments.object_twists) {
+    free_body(scene, "--object-twist", name).start_twist = twist;
+  }
+  return Simulation(std::move(scene), configuration);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,92 @@
+#include "mr_hand_interaction/replay/recording_csv.h"
+
+#include <cmath>
+#include <fstream>
+#include <utility>
+
+#include "csv_columns.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kLongestRecording = 1e9;  // [s]
+
+struct FrameKey {
+  Nanoseconds stamp = 0;
+  double frame_id = 0.0;
+
+  bool operator==(const FrameKey& other) const { return stamp == other.stamp && frame_id == other.frame_id; }
+};
+
+FrameKey read_key(const CsvColumns& row) {
+  const double time = row.required("time_s");
+  if (!(time >= 0.0 && time <= kLongestRecording)) row.fail("time_s", "a time of 0 to 1e9 s is needed");
+  return {std::llround(time * 1e9), row.number("frame_id").value_or(0.0)};
+}
+
+float number_or(const CsvColumns& row, const std::string& column, double absent) {
+  return static_cast<float>(row.number(column).value_or(absent));
+}
+
+std::optional<float> width(const CsvColumns& row, const std::string& column) {
+  const auto value = row.number(column);
+  return value && *value != 0.0 ? std::make_optional(static_cast<float>(*value)) : std::nullopt;
+}
+
+Side read_side(const CsvColumns& row) {
+  const double is_left = row.required("is_left");
+  if (is_left != 0.0 && is_left != 1.0) row.fail("is_left", "0 or 1 is needed");
+  return is_left == 1.0 ? Side::left : Side::right;
+}
+
+/// Nothing for -1: the frame has no hand.
+std::optional<std::uint32_t> read_id(const CsvColumns& row) {
+  const double id = row.required("hand_id");
+  if (id == -1.0) return std::nullopt;
+  if (!(id >= 0.0 && id <= 4294967295.0 && id == std::floor(id)))
+    row.fail("hand_id", "a whole number is needed, or -1 for a frame with no hand");
+  return static_cast<std::uint32_t>(id);
+}
+
+HandJoints read_hand(const CsvColumns& row, std::uint32_t id) {
+  static const char* const fingers[kFingers] = {"thumb", "index", "middle", "ring", "pinky"};
+  HandJoints hand;
+  hand.id = id;
+  hand.side = read_side(row);
+  hand.confidence = number_or(row, "confidence", 1.0);
+  hand.grab_strength = number_or(row, "grab_strength", 0.0);
+  hand.pinch_strength = number_or(row, "pinch_strength", 0.0);
+  hand.palm_centre = row.point("palm");
+  hand.palm_width = width(row, "palm_width");
+  hand.wrist = row.point("wrist");
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    const std::string name = fingers[f];
+    hand.finger_width[f] = width(row, name + "_width");
+    for (std::size_t j = 0; j < hand.joints[f].size(); ++j)
+      hand.joints[f][j] = row.point(name + "_j" + std::to_string(j));
+  }
+  return hand;
+}
+
+}  // namespace
+
+std::vector<JointsFrame> read_recording_csv(const std::string& file) {
+  std::ifstream input(file);
+  std::string line;
+  if (!input || !std::getline(input, line)) throw RecordingError(file + ": cannot be read, or is empty");
+  CsvColumns row(file, line);
+  std::vector<JointsFrame> frames;
+  FrameKey key;
+  for (std::size_t number = 2; std::getline(input, line); ++number) {
+    if (line.empty() || line == "\r") continue;
+    row.take(line, number);
+    const FrameKey next = read_key(row);
+    if (frames.empty() || !(next == key)) frames.push_back({next.stamp, {}});
+    key = next;
+    if (const auto id = read_id(row)) frames.back().hands.push_back(read_hand(row, *id));
+  }
+  if (frames.empty()) throw RecordingError(file + ": has a header and no frames");
+  return frames;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,127 @@
+#include "mr_hand_interaction/replay/replay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+#include "mr_hand_interaction/replay/bag_input.h"
+#include "mr_hand_interaction/ros/result_conversion.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
+
+namespace mrhi {
+namespace {
+
+bool timed_step(Simulation& simulation, ReplaySummary& summary) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (!simulation.step()) return false;
+  const auto time = std::chrono::steady_clock::now() - begin;
+  summary.step_time.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  ++summary.steps;
+  return true;
+}
+
+void add(const FrameResult& result, Nanoseconds since, ReplaySummary& summary) {
+  ++summary.frames;
+  summary.deepest_rendered = std::max(summary.deepest_rendered, result.deepest_rendered);
+  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
+  if (result.restarted) ++summary.restarts;
+  if (summary.frames > 1 && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - since);
+}
+
+/// Counts; the first of each kind is told.
+void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
+            ReplaySummary& summary) {
+  if (++summary.rejected[reason] > 1) return;
+  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
+}
+
+void leave_out(const std::vector<std::string>& hands, ProgressBar& progress, ReplaySummary& summary) {
+  if (hands.empty()) return;
+  if (summary.hands_left_out == 0) {
+    progress.line("replay: left out: " + hands.front() + " (more of the kind are counted only)");
+  }
+  summary.hands_left_out += hands.size();
+}
+
+struct Input {
+  std::unique_ptr<FrameSource> frames;
+  std::string topic;
+};
+
+Input open_input(const ReplayArguments& arguments) {
+  const std::string& file = arguments.input;
+  if (file.compare(file.size() - 4, 4, ".csv") == 0) {
+    return {std::make_unique<CsvInput>(file, arguments.hand_transform.value_or(default_device_mount())), ""};
+  }
+  auto bag = std::make_unique<BagInput>(file, arguments.topic, arguments.hand_transform);
+  const std::string topic = bag->topic();
+  return {std::move(bag), topic};
+}
+
+void finish(const Simulation& simulation, ReplaySummary& summary) {
+  const Scene& scene = simulation.scene();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+  }
+  summary.state_hash = hash(simulation.state());
+}
+
+void write_summary(const std::string& folder, const ReplaySummary& summary) {
+  const std::string path = folder + "/summary.json";
+  std::ofstream file(path);
+  file << to_json(summary) << std::flush;
+  if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace
+
+void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
+                ReplaySummary& summary) {
+  Nanoseconds last_stamp = 0;
+  while (const std::optional<SourceFrame> input = source.next()) {
+    progress.show(source.position(), source.size());
+    if (!input->frame) {
+      reject(input->reason, input->detail, progress, summary);
+      continue;
+    }
+    const Rejection rejection = simulation.begin(*input->frame);
+    if (rejection != Rejection::none) {
+      reject(to_string(rejection), "frame " + std::to_string(source.position()) + " of the input", progress,
+             summary);
+      continue;
+    }
+    leave_out(input->left_out, progress, summary);
+    while (timed_step(simulation, summary)) {
+    }
+    const FrameResult& result = simulation.end();
+    writer.write(result, simulation.state());
+    add(result, last_stamp, summary);
+    last_stamp = result.stamp;
+  }
+}
+
+void replay(const ReplayArguments& arguments) {
+  Simulation simulation = prepare_simulation(arguments);
+  const Input input = open_input(arguments);
+  ResultWriter writer(arguments.output, simulation.scene());
+  ReplaySummary summary;
+  summary.scene = simulation.scene().name;
+  summary.input = arguments.input;
+  summary.topic = input.topic;
+  summary.contact_model = to_string(simulation.configuration().contact_model);
+  ProgressBar progress;
+  try {
+    run_frames(*input.frames, simulation, writer, progress, summary);
+    if (summary.frames == 0) throw std::runtime_error(arguments.input + ": no frame that can be used");
+    writer.flush();
+  } catch (const std::exception& error) {
+    summary.error = error.what();
+    finish(simulation, summary);
+    write_summary(arguments.output, summary);
+    throw;
+  }
+  finish(simulation, summary);
+  write_summary(arguments.output, summary);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,116 @@
+#include "mr_hand_interaction/replay/result_writer.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "mr_hand_interaction/ros/result_conversion.h"
+
+namespace mrhi {
+namespace {
+
+std::string made_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder)) return folder;
+  throw std::runtime_error("cannot make folder " + folder + (error ? ": " + error.message() : ""));
+}
+
+void add_quaternion(CsvFile& file, const Quaternion& q) {
+  file << q.x() << q.y() << q.z() << q.w();
+}
+
+}  // namespace
+
+const char* event_name(EventKind kind) {
+  switch (kind) {
+    case EventKind::hover_begin:
+      return "HOVER_BEGIN";
+    case EventKind::hover_end:
+      return "HOVER_END";
+    case EventKind::contact_begin:
+      return "CONTACT_BEGIN";
+    case EventKind::contact_end:
+      return "CONTACT_END";
+    case EventKind::grasp_begin:
+      return "GRASP_BEGIN";
+    case EventKind::grasp_end:
+      return "GRASP_END";
+    case EventKind::hand_lost:
+      return "HAND_LOST";
+    case EventKind::hand_found:
+      return "HAND_FOUND";
+    case EventKind::out_of_bounds:
+      return "OUT_OF_BOUNDS";
+  }
+  return "";
+}
+
+ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
+    : scene_(scene),
+      objects_(made_folder(folder) + "/objects.csv", "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"),
+      contacts_(folder + "/contacts.csv",
+                "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz"),
+      hands_(folder + "/hands.csv",
+             "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching"),
+      events_(folder + "/events.csv", "time,kind,object,hand_id") {}
+
+void ResultWriter::write(const FrameResult& result, const SimulationState& state) {
+  if (!begun_) first_stamp_ = result.stamp;
+  begun_ = true;
+  const double time = to_seconds(result.stamp - first_stamp_);
+  write_objects(time, state);
+  write_contacts(time, result, state);
+  for (const Hand& hand : result.tracked) write_hand(time, hand, nullptr);
+  for (const RenderedHand& rendered : result.rendered) write_hand(time, rendered.hand, &rendered);
+  write_events(result);
+}
+
+void ResultWriter::flush() {
+  for (CsvFile* file : {&objects_, &contacts_, &hands_, &events_}) file->flush();
+}
+
+void ResultWriter::write_objects(double time, const SimulationState& state) {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const Body& body = scene_.bodies[i];
+    if (body.fixed) continue;
+    const Twist twist = twist_of(body, state.bodies[i]);
+    objects_ << time << body.name << state.bodies[i].pose.position;
+    add_quaternion(objects_, state.bodies[i].pose.orientation);
+    objects_ << twist.linear << twist.angular;
+    objects_.end_row();
+  }
+}
+
+void ResultWriter::write_contacts(double time, const FrameResult& result, const SimulationState& state) {
+  for (const Contact& contact : result.contacts) {
+    contacts_ << time << scene_.bodies[contact.key.body].name << hand_id(contact, state)
+              << finger_of(contact.key.capsule) << bone_of(contact.key.capsule)
+              << static_cast<int>(phase(contact)) << contact.point << contact.normal << contact.depth
+              << contact.impulse << contact.force;
+    contacts_.end_row();
+  }
+}
+
+void ResultWriter::write_hand(double time, const Hand& hand, const RenderedHand* rendered) {
+  for (int i = 0; i < kCapsules; ++i) {
+    if (!hand.has(i)) continue;
+    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
+    const bool touching = rendered != nullptr && rendered->touching[static_cast<std::size_t>(i)];
+    hands_ << time << hand.id << static_cast<int>(hand.side) << finger_of(i) << bone_of(i)
+           << (rendered != nullptr ? 1 : 0) << capsule.start << capsule.end << capsule.radius
+           << (touching ? 1 : 0);
+    hands_.end_row();
+  }
+}
+
+void ResultWriter::write_events(const FrameResult& result) {
+  for (const Event& event : result.events) {
+    const bool has_body = event.body >= 0;
+    events_ << to_seconds(event.stamp - first_stamp_) << std::string(event_name(event.kind))
+            << (has_body ? scene_.bodies[static_cast<std::size_t>(event.body)].name : std::string())
+            << event.hand_id;
+    events_.end_row();
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,78 @@
+#include "mr_hand_interaction/replay/summary.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+namespace mrhi {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    char escaped[8];
+    if (c == '"' || c == '\\') {
+      result += {'\\', c};
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      std::snprintf(escaped, sizeof escaped, "\\u%04x", c);
+      result += escaped;
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+std::string object(const std::map<std::string, std::uint64_t>& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts) {
+    text += (text.empty() ? "" : ", ") + quoted(name) + ": " + std::to_string(count);
+  }
+  return "{" + text + "}";
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + quoted(name);
+  return "[" + text + "]";
+}
+
+std::string step_times(const DurationHistogram& times) {
+  return "{\"p50\": " + number(times.quantile_us(0.5)) + ", \"p99\": " + number(times.quantile_us(0.99)) +
+         ", \"max\": " + number(times.max_us()) + "}";
+}
+
+}  // namespace
+
+std::string to_json(const ReplaySummary& summary) {
+  char hash[17];
+  std::snprintf(hash, sizeof hash, "%016" PRIx64, summary.state_hash);
+  std::vector<std::pair<std::string, std::string>> fields{
+      {"scene", quoted(summary.scene)},
+      {"input", quoted(summary.input)},
+      {"topic", quoted(summary.topic)},
+      {"contact_model", quoted(summary.contact_model)},
+      {"frames", std::to_string(summary.frames)},
+      {"simulated_seconds", number(summary.simulated_seconds)},
+      {"steps", std::to_string(summary.steps)},
+      {"step_time_us", step_times(summary.step_time)},
+      {"deepest_rendered_penetration_m", number(summary.deepest_rendered)},
+      {"restarts", std::to_string(summary.restarts)},
+      {"rejected", object(summary.rejected)},
+      {"hands_left_out", std::to_string(summary.hands_left_out)},
+      {"events", object(summary.events)},
+      {"objects_held_at_end", list(summary.held_at_end)},
+      {"state_hash", quoted(hash)}};
+  if (!summary.error.empty()) fields.emplace_back("error", quoted(summary.error));
+  std::string text = "{";
+  for (const auto& [name, value] : fields)
+    text += (text == "{" ? "\n  " : ",\n  ") + quoted(name) + ": " + value;
+  return text + "\n}\n";
+}
+
+}  // namespace mrhi

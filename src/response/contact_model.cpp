@@ -1,0 +1,21 @@
+#include "mr_hand_interaction/response/contact_model.h"
+
+#include "impulse_model.h"
+#include "penetration_model.h"
+#include "seed_model.h"
+
+namespace mrhi {
+
+std::unique_ptr<const ContactModel> make_contact_model(const Configuration& configuration) {
+  switch (configuration.contact_model) {
+    case ContactModelKind::penetration:
+      return std::make_unique<PenetrationModel>();
+    case ContactModelKind::impulse:
+      return std::make_unique<ImpulseModel>();
+    case ContactModelKind::seed:
+      break;
+  }
+  return std::make_unique<SeedModel>();
+}
+
+}  // namespace mrhi

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "mr_hand_interaction/response/contact_model.h"
+
+namespace mrhi {
+
+/// Impulses only: every step in which a phalanx meets an object and still approaches it is an impact; nothing holds.
+class ImpulseModel : public ContactModel {
+ public:
+  void respond(ContactStep& step) const override;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,70 @@
+#include "mr_hand_interaction/response/penetration_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mr_hand_interaction/response/impact.h"
+
+namespace mrhi {
+
+double normal_force(double stiffness, double depth, double normal_velocity) {
+  if (depth <= 0.0) return 0.0;
+  const double parting = std::max(normal_velocity, 0.0) / kReleaseSpeed;
+  return stiffness * depth * std::max(1.0 - parting, 0.0);
+}
+
+Tangential coulomb(const Vector3& spring_force, double normal_force, const Material& material,
+                   Friction before) {
+  const double wanted = spring_force.norm();
+  const double sliding = material.dynamic_friction * normal_force;
+  const bool slips = before == Friction::sticking ? wanted > material.static_friction * normal_force
+                                                  : wanted > kStickAgain * sliding;
+  if (!slips) return {spring_force, Friction::sticking};
+  return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
+}
+
+Vector3 penetration_force(const Body& body, const BodyState& state, double damping, Contact& contact) {
+  contact.force.setZero();
+  const double stiffness = body.material.stiffness * contact.share;
+  if (!contact.touching() || stiffness <= 0.0) return contact.force;
+  const Vector3& n = contact.normal;
+  const Vector3 velocity = relative_velocity(contact, body, state);
+  const double push = normal_force(stiffness, contact.depth, n.dot(velocity));
+
+  const Vector3 reach = contact.hand_point - contact.point;
+  const Vector3 stretch = reach - n.dot(reach) * n;
+  const Vector3 drag = damping * contact.share * (velocity - n.dot(velocity) * n);
+  const Tangential tangential = coulomb(stiffness * stretch + drag, push, body.material, contact.friction);
+  contact.friction = tangential.friction;
+  if (tangential.friction == Friction::slipping) {
+    contact.point += stretch - tangential.force / stiffness;
+    contact.god_object = state.pose.to_local(contact.point);
+  }
+  contact.force = tangential.force - push * n;
+  return contact.force;
+}
+
+void penetration_phase(ContactStep& step) {
+  auto first = step.contacts.begin();
+  while (first != step.contacts.end()) {
+    const std::size_t index = first->key.body;
+    const auto last = std::find_if(first, step.contacts.end(),
+                                   [index](const Contact& contact) { return contact.key.body != index; });
+    const Body& body = step.scene.bodies[index];
+    BodyState& state = step.bodies[index];
+    double share = 0.0;  // the number of phalanges in touch
+    for (auto contact = first; contact != last; ++contact)
+      share += contact->touching() ? contact->share : 0.0;
+    const double damping =
+        body.fixed || share == 0.0
+            ? 0.0
+            : kTangentialDamping * 2.0 * std::sqrt(body.material.stiffness * body.mass / share);
+    for (auto contact = first; contact != last; ++contact) {
+      const Vector3 force = penetration_force(body, state, damping, *contact);
+      if (!body.fixed) apply_impulse(step.step * force, contact->point, state);
+    }
+    first = last;
+  }
+}
+
+}  // namespace mrhi

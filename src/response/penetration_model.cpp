@@ -1,0 +1,11 @@
+#include "penetration_model.h"
+
+#include "mr_hand_interaction/response/penetration_force.h"
+
+namespace mrhi {
+
+void PenetrationModel::respond(ContactStep& step) const {
+  penetration_phase(step);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,111 @@
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "mr_hand_interaction/tracking/joints.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kUnitTolerance = 1e-9;  // of a quaternion's length; what is nearer keeps its bits
+
+[[noreturn]] void refuse(const mr_hand_interaction::Hand& message, const std::string& what) {
+  throw std::invalid_argument("hand " + std::to_string(message.id) + ": " + what);
+}
+
+double checked(const mr_hand_interaction::Hand& message, const char* name, float value, double most) {
+  const double number = static_cast<double>(value);
+  if (!(number >= 0.0 && number <= most))
+    refuse(message,
+           std::string(name) + " " + std::to_string(value) + " is not in 0 to " + std::to_string(most));
+  return number;
+}
+
+Vector3 checked(const mr_hand_interaction::Hand& message, const char* name,
+                const geometry_msgs::Point& point) {
+  const Vector3 position = from_message(point);
+  if (!position.allFinite()) refuse(message, std::string(name) + " is not finite");
+  return position;
+}
+
+Pose checked_palm(const mr_hand_interaction::Hand& message) {
+  Pose palm{checked(message, "palm", message.palm.position), from_message(message.palm).orientation};
+  const double length = palm.orientation.norm();
+  if (!(std::abs(length - 1.0) < 0.01)) refuse(message, "palm orientation is no unit quaternion");
+  if (std::abs(length - 1.0) > kUnitTolerance) palm.orientation.normalize();
+  return palm;
+}
+
+void add_phalanx(const mr_hand_interaction::Hand& message, const mr_hand_interaction::Phalanx& phalanx,
+                 Hand& hand) {
+  const std::string name =
+      "finger " + std::to_string(phalanx.finger) + " bone " + std::to_string(phalanx.bone);
+  if (phalanx.finger >= kFingers || phalanx.bone >= kBonesPerFinger) refuse(message, name + " is not known");
+  const int index = capsule_index(phalanx.finger, phalanx.bone);
+  if (hand.has(index)) refuse(message, name + " is given twice");
+  const double radius = checked(message, "radius", phalanx.radius, 0.1);
+  hand.capsules[static_cast<std::size_t>(index)] = {checked(message, "start of a phalanx", phalanx.start),
+                                                    checked(message, "end of a phalanx", phalanx.end),
+                                                    radius};
+}
+
+Hand from_message(const mr_hand_interaction::Hand& message) {
+  if (message.side > mr_hand_interaction::Hand::RIGHT) refuse(message, "side is neither LEFT nor RIGHT");
+  Hand hand;
+  hand.id = message.id;
+  hand.side = static_cast<Side>(message.side);
+  hand.confidence = checked(message, "confidence", message.confidence, 1.0);
+  hand.grab_strength = checked(message, "grab_strength", message.grab_strength, 1.0);
+  hand.pinch_strength = checked(message, "pinch_strength", message.pinch_strength, 1.0);
+  hand.palm = checked_palm(message);
+  hand.palm_width = checked(message, "palm_width", message.palm_width, 0.3);
+  hand.wrist = checked(message, "wrist", message.wrist);
+  for (const auto& phalanx : message.phalanges) add_phalanx(message, phalanx, hand);
+  hand.capsules[kPalm] = palm_capsule(hand.palm, hand.palm_width);
+  return hand;
+}
+
+}  // namespace
+
+mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching) {
+  mr_hand_interaction::Hand message;
+  message.id = hand.id;
+  message.side = static_cast<std::uint8_t>(hand.side);
+  message.confidence = static_cast<float>(hand.confidence);
+  message.grab_strength = static_cast<float>(hand.grab_strength);
+  message.pinch_strength = static_cast<float>(hand.pinch_strength);
+  message.palm = to_message(hand.palm);
+  message.palm_width = static_cast<float>(hand.palm_width);
+  message.wrist = to_message(hand.wrist);
+  for (int i = 0; i < kPhalanges; ++i) {
+    if (!hand.has(i)) continue;
+    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
+    mr_hand_interaction::Phalanx phalanx;
+    phalanx.finger = static_cast<std::uint8_t>(finger_of(i));
+    phalanx.bone = static_cast<std::uint8_t>(bone_of(i));
+    phalanx.start = to_message(capsule.start);
+    phalanx.end = to_message(capsule.end);
+    phalanx.radius = static_cast<float>(capsule.radius);
+    phalanx.touching = touching[static_cast<std::size_t>(i)];
+    message.phalanges.push_back(phalanx);
+  }
+  return message;
+}
+
+mr_hand_interaction::HandFrame to_message(const HandFrame& frame, const std::string& frame_id) {
+  mr_hand_interaction::HandFrame message;
+  message.header.stamp = to_ros_time(frame.stamp);
+  message.header.frame_id = frame_id;
+  for (const Hand& hand : frame.hands) message.hands.push_back(to_message(hand));
+  return message;
+}
+
+HandFrame from_message(const mr_hand_interaction::HandFrame& message) {
+  HandFrame frame;
+  frame.stamp = from_ros_time(message.header.stamp);
+  for (const auto& hand : message.hands) frame.hands.push_back(from_message(hand));
+  return frame;
+}
+
+}  // namespace mrhi

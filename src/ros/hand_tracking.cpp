@@ -1,0 +1,144 @@
+#include "mr_hand_interaction/ros/hand_tracking.h"
+
+#include <mr_hand_interaction/HandFrame.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/pose_array_hand.h"
+
+namespace mrhi {
+namespace {
+
+constexpr Nanoseconds kRestart =
+    500000000;  // a stamp that goes back further is a recording that starts again
+constexpr int kQueue = 10;
+
+const char* const kUnusableHand = "unusable hand";
+const char* const kStampNotIncreasing = "stamp repeats or goes back";
+const char* const kNoTransform = "no transform";
+
+std::vector<std::string> known_reasons() {
+  std::vector<std::string> reasons{kUnusableHand, kStampNotIncreasing, kNoTransform};
+  for (auto kind :
+       {DecodeError::Kind::unknown_version, DecodeError::Kind::malformed, DecodeError::Kind::wrong_count})
+    reasons.emplace_back(DecodeError(kind, "").reason());
+  return reasons;
+}
+
+Side parse_side(const std::string& name) {
+  if (name == "left") return Side::left;
+  if (name == "right") return Side::right;
+  throw std::invalid_argument("parameter side: '" + name + "' is neither left nor right");
+}
+
+}  // namespace
+
+HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
+    : fixed_frame_(parameters.param<std::string>("fixed_frame", "world")),
+      pose_array_side_(parse_side(parameters.param<std::string>("side", "right"))),
+      statistics_(known_reasons()),
+      node_(node),
+      transform_listener_(transforms_),
+      diagnostics_(node, parameters) {
+  publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
+  subscribe_leap();
+  using PoseArrayEvent = ros::MessageEvent<const geometry_msgs::PoseArray>;
+  pose_array_subscriber_ = node_.subscribe<geometry_msgs::PoseArray>(
+      "hands/pose_array", kQueue,
+      boost::function<void(const PoseArrayEvent&)>(
+          [this](const PoseArrayEvent& event) { take_pose_array(event); }),
+      nullptr, ros::TransportHints().tcpNoDelay());
+  diagnostics_.setHardwareID("hand tracker");
+  diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
+  timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    diagnostics_.force_update();
+    welcome_other_versions();
+  });
+}
+
+void HandTracking::subscribe_leap() {
+  leap_seen_ = false;
+  leap_subscriber_ = node_.subscribe<topic_tools::ShapeShifter>(
+      "/leap_motion/leap_device", kQueue,
+      boost::function<void(const LeapEvent&)>([this](const LeapEvent& event) { take_leap(event); }), nullptr,
+      ros::TransportHints().tcpNoDelay());
+}
+
+void HandTracking::welcome_other_versions() {
+  const bool connected = leap_subscriber_.getNumPublishers() > 0;
+  leap_seen_ = leap_seen_ || connected;
+  if (!leap_seen_ || connected) return;
+  leap_subscriber_.shutdown();
+  subscribe_leap();
+}
+
+const LeapHumanDecoder& HandTracking::decoder(const topic_tools::ShapeShifter& message) {
+  auto& decoder = decoders_[message.getMD5Sum()];
+  if (!decoder) decoder = std::make_unique<const LeapHumanDecoder>(message.getMessageDefinition());
+  return *decoder;
+}
+
+void HandTracking::take_leap(const LeapEvent& event) {
+  const topic_tools::ShapeShifter& message = *event.getConstMessage();
+  leap_seen_ = true;
+  try {
+    const LeapHumanDecoder& known = decoder(message);
+    std::vector<std::uint8_t> bytes(message.size());
+    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+    LeapHumanDecoder::Frame frame = known.decode(bytes.data(), bytes.size());
+    take(std::move(frame.joints), frame.frame_id, event.getReceiptTime());
+  } catch (const DecodeError& error) {
+    statistics_.rejected(error.reason(), message.getDataType() + ": " + error.what());
+  }
+}
+
+void HandTracking::take_pose_array(const ros::MessageEvent<const geometry_msgs::PoseArray>& event) {
+  const geometry_msgs::PoseArray& message = *event.getConstMessage();
+  try {
+    take(joints_from_pose_array(message, pose_array_side_), message.header.frame_id, event.getReceiptTime());
+  } catch (const DecodeError& error) {
+    statistics_.rejected(error.reason(), error.what());
+  }
+}
+
+void HandTracking::take(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
+  if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
+  try {
+    const Pose device = joints.hands.empty() ? Pose{} : device_pose(frame_id, joints.stamp);
+    std::vector<std::string> defects;
+    const auto frame = complete_frame(joints, device, defects);
+    for (const std::string& found : defects) statistics_.rejected(kUnusableHand, found);
+    if (!frame || !accept_stamp(frame->stamp)) return;
+    publisher_.publish(to_message(*frame, fixed_frame_));
+    statistics_.taken((ros::Time::now() - to_ros_time(frame->stamp)).toSec());
+  } catch (const tf2::TransformException& error) {
+    statistics_.rejected(kNoTransform, error.what());
+  }
+}
+
+bool HandTracking::accept_stamp(Nanoseconds stamp) {
+  const Nanoseconds back = last_stamp_ - stamp;
+  if (back >= 0 && back <= kRestart) {
+    statistics_.rejected(kStampNotIncreasing, std::to_string(to_seconds(stamp)) + " s after " +
+                                                  std::to_string(to_seconds(last_stamp_)) + " s");
+    return false;
+  }
+  // Transforms that move would be refused as older than what the buffer has; static ones survive.
+  if (back > kRestart) transforms_.clear();
+  last_stamp_ = stamp;
+  return true;
+}
+
+Pose HandTracking::device_pose(const std::string& frame_id, Nanoseconds stamp) const {
+  const std::string source = frame_id.substr(frame_id.compare(0, 1, "/") == 0 ? 1 : 0);
+  try {
+    return from_message(transforms_.lookupTransform(fixed_frame_, source, to_ros_time(stamp)).transform);
+  } catch (const tf2::ExtrapolationException&) {
+    return from_message(transforms_.lookupTransform(fixed_frame_, source, ros::Time(0)).transform);
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,52 @@
+#include "mr_hand_interaction/ros/input_statistics.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+
+namespace mrhi {
+
+InputStatistics::InputStatistics(const std::vector<std::string>& reasons)
+    : period_start_(ros::WallTime::now()) {
+  for (const std::string& reason : reasons) rejected_[reason];
+}
+
+void InputStatistics::taken(double latency) {
+  ++taken_;
+  ++taken_in_period_;
+  latency_sum_ += latency;
+  latency_max_ = std::max(latency_max_, latency);
+}
+
+void InputStatistics::rejected(const std::string& reason, const std::string& detail) {
+  const ros::WallDuration kQuiet(5.0);
+  Refusals& refusals = rejected_[reason];
+  ++refusals.count;
+  refusals.last = detail;
+  const ros::WallTime now = ros::WallTime::now();
+  if (!refusals.logged.isZero() && now - refusals.logged < kQuiet) return;
+  refusals.logged = now;
+  ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
+}
+
+void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const ros::WallTime now = ros::WallTime::now();
+  const double frames = static_cast<double>(taken_in_period_);
+  status.summary(DiagnosticStatus::OK, taken_in_period_ > 0 ? "frames are coming" : "no frames");
+  status.add("frames taken", taken_);
+  status.add("rate [Hz]", frames / std::max((now - period_start_).toSec(), 1e-3));
+  status.add("latency mean [ms]", taken_in_period_ > 0 ? 1e3 * latency_sum_ / frames : 0.0);
+  status.add("latency max [ms]", 1e3 * latency_max_);
+  for (auto& [reason, refusals] : rejected_) {
+    status.add("rejected: " + reason, refusals.count);
+    if (refusals.count > refusals.reported)
+      status.mergeSummary(DiagnosticStatus::WARN, reason + ": " + refusals.last);
+    refusals.reported = refusals.count;
+  }
+  period_start_ = now;
+  taken_in_period_ = 0;
+  latency_sum_ = latency_max_ = 0.0;
+}
+
+}  // namespace mrhi

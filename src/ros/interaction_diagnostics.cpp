@@ -1,0 +1,24 @@
+#include "mr_hand_interaction/ros/interaction_diagnostics.h"
+
+namespace mrhi {
+
+InteractionDiagnostics::InteractionDiagnostics(ros::NodeHandle node, ros::NodeHandle parameters,
+                                               const std::string& scene)
+    : input_({}), updater_(node, parameters) {
+  updater_.setHardwareID("scene " + scene);
+  updater_.add("interaction", this, &InteractionDiagnostics::report);
+  timer_ = node.createWallTimer(ros::WallDuration(1.0),
+                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+}
+
+void InteractionDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  input_.report(status);
+  status.add("frames dropped while paused", dropped_);
+  status.add("steps in this period", step_times_.count());
+  status.add("step time p50 [us]", step_times_.quantile_us(0.5));
+  status.add("step time p99 [us]", step_times_.quantile_us(0.99));
+  status.add("step time max [us]", step_times_.max_us());
+  step_times_.clear();
+}
+
+}  // namespace mrhi

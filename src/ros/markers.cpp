@@ -1,0 +1,117 @@
+#include "mr_hand_interaction/ros/markers.h"
+
+#include <visualization_msgs/Marker.h>
+
+#include <cstdio>
+
+#include "marker_layers.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/result_conversion.h"
+
+namespace mrhi {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double kPassing = 0.5;  // hands and contacts go if the node does [s]
+constexpr double kForEver = 0.0;
+constexpr int kIdsPerHand = 100;
+const Vector3 kTextPlace{0.0, 0.12, 0.43};
+
+HandStyle rendered_style() {
+  return {color(0.91, 0.76, 0.65), color(0.902, 0.450, 0.05), 1.0};
+}
+/// Thinner, so that it is hidden in the rendered hand where the two agree.
+HandStyle ghost_style() {
+  return {color(0.337, 0.706, 0.914, 0.45), color(0.337, 0.706, 0.914, 0.45), 0.75};
+}
+
+std::string heads_up(const Scene& scene, const Configuration& configuration, const SimulationState& state) {
+  std::string held;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (is_held(i, state)) held += (held.empty() ? "" : ", ") + scene.bodies[i].name;
+  }
+  const double g = configuration.gravity.value_or(scene.gravity).norm();
+  char gravity[32];
+  std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
+  return "holding: " + (held.empty() ? "nothing" : held) + "   |   " +
+         to_string(configuration.contact_model) + "   |   gravity: " + (g > 0.0 ? gravity : "none");
+}
+
+}  // namespace
+
+std_msgs::ColorRGBA color(double r, double g, double b, double a) {
+  std_msgs::ColorRGBA c;
+  c.r = static_cast<float>(r);
+  c.g = static_cast<float>(g);
+  c.b = static_cast<float>(b);
+  c.a = static_cast<float>(a);
+  return c;
+}
+
+Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scale,
+                         const std_msgs::ColorRGBA& paint) {
+  array_.markers.emplace_back();
+  Marker& marker = array_.markers.back();
+  marker.header = header_;
+  marker.ns = name_;
+  marker.id = id;
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.pose = to_message(pose);
+  marker.scale.x = scale.x();
+  marker.scale.y = scale.y();
+  marker.scale.z = scale.z();
+  marker.color = paint;
+  marker.lifetime = ros::Duration(lifetime_);
+  return marker;
+}
+
+Markers::Markers(const Scene& scene, const Configuration& configuration)
+    : scene_(scene), configuration_(configuration) {}
+
+MarkerArray Markers::update(const FrameResult& result, const SimulationState& state,
+                            const std_msgs::Header& header) {
+  MarkerArray array;
+  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing);
+  MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
+  MarkerLayer contacts(array, header, "contacts", kPassing), text(array, header, "text", kForEver);
+  int first_id = 0;
+  for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
+    add_hand(result.rendered[i].hand, result.rendered[i].touching, rendered_style(), first_id, hands);
+    add_hand(result.tracked[i], {}, ghost_style(), first_id, ghosts);
+  }
+  add_bodies(scene_, state, false, objects);
+  add_bodies(scene_, state, true, fixtures);
+  add_contacts(result, contacts);
+  text.add(0, Marker::TEXT_VIEW_FACING, {kTextPlace, Quaternion::Identity()}, Vector3::Constant(0.012),
+           color(0.9, 0.9, 0.9))
+      .text = heads_up(scene_, configuration_, state);
+  delete_stale(header, array);
+  return array;
+}
+
+void Markers::delete_stale(const std_msgs::Header& header, MarkerArray& array) {
+  std::set<std::pair<std::string, int>> now;
+  for (const Marker& marker : array.markers) now.emplace(marker.ns, marker.id);
+  std::vector<Marker> deleted;
+  if (cleared_) {
+    deleted.emplace_back();
+    deleted.back().header = header;
+    deleted.back().action = Marker::DELETEALL;
+    cleared_ = false;
+  }
+  for (const auto& [layer, id] : shown_) {
+    if (now.count({layer, id}) > 0) continue;
+    deleted.emplace_back();
+    deleted.back().header = header;
+    deleted.back().ns = layer;
+    deleted.back().id = id;
+    deleted.back().action = Marker::DELETE;
+  }
+  array.markers.insert(array.markers.begin(), deleted.begin(), deleted.end());
+  shown_.swap(now);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,63 @@
+#include "mr_hand_interaction/ros/package_paths.h"
+
+#include <ros/package.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kPackage = "mr_hand_interaction";
+const std::string kScheme = "package://";
+
+std::string installed_share() {
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);  // PREFIX/lib/PACKAGE/NODE
+  if (error) return "";
+  return (executable.parent_path().parent_path().parent_path() / "share" / kPackage).string();
+}
+
+}  // namespace
+
+std::vector<std::string> share_folders() {
+  std::vector<std::string> folders;
+  const auto add = [&](const std::string& folder) {
+    std::error_code ignored;
+    if (!folder.empty() && fs::is_directory(fs::path(folder) / "config", ignored)) folders.push_back(folder);
+  };
+  add(installed_share());
+#ifdef MR_HAND_INTERACTION_SOURCE_DIR
+  add(MR_HAND_INTERACTION_SOURCE_DIR);
+#endif
+  // Last, as it complains on stderr where there is no such package.
+  if (folders.empty() && std::getenv("ROS_PACKAGE_PATH") != nullptr) add(ros::package::getPath(kPackage));
+  return folders;
+}
+
+std::vector<std::string> scene_folders() {
+  std::vector<std::string> folders;
+  for (const std::string& share : share_folders()) folders.push_back(share + "/config/scenes");
+  return folders;
+}
+
+std::string resolve_package_uri(const std::string& uri) {
+  if (uri.compare(0, kScheme.size(), kScheme) != 0) return "";
+  const std::size_t slash = uri.find('/', kScheme.size());
+  if (slash == std::string::npos) return "";
+  const std::string package = uri.substr(kScheme.size(), slash - kScheme.size());
+  if (package == kPackage) {
+    const std::vector<std::string> folders = share_folders();
+    return folders.empty() ? "" : folders.front() + uri.substr(slash);
+  }
+  const std::string folder = ros::package::getPath(package);
+  return folder.empty() ? "" : folder + uri.substr(slash);
+}
+
+SceneOptions scene_options(const Configuration& configuration) {
+  return {configuration.material, configuration.gravity, resolve_package_uri};
+}
+
+}  // namespace mrhi

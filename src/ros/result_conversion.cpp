@@ -1,0 +1,124 @@
+#include "mr_hand_interaction/ros/result_conversion.h"
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+
+namespace mrhi {
+namespace {
+
+geometry_msgs::Vector3 vector_message(const Vector3& v) {
+  geometry_msgs::Vector3 message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
+  return message;
+}
+
+}  // namespace
+
+const char* to_string(ContactModelKind kind) {
+  switch (kind) {
+    case ContactModelKind::seed:
+      return "seed";
+    case ContactModelKind::penetration:
+      return "penetration";
+    case ContactModelKind::impulse:
+      return "impulse";
+  }
+  return "";
+}
+
+std::uint32_t hand_id(const Contact& contact, const SimulationState& state) {
+  return state.hands[contact.key.hand].current.id;
+}
+
+std::uint8_t phase(const Contact& contact) {
+  using Message = mr_hand_interaction::Contact;
+  if (!contact.impulse.isZero(0.0)) return Message::IMPULSE;
+  return contact.friction == Friction::sticking ? Message::STICKING : Message::SLIPPING;
+}
+
+bool is_held(std::size_t body, const SimulationState& state) {
+  for (std::size_t i = body; i < state.interactions.size(); i += state.bodies.size()) {
+    if (state.interactions[i].level == InteractionLevel::grasp) return true;
+  }
+  return false;
+}
+
+mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header) {
+  mr_hand_interaction::HandFrame message;
+  message.header = header;
+  for (const RenderedHand& rendered : result.rendered) {
+    message.hands.push_back(to_message(rendered.hand, rendered.touching));
+  }
+  return message;
+}
+
+mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const SimulationState& state,
+                                                      const std_msgs::Header& header) {
+  mr_hand_interaction::ObjectStateArray message;
+  message.header = header;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.fixed) continue;
+    const Twist twist = twist_of(body, state.bodies[i]);
+    mr_hand_interaction::ObjectState object;
+    object.name = body.name;
+    object.pose = to_message(state.bodies[i].pose);
+    object.twist.linear = vector_message(twist.linear);
+    object.twist.angular = vector_message(twist.angular);
+    object.mass = body.mass;
+    object.held = is_held(i, state);
+    message.objects.push_back(object);
+  }
+  return message;
+}
+
+mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
+                                                   const SimulationState& state,
+                                                   const std_msgs::Header& header) {
+  mr_hand_interaction::ContactArray message;
+  message.header = header;
+  for (const Contact& contact : result.contacts) {
+    mr_hand_interaction::Contact touch;
+    touch.object = scene.bodies[contact.key.body].name;
+    touch.hand_id = hand_id(contact, state);
+    touch.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
+    touch.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+    touch.phase = phase(contact);
+    touch.position = to_message(contact.point);
+    touch.normal = vector_message(contact.normal);
+    touch.depth = contact.depth;
+    touch.impulse = vector_message(contact.impulse);
+    touch.force = vector_message(contact.force);
+    message.contacts.push_back(touch);
+  }
+  return message;
+}
+
+mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Event& event,
+                                                    const std_msgs::Header& header) {
+  mr_hand_interaction::InteractionEvent message;
+  message.header = header;
+  message.kind = static_cast<std::uint8_t>(event.kind);
+  if (event.body >= 0) message.object = scene.bodies[static_cast<std::size_t>(event.body)].name;
+  message.hand_id = event.hand_id;
+  return message;
+}
+
+std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
+                                                               const SimulationState& state,
+                                                               const std_msgs::Header& header) {
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Pose link = state.bodies[i].pose * scene.bodies[i].link_in_body;
+    geometry_msgs::TransformStamped transform;
+    transform.header = header;
+    transform.child_frame_id = scene.bodies[i].name;
+    transform.transform.translation = vector_message(link.position);
+    transform.transform.rotation = to_message(link).orientation;
+    transforms.push_back(transform);
+  }
+  return transforms;
+}
+
+}  // namespace mrhi

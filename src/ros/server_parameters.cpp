@@ -1,0 +1,79 @@
+#include "mr_hand_interaction/ros/server_parameters.h"
+
+#include <cstdio>
+#include <set>
+
+#include "mr_hand_interaction/parameters.h"
+
+namespace mrhi {
+namespace {
+
+/// Read by libraries that the node uses.
+const std::set<std::string> kOthers{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
+
+std::string text_parameter(const std::string& name, const XmlRpc::XmlRpcValue& value) {
+  XmlRpc::XmlRpcValue copy = value;
+  if (copy.getType() != XmlRpc::XmlRpcValue::TypeString || static_cast<std::string>(copy).empty()) {
+    throw ParameterError("parameter '" + name + "': " + yaml_text(copy) + " is not allowed; allowed: text");
+  }
+  return static_cast<std::string>(copy);
+}
+
+void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParameters& parameters) {
+  if (name == "scene") {
+    parameters.scene = text_parameter(name, value);
+  } else if (name == "fixed_frame") {
+    parameters.fixed_frame = text_parameter(name, value);
+  } else if (kOthers.count(name) == 0) {
+    set_parameter(parameters.configuration, name, yaml_text(value));
+  }
+}
+
+void take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values, ServerParameters& parameters) {
+  for (auto& [name, value] : values) {
+    if (value.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+      take_all(prefix + name + "/", value, parameters);
+    } else {
+      take(prefix + name, value, parameters);
+    }
+  }
+}
+
+}  // namespace
+
+std::string yaml_text(XmlRpc::XmlRpcValue value) {
+  using Value = XmlRpc::XmlRpcValue;
+  switch (value.getType()) {
+    case Value::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case Value::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case Value::TypeString:
+      return static_cast<std::string>(value);
+    case Value::TypeDouble: {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.17g", static_cast<double>(value));
+      return text;
+    }
+    case Value::TypeArray: {
+      std::string text;
+      for (int i = 0; i < value.size(); ++i) text += (i > 0 ? ", " : "") + yaml_text(value[i]);
+      return "[" + text + "]";
+    }
+    default:
+      return "a value of no known type";
+  }
+}
+
+ServerParameters read_server_parameters(const ros::NodeHandle& private_node) {
+  ServerParameters parameters;
+  XmlRpc::XmlRpcValue values;
+  if (private_node.getParam(private_node.getNamespace(), values) &&
+      values.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+    take_all("", values, parameters);
+  }
+  validate(parameters.configuration);
+  return parameters;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,23 @@
+#include "material_fields.h"
+
+#include "text.h"
+
+namespace mrhi {
+
+const std::array<MaterialField, 4>& material_fields() {
+  static const std::array<MaterialField, 4> fields{{
+      {"restitution", "", &Material::restitution, Range{0, 1}},
+      {"static_friction", "", &Material::static_friction, Range{0}},
+      {"dynamic_friction", "", &Material::dynamic_friction, Range{0}},
+      {"stiffness", " [N/m]", &Material::stiffness, Range{0, std::numeric_limits<double>::infinity(), false}},
+  }};
+  return fields;
+}
+
+std::optional<std::string> material_conflict(const Material& material) {
+  if (material.dynamic_friction <= material.static_friction) return {};
+  return "dynamic_friction " + text::number(material.dynamic_friction) + " is above static_friction " +
+         text::number(material.static_friction) + "; allowed: at most static_friction";
+}
+
+}  // namespace mrhi

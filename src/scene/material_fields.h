@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "mr_hand_interaction/scene/material.h"
+#include "yaml_values.h"
+
+namespace mrhi {
+
+/// One number of a material: its name in files, and what it may be.
+struct MaterialField {
+  const char* name;
+  const char* unit;
+  double Material::*value;
+  Range range;
+};
+
+/// All of them; both the scene's YAML and the parameters are read by this table.
+const std::array<MaterialField, 4>& material_fields();
+
+/// What is wrong with the numbers taken together, or nothing.
+std::optional<std::string> material_conflict(const Material& material);
+
+}  // namespace mrhi

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "mr_hand_interaction/scene/shape.h"
+
+namespace mrhi {
+
+/// All triangles of an STL, OBJ or DAE file, vertices at the same place joined. A DAE's units are taken, its
+/// up axis is not (as in rviz). Throws std::runtime_error whose text goes on from the file's name.
+TriangleMesh load_mesh(const std::string& file, const Vector3& scale);
+
+/// Turns the triangles outward and drops those of no area. Throws std::runtime_error, as above, if the
+/// surface is not closed.
+void make_solid(TriangleMesh& mesh);
+
+/// By the divergence theorem; negative if the triangles are turned inward [m^3].
+double signed_volume(const TriangleMesh& mesh);
+
+}  // namespace mrhi

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+
+/// How values appear in error messages: short, on one line, the same in every locale.
+namespace mrhi::text {
+
+std::string number(double value);
+std::string vector(const Vector3& value);
+std::string joined(const std::vector<std::string>& names);
+
+/// Line breaks become spaces; what is longer than `longest` characters is cut.
+std::string one_line(const std::string& text, std::size_t longest = 300);
+
+}  // namespace mrhi::text

@@ -1,0 +1,101 @@
+#include "urdf_document.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "text.h"
+
+namespace mrhi {
+namespace {
+
+/// Collects what urdfdom would print, for as long as it lives.
+class Complaints : public console_bridge::OutputHandler {
+ public:
+  Complaints() : lock_(mutex()), previous_(console_bridge::getOutputHandler()) {
+    console_bridge::useOutputHandler(this);
+  }
+  ~Complaints() override { console_bridge::useOutputHandler(previous_); }
+
+  void log(const std::string& message, console_bridge::LogLevel level, const char*, int) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    text_ += (text_.empty() ? "" : "; ") + message;
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  console_bridge::OutputHandler* previous_;
+  std::string text_;
+};
+
+std::string read_file(const std::string& file) {
+  std::ifstream stream(file);
+  const std::string xml{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream || xml.empty()) throw SceneError(file + ": cannot be read; allowed: a readable URDF file");
+  return xml;
+}
+
+std::string without_comments(std::string xml) {
+  for (std::size_t begin = xml.find("<!--"); begin != std::string::npos; begin = xml.find("<!--", begin)) {
+    const std::size_t end = xml.find("-->", begin);
+    xml.erase(begin, end == std::string::npos ? end : end + 3 - begin);
+  }
+  return xml;
+}
+
+/// The value of the attribute `name` of a tag, or "".
+std::string name_in(const std::string& tag) {
+  const std::size_t quote = tag.find_first_of("\"'", tag.find("name"));
+  return quote == std::string::npos ? "" : tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
+}
+
+std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface& model,
+                                                     const std::string& xml) {
+  const std::string plain = without_comments(xml);
+  std::map<std::string, std::size_t> place;
+  for (std::size_t at = plain.find("<link"); at != std::string::npos; at = plain.find("<link", at + 1)) {
+    place.emplace(name_in(plain.substr(at, plain.find('>', at) - at)), at);
+  }
+  std::vector<urdf::LinkConstSharedPtr> links;
+  for (const auto& entry : model.links_) links.push_back(entry.second);
+  std::stable_sort(links.begin(), links.end(),
+                   [&](const auto& a, const auto& b) { return place[a->name] < place[b->name]; });
+  return links;
+}
+
+}  // namespace
+
+UrdfDocument parse_urdf_file(const std::string& file) {
+  const std::string xml = read_file(file);
+  const Complaints complaints;
+  UrdfDocument document;
+  std::string problem;
+  try {
+    document.model = urdf::parseURDF(xml);
+    problem = complaints.text();  // urdfdom goes on with half a link after some errors
+    if (!document.model && problem.empty()) problem = "urdfdom refuses it";
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  if (!problem.empty()) {
+    throw SceneError(file + ": bad URDF: " + text::one_line(problem) +
+                     "; allowed: a robot of links (box, sphere, cylinder, mesh) joined to one root link");
+  }
+  document.links = links_in_order(*document.model, xml);
+  return document;
+}
+
+}  // namespace mrhi

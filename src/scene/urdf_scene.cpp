@@ -1,0 +1,128 @@
+#include "urdf_scene.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "text.h"
+#include "urdf_shapes.h"
+#include "urdf_tree.h"
+
+namespace mrhi {
+namespace {
+
+constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the shape
+
+/// A rigid body's principal moments obey a + b >= c. Files round them: a thin plate just meets it.
+constexpr double kTriangleSlack = 0.01;
+
+class BodyReader {
+ public:
+  BodyReader(const std::string& file, const SceneOptions& options)
+      : file_(file), options_(options), shapes_(file, options) {}
+
+  Body read(const PlacedLink& placed) {
+    const urdf::Link& link = *placed.link;
+    check_name(link);
+    Body body;
+    body.name = link.name;
+    body.fixed = placed.fixed;
+    body.material = options_.default_material;
+    if (!body.fixed) read_inertial(link, body);
+    body.start = placed.in_world * body.link_in_body.inverse();
+    read_collisions(link, body);
+    read_visuals(link, body);
+    finish(body);
+    return body;
+  }
+
+ private:
+  void check_name(const urdf::Link& link) const {
+    if (!link.name.empty() && link.name.find_first_of(" \t\r\n,;\"'/") == std::string::npos) return;
+    fail(link, "this name is not allowed; allowed: no blanks, commas, quotes or slashes");
+  }
+
+  void read_inertial(const urdf::Link& link, Body& body) const {
+    if (!link.inertial) fail(link, "a free body has no inertial; allowed: an inertial with mass and inertia");
+    const urdf::Inertial& given = *link.inertial;
+    const Pose origin = to_pose(given.origin);
+    const Matrix3 to_link = origin.orientation.toRotationMatrix();
+    Matrix3 inertia;
+    inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
+        given.izz;
+    body.mass = given.mass;
+    body.inertia = to_link * inertia * to_link.transpose();
+    body.inertia = (0.5 * (body.inertia + body.inertia.transpose())).eval();
+    body.link_in_body.position = -origin.position;
+  }
+
+  void read_collisions(const urdf::Link& link, Body& body) {
+    const auto& collisions = link.collision_array;
+    if (!body.fixed && collisions.empty()) fail(link, "a free body has no collision; allowed: 1 to 255");
+    if (collisions.size() > kMostShapes) {
+      fail(link, std::to_string(collisions.size()) + " collisions; allowed: at most 255");
+    }
+    for (std::size_t i = 0; i < collisions.size(); ++i) {
+      const std::string element = "link '" + link.name + "' collision " + std::to_string(i + 1);
+      body.shapes.push_back({shapes_.read(*collisions[i]->geometry, element, true),
+                             body.link_in_body * to_pose(collisions[i]->origin)});
+    }
+  }
+
+  void read_visuals(const urdf::Link& link, Body& body) {
+    for (std::size_t i = 0; i < link.visual_array.size(); ++i) {
+      const urdf::Visual& given = *link.visual_array[i];
+      const std::string element = "link '" + link.name + "' visual " + std::to_string(i + 1);
+      Visual visual{shapes_.read(*given.geometry, element, false), body.link_in_body * to_pose(given.origin)};
+      if (!given.material && !given.material_name.empty()) {
+        throw SceneError(file_ + ": " + element + ": material '" + given.material_name +
+                         "' is not defined; allowed: a material with a color in this file");
+      }
+      if (given.material && given.material->texture_filename.empty()) {
+        const urdf::Color& color = given.material->color;
+        visual.rgba = {{color.r, color.g, color.b, color.a}};
+      }
+      body.visuals.push_back(visual);
+    }
+    if (!body.visuals.empty()) return;
+    for (const PlacedShape& placed : body.shapes) body.visuals.push_back({placed.shape, placed.pose});
+  }
+
+  void finish(Body& body) const {
+    try {
+      complete(body);
+    } catch (const std::invalid_argument& error) {
+      throw SceneError(file_ + ": " + error.what());
+    }
+    if (body.fixed) return;
+    const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia).eigenvalues();
+    if (moments[0] + moments[1] >= (1 - kTriangleSlack) * moments[2]) return;
+    throw SceneError(file_ + ": body '" + body.name +
+                     "': no rigid body has the principal moments of inertia " + text::vector(moments) +
+                     " kg m^2; allowed: the largest at most the sum of the others");
+  }
+
+  [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {
+    throw SceneError(file_ + ": link '" + link.name + "': " + what);
+  }
+
+  const std::string& file_;
+  const SceneOptions& options_;
+  ShapeReader shapes_;
+};
+
+}  // namespace
+
+std::vector<Body> read_bodies(const std::string& urdf_file, const SceneOptions& options) {
+  const UrdfDocument document = parse_urdf_file(urdf_file);
+  BodyReader reader(urdf_file, options);
+  std::vector<Body> bodies;
+  for (const PlacedLink& placed : place_links(urdf_file, document)) {
+    const bool only_a_frame =
+        placed.fixed && placed.link->collision_array.empty() && placed.link->visual_array.empty();
+    if (!only_a_frame) bodies.push_back(reader.read(placed));
+  }
+  if (bodies.empty())
+    throw SceneError(urdf_file + ": no bodies; allowed: at least one link joined to the root");
+  return bodies;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,94 @@
+#include "urdf_shapes.h"
+
+#include <filesystem>
+
+#include "mesh_loader.h"
+#include "text.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+Vector3 to_vector(const urdf::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
+
+bool begins_with(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+}  // namespace
+
+Shape ShapeReader::read(const urdf::Geometry& geometry, const std::string& element, bool solid) {
+  switch (geometry.type) {
+    case urdf::Geometry::SPHERE: {
+      const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
+      require_positive(Vector3::Constant(radius), "sphere radius " + text::number(radius), element);
+      return Sphere{radius};
+    }
+    case urdf::Geometry::BOX: {
+      const Vector3 size = to_vector(static_cast<const urdf::Box&>(geometry).dim);
+      require_positive(size, "box size " + text::vector(size), element);
+      return Box{0.5 * size};
+    }
+    case urdf::Geometry::CYLINDER: {
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      const double radius = cylinder.radius, length = cylinder.length;
+      require_positive({radius, radius, length},
+                       "cylinder radius " + text::number(radius) + " and length " + text::number(length),
+                       element);
+      return Cylinder{radius, 0.5 * length};
+    }
+    default:
+      return read_mesh(static_cast<const urdf::Mesh&>(geometry), element, solid);
+  }
+}
+
+Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
+  const Vector3 scale = to_vector(mesh.scale);
+  if (!scale.allFinite() || (scale.array() == 0).any()) {
+    fail(element,
+         "mesh scale " + text::vector(scale) + " is not allowed; allowed: three numbers, none of them 0");
+  }
+  const std::string file = mesh_file(mesh.filename, element);
+  const std::string key = file + (solid ? " solid " : " ") + text::vector(scale);
+  if (!meshes_.count(key)) {
+    try {
+      TriangleMesh triangles = load_mesh(file, scale);
+      if (solid) make_solid(triangles);
+      meshes_[key] = std::make_shared<const TriangleMesh>(std::move(triangles));
+    } catch (const std::runtime_error& error) {
+      fail(element, "mesh '" + mesh.filename + "' " + error.what());
+    }
+  }
+  const bool is_uri = mesh.filename.find("://") != std::string::npos;
+  return {meshes_[key], is_uri ? mesh.filename : "file://" + fs::absolute(file).lexically_normal().string(),
+          scale};
+}
+
+std::string ShapeReader::mesh_file(const std::string& uri, const std::string& element) const {
+  fs::path file = fs::path(urdf_file_).parent_path() / uri;
+  if (begins_with(uri, "file://")) file = uri.substr(7);
+  if (begins_with(uri, "package://")) {
+    file = options_.resolve_package_uri ? options_.resolve_package_uri(uri) : std::string();
+    if (file.empty())
+      fail(element, "mesh '" + uri + "': package not found; allowed: a package on the ROS path");
+  }
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored)) return file.string();
+  fail(element, "mesh '" + uri + "' not found at '" + file.string() +
+                    "'; allowed: package://, file://, or a path from the URDF's folder");
+}
+
+void ShapeReader::require_positive(const Vector3& size, const std::string& what,
+                                   const std::string& element) const {
+  if (size.allFinite() && (size.array() > 0).all()) return;
+  fail(element, what + " m is not allowed; allowed: above 0");
+}
+
+void ShapeReader::fail(const std::string& element, const std::string& what) const {
+  throw SceneError(urdf_file_ + ": " + element + ": " + text::one_line(what));
+}
+
+}  // namespace mrhi

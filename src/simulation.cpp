@@ -1,0 +1,343 @@
+#include "mr_hand_interaction/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "grasp.h"
+#include "mr_hand_interaction/collision/contact_finder.h"
+#include "mr_hand_interaction/integration/free_flight.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/tracking/tracker.h"
+
+namespace mrhi {
+namespace {
+
+/// A step back in time of more than this may be a stream that begins anew; less is a frame out of order.
+constexpr Nanoseconds kRestart = 500'000'000;
+constexpr int kRestartFrames = 3;
+/// A longer silence is not simulated: bodies wait for the next frame.
+constexpr Nanoseconds kLongestSilence = 60'000'000'000;
+
+Scene completed(Scene scene) {
+  for (Body& body : scene.bodies) complete(body);
+  return scene;
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  Impl(Scene scene_in, const Configuration& configuration_in)
+      : scene(completed(std::move(scene_in))),
+        configuration(configuration_in),
+        gravity(configuration.gravity.value_or(scene.gravity)),
+        step_length(static_cast<Nanoseconds>(std::llround(configuration.step * 1e9))),
+        model(make_contact_model(configuration)),
+        finder(scene) {
+    reset();
+  }
+
+  void reset();
+  Rejection judge(Nanoseconds stamp);
+  void plan(Nanoseconds from, Nanoseconds to);
+  void advance_step(double fraction, double seconds, double step);
+  void silence(Nanoseconds until);
+  void lose_hands(Nanoseconds now);
+  void keep_in_bounds();
+  void note_strikes();
+  void report_contacts();
+  void update_interactions();
+  void render();
+  void clear_result();
+  void finish(Nanoseconds stamp);
+
+  const Scene scene;
+  const Configuration configuration;
+  const Vector3 gravity;
+  const Nanoseconds step_length;
+  const std::unique_ptr<const ContactModel> model;
+  ContactFinder finder;
+
+  SimulationState state;
+  FrameResult result;
+
+  // The way from the last frame to this one.
+  Nanoseconds frame_from = 0, frame_to = 0;
+  int steps = 0, steps_done = 0;
+
+  std::vector<MovingHand> moving;
+  std::vector<Contact> strikes;
+};
+
+void Simulation::Impl::reset() {
+  state = SimulationState();
+  for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
+  state.hands.resize(kMaxHands);
+  state.interactions.resize(kMaxHands * scene.bodies.size());
+  state.contacts.reserve(64 * kMaxHands);
+  moving.reserve(kMaxHands);
+  strikes.clear();
+  steps = steps_done = 0;
+}
+
+/// Refuses a stamp that does not increase, unless it is the third of a stream that goes on from an earlier
+/// time.
+Rejection Simulation::Impl::judge(Nanoseconds stamp) {
+  if (!state.started || stamp > state.time) {
+    state.restart_frames = 0;
+    return Rejection::none;
+  }
+  if (state.time - stamp <= kRestart) return Rejection::stamp_not_increasing;
+  const bool follows =
+      state.restart_frames > 0 && stamp > state.restart_stamp && stamp - state.restart_stamp < kRestart;
+  state.restart_frames = follows ? state.restart_frames + 1 : 1;
+  state.restart_stamp = stamp;
+  if (state.restart_frames < kRestartFrames) return Rejection::stamp_not_increasing;
+  reset();
+  result.restarted = true;
+  return Rejection::none;
+}
+
+void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
+  frame_from = from;
+  frame_to = to;
+  steps = static_cast<int>((to - from + step_length - 1) / step_length);
+  steps_done = 0;
+  finder.begin_frame(state.hands, state.bodies, to_seconds(to - from));
+}
+
+/// One step, `fraction` of the way into a frame that lasts `seconds`.
+void Simulation::Impl::advance_step(double fraction, double seconds, double step) {
+  moving.clear();
+  for (int slot = 0; slot < kMaxHands; ++slot) {
+    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
+    if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, fraction, seconds));
+  }
+  finder.find(moving, state.bodies, step, state.contacts);
+  ContactStep contact_step{scene, gravity, step, state.contacts, state.bodies};
+  model->respond(contact_step);
+  note_strikes();
+  for (std::size_t b = 0; b < state.bodies.size(); ++b)
+    free_flight(scene.bodies[b], gravity, step, state.bodies[b]);
+  keep_in_bounds();
+}
+
+/// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
+/// frame.
+void Simulation::Impl::silence(Nanoseconds until) {
+  if (until - state.time > kLongestSilence) state.time = until;
+  for (HandTrack& track : state.hands) {
+    track.held = track.active;
+    track.previous = track.current;
+    track.appeared = track.emerged = false;
+  }
+  while (state.time + step_length <= until) {
+    lose_hands(state.time);
+    finder.begin_frame(state.hands, state.bodies, to_seconds(step_length));
+    advance_step(0.0, 0.0, to_seconds(step_length));
+    state.time += step_length;
+  }
+}
+
+void Simulation::Impl::lose_hands(Nanoseconds now) {
+  const std::size_t bodies = scene.bodies.size();
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active || to_seconds(now - track.last_seen) <= configuration.tracking.hold_time) continue;
+    for (std::size_t b = 0; b < bodies; ++b) {
+      end_interaction({now, EventKind::hover_end, static_cast<int>(b), track.current.id},
+                      state.interactions[slot * bodies + b], result.events);
+    }
+  }
+  lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
+}
+
+void Simulation::Impl::keep_in_bounds() {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.fixed) continue;
+    const Vector3& p = state.bodies[b].pose.position;
+    if ((p.array() >= scene.bounds.min.array()).all() && (p.array() <= scene.bounds.max.array()).all())
+      continue;
+    state.bodies[b] = start_state(body);
+    state.contacts.erase(std::remove_if(state.contacts.begin(), state.contacts.end(),
+                                        [b](const Contact& contact) { return contact.key.body == b; }),
+                         state.contacts.end());
+    result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
+  }
+}
+
+void Simulation::Impl::note_strikes() {
+  for (const Contact& contact : state.contacts) {
+    if (contact.impulse == Vector3::Zero()) continue;
+    const auto known = std::find_if(strikes.begin(), strikes.end(),
+                                    [&contact](const Contact& other) { return other.key == contact.key; });
+    if (known == strikes.end()) {
+      strikes.push_back(contact);
+    } else {
+      known->impulse += contact.impulse;
+    }
+  }
+}
+
+/// Contacts as they are at the frame's end, with the last step's forces, and the impacts since the frame
+/// before.
+void Simulation::Impl::report_contacts() {
+  moving.clear();
+  for (int slot = 0; slot < kMaxHands; ++slot) {
+    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
+    if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, 1.0, 0.0));
+  }
+  std::vector<Contact>& contacts = result.contacts;
+  contacts = state.contacts;
+  finder.find(moving, state.bodies, 0.0, contacts);
+  for (Contact& contact : contacts) contact.impulse.setZero();
+  contacts.erase(
+      std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
+      contacts.end());
+  for (const Contact& strike : strikes) {
+    const auto same = std::find_if(contacts.begin(), contacts.end(),
+                                   [&strike](const Contact& contact) { return contact.key == strike.key; });
+    if (same == contacts.end()) {
+      contacts.push_back(strike);
+    } else {
+      same->impulse = strike.impulse;
+    }
+  }
+  std::sort(contacts.begin(), contacts.end(),
+            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+}
+
+void Simulation::Impl::update_interactions() {
+  const std::size_t bodies = scene.bodies.size();
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    for (std::size_t b = 0; b < bodies; ++b) {
+      if (scene.bodies[b].fixed) continue;
+      Interaction& interaction = state.interactions[slot * bodies + b];
+      const InteractionLevel seen =
+          seen_level(track.current, static_cast<int>(slot), static_cast<int>(b), finder, scene,
+                     state.bodies[b].pose, result.contacts, interaction.level);
+      update_interaction(seen, {state.time, EventKind::hover_begin, static_cast<int>(b), track.current.id},
+                         interaction, result.events);
+    }
+  }
+}
+
+void Simulation::Impl::render() {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    result.tracked.push_back(track.current);
+    result.rendered.push_back(
+        render_hand(track.current, static_cast<int>(slot), finder, scene, state.bodies, result.contacts));
+    result.deepest_rendered =
+        std::max(result.deepest_rendered,
+                 deepest_penetration(result.rendered.back().hand, finder, scene, state.bodies));
+  }
+}
+
+void Simulation::Impl::clear_result() {
+  const bool restarted = result.restarted;
+  result = FrameResult();
+  result.restarted = restarted;
+  strikes.clear();
+}
+
+void Simulation::Impl::finish(Nanoseconds stamp) {
+  result.stamp = stamp;
+  report_contacts();
+  update_interactions();
+  render();
+}
+
+Simulation::Simulation(Scene scene, const Configuration& configuration)
+    : impl_(std::make_unique<Impl>(std::move(scene), configuration)) {}
+Simulation::~Simulation() = default;
+
+Rejection Simulation::begin(const HandFrame& frame) {
+  Impl& s = *impl_;
+  s.result.restarted = false;
+  const Rejection rejection = s.judge(frame.stamp);
+  if (rejection != Rejection::none) return rejection;
+  s.clear_result();
+  if (!s.state.started) {
+    s.state.started = true;
+    s.state.time = s.state.last_frame = frame.stamp;
+  }
+  if (to_seconds(frame.stamp - s.state.last_frame) > s.configuration.tracking.hold_time)
+    s.silence(frame.stamp);
+  s.lose_hands(frame.stamp);
+  track_hands(frame, s.configuration, s.state.hands, s.result.events);
+  s.state.last_frame = frame.stamp;
+  s.plan(s.state.time, frame.stamp);
+  return Rejection::none;
+}
+
+bool Simulation::step() {
+  Impl& s = *impl_;
+  if (s.steps_done >= s.steps) return false;
+  const double seconds = to_seconds(s.frame_to - s.frame_from);
+  s.advance_step(static_cast<double>(s.steps_done) / s.steps, seconds, seconds / s.steps);
+  ++s.steps_done;
+  return true;
+}
+
+const FrameResult& Simulation::end() {
+  Impl& s = *impl_;
+  s.state.time = s.frame_to;
+  s.finish(s.frame_to);
+  return s.result;
+}
+
+Rejection Simulation::advance(const HandFrame& frame) {
+  const Rejection rejection = begin(frame);
+  if (rejection != Rejection::none) return rejection;
+  while (step()) {
+  }
+  end();
+  return rejection;
+}
+
+const FrameResult& Simulation::result() const {
+  return impl_->result;
+}
+
+bool Simulation::advance_without_hands(Nanoseconds time) {
+  Impl& s = *impl_;
+  const SimulationState& state = s.state;
+  if (!state.started || to_seconds(time - state.last_frame) <= s.configuration.tracking.hold_time)
+    return false;
+  if (time < state.time + s.step_length) return false;
+  s.result.restarted = false;
+  s.clear_result();
+  s.silence(time);
+  s.finish(state.time);
+  return true;
+}
+
+void Simulation::reset() {
+  impl_->reset();
+  impl_->clear_result();
+}
+
+const Scene& Simulation::scene() const {
+  return impl_->scene;
+}
+const Configuration& Simulation::configuration() const {
+  return impl_->configuration;
+}
+const SimulationState& Simulation::state() const {
+  return impl_->state;
+}
+void Simulation::set_state(const SimulationState& state) {
+  impl_->state = state;
+}
+
+const char* to_string(Rejection rejection) {
+  return rejection == Rejection::none ? "none" : "stamp not increasing";
+}
+
+}  // namespace mrhi

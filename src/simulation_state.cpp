@@ -1,0 +1,85 @@
+#include "mr_hand_interaction/simulation_state.h"
+
+#include <cstring>
+
+namespace mrhi {
+namespace {
+
+class Fnv1a {
+ public:
+  template <typename T>
+  void add(const T& value) {
+    static_assert(std::is_arithmetic<T>::value || std::is_enum<T>::value, "padding has no defined bits");
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211ull;
+  }
+  void add(const Vector3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  void add(const Pose& pose) {
+    add(pose.position);
+    for (int i = 0; i < 4; ++i) add(pose.orientation.coeffs()[i]);
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+void add_hand(const Hand& hand, Fnv1a& hash) {
+  hash.add(hand.id);
+  hash.add(hand.side);
+  hash.add(hand.palm);
+  hash.add(hand.wrist);
+  for (const Capsule& capsule : hand.capsules) {
+    hash.add(capsule.start);
+    hash.add(capsule.end);
+    hash.add(capsule.radius);
+  }
+}
+
+void add_track(const HandTrack& track, Fnv1a& hash) {
+  hash.add(track.active);
+  if (!track.active) return;
+  hash.add(track.held);
+  hash.add(track.appeared);
+  hash.add(track.emerged);
+  hash.add(track.last_seen);
+  add_hand(track.previous, hash);
+  add_hand(track.current, hash);
+  for (int i = 0; i < track.history.size; ++i)
+    add_hand(track.history.samples[static_cast<std::size_t>(i)], hash);
+  hash.add(track.rejoin.duration);
+  if (track.rejoin.duration > 0) add_hand(track.rejoin.from, hash);
+}
+
+void add_contact(const Contact& contact, Fnv1a& hash) {
+  hash.add(contact.key.order());
+  hash.add(contact.god_object);
+  hash.add(contact.entry_normal);
+  hash.add(contact.axis_parameter);
+  hash.add(contact.depth);
+  hash.add(contact.friction);
+  hash.add(contact.struck);
+  hash.add(contact.ignored);
+}
+
+}  // namespace
+
+std::uint64_t hash(const SimulationState& state) {
+  Fnv1a hash;
+  hash.add(state.time);
+  hash.add(state.last_frame);
+  for (const BodyState& body : state.bodies) {
+    hash.add(body.pose);
+    hash.add(body.linear_momentum);
+    hash.add(body.angular_momentum);
+  }
+  for (const HandTrack& track : state.hands) add_track(track, hash);
+  for (const Contact& contact : state.contacts) add_contact(contact, hash);
+  for (const Interaction& interaction : state.interactions) hash.add(interaction.level);
+  return hash.value();
+}
+
+}  // namespace mrhi

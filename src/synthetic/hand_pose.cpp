@@ -1,0 +1,19 @@
+#include <cmath>
+
+#include "motions.h"
+
+namespace mrhi {
+
+Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal) {
+  Matrix3 axes;
+  axes.col(0) = fingers.normalized();
+  axes.col(1) = dorsal.cross(fingers).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return {wrist, Quaternion(axes)};
+}
+
+HandPosture posture_of_degrees(const HandPosture& degrees) {
+  return (M_PI / 180.0) * degrees;
+}
+
+}  // namespace mrhi

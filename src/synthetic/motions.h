@@ -1,0 +1,28 @@
+#pragma once
+
+#include "mr_hand_interaction/synthetic/fingertip_reach.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
+
+namespace mrhi {
+
+/// Where the shipped scenes of one object have it.
+inline Vector3 scene_object() {
+  return {0.0, 0.0, 0.22};
+}
+
+/// Hand frame at `wrist` whose x is along `fingers` and whose z is as near to `dorsal` as that allows.
+Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal);
+
+/// Angles in degrees, a row per joint.
+HandPosture posture_of_degrees(const HandPosture& degrees);
+
+ScriptedMotion grasp_cube();
+ScriptedMotion grasp_ball();
+ScriptedMotion catch_ball();
+ScriptedMotion pinch_long();
+ScriptedMotion lift_flat();
+ScriptedMotion nudge();
+ScriptedMotion tap();
+ScriptedMotion slap();
+
+}  // namespace mrhi

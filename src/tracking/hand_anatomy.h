@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "mr_hand_interaction/tracking/joints.h"
+
+namespace mrhi {
+
+/// An adult's hand, the palm's own frame: origin at its centre, x to the fingers, y to the thumb of a right
+/// hand, z out of the back. A left hand is its mirror image in y. Proportions of the hand skeleton by
+/// Buryanov & Kotiuk (Proportions of hand segments, Int. J. Morphol. 28, 2010), rounded to half a millimetre
+/// [m].
+namespace anatomy {
+/// Index to little.
+inline const std::array<Vector3, 4> kMetacarpalBases{{{-0.0435, 0.012, 0.012},
+                                                      {-0.0405, 0.001, 0.0135},
+                                                      {-0.0395, -0.0105, 0.0125},
+                                                      {-0.042, -0.0215, 0.0055}}};
+inline const std::array<Vector3, 4> kKnuckles{
+    {{0.023, 0.023, 0.002}, {0.0235, 0.003, 0.004}, {0.0175, -0.0175, 0.004}, {0.0095, -0.0355, 0.0}}};
+inline const Vector3 kWrist{-0.068, -0.008, 0.003};
+constexpr double kPalmWidth = 0.0842;
+constexpr std::array<double, kFingers> kFingerRadii{{0.0094, 0.0090, 0.0088, 0.0084, 0.0074}};
+}  // namespace anatomy
+
+/// Where the anatomical palm lies in the device's frame.
+struct PalmFit {
+  Pose palm;
+  double scale = 1.0;  ///< of this hand to the adult's
+  Side side = Side::right;
+
+  /// A point of the anatomical palm in the device's frame.
+  Vector3 place(const Vector3& anatomical) const;
+};
+
+/// The rotation, scale and translation that bring the anatomical palm closest to the joints given (least
+/// squares, Umeyama 1991). Nothing if they do not fix it: fewer than three, in one line, or of no hand's
+/// size.
+std::optional<PalmFit> fit_palm(const HandJoints& hand);
+
+}  // namespace mrhi

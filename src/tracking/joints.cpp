@@ -1,0 +1,97 @@
+#include "mr_hand_interaction/tracking/joints.h"
+
+#include <cmath>
+#include <utility>
+
+#include "hand_anatomy.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kLongestBone = 0.3;     // [m]
+constexpr double kFarthestJoint = 10.0;  // [m]
+constexpr float kWidestPalm = 0.3f;      // [m]
+constexpr float kWidestFinger = 0.1f;    // [m]
+
+const char* const kFingerNames[kFingers] = {"thumb", "index", "middle", "ring", "little"};
+const char* const kJointNames[5] = {"metacarpal base", "metacarpal end", "proximal end", "intermediate end",
+                                    "tip"};
+const char* const kBoneNames[kBonesPerFinger] = {"metacarpal", "proximal", "intermediate", "distal"};
+
+std::string point_defect(const std::string& name, const std::optional<Vector3>& point) {
+  if (!point) return "";
+  if (!point->allFinite()) return name + " is not finite";
+  if (point->norm() > kFarthestJoint)
+    return name + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
+  return "";
+}
+
+std::string width_defect(const std::string& name, const std::optional<float>& width, float widest) {
+  if (!width || (*width > 0.0f && *width <= widest)) return "";
+  return name + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
+}
+
+std::string finger_defect(const HandJoints& hand, std::size_t finger) {
+  const std::string name = kFingerNames[finger];
+  const auto& joints = hand.joints[finger];
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const std::string found = point_defect(name + " " + kJointNames[j], joints[j]);
+    if (!found.empty()) return found;
+  }
+  for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
+    if (!joints[b] || !joints[b + 1]) continue;
+    const double length = (*joints[b + 1] - *joints[b]).norm();
+    if (length > kLongestBone)
+      return name + " " + kBoneNames[b] + " is " + std::to_string(length) + " m long; at most 0.3 m";
+  }
+  return width_defect(name + " width", hand.finger_width[finger], kWidestFinger);
+}
+
+bool has_bone(const HandJoints& hand) {
+  for (const auto& joints : hand.joints)
+    for (std::size_t b = 1; b < kBonesPerFinger; ++b)
+      if (joints[b] && joints[b + 1]) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string defect(const HandJoints& hand) {
+  const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
+                                                     {"grab strength", hand.grab_strength},
+                                                     {"pinch strength", hand.pinch_strength}};
+  for (const auto& [name, value] : strengths)
+    if (!std::isfinite(value)) return std::string(name) + " is not finite";
+  for (std::string found : {point_defect("palm centre", hand.palm_centre), point_defect("wrist", hand.wrist),
+                            width_defect("palm width", hand.palm_width, kWidestPalm)})
+    if (!found.empty()) return found;
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    const std::string found = finger_defect(hand, f);
+    if (!found.empty()) return found;
+  }
+  if (!has_bone(hand)) return "it has no finger";
+  if (!fit_palm(hand))
+    return "its palm cannot be placed: needs three points of a hand's size, not in one line, out of palm "
+           "centre, "
+           "wrist, metacarpal bases and ends";
+  return "";
+}
+
+std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& device_in_world,
+                                        std::vector<std::string>& defects) {
+  HandFrame frame;
+  frame.stamp = joints.stamp;
+  for (const HandJoints& hand : joints.hands) {
+    std::string found = defect(hand);
+    for (const Hand& other : frame.hands)
+      if (found.empty() && other.id == hand.id) found = "its id is that of another hand in the frame";
+    if (found.empty())
+      frame.hands.push_back(complete_hand(hand, device_in_world));
+    else
+      defects.push_back("hand " + std::to_string(hand.id) + ": " + found);
+  }
+  if (frame.hands.empty() && !joints.hands.empty()) return std::nullopt;
+  return frame;
+}
+
+}  // namespace mrhi

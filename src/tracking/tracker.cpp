@@ -1,0 +1,142 @@
+#include "mr_hand_interaction/tracking/tracker.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mr_hand_interaction/tracking/hand_filter.h"
+
+namespace mrhi {
+namespace {
+
+/// A hand with a new id continues a held one if it is no farther from it than this [m].
+constexpr double kSameHandDistance = 0.3;
+
+using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
+
+bool is_assigned(const Assignment& assignment, int hand) {
+  return std::find(assignment.begin(), assignment.end(), hand) != assignment.end();
+}
+
+template <typename Fits>
+void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, Fits fits,
+            Assignment& assignment) {
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+    for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
+      if (!is_assigned(assignment, i) && fits(hands[slot], seen[static_cast<std::size_t>(i)]))
+        assignment[slot] = i;
+    }
+  }
+}
+
+Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
+  Assignment assignment;
+  assignment.fill(-1);
+  const auto same_id = [](const HandTrack& track, const Hand& hand) {
+    return track.active && track.current.id == hand.id;
+  };
+  assign(
+      seen, hands,
+      [&](const HandTrack& track, const Hand& hand) {
+        return same_id(track, hand) && track.current.side == hand.side;
+      },
+      assignment);
+  assign(seen, hands, same_id, assignment);
+  assign(
+      seen, hands,
+      [](const HandTrack& track, const Hand& hand) {
+        return track.active && track.current.side == hand.side &&
+               (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
+      },
+      assignment);
+  assign(
+      seen, hands, [](const HandTrack& track, const Hand&) { return !track.active; }, assignment);
+  return assignment;
+}
+
+double fastest_joint(const Hand& from, const Hand& to, double seconds) {
+  double distance_squared = 0.0;
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    const Capsule &a = from.capsules[c], &b = to.capsules[c];
+    if (a.radius <= 0.0 || b.radius <= 0.0) continue;
+    distance_squared =
+        std::max({distance_squared, (a.start - b.start).squaredNorm(), (a.end - b.end).squaredNorm()});
+  }
+  return std::sqrt(distance_squared) / seconds;
+}
+
+void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
+  track.active = true;
+  track.held = false;
+  track.appeared = true;
+  track.emerged = false;
+  track.history.clear();
+  track.history.push(hand, 1);
+  track.previous = track.current = hand;
+  track.last_seen = stamp;
+  track.rejoin.duration = 0;
+}
+
+void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
+  const Nanoseconds away = stamp - track.last_seen;
+  if (fastest_joint(track.history.samples[0], hand, to_seconds(away)) > configuration.tracking.max_speed) {
+    appear(hand, stamp, track);
+    return;
+  }
+  if (track.held) {
+    track.history.clear();
+    track.rejoin = {track.current, stamp, away};
+  }
+  track.emerged = track.appeared;
+  track.appeared = track.held = false;
+  track.history.push(hand, history_length(configuration.filter));
+  track.previous = track.current;
+  track.current = filtered(track.history, configuration.filter);
+  track.last_seen = stamp;
+  if (track.rejoin.duration > 0) {
+    const double fraction = to_seconds(stamp - track.rejoin.begin) / to_seconds(track.rejoin.duration);
+    track.current = blend(track.rejoin.from, track.current, fraction);
+    if (fraction >= 1.0) track.rejoin.duration = 0;
+  }
+}
+
+void hold(HandTrack& track) {
+  track.held = true;
+  track.emerged = track.appeared;
+  track.appeared = false;
+  track.previous = track.current;
+}
+
+}  // namespace
+
+void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
+                 std::vector<Event>& events) {
+  const Assignment assignment = assign_hands(frame.hands, hands);
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+    HandTrack& track = hands[slot];
+    if (assignment[slot] < 0) {
+      if (track.active) hold(track);
+      continue;
+    }
+    Hand hand = frame.hands[static_cast<std::size_t>(assignment[slot])];
+    for (Capsule& capsule : hand.capsules) capsule.radius *= configuration.hand_radius_scale;
+    if (track.active) {
+      follow(hand, frame.stamp, configuration, track);
+    } else {
+      appear(hand, frame.stamp, track);
+      events.push_back({frame.stamp, EventKind::hand_found, -1, hand.id});
+    }
+  }
+}
+
+void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
+                       std::vector<Event>& events) {
+  for (HandTrack& track : hands) {
+    if (!track.active || to_seconds(now - track.last_seen) <= hold_time) continue;
+    track.active = false;
+    track.history.clear();
+    events.push_back({now, EventKind::hand_lost, -1, track.current.id});
+  }
+}
+
+}  // namespace mrhi

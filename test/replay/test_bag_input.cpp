@@ -1,0 +1,223 @@
+#include "mr_hand_interaction/replay/bag_input.h"
+
+#include <geometry_msgs/PoseArray.h>
+#include <gtest/gtest.h>
+#include <mr_hand_interaction/HandFrame.h>
+#include <rosbag/bag.h>
+#include <std_msgs/Header.h>
+#include <tf2_msgs/TFMessage.h>
+#include <topic_tools/shape_shifter.h>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/leap_human.h"
+#include "mr_hand_interaction/ros/leap_human_encoder.h"
+#include "replay/replay_files.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kRate = 60.0;
+constexpr Nanoseconds kBegin = 1'000'000'000'000;
+
+const std::vector<JointsFrame>& frames() {
+  static const auto all = test::motion_frames("nudge", kRate, kBegin);
+  return all;
+}
+
+/// A bag in the making.
+struct TestBag {
+  explicit TestBag(const std::string& name) : file(folder / name), bag(file, rosbag::bagmode::Write) {}
+
+  template <class Message>
+  void add(const std::string& topic, Nanoseconds time, const Message& message) {
+    bag.write(topic, to_ros_time(time), message);
+  }
+
+  void add_leap(const std::string& topic, const JointsFrame& frame, std::size_t cut = 0) {
+    auto bytes = LeapHumanEncoder::encode(frame, "leap_hands", 0, static_cast<float>(kRate));
+    bytes.resize(bytes.size() - cut);
+    topic_tools::ShapeShifter message;
+    message.morph(LeapHumanEncoder::md5(), LeapHumanEncoder::type(), LeapHumanEncoder::definition(), "");
+    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message.read(stream);
+    add(topic, frame.stamp, message);
+  }
+
+  void add_static(const std::string& parent, const std::string& child, const Vector3& place) {
+    tf2_msgs::TFMessage message;
+    message.transforms.resize(1);
+    message.transforms[0].header.frame_id = parent;
+    message.transforms[0].child_frame_id = child;
+    message.transforms[0].transform.translation.x = place.x();
+    message.transforms[0].transform.translation.y = place.y();
+    message.transforms[0].transform.translation.z = place.z();
+    message.transforms[0].transform.rotation.w = 1.0;
+    add("/tf_static", kBegin, message);
+  }
+
+  std::vector<SourceFrame> read(const std::optional<std::string>& topic = {},
+                                const std::optional<Pose>& device = {}) {
+    bag.close();
+    BagInput input(file, topic, device);
+    EXPECT_EQ(input.position(), 0u);
+    std::vector<SourceFrame> all;
+    while (auto frame = input.next()) all.push_back(*frame);
+    EXPECT_EQ(input.position(), input.size());
+    EXPECT_EQ(input.size(), all.size());
+    return all;
+  }
+
+  test::TemporaryFolder folder;
+  std::string file;
+  rosbag::Bag bag;
+};
+
+std::string refusal(TestBag& bag, const std::optional<std::string>& topic = {}) {
+  try {
+    bag.read(topic);
+  } catch (const BagError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_same(const Hand& a, const Hand& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.palm.position, b.palm.position);
+  for (std::size_t i = 0; i < a.capsules.size(); ++i) {
+    EXPECT_EQ(a.capsules[i].start, b.capsules[i].start) << i;
+    EXPECT_EQ(a.capsules[i].end, b.capsules[i].end) << i;
+    EXPECT_EQ(a.capsules[i].radius, b.capsules[i].radius) << i;
+  }
+}
+
+TEST(BagInput, leap_frames_come_as_they_were_recorded) {
+  TestBag bag("leap.bag");
+  for (const JointsFrame& frame : frames()) bag.add_leap("/leap_motion/leap_device", frame);
+  const auto read = bag.read();
+  ASSERT_EQ(read.size(), frames().size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    ASSERT_TRUE(read[i].frame) << read[i].detail;
+    EXPECT_EQ(read[i].frame->stamp, frames()[i].stamp);
+    ASSERT_EQ(read[i].frame->hands.size(), 1u);
+    expect_same(read[i].frame->hands[0], complete_hand(frames()[i].hands[0], default_device_mount()));
+  }
+}
+
+TEST(BagInput, the_devices_place_is_the_given_else_that_of_tf_static) {
+  const auto palm = [](const Pose& device) {
+    return complete_hand(frames()[0].hands[0], device).palm.position;
+  };
+  for (const bool given : {false, true}) {
+    TestBag bag("placed.bag");
+    bag.add_leap("/leap_motion/leap_device", frames()[0]);
+    bag.add_static("world", "/table", {1, 0, 0});
+    bag.add_static("table", "leap_hands", {0, 2, 0});
+    const Pose device{{0, 0, given ? 3.0 : 0.0}, Quaternion::Identity()};
+    const auto read = bag.read({}, given ? std::optional<Pose>(device) : std::nullopt);
+    ASSERT_TRUE(read[0].frame);
+    const Vector3 expected = given ? palm(device) : palm({{1, 2, 0}, Quaternion::Identity()});
+    EXPECT_EQ(read[0].frame->hands[0].palm.position, expected);
+  }
+}
+
+TEST(BagInput, a_damaged_message_is_refused_and_the_rest_is_read) {
+  TestBag bag("damaged.bag");
+  bag.add_leap("/leap_motion/leap_device", frames()[0], 40);
+  bag.add_leap("/leap_motion/leap_device", frames()[1]);
+  const auto read = bag.read();
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_FALSE(read[0].frame);
+  EXPECT_EQ(read[0].reason, DecodeError(DecodeError::Kind::malformed, "").reason());
+  EXPECT_FALSE(read[0].detail.empty());
+  EXPECT_TRUE(read[1].frame);
+}
+
+TEST(BagInput, a_hand_that_is_not_finite_is_refused) {
+  JointsFrame bad = frames()[0];
+  bad.hands[0].joints[1][4] = Vector3(0, NAN, 0);
+  TestBag bag("nan.bag");
+  bag.add_leap("/leap_motion/leap_device", bad);
+  const auto read = bag.read();
+  EXPECT_FALSE(read[0].frame);
+  EXPECT_EQ(read[0].reason, "unusable hand");
+  EXPECT_NE(read[0].detail.find("index tip"), std::string::npos) << read[0].detail;
+}
+
+TEST(BagInput, pose_arrays_are_taken_and_wrong_counts_refused) {
+  geometry_msgs::PoseArray array;
+  array.header.stamp = to_ros_time(kBegin);
+  TestBag bag("poses.bag");
+  bag.add("/hands/pose_array", kBegin, array);  // no hand
+  array.poses.resize(20);
+  bag.add("/hands/pose_array", kBegin + 1, array);
+  const auto read = bag.read();
+  ASSERT_TRUE(read[0].frame);
+  EXPECT_TRUE(read[0].frame->hands.empty());
+  EXPECT_FALSE(read[1].frame);
+  EXPECT_EQ(read[1].reason, DecodeError(DecodeError::Kind::wrong_count, "").reason());
+}
+
+TEST(BagInput, hand_frames_in_world_keep_their_bits) {
+  const HandFrame frame{kBegin, {complete_hand(frames()[0].hands[0], default_device_mount())}};
+  TestBag bag("hand_frame.bag");
+  bag.add("/some/hand_frame", kBegin, to_message(frame, "world"));
+  bag.add("/some/hand_frame", kBegin + 1, to_message(frame, "elsewhere"));
+  const auto read = bag.read();
+  ASSERT_TRUE(read[0].frame);
+  expect_same(read[0].frame->hands[0], frame.hands[0]);
+  EXPECT_EQ(read[1].reason, "wrong frame");
+  EXPECT_NE(read[1].detail.find("elsewhere"), std::string::npos);
+}
+
+TEST(BagInput, the_receipt_time_stands_in_for_a_stamp_that_was_not_set) {
+  JointsFrame frame = frames()[0];
+  frame.stamp = 0;
+  TestBag bag("stamp.bag");
+  auto bytes = LeapHumanEncoder::encode(frame, "leap_hands", 0, 60.0f);
+  topic_tools::ShapeShifter message;
+  message.morph(LeapHumanEncoder::md5(), LeapHumanEncoder::type(), LeapHumanEncoder::definition(), "");
+  ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  message.read(stream);
+  bag.add("/leap_motion/leap_device", kBegin, message);
+  const auto read = bag.read();
+  ASSERT_TRUE(read[0].frame);
+  EXPECT_EQ(read[0].frame->stamp, kBegin);
+}
+
+TEST(BagInput, the_topic_is_the_usual_one_or_must_be_chosen) {
+  const auto make = [](TestBag& bag, const std::vector<std::string>& topics) {
+    for (const std::string& topic : topics) bag.add_leap(topic, frames()[0]);
+    bag.add("/other", kBegin, std_msgs::Header());
+  };
+  TestBag usual("usual.bag");
+  make(usual, {"/leap_motion/leap_device", "/b"});
+  EXPECT_EQ(usual.read().size(), 1u);
+  TestBag only("only.bag");
+  make(only, {"/b"});
+  EXPECT_EQ(only.read().size(), 1u);
+  TestBag two("two.bag");
+  make(two, {"/a", "/b"});
+  EXPECT_NE(refusal(two).find("/a, /b"), std::string::npos);
+  EXPECT_EQ(two.read(std::string("b")).size(), 1u);
+  EXPECT_NE(refusal(two, std::string("/other")).find("'/other'"), std::string::npos);
+  TestBag none("none.bag");
+  make(none, {});
+  EXPECT_NE(refusal(none).find("leap_motion/Human"), std::string::npos);
+}
+
+TEST(BagInput, what_is_no_bag_is_named) {
+  test::TemporaryFolder folder;
+  std::ofstream(folder / "text.bag") << "no bag";
+  for (const char* name : {"text.bag", "missing.bag"}) {
+    try {
+      BagInput(folder / name, {}, {});
+      ADD_FAILURE() << "no exception";
+    } catch (const BagError& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,157 @@
+#include "mr_hand_interaction/replay/replay.h"
+
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "replay/replay_files.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kRate = 90.0;
+const char* const kTables[] = {"objects.csv", "contacts.csv", "hands.csv", "events.csv"};
+
+struct Replayed {
+  explicit Replayed(const std::string& motion) : scene(make_motion(motion).scene) {
+    arguments.scene = "config/scenes/" + scene + ".urdf";
+    arguments.input = test::write_recording(folder / "recording.csv", test::motion_frames(motion, kRate, 0));
+    arguments.output = folder / "out";
+  }
+
+  YAML::Node run(const std::string& name) {
+    arguments.output = folder / name;
+    replay(arguments);
+    return YAML::LoadFile(folder / (name + "/summary.json"));
+  }
+
+  std::string table(const std::string& name, const std::string& file) const {
+    return test::text_of(folder / (name + "/" + file));
+  }
+
+  std::string usage_error() {
+    try {
+      replay(arguments);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  test::TemporaryFolder folder;
+  std::string scene;
+  ReplayArguments arguments;
+};
+
+TEST(Replay, the_same_input_twice_gives_the_same_bytes) {
+  Replayed replayed("nudge");
+  const YAML::Node first = replayed.run("first"), second = replayed.run("second");
+  for (const char* file : kTables) {
+    EXPECT_EQ(replayed.table("first", file), replayed.table("second", file)) << file;
+    EXPECT_GT(test::lines_of(replayed.folder / (std::string("first/") + file)).size(), 1u) << file;
+  }
+  for (const auto& field : first) {
+    const auto name = field.first.as<std::string>();
+    if (name == "step_time_us") continue;
+    EXPECT_EQ(YAML::Dump(field.second), YAML::Dump(second[name])) << name;
+  }
+}
+
+TEST(Replay, every_frame_has_its_rows_and_the_nudged_object_moves) {
+  Replayed replayed("nudge");
+  const YAML::Node summary = replayed.run("out");
+  const auto recording = read_recording_csv(replayed.arguments.input);
+  EXPECT_EQ(summary["frames"].as<std::size_t>(), recording.size());
+  EXPECT_EQ(summary["rejected"].size(), 0u);
+  // The stamps are rounded to microseconds in the file.
+  EXPECT_NEAR(summary["simulated_seconds"].as<double>(),
+              to_seconds(recording.back().stamp - recording.front().stamp), 1e-9);
+  EXPECT_GT(summary["steps"].as<std::size_t>(), recording.size());
+  const auto objects = test::lines_of(replayed.folder / "out/objects.csv");
+  EXPECT_EQ(objects.size(), 1 + recording.size());  // scenes of motions have one free body
+  const std::size_t name_end = objects[1].find(',', objects[1].find(',') + 1);
+  EXPECT_NE(objects[1].substr(name_end),
+            objects.back().substr(objects.back().find(',', objects.back().find(',') + 1)));
+}
+
+TEST(Replay, unusable_frames_are_counted_and_the_run_goes_on) {
+  Replayed replayed("nudge");
+  auto frames = test::motion_frames("nudge", kRate, 0);
+  frames[10].stamp = frames[9].stamp;
+  frames[20].hands[0].joints[1][4] = Vector3(50, 0, 0);
+  test::write_recording(replayed.arguments.input, frames);
+  const YAML::Node summary = replayed.run("out");
+  EXPECT_EQ(summary["frames"].as<std::size_t>(), frames.size() - 2);
+  EXPECT_EQ(summary["rejected"][to_string(Rejection::stamp_not_increasing)].as<int>(), 1);
+  EXPECT_EQ(summary["rejected"]["unusable hand"].as<int>(), 1);
+}
+
+TEST(Replay, objects_start_where_and_as_they_are_told) {
+  Replayed replayed("nudge");
+  const Scene scene = load_scene(replayed.arguments.scene, {});
+  replayed.arguments.object_poses = {{scene.bodies[0].name, {{0.5, 0.4, 0.3}, Quaternion(0, 1, 0, 0)}}};
+  replayed.arguments.object_twists = {{scene.bodies[0].name, {{0.1, 0, 0}, {0, 0, 0}}}};
+  replayed.run("out");
+  const auto lines = test::lines_of(replayed.folder / "out/objects.csv");
+  EXPECT_EQ(lines[1], "0," + scene.bodies[0].name + ",0.5,0.4,0.3,1,0,0,0,0.1,0,0,0,0,0");
+}
+
+TEST(Replay, objects_scenes_and_parameters_on_the_command_line_must_exist) {
+  Replayed replayed("nudge");
+  const ReplayArguments good = replayed.arguments;
+  const std::string object = load_scene(good.scene, {}).bodies[0].name;
+  replayed.arguments.object_poses = {{"teapot", Pose{}}};
+  EXPECT_NE(replayed.usage_error().find("'teapot'; allowed: " + object), std::string::npos);
+  replayed.arguments = good;
+  replayed.arguments.object_twists = {{"world", Twist{}}};
+  EXPECT_NE(replayed.usage_error().find("'world'"), std::string::npos);
+  replayed.arguments = good;
+  replayed.arguments.object_poses = {{object, {{0, 0, 900}, Quaternion::Identity()}}};
+  EXPECT_NE(replayed.usage_error().find("bounds"), std::string::npos);
+  replayed.arguments = good;
+  replayed.arguments.settings = {{"filter/windw", "3"}};
+  EXPECT_NE(replayed.usage_error().find("filter/windw"), std::string::npos);
+  replayed.arguments = good;
+  replayed.arguments.scene = "config/scenes/no_such_scene.urdf";
+  EXPECT_NE(replayed.usage_error().find("no_such_scene"), std::string::npos);
+}
+
+/// Ends with an error after some frames.
+struct BreakingSource : FrameSource {
+  std::optional<SourceFrame> next() override {
+    if (count == 5) throw std::runtime_error("it broke");
+    SourceFrame frame;
+    frame.frame = HandFrame{1'000'000'000 + 10'000'000 * static_cast<Nanoseconds>(count++), {}};
+    return frame;
+  }
+  std::size_t position() const override { return count; }
+  std::size_t size() const override { return 100; }
+  std::size_t count = 0;
+};
+
+TEST(Replay, what_was_written_before_an_error_stays) {
+  Replayed replayed("nudge");
+  Simulation simulation = prepare_simulation(replayed.arguments);
+  ReplaySummary summary;
+  {
+    ResultWriter writer(replayed.folder / "out", simulation.scene());
+    BreakingSource source;
+    ProgressBar progress;
+    EXPECT_THROW(run_frames(source, simulation, writer, progress, summary), std::runtime_error);
+  }
+  EXPECT_EQ(summary.frames, 5u);
+  EXPECT_EQ(test::lines_of(replayed.folder / "out/objects.csv").size(), 6u);
+}
+
+TEST(Replay, a_recording_without_a_usable_frame_is_an_error) {
+  Replayed replayed("nudge");
+  auto frames = test::motion_frames("nudge", kRate, 0);
+  frames.resize(1);
+  frames[0].hands[0].joints[1][4] = Vector3(50, 0, 0);
+  test::write_recording(replayed.arguments.input, frames);
+  EXPECT_THROW(replay(replayed.arguments), std::runtime_error);
+  EXPECT_NE(test::text_of(replayed.folder / "out/summary.json").find("\"error\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mrhi

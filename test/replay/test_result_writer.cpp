@@ -1,0 +1,114 @@
+#include "mr_hand_interaction/replay/result_writer.h"
+
+#include <gtest/gtest.h>
+
+#include "replay/replay_files.h"
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+struct Written {
+  Written() : scene(testing::scene_of(testing::box_body({0.05, 0.05, 0.05}, 0.1))) {
+    scene.bodies.push_back(scene.bodies.front());
+    scene.bodies.back().name = "table";
+    scene.bodies.back().fixed = true;
+    for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
+    state.bodies[0].pose.position = {0.1, -0.2, 1.0 / 3.0};
+    state.bodies[0].linear_momentum = {0.01, 0.0, 0.0};  // 0.1 kg: 0.1 m/s
+    state.hands.resize(kMaxHands);
+    state.hands[1].current.id = 4000000000u;
+  }
+
+  void write(Nanoseconds first, Nanoseconds second) {
+    ResultWriter writer(folder / "new/out", scene);
+    for (const Nanoseconds stamp : {first, second}) {
+      result.stamp = stamp;
+      writer.write(result, state);
+    }
+    writer.flush();
+  }
+
+  std::vector<std::string> lines(const std::string& name) const {
+    return test::lines_of(folder / ("new/out/" + name));
+  }
+
+  test::TemporaryFolder folder;
+  Scene scene;
+  SimulationState state;
+  FrameResult result;
+};
+
+TEST(ResultWriter, objects_have_a_row_for_each_free_body_and_frame) {
+  Written written;
+  written.write(5'000'000'000, 5'008'333'333);
+  const auto lines = written.lines("objects.csv");
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0], "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz");
+  EXPECT_EQ(lines[1], "0,object,0.1,-0.2,0.333333333333,0,0,0,1,0.1,0,0,0,0,0");
+  EXPECT_EQ(lines[2].substr(0, lines[2].find(",0.1")), "0.008333333,object");
+}
+
+TEST(ResultWriter, contacts_name_object_hand_and_phase) {
+  Written written;
+  Contact contact;
+  contact.key.body = 0;
+  contact.key.hand = 1;
+  contact.key.capsule = static_cast<std::uint8_t>(capsule_index(1, 3));
+  contact.point = {1, 2, 3};
+  contact.depth = 0.002;
+  contact.force = {0, 0, -0.5};
+  contact.friction = Friction::slipping;
+  written.result.contacts = {contact, contact};
+  written.result.contacts[1].impulse = {0, 0, -0.25};
+  written.result.contacts[1].key.capsule = kPalm;
+  written.write(0, 1);
+  const auto lines = written.lines("contacts.csv");
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0], "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz");
+  EXPECT_EQ(lines[1], "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0,0,-0.5");
+  EXPECT_EQ(lines[2], "0,object,4000000000,5,0,0,1,2,3,0,0,1,0.002,0,0,-0.25,0,0,-0.5");
+}
+
+TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {
+  Written written;
+  Hand hand = testing::finger({0, 0, 0}, {0.02, 0, 0}, 0.009);
+  hand.capsules[kPalm] = {{0, 0, 0}, {0, 0, 0.03}, 0.0125};
+  written.result.tracked = {hand};
+  written.result.rendered = {{hand, {}}};
+  written.result.rendered[0].touching[static_cast<std::size_t>(capsule_index(1, 3))] = true;
+  written.write(0, 1);
+  const auto lines = written.lines("hands.csv");
+  ASSERT_EQ(lines.size(), 9u);
+  EXPECT_EQ(lines[0], "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching");
+  EXPECT_EQ(lines[1], "0,1,1,1,3,0,0,0,0,0.02,0,0,0.009,0");
+  EXPECT_EQ(lines[2], "0,1,1,5,0,0,0,0,0,0,0,0.03,0.0125,0");
+  EXPECT_EQ(lines[3], "0,1,1,1,3,1,0,0,0,0.02,0,0,0.009,1");
+  EXPECT_EQ(lines[4], "0,1,1,5,0,1,0,0,0,0,0,0.03,0.0125,0");
+}
+
+TEST(ResultWriter, events_have_names_and_the_time_at_which_they_happened) {
+  Written written;
+  written.result.events = {{1'000'000'000, EventKind::hand_found, -1, 7},
+                           {1'500'000'000, EventKind::grasp_begin, 0, 7}};
+  written.write(1'000'000'000, 2'000'000'000);
+  const auto lines = written.lines("events.csv");
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0], "time,kind,object,hand_id");
+  EXPECT_EQ(lines[1], "0,HAND_FOUND,,7");
+  EXPECT_EQ(lines[2], "0.5,GRASP_BEGIN,object,7");
+}
+
+TEST(ResultWriter, a_folder_that_cannot_be_made_is_named) {
+  Written written;
+  std::ofstream(written.folder / "file") << "x";
+  try {
+    ResultWriter writer(written.folder / "file", written.scene);
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(written.folder / "file"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace mrhi

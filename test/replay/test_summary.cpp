@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "mr_hand_interaction/replay/summary.h"
+
+namespace mrhi {
+namespace {
+
+ReplaySummary some_summary() {
+  ReplaySummary summary;
+  summary.scene = "cube";
+  summary.input = "a \"quoted\" \\ name\n.csv";
+  summary.frames = 3;
+  summary.simulated_seconds = 0.25;
+  summary.steps = 250;
+  summary.step_time.add(2000);
+  summary.deepest_rendered = 1.5e-4;
+  summary.rejected["unusable hand"] = 2;
+  summary.events["GRASP_BEGIN"] = 1;
+  summary.held_at_end = {"cube"};
+  summary.state_hash = 0xabc;
+  return summary;
+}
+
+// JSON is YAML.
+TEST(ReplaySummaryJson, holds_what_the_summary_holds) {
+  const YAML::Node json = YAML::Load(to_json(some_summary()));
+  EXPECT_EQ(json["scene"].as<std::string>(), "cube");
+  EXPECT_EQ(json["input"].as<std::string>(), some_summary().input);
+  EXPECT_EQ(json["frames"].as<int>(), 3);
+  EXPECT_EQ(json["simulated_seconds"].as<double>(), 0.25);
+  EXPECT_EQ(json["steps"].as<int>(), 250);
+  for (const char* quantile : {"p50", "p99", "max"}) {
+    EXPECT_NEAR(json["step_time_us"][quantile].as<double>(), 2.0, 0.02) << quantile;  // bins of 2 %
+  }
+  EXPECT_EQ(json["deepest_rendered_penetration_m"].as<double>(), 1.5e-4);
+  EXPECT_EQ(json["rejected"]["unusable hand"].as<int>(), 2);
+  EXPECT_EQ(json["events"]["GRASP_BEGIN"].as<int>(), 1);
+  EXPECT_EQ(json["objects_held_at_end"][0].as<std::string>(), "cube");
+}
+
+TEST(ReplaySummaryJson, the_hash_is_sixteen_hex_digits) {
+  EXPECT_NE(to_json(some_summary()).find("\"state_hash\": \"0000000000000abc\""), std::string::npos);
+}
+
+TEST(ReplaySummaryJson, an_error_is_there_only_if_there_was_one) {
+  ReplaySummary summary = some_summary();
+  EXPECT_FALSE(YAML::Load(to_json(summary))["error"]);
+  summary.error = "disk full";
+  EXPECT_EQ(YAML::Load(to_json(summary))["error"].as<std::string>(), "disk full");
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""record.launch and playback.launch: what was recorded comes again when it is played, also when it loops."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rosgraph
+import rospy
+import rostest
+from rosgraph_msgs.msg import Clock
+
+from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from waiting import wait_until  # noqa: E402
+
+DEVICE = "/leap_motion/leap_device"
+MOUNT = "0.01 0 0 0.7071067811865476 0 0 0.7071067811865476"  # not the default: the bag's own must serve
+PUSHED = 0.01  # m
+TOLERANCE = 1e-9  # m: positions of two runs with the same input; they should be the same to the bit
+EQUAL_FRAMES = 100  # at least, or the comparison has compared too little
+
+
+class Launch:
+    """One of the package's launch files, until the end of the block."""
+
+    def __init__(self, file, *arguments):
+        self.command = ["roslaunch", "--sigint-timeout", "5", "mr_hand_interaction", file] + list(arguments)
+
+    def __enter__(self):
+        self.process = subprocess.Popen(self.command)
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(60)
+
+
+def subscribed(node, topic):
+    subscribers = rosgraph.Master("/playback_test").getSystemState()[1]
+    return any(name == topic and node in nodes for name, nodes in subscribers)
+
+
+class PlaybackTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("playback_test")
+        cls.folder = tempfile.mkdtemp()
+        cls.bag = os.path.join(cls.folder, "nudge.bag")
+        cls.clear()
+        cls.subscribers = [rospy.Subscriber("hand_frame", HandFrame, cls.take_frame),
+                           rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
+                           rospy.Subscriber("interaction_events", InteractionEvent, cls.take_event),
+                           rospy.Subscriber("/clock", Clock, cls.take_clock)]
+        cls.record()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def clear(cls):
+        cls.frames, cls.objects, cls.kinds, cls.times, cls.object = {}, {}, [], [], None
+
+    @classmethod
+    def take_frame(cls, message):
+        cls.frames[message.header.stamp] = message
+
+    @classmethod
+    def take_objects(cls, message):
+        cls.object = message.objects[0]
+        cls.objects[message.header.stamp] = message.objects[0]
+
+    @classmethod
+    def take_event(cls, event):
+        cls.kinds.append(event.kind)
+
+    @classmethod
+    def take_clock(cls, message):
+        cls.times.append(message.clock)
+
+    @classmethod
+    def pushed(cls):
+        return (cls.object is not None and InteractionEvent.CONTACT_BEGIN in cls.kinds and
+                abs(cls.object.pose.position.x) + abs(cls.object.pose.position.y) > PUSHED)
+
+    @classmethod
+    def record(cls):
+        with Launch("record.launch", "bag:=" + cls.bag):
+            wait_until(lambda: subscribed("/rosbag_record", DEVICE), "rosbag record")
+            with Launch("leap.launch", "scene:=cube", "rviz:=false", "mount:=" + MOUNT):
+                wait_until(lambda: subscribed("/interaction_node", "/hand_frame"), "the pipeline")
+                hand = subprocess.Popen(["rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=nudge",
+                                         "_loop:=false"])
+                wait_until(cls.pushed, "the cube pushed")
+                wait_until(lambda: InteractionEvent.HAND_LOST in cls.kinds, "the end of the run")
+                hand.wait(60)
+        wait_until(lambda: os.path.exists(cls.bag), "the bag")
+        cls.clear()
+
+    def play(self, *arguments):
+        self.clear()
+        return Launch("playback.launch", "bag:=" + self.bag, "scene:=cube", "rviz:=false", *arguments)
+
+    def recorded(self, topic):
+        with rosbag.Bag(self.bag) as bag:
+            return {message.header.stamp: message for _, message, _ in bag.read_messages([topic])}
+
+    def test_playing_gives_what_was_recorded(self):
+        with self.play():
+            wait_until(self.pushed, "the cube pushed")
+            wait_until(lambda: InteractionEvent.HAND_LOST in self.kinds, "the end of the run")
+        self.assertTrue(rospy.get_param("/use_sim_time"))
+        recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/objects")
+        compared = 0
+        for stamp, frame in self.frames.items():
+            if stamp not in recorded_frames or stamp not in recorded_objects or stamp not in self.objects:
+                continue
+            self.assertEqual(frame.hands, recorded_frames[stamp].hands)
+            for axis in "xyz":
+                now, then = (getattr(thing.pose.position, axis)
+                             for thing in (self.objects[stamp], recorded_objects[stamp].objects[0]))
+                self.assertAlmostEqual(now, then, delta=TOLERANCE)
+            compared += 1
+        self.assertGreater(compared, EQUAL_FRAMES)
+
+    def test_a_looping_bag_begins_anew_each_time(self):
+        with self.play("loop:=true", "rate:=2"):
+            for _ in range(2):
+                wait_until(self.pushed, "the cube pushed")
+                times = list(self.times)
+                wait_until(lambda: any(b < a for a, b in zip(self.times[len(times) - 1:], self.times[len(times):])),
+                           "the bag's beginning")
+                wait_until(lambda: self.object.pose.position.x == self.object.pose.position.y == 0.0,
+                           "the cube back at its start")
+                del self.kinds[:]
+            wait_until(self.pushed, "the cube pushed again")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "playback", PlaybackTest)

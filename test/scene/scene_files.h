@@ -1,0 +1,88 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+
+namespace mrhi::test {
+
+/// A folder of its own for the files of one test; gone afterwards.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "mrhi_XXXXXX").string();
+    if (!mkdtemp(&name[0])) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return (path_ / name).string();
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const char* const kInertial =
+    R"(<inertial><mass value="0.1"/>
+       <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>)";
+const char* const kBox = R"(<collision><geometry><box size="0.05 0.05 0.05"/></geometry></collision>)";
+
+inline std::string link(const std::string& name, const std::string& content) {
+  return "<link name=\"" + name + "\">" + content + "</link>\n";
+}
+inline std::string joint(const std::string& type, const std::string& parent, const std::string& child,
+                         const std::string& origin = "") {
+  return "<joint name=\"" + parent + "_" + child + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin " + origin + "/><axis xyz=\"1 0 0\"/></joint>\n";
+}
+inline std::string robot(const std::string& content) {
+  return "<robot name=\"test\"><link name=\"world\"/>\n" + content + "</robot>\n";
+}
+/// A scene of one free body named thing.
+inline std::string thing(const std::string& content, const std::string& origin = "") {
+  return robot(link("thing", content) + joint("floating", "world", "thing", origin));
+}
+
+/// The message with which loading fails, checked to be one line that begins with the file; else "".
+inline std::string scene_error(const std::string& file, const SceneOptions& options = {}) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::string message;
+  try {
+    load_scene(file, options);
+  } catch (const SceneError& error) {
+    message = error.what();
+    EXPECT_EQ(std::string::npos, message.find('\n')) << message;
+    EXPECT_EQ(0u, message.find(file.substr(0, file.rfind('.')))) << message;
+  }
+  EXPECT_EQ("", testing::internal::GetCapturedStderr()) << "the libraries must not print";
+  EXPECT_EQ("", testing::internal::GetCapturedStdout()) << "the libraries must not print";
+  return message;
+}
+
+inline void expect_words(const std::string& message, const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    EXPECT_NE(std::string::npos, message.find(word)) << word << "\n" << message;
+}
+
+/// Volume by the divergence theorem: positive if all triangles are turned outward [m^3].
+inline double volume(const TriangleMesh& mesh) {
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles) {
+    six_volumes += mesh.vertices[t[0]].cross(mesh.vertices[t[1]]).dot(mesh.vertices[t[2]]);
+  }
+  return six_volumes / 6;
+}
+
+}  // namespace mrhi::test

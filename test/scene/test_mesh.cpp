@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include "scene/scene_files.h"
+
+namespace mrhi {
+namespace {
+
+// A tetrahedron with legs of 0.1 along the axes: volume 0.001 / 6.
+const char* const kVertices = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n";
+const char* const kOutward = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+const char* const kInward = "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+const double kVolume = 1e-3 / 6;
+
+/// A scene of one free body whose collision shape is a mesh.
+class MeshScene : public testing::Test {
+ protected:
+  std::string urdf(const std::string& attributes) {
+    return folder_.write(
+        "test.urdf", test::thing(std::string(test::kInertial) + "<collision><geometry><mesh " + attributes +
+                                 "/></geometry></collision>"));
+  }
+  Mesh load(const std::string& attributes, const SceneOptions& options = {}) {
+    scene_ = load_scene(urdf(attributes), options);
+    return std::get<Mesh>(scene_.bodies.at(0).shapes.at(0).shape);
+  }
+  std::string error(const std::string& attributes) { return test::scene_error(urdf(attributes)); }
+
+  test::Folder folder_;
+  Scene scene_;
+};
+
+// 1e-6: vertices pass through floats.
+TEST_F(MeshScene, IsClosedAndTurnedOutwardWhicheverWayTheFileIs) {
+  for (const char* faces : {kOutward, kInward}) {
+    folder_.write("wedge.obj", std::string(kVertices) + faces);
+    const Mesh mesh = load("filename=\"wedge.obj\"");
+    EXPECT_EQ(4u, mesh.triangles->vertices.size());
+    EXPECT_EQ(4u, mesh.triangles->triangles.size());
+    EXPECT_NEAR(kVolume, test::volume(*mesh.triangles), 1e-6 * kVolume);
+  }
+}
+
+TEST_F(MeshScene, IsScaledAlsoByAMirror) {
+  folder_.write("wedge.obj", std::string(kVertices) + kOutward);
+  const Mesh mesh = load("filename=\"wedge.obj\" scale=\"2 -3 1\"");
+  EXPECT_NEAR(6 * kVolume, test::volume(*mesh.triangles), 6e-6 * kVolume);
+  EXPECT_EQ(Vector3(2, -3, 1), mesh.scale);
+  EXPECT_NEAR(0.3, scene_.bodies.at(0).bounding_radius, 1e-6);
+}
+
+TEST_F(MeshScene, IsReadFromAnAsciiStl) {
+  const char* const facets[] = {"0 0 0 0 .1 0 .1 0 0", "0 0 0 .1 0 0 0 0 .1", "0 0 0 0 0 .1 0 .1 0",
+                                ".1 0 0 0 .1 0 0 0 .1"};
+  std::string stl = "solid wedge\n";
+  for (const char* facet : facets) {
+    std::istringstream numbers(facet);
+    stl += "facet normal 0 0 0\nouter loop\n";
+    for (std::string x, y, z; numbers >> x >> y >> z;) stl += "vertex " + x + " " + y + " " + z + "\n";
+    stl += "endloop\nendfacet\n";
+  }
+  folder_.write("wedge.STL", stl + "endsolid wedge\n");
+  const Mesh mesh = load("filename=\"wedge.STL\"");
+  EXPECT_EQ(4u, mesh.triangles->vertices.size());
+  EXPECT_NEAR(kVolume, test::volume(*mesh.triangles), 1e-6 * kVolume);
+}
+
+// The file says centimetres and y up: the first counts, the second does not.
+TEST_F(MeshScene, IsReadFromADaeWithItsUnitButNotItsUpAxis) {
+  folder_.write("wedge.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 10 0 0 0 20 0 0 0 30</float_array><technique_common>
+<accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+  const Mesh mesh = load("filename=\"wedge.dae\"");
+  Vector3 furthest = Vector3::Zero();
+  for (const Vector3& vertex : mesh.triangles->vertices) furthest = furthest.cwiseMax(vertex);
+  EXPECT_TRUE(furthest.isApprox(Vector3(0.1, 0.2, 0.3), 1e-6)) << furthest.transpose();
+}
+
+TEST_F(MeshScene, IsFoundByPathFileUriAndPackage) {
+  const std::string file = folder_.write("wedge.obj", std::string(kVertices) + kOutward);
+  EXPECT_EQ("file://" + file, load("filename=\"wedge.obj\"").uri);
+  EXPECT_EQ("file://" + file, load("filename=\"file://" + file + "\"").uri);
+  SceneOptions options;
+  options.resolve_package_uri = [&](const std::string& uri) {
+    return uri == "package://shapes/wedge.obj" ? file : std::string();
+  };
+  EXPECT_EQ("package://shapes/wedge.obj", load("filename=\"package://shapes/wedge.obj\"", options).uri);
+  test::expect_words(error("filename=\"package://shapes/wedge.obj\""),
+                     {"package://shapes/wedge.obj", "package"});
+}
+
+TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
+  test::expect_words(error("filename=\"none.stl\""),
+                     {"'thing' collision 1", "'none.stl'", "not found", folder_.path()});
+  folder_.write("broken.stl", "this is not a mesh");
+  test::expect_words(error("filename=\"broken.stl\""), {"'thing' collision 1", "'broken.stl'", "read"});
+  folder_.write("empty.obj", "v 0 0 0\n");
+  test::expect_words(error("filename=\"empty.obj\""), {"'empty.obj'"});
+  folder_.write("wedge.ply", "ply");
+  test::expect_words(error("filename=\"wedge.ply\""), {"'wedge.ply'", ".stl, .obj, .dae"});
+  folder_.write("wedge.obj", std::string(kVertices) + kOutward);
+  test::expect_words(error("filename=\"wedge.obj\" scale=\"1 0 1\""),
+                     {"'thing' collision 1", "scale", "[1, 0, 1]"});
+}
+
+TEST_F(MeshScene, RefusesASurfaceThatIsNotClosed) {
+  folder_.write("open.obj", std::string(kVertices) + "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  test::expect_words(error("filename=\"open.obj\""), {"'open.obj'", "not closed", "3 edges"});
+  folder_.write("torn.obj", std::string(kVertices) + "f 1 2 3\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  test::expect_words(error("filename=\"torn.obj\""), {"'torn.obj'", "not closed"});
+  folder_.write("leaf.obj", std::string(kVertices) + "f 1 2 3\nf 1 3 2\n");
+  test::expect_words(error("filename=\"leaf.obj\""), {"'leaf.obj'", "no volume"});
+}
+
+TEST_F(MeshScene, MayBeOpenWhereItIsOnlySeen) {
+  folder_.write("open.obj", std::string(kVertices) + "f 1 3 2\n");
+  const std::string visual = "<visual><geometry><mesh filename=\"open.obj\"/></geometry></visual>";
+  const Scene scene = load_scene(
+      folder_.write("seen.urdf", test::thing(std::string(test::kInertial) + test::kBox + visual)), {});
+  EXPECT_EQ(1u, std::get<Mesh>(scene.bodies.at(0).visuals.at(0).shape).triangles->triangles.size());
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+#include "mr_hand_interaction/parameters.h"
+#include "scene/scene_files.h"
+
+namespace mrhi {
+namespace {
+
+std::string error(const std::string& name, const std::string& value) {
+  Configuration configuration;
+  try {
+    set_parameter(configuration, name, value);
+  } catch (const ParameterError& caught) {
+    const std::string message = caught.what();
+    EXPECT_EQ(std::string::npos, message.find('\n')) << message;
+    return message;
+  }
+  return "";
+}
+
+std::string file_error(const std::string& yaml, Configuration configuration = {}) {
+  const test::Folder folder;
+  try {
+    load_parameters(configuration, folder.write("p.yaml", yaml));
+  } catch (const ParameterError& caught) {
+    const std::string message = caught.what();
+    EXPECT_EQ(std::string::npos, message.find('\n')) << message;
+    return message;
+  }
+  return "";
+}
+
+Configuration set(const std::string& name, const std::string& value) {
+  Configuration configuration;
+  set_parameter(configuration, name, value);
+  return configuration;
+}
+
+void expect_defaults(const Configuration& c) {
+  const Configuration d;
+  EXPECT_EQ(d.contact_model, c.contact_model);
+  EXPECT_EQ(d.step, c.step);
+  EXPECT_EQ(d.gravity.has_value(), c.gravity.has_value());
+  EXPECT_EQ(d.filter.type, c.filter.type);
+  EXPECT_EQ(d.filter.window, c.filter.window);
+  EXPECT_EQ(d.material.restitution, c.material.restitution);
+  EXPECT_EQ(d.material.static_friction, c.material.static_friction);
+  EXPECT_EQ(d.material.dynamic_friction, c.material.dynamic_friction);
+  EXPECT_EQ(d.material.stiffness, c.material.stiffness);
+  EXPECT_EQ(d.hand_radius_scale, c.hand_radius_scale);
+  EXPECT_EQ(d.tracking.hold_time, c.tracking.hold_time);
+  EXPECT_EQ(d.tracking.max_speed, c.tracking.max_speed);
+}
+
+/// Unlike the defaults in every parameter.
+Configuration unlike_defaults() {
+  Configuration c;
+  c.contact_model = ContactModelKind::impulse;
+  c.step = 0.004;
+  c.gravity = Vector3(1, 2, 3);
+  c.filter = {FilterKind::none, 7};
+  c.material = {0.11, 0.22, 0.12, 44};
+  c.hand_radius_scale = 2;
+  c.tracking = {1.5, 3};
+  return c;
+}
+
+void collect_names(const YAML::Node& map, const std::string& prefix, std::vector<std::string>& names) {
+  for (const auto& entry : map) {
+    const std::string name = prefix + entry.first.Scalar();
+    if (entry.second.IsMap()) {
+      collect_names(entry.second, name + "/", names);
+    } else {
+      names.push_back(name);
+    }
+  }
+}
+
+TEST(Parameters, DefaultFileHoldsTheDefaultOfEveryParameter) {
+  Configuration configuration = unlike_defaults();
+  load_parameters(configuration, "config/default.yaml");
+  expect_defaults(configuration);
+  std::vector<std::string> names;
+  collect_names(YAML::LoadFile("config/default.yaml"), "", names);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(parameter_names(), names);
+}
+
+TEST(Parameters, NamesAreTheContracts) {
+  const std::vector<std::string> contract{"contact_model",        "filter/type",
+                                          "filter/window",        "gravity",
+                                          "hand/radius_scale",    "material/dynamic_friction",
+                                          "material/restitution", "material/static_friction",
+                                          "material/stiffness",   "step",
+                                          "tracking/hold_time",   "tracking/max_speed"};
+  EXPECT_EQ(contract, parameter_names());
+}
+
+TEST(Parameters, EachNameSetsItsOwnValue) {
+  EXPECT_EQ(ContactModelKind::penetration, set("contact_model", "penetration").contact_model);
+  EXPECT_EQ(ContactModelKind::impulse, set("contact_model", "impulse").contact_model);
+  EXPECT_EQ(ContactModelKind::seed, set("contact_model", "seed").contact_model);
+  EXPECT_EQ(0.002, set("step", "2e-3").step);
+  EXPECT_EQ(Vector3(0, 0, -9.81), set("gravity", "[0, 0, -9.81]").gravity.value());
+  EXPECT_FALSE(set("gravity", "scene").gravity);
+  EXPECT_EQ(FilterKind::none, set("filter/type", "none").filter.type);
+  EXPECT_EQ(FilterKind::window, set("filter/type", "window").filter.type);
+  EXPECT_EQ(16, set("filter/window", "16").filter.window);
+  EXPECT_EQ(1, set("material/restitution", "1").material.restitution);
+  EXPECT_EQ(0.7, set("material/static_friction", "0.7").material.static_friction);
+  EXPECT_EQ(0, set("material/dynamic_friction", "0").material.dynamic_friction);
+  EXPECT_EQ(1e4, set("material/stiffness", "10000").material.stiffness);
+  EXPECT_EQ(0.5, set("hand/radius_scale", "0.5").hand_radius_scale);
+  EXPECT_EQ(0, set("tracking/hold_time", "0").tracking.hold_time);
+  EXPECT_EQ(5, set("tracking/max_speed", "5").tracking.max_speed);
+}
+
+TEST(Parameters, RefusesAnUnknownNameAndListsTheKnown) {
+  std::vector<std::string> words = parameter_names();
+  words.push_back("'filter/windw'");
+  test::expect_words(error("filter/windw", "3"), words);
+  test::expect_words(error("", "3"), {"unknown parameter ''"});
+}
+
+TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
+  const std::vector<std::array<std::string, 3>> wrong{
+      {{"contact_model", "springs", "seed, penetration, impulse"}},
+      {{"contact_model", "[seed]", "seed, penetration, impulse"}},
+      {{"step", "0", "above 0, at most 0.05 [s]"}},
+      {{"step", "0.0501", "at most 0.05"}},
+      {{"step", "-1", "above 0"}},
+      {{"step", "fast", "a number"}},
+      {{"step", "1 ms", "a number"}},
+      {{"step", ".nan", "a number"}},
+      {{"step", "", "a number"}},
+      {{"gravity", "-9.81", "three finite numbers"}},
+      {{"gravity", "[0, 0]", "three finite numbers"}},
+      {{"gravity", "[0, 0, .inf]", "three finite numbers"}},
+      {{"gravity", "moon", "'scene'"}},
+      {{"filter/type", "kalman", "none, window"}},
+      {{"filter/window", "0", "from 1 to 16"}},
+      {{"filter/window", "17", "from 1 to 16"}},
+      {{"filter/window", "2.5", "whole number"}},
+      {{"material/restitution", "1.01", "from 0 to 1"}},
+      {{"material/restitution", "-0.01", "from 0 to 1"}},
+      {{"material/static_friction", "-1", "at least 0"}},
+      {{"material/dynamic_friction", "-1", "at least 0"}},
+      {{"material/stiffness", "0", "above 0 [N/m]"}},
+      {{"material/stiffness", ".inf", "above 0"}},
+      {{"hand/radius_scale", "0.09", "from 0.1 to 10"}},
+      {{"hand/radius_scale", "11", "from 0.1 to 10"}},
+      {{"tracking/hold_time", "-0.1", "from 0 to 10 [s]"}},
+      {{"tracking/max_speed", "0", "above 0 [m/s]"}},
+  };
+  for (const auto& [name, value, allowed] : wrong) {
+    test::expect_words(error(name, value), {"'" + name + "'", value, "allowed: ", allowed});
+  }
+  test::expect_words(error("gravity", "[0, 0"), {"'gravity'", "[0, 0", "not YAML"});
+}
+
+TEST(Parameters, AreUnchangedByARefusedValue) {
+  Configuration configuration;
+  for (const std::string& name : parameter_names()) {
+    EXPECT_THROW(set_parameter(configuration, name, "[1, {a: b}]"), ParameterError) << name;
+  }
+  EXPECT_THROW(set_parameter(configuration, "gravity", "[0, 0, x]"), ParameterError);
+  expect_defaults(configuration);
+  const test::Folder folder;
+  const std::string file = folder.write("p.yaml", "step: 0.004\nfilter/window: 99\n");
+  EXPECT_THROW(load_parameters(configuration, file), ParameterError);
+  expect_defaults(configuration);
+}
+
+TEST(Parameters, FilesMayNestOrUseSlashes) {
+  const test::Folder folder;
+  Configuration configuration;
+  load_parameters(configuration, folder.write("p.yaml", "filter: {window: 5}\nmaterial/stiffness: 250\n"));
+  EXPECT_EQ(5, configuration.filter.window);
+  EXPECT_EQ(250, configuration.material.stiffness);
+  load_parameters(configuration, folder.write("empty.yaml", "# nothing\n"));
+  EXPECT_EQ(5, configuration.filter.window);
+}
+
+TEST(Parameters, WrongFilesAreRefusedWithTheirLine) {
+  test::expect_words(file_error("step: 0.001\nfilter:\n  window: 99\n"),
+                     {"p.yaml:3", "'filter/window'", "99", "from 1 to 16"});
+  test::expect_words(file_error("filter: {size: 3}"), {"p.yaml:1", "'filter/size'", "filter/window"});
+  test::expect_words(file_error("filter: {window: 3}\nfilter/window: 4"),
+                     {"p.yaml:2", "'filter/window'", "twice"});
+  test::expect_words(file_error("- step"), {"p.yaml", "map"});
+  test::expect_words(file_error("step: [1\nb: }"), {"p.yaml:", "not YAML"});
+  Configuration configuration;
+  EXPECT_THROW(load_parameters(configuration, "nowhere.yaml"), ParameterError);
+}
+
+TEST(Parameters, DynamicFrictionIsAtMostStatic) {
+  Configuration configuration;
+  EXPECT_NO_THROW(validate(configuration));
+  set_parameter(configuration, "material/dynamic_friction", "0.9");
+  try {
+    validate(configuration);
+    ADD_FAILURE();
+  } catch (const ParameterError& caught) {
+    test::expect_words(caught.what(), {"material/dynamic_friction", "0.9", "0.8"});
+  }
+  set_parameter(configuration, "material/static_friction", "0.9");
+  EXPECT_NO_THROW(validate(configuration));
+}
+
+}  // namespace
+}  // namespace mrhi

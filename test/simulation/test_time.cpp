@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+using testing::box_body;
+using testing::finger;
+using testing::scene_of;
+using testing::unfiltered;
+
+constexpr double kRate = 110.0;
+
+/// A fingertip that pushes the cube along +x and sways.
+Hand pushing(double t) {
+  const Vector3 tip(-0.06 + 0.08 * t, 0.004 * std::sin(9.0 * t), 0.003);
+  return finger(tip - Vector3(0, 0.012, 0), tip + Vector3(0, 0.012, 0), 0.008);
+}
+
+Scene drifting_cube() {
+  Body cube = box_body(Vector3::Constant(0.05), 0.1);
+  cube.start_twist = {Vector3(0.01, 0, 0.005), Vector3(0.3, 1.0, -0.2)};
+  return scene_of(cube);
+}
+
+std::uint64_t run(Simulation& simulation, int from, int to) {
+  for (int i = from; i < to; ++i) {
+    const double t = i / kRate;
+    simulation.advance({at(t), {pushing(t)}});
+  }
+  return hash(simulation.state());
+}
+
+TEST(Determinism, the_same_frames_give_the_same_bits) {
+  Simulation first(drifting_cube(), unfiltered()), second(drifting_cube(), unfiltered());
+  EXPECT_EQ(run(first, 0, 100), run(second, 0, 100));
+  EXPECT_NE(run(first, 100, 101), hash(second.state()));
+}
+
+TEST(Determinism, a_copied_state_goes_on_with_the_same_bits) {
+  Simulation first(drifting_cube(), unfiltered()), second(drifting_cube(), unfiltered());
+  run(first, 0, 60);
+  second.set_state(first.state());
+  EXPECT_EQ(run(first, 60, 120), run(second, 60, 120));
+}
+
+TEST(Determinism, reset_starts_from_the_very_beginning) {
+  Simulation fresh(drifting_cube(), unfiltered()), used(drifting_cube(), unfiltered());
+  run(used, 0, 80);
+  used.reset();
+  EXPECT_EQ(run(fresh, 0, 80), run(used, 0, 80));
+}
+
+TEST(Time, bodies_are_at_the_frames_stamp_when_a_frame_has_been_taken) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  simulation.advance({at(0.0), {}});
+  simulation.advance({at(0.0173), {}});
+  simulation.advance({at(0.1), {}});
+  EXPECT_NEAR(simulation.state().bodies[0].pose.position.x(), 0.01 * 0.1, 1e-15);
+  EXPECT_EQ(simulation.result().stamp, at(0.1));
+}
+
+TEST(Time, no_step_is_longer_than_the_configured_one) {
+  Configuration configuration = unfiltered();
+  configuration.step = 0.002;
+  Simulation simulation(drifting_cube(), configuration);
+  simulation.advance({at(0.0), {}});
+  ASSERT_EQ(simulation.begin({at(0.0101), {}}), Rejection::none);
+  int steps = 0;
+  while (simulation.step()) ++steps;
+  simulation.end();
+  EXPECT_EQ(steps, 6);
+}
+
+TEST(Time, a_repeated_or_earlier_stamp_is_refused_and_changes_nothing) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  run(simulation, 0, 50);
+  const std::uint64_t before = hash(simulation.state());
+  const double last = 49 / kRate;
+  for (const double stamp : {last, last - 0.001, last - 0.3, last - 100.0}) {
+    EXPECT_EQ(simulation.advance({at(stamp), {pushing(last)}}), Rejection::stamp_not_increasing) << stamp;
+    EXPECT_EQ(hash(simulation.state()), before) << stamp;
+  }
+  EXPECT_EQ(simulation.advance({at(50 / kRate), {pushing(last)}}), Rejection::none);
+}
+
+TEST(Time, a_stream_that_begins_anew_restarts_everything_at_its_third_frame) {
+  Simulation simulation(drifting_cube(), unfiltered()), fresh(drifting_cube(), unfiltered());
+  run(simulation, 100, 200);
+  EXPECT_EQ(simulation.advance({at(0 / kRate), {pushing(0)}}), Rejection::stamp_not_increasing);
+  EXPECT_EQ(simulation.advance({at(1 / kRate), {pushing(0)}}), Rejection::stamp_not_increasing);
+  EXPECT_EQ(simulation.advance({at(2 / kRate), {pushing(2 / kRate)}}), Rejection::none);
+  EXPECT_TRUE(simulation.result().restarted);
+  run(fresh, 2, 3);
+  EXPECT_EQ(run(simulation, 3, 50), run(fresh, 3, 50));
+  EXPECT_FALSE(simulation.result().restarted);
+}
+
+TEST(Silence, computed_bit_by_bit_or_in_one_go_it_gives_the_same_bits) {
+  for (const double gap : {0.21, 0.5, 1.2345, 3.0}) {
+    Simulation replayed(drifting_cube(), unfiltered()), live(drifting_cube(), unfiltered());
+    run(replayed, 0, 70);
+    run(live, 0, 70);
+    const double last = 69 / kRate;
+    for (double t = last; t < last + gap - 0.001; t += 0.0137) live.advance_without_hands(at(t));
+    for (Simulation* simulation : {&replayed, &live}) simulation->advance({at(last + gap), {pushing(0.0)}});
+    EXPECT_EQ(hash(replayed.state()), hash(live.state())) << gap;
+  }
+}
+
+TEST(Silence, within_hold_time_nothing_is_computed_ahead_of_the_next_frame) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  run(simulation, 0, 70);
+  const std::uint64_t before = hash(simulation.state());
+  EXPECT_FALSE(simulation.advance_without_hands(at(69 / kRate + 0.15)));
+  EXPECT_EQ(hash(simulation.state()), before);
+}
+
+TEST(Silence, objects_fly_on_and_the_hand_is_lost_with_its_interactions_ended_first) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  run(simulation, 0, 70);
+  const double x = simulation.state().bodies[0].pose.position.x();
+  ASSERT_TRUE(simulation.advance_without_hands(at(69 / kRate + 1.0)));
+  EXPECT_GT(simulation.state().bodies[0].pose.position.x(), x + 0.01);
+  const std::vector<Event>& events = simulation.result().events;
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().kind, EventKind::hand_lost);
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(),
+                          [](const Event& event) { return event.kind == EventKind::hover_end; }));
+}
+
+TEST(Bounds, a_body_that_leaves_is_put_back_where_it_started_with_an_event) {
+  Scene scene = drifting_cube();
+  scene.bodies[0].start_twist = {Vector3(2.0, 0, 0), Vector3::Zero()};
+  Simulation simulation(scene, unfiltered());
+  int events = 0;
+  for (int i = 0; i < 100; ++i) {
+    simulation.advance({at(0.01 * i), {}});
+    for (const Event& event : simulation.result().events) events += event.kind == EventKind::out_of_bounds;
+    EXPECT_LE(simulation.state().bodies[0].pose.position.x(), scene.bounds.max.x());
+  }
+  EXPECT_EQ(events, 1);  // 1.98 m flown, bound at 1.5 m
+}
+
+TEST(Gravity, the_parameter_goes_before_the_scenes_own) {
+  Scene scene = drifting_cube();
+  scene.bodies[0].start_twist = {};
+  scene.gravity = Vector3(0, 0, -9.81);
+  Configuration configuration = unfiltered();
+  configuration.gravity = Vector3(0, 0, 1.0);
+  Simulation simulation(scene, configuration);
+  simulation.advance({at(0.0), {}});
+  simulation.advance({at(0.1), {}});
+  EXPECT_NEAR(simulation.state().bodies[0].pose.position.z(), 0.5 * 0.01, 1e-15);
+}
+
+}  // namespace
+}  // namespace mrhi

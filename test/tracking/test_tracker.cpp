@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include "mr_hand_interaction/tracking/tracker.h"
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+
+Hand hand_at(double x, std::uint32_t id = 1, Side side = Side::right) {
+  Hand hand = testing::finger(Vector3(x, 0, 0), Vector3(x, 0, 0.02), 0.008);
+  hand.id = id;
+  hand.side = side;
+  return hand;
+}
+
+class Tracker : public ::testing::Test {
+ protected:
+  void frame(double t, std::vector<Hand> seen) {
+    events_.clear();
+    lose_unseen_hands(at(t), configuration_.tracking.hold_time, hands_, events_);
+    track_hands({at(t), std::move(seen)}, configuration_, hands_, events_);
+  }
+  int active() const {
+    return static_cast<int>(
+        std::count_if(hands_.begin(), hands_.end(), [](const HandTrack& t) { return t.active; }));
+  }
+  double x(std::size_t slot = 0) const {
+    return hands_[slot].current.capsules[capsule_index(1, 3)].start.x();
+  }
+
+  Configuration configuration_ = testing::unfiltered();
+  std::vector<HandTrack> hands_ = std::vector<HandTrack>(kMaxHands);
+  std::vector<Event> events_;
+};
+
+TEST_F(Tracker, a_new_hand_is_found_once) {
+  frame(0.00, {hand_at(0)});
+  ASSERT_EQ(events_.size(), 1u);
+  EXPECT_EQ(events_[0].kind, EventKind::hand_found);
+  frame(0.01, {hand_at(0.001)});
+  EXPECT_TRUE(events_.empty());
+  EXPECT_EQ(active(), 1);
+}
+
+TEST_F(Tracker, a_missing_hand_keeps_its_pose_for_hold_time_and_is_lost_then) {
+  frame(0.00, {hand_at(0.1)});
+  frame(0.10, {});
+  EXPECT_EQ(active(), 1);
+  EXPECT_TRUE(hands_[0].held);
+  EXPECT_DOUBLE_EQ(x(), 0.1);
+  frame(0.19, {});
+  EXPECT_EQ(active(), 1);
+  frame(0.21, {});
+  EXPECT_EQ(active(), 0);
+  ASSERT_EQ(events_.size(), 1u);
+  EXPECT_EQ(events_[0].kind, EventKind::hand_lost);
+}
+
+TEST_F(Tracker, a_hand_found_again_under_a_new_id_goes_on_as_the_same_hand) {
+  frame(0.00, {hand_at(0.1, 7)});
+  frame(0.05, {});
+  frame(0.10, {hand_at(0.11, 8)});
+  EXPECT_TRUE(events_.empty());
+  EXPECT_EQ(active(), 1);
+  EXPECT_EQ(hands_[0].current.id, 8u);
+}
+
+TEST_F(Tracker, after_a_short_loss_it_catches_up_without_a_snap) {
+  frame(0.00, {hand_at(0.10)});
+  frame(0.05, {});
+  frame(0.10, {hand_at(0.20)});
+  EXPECT_DOUBLE_EQ(x(), 0.10);
+  frame(0.15, {hand_at(0.20)});
+  EXPECT_NEAR(x(), 0.15, 1e-12);
+  frame(0.20, {hand_at(0.20)});
+  EXPECT_NEAR(x(), 0.20, 1e-12);
+}
+
+TEST_F(Tracker, filter_starts_afresh_after_a_loss) {
+  configuration_.filter.type = FilterKind::window;
+  frame(0.00, {hand_at(0.0)});
+  frame(0.01, {hand_at(0.0)});
+  frame(0.02, {});
+  frame(0.03, {hand_at(0.09)});
+  EXPECT_EQ(hands_[0].history.size, 1);
+}
+
+TEST_F(Tracker, a_joint_faster_than_max_speed_has_jumped) {
+  frame(0.000, {hand_at(0.0)});
+  frame(0.008, {hand_at(0.3)});  // 37 m/s
+  EXPECT_TRUE(hands_[0].appeared);
+  EXPECT_DOUBLE_EQ(hands_[0].previous.capsules[capsule_index(1, 3)].start.x(), 0.3);
+  frame(0.016, {hand_at(0.301)});
+  EXPECT_FALSE(hands_[0].appeared);
+  EXPECT_TRUE(hands_[0].emerged);
+  frame(0.024, {hand_at(0.302)});
+  EXPECT_FALSE(hands_[0].emerged);
+}
+
+TEST_F(Tracker, two_hands_keep_their_tracks_when_the_message_swaps_them) {
+  frame(0.00, {hand_at(-0.1, 1, Side::left), hand_at(0.1, 2, Side::right)});
+  frame(0.01, {hand_at(0.1, 2, Side::right), hand_at(-0.1, 1, Side::left)});
+  EXPECT_DOUBLE_EQ(x(0), -0.1);
+  EXPECT_DOUBLE_EQ(x(1), 0.1);
+  EXPECT_TRUE(events_.empty());
+}
+
+TEST_F(Tracker, two_hands_under_one_id_are_told_apart_by_side) {
+  frame(0.00, {hand_at(-0.1, 0, Side::left), hand_at(0.1, 0, Side::right)});
+  frame(0.01, {hand_at(0.1, 0, Side::right), hand_at(-0.1, 0, Side::left)});
+  EXPECT_EQ(active(), 2);
+  EXPECT_DOUBLE_EQ(x(0), -0.1);
+}
+
+TEST_F(Tracker, hands_beyond_the_slots_are_left_out) {
+  std::vector<Hand> many;
+  for (std::uint32_t i = 0; i < kMaxHands + 2; ++i) many.push_back(hand_at(0.5 * i, i));
+  frame(0.0, many);
+  EXPECT_EQ(active(), kMaxHands);
+}
+
+TEST_F(Tracker, radius_scale_applies_to_every_capsule) {
+  configuration_.hand_radius_scale = 1.5;
+  frame(0.0, {hand_at(0.0)});
+  EXPECT_DOUBLE_EQ(hands_[0].current.capsules[capsule_index(1, 3)].radius, 0.012);
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,45 @@
+#include "mr_hand_interaction/synthetic/recording_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace mrhi {
+namespace {
+
+TEST(RecordingWriter, the_reader_gets_back_what_was_written_to_the_micrometre) {
+  SyntheticHandOptions options;
+  options.motion = "slap";
+  options.side = "left";
+  const auto written = record_motion(options);
+  const std::string file = ::testing::TempDir() + "mr_hand_interaction_recording_writer.csv";
+  {
+    std::ofstream out(file);
+    write_recording_csv(out, written);
+  }
+  const auto read = read_recording_csv(file);
+  std::remove(file.c_str());
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_NEAR(to_seconds(read[i].stamp - read[0].stamp), to_seconds(written[i].stamp), 1e-6);
+    ASSERT_EQ(read[i].hands.size(), written[i].hands.size()) << i;
+    if (read[i].hands.empty()) continue;
+    const HandJoints &got = read[i].hands[0], &sent = written[i].hands[0];
+    EXPECT_EQ(got.id, sent.id);
+    EXPECT_EQ(got.side, sent.side);
+    for (std::size_t finger = 0; finger < kFingers; ++finger) {
+      EXPECT_NEAR(*got.finger_width[finger], *sent.finger_width[finger], 1e-6);
+      for (std::size_t j = 0; j < 5; ++j) {
+        // Half a micrometre an axis is cut off by six decimals.
+        EXPECT_LT((*got.joints[finger][j] - *sent.joints[finger][j]).norm(), 1e-6);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mrhi
