@@ -115,6 +115,8 @@ def main():
     if os.path.exists(options.picture):
         os.remove(options.picture)
 
+    while not rosgraph.is_master_online() and time.monotonic() < deadline:
+        time.sleep(0.1)
     rospy.init_node("watch_demo", disable_signals=True)
     demo = Demo()
     what = demo.struck if options.motion in STRIKES else demo.carried

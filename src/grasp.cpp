@@ -12,13 +12,16 @@ struct Pressing {
   Vector3 sum = Vector3::Zero();
   double total = 0.0;
   int capsules = 0;
+  bool struck = false;
 };
 
 Pressing pressing(int slot, int body, const std::vector<Contact>& contacts) {
   Pressing result;
   int last_capsule = -1;
   for (const Contact& contact : contacts) {
-    if (contact.key.hand != slot || contact.key.body != body || !contact.touching()) continue;
+    if (contact.key.hand != slot || contact.key.body != body) continue;
+    if (contact.impulse != Vector3::Zero()) result.struck = true;
+    if (!contact.touching()) continue;
     result.sum += contact.share * contact.depth * contact.normal;
     result.total += contact.share * contact.depth;
     if (contact.key.capsule != last_capsule) ++result.capsules;
@@ -49,7 +52,7 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
                             InteractionLevel before) {
   const Pressing press = pressing(slot, body, contacts);
   if (press.capsules >= 2 && press.sum.norm() <= kBalanced * press.total) return InteractionLevel::grasp;
-  if (press.capsules >= 1) return InteractionLevel::contact;
+  if (press.capsules >= 1 || press.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
   const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];
   return is_near(hand, body, finder, shape_of, body_pose, distance) ? InteractionLevel::hover

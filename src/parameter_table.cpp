@@ -55,13 +55,27 @@ bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
   return true;
 }
 
+ParameterEntry stiffness(const MaterialField& field) {
+  const Range range = field.range;
+  return {std::string("material/") + field.name,
+          range.describe() + field.unit + ", or 'model' for the contact model's own",
+          [range](Configuration& configuration, const YAML::Node& node) {
+            const bool of_the_model = node.IsScalar() && node.Scalar() == "model";
+            const std::optional<double> value = yaml_number(node);
+            if (!of_the_model && (!value || !range.contains(*value))) return false;
+            configuration.stiffness = of_the_model ? std::nullopt : value;
+            return true;
+          }};
+}
+
 std::vector<ParameterEntry> make_table() {
   using C = Configuration;
   const double no_limit = std::numeric_limits<double>::infinity();
   std::vector<ParameterEntry> table{
       choice<ContactModelKind>(
           "contact_model",
-          {{"seed", ContactModelKind::seed},
+          {{"implicit", ContactModelKind::implicit},
+           {"seed", ContactModelKind::seed},
            {"penetration", ContactModelKind::penetration},
            {"impulse", ContactModelKind::impulse}},
           [](C & c) -> auto& { return c.contact_model; }),
@@ -83,6 +97,10 @@ std::vector<ParameterEntry> make_table() {
   };
   for (const MaterialField& field : material_fields()) {
     const auto member = field.value;
+    if (member == &Material::stiffness) {
+      table.push_back(stiffness(field));
+      continue;
+    }
     table.push_back(number(
         std::string("material/") + field.name, field.unit,
         field.range, [member](C & c) -> auto& { return c.material.*member; }));

@@ -68,6 +68,7 @@ struct Simulation::Impl {
 
   std::vector<MovingHand> moving;
   std::vector<Contact> strikes;
+  std::vector<char> solved;  // by body: the contact model has seen to gravity
 };
 
 void Simulation::Impl::reset() {
@@ -115,11 +116,13 @@ void Simulation::Impl::advance_step(double fraction, double seconds, double step
     if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, fraction, seconds));
   }
   finder.find(moving, state.bodies, step, state.contacts);
-  ContactStep contact_step{scene, gravity, step, state.contacts, state.bodies};
+  solved.assign(scene.bodies.size(), false);
+  ContactStep contact_step{scene, gravity, step, state.contacts, state.bodies, solved};
   model->respond(contact_step);
   note_strikes();
-  for (std::size_t b = 0; b < state.bodies.size(); ++b)
-    free_flight(scene.bodies[b], gravity, step, state.bodies[b]);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    free_flight(scene.bodies[b], solved[b] ? Vector3::Zero() : gravity, step, state.bodies[b]);
+  }
   keep_in_bounds();
 }
 

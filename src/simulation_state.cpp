@@ -39,19 +39,22 @@ void add_hand(const Hand& hand, Fnv1a& hash) {
   }
 }
 
-void add_track(const HandTrack& track, Fnv1a& hash) {
+void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   hash.add(track.active);
   if (!track.active) return;
   hash.add(track.held);
   hash.add(track.appeared);
   hash.add(track.emerged);
-  hash.add(track.last_seen);
+  hash.add(now - track.last_seen);
   add_hand(track.previous, hash);
   add_hand(track.current, hash);
   for (int i = 0; i < track.history.size; ++i)
     add_hand(track.history.samples[static_cast<std::size_t>(i)], hash);
   hash.add(track.rejoin.duration);
-  if (track.rejoin.duration > 0) add_hand(track.rejoin.from, hash);
+  if (track.rejoin.duration > 0) {
+    hash.add(now - track.rejoin.begin);
+    add_hand(track.rejoin.from, hash);
+  }
 }
 
 void add_contact(const Contact& contact, Fnv1a& hash) {
@@ -60,6 +63,7 @@ void add_contact(const Contact& contact, Fnv1a& hash) {
   hash.add(contact.entry_normal);
   hash.add(contact.axis_parameter);
   hash.add(contact.depth);
+  hash.add(contact.twist);
   hash.add(contact.friction);
   hash.add(contact.struck);
   hash.add(contact.ignored);
@@ -69,14 +73,13 @@ void add_contact(const Contact& contact, Fnv1a& hash) {
 
 std::uint64_t hash(const SimulationState& state) {
   Fnv1a hash;
-  hash.add(state.time);
-  hash.add(state.last_frame);
+  hash.add(state.time - state.last_frame);
   for (const BodyState& body : state.bodies) {
     hash.add(body.pose);
     hash.add(body.linear_momentum);
     hash.add(body.angular_momentum);
   }
-  for (const HandTrack& track : state.hands) add_track(track, hash);
+  for (const HandTrack& track : state.hands) add_track(track, state.time, hash);
   for (const Contact& contact : state.contacts) add_contact(contact, hash);
   for (const Interaction& interaction : state.interactions) hash.add(interaction.level);
   return hash.value();

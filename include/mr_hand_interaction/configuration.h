@@ -8,7 +8,7 @@
 
 namespace mrhi {
 
-enum class ContactModelKind { seed, penetration, impulse };
+enum class ContactModelKind { implicit, seed, penetration, impulse };
 enum class FilterKind { none, window };
 
 struct FilterConfiguration {
@@ -28,9 +28,15 @@ struct Configuration {
   double step = 0.001;             ///< longest step of the simulation [s]
   std::optional<Vector3> gravity;  ///< overrides the scene's [m/s^2]
   FilterConfiguration filter;
+  std::optional<double> stiffness;  ///< gamma of every body that the scene says nothing else about [N/m];
+                                    ///< unset: the contact model's own, see default_material()
   Material material;  ///< of every body that the scene says nothing else about
   double hand_radius_scale = 1.0;
   TrackingConfiguration tracking;
 };
+
+/// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the paper's 100 N/m
+/// under the paper's models and 2000 N/m under `implicit`, which is stable with it at any step and mass.
+Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

@@ -34,8 +34,8 @@ struct WayOut {
   bool by_face = true;
 };
 
-/// The box swept along the axis is a polytope: its faces are those of the box, and those that an edge of the box
-/// sweeps out. The axis leaves the box by the nearest.
+/// The box swept along the axis is a polytope: its faces are those of the box, and those that an edge of the
+/// box sweeps out. The axis leaves the box by the nearest.
 WayOut way_out(const Segment& axis, const Vector3& half) {
   const Vector3 middle = axis.middle(), reach = 0.5 * axis.along.cwiseAbs();
   WayOut best;

@@ -5,8 +5,9 @@ namespace {
 
 using Vector2 = Eigen::Vector2d;
 
-// The cylinder swept along the segment is convex; the segment leaves by the nearest piece of its surface. These
-// are flat (a cap), the cylinder's side at an end of the segment, and what a rim or a line of the side sweeps.
+// The cylinder swept along the segment is convex; the segment leaves by the nearest piece of its surface.
+// These are flat (a cap), the cylinder's side at an end of the segment, and what a rim or a line of the side
+// sweeps.
 
 ClosestFeatures leave_by_cap(const Segment& axis, const Cylinder& cylinder) {
   const double middle = axis.middle().z(), side = middle < 0.0 ? -1.0 : 1.0;
@@ -87,8 +88,9 @@ ClosestFeatures leave_cylinder(const Segment& axis, const Cylinder& cylinder) {
   return best;
 }
 
-// The place is (x a^2 / (t + a^2), y b^2 / (t + b^2)) for a root t of a convex function (Eberly, Distance from a
-// Point to an Ellipse), here in units of b^2. Newton's method from the side of the pole at -1 cannot overshoot it.
+// The place is (x a^2 / (t + a^2), y b^2 / (t + b^2)) for a root t of a convex function (Eberly, Distance
+// from a Point to an Ellipse), here in units of b^2. Newton's method from the side of the pole at -1 cannot
+// overshoot it.
 std::optional<Eigen::Vector2d> nearest_on_ellipse(double a, double b, const Eigen::Vector2d& place) {
   const double ratio = (a / b) * (a / b), u = place.x() / a, v = place.y() / b;
   if (v == 0.0) {

@@ -1,5 +1,5 @@
-// All that uses FCL. Its collision results are not used (its capsules' depths and normals are approximate): its
-// trees find candidates, closed forms measure them.
+// All that uses FCL. Its collision results are not used (its capsules' depths and normals are approximate):
+// its trees find candidates, closed forms measure them.
 #if __has_include(<fcl/geometry/bvh/BVH_model.h>)
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -136,6 +136,8 @@ class NearestTriangle {
 
 }  // namespace
 
+constexpr double kUnlimited = 1e300;
+
 struct MeshCollider::Impl {
   explicit Impl(const TriangleMesh& mesh) : surface(mesh) {
     if (surface.triangles().empty()) throw std::invalid_argument("mesh has no triangle with an area");
@@ -147,9 +149,28 @@ struct MeshCollider::Impl {
     tree.endModel();
   }
 
+  bool inside(const NearestTriangle& search, const Vector3& gap) const {
+    return surface.closed() && gap.dot(surface.normal(search.triangle(), search.nearest())) < 0.0;
+  }
+  void leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const;
+
   MeshSurface surface;
   FclTree tree;
 };
+
+/// Where the solid is hollow, an end may have its shortest way out to an edge or a vertex that points
+/// inwards.
+void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const {
+  const Vector3 end = segment.at(s);
+  const Segment only_end(Capsule{end, end, 0.0});
+  const NearestTriangle search(tree, surface, only_end, kUnlimited);
+  const Vector3 gap = end - search.nearest().point;
+  const double depth = search.nearest().distance;
+  if (depth < kOnSurface || !inside(search, gap)) return;
+  const Vector3 normal = -gap / depth;
+  const bool is_last_out = normal.dot(segment.at(1.0 - s) - end) >= 0.0;
+  if (is_last_out && -depth > best.distance + kParallel) best = {-depth, normal, search.nearest().point, s};
+}
 
 MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
 MeshCollider::~MeshCollider() = default;
@@ -158,16 +179,20 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const MeshSurface& surface = impl_->surface;
   const Segment segment(capsule);
   const bool may_be_deep = surface.closed() && surface.in_bounds(segment.middle());
-  const double reach = may_be_deep ? 1e300 : capsule.radius + margin;
+  const double reach = may_be_deep ? kUnlimited : capsule.radius + margin;
   const NearestTriangle search(impl_->tree, surface, segment, reach);
   if (!search.found()) return std::nullopt;
 
   const TriangleNearest& nearest = search.nearest();
   const double s = nearest.stretch.middle();
   const Vector3 gap = segment.at(s) - nearest.point;
-  const bool inside = surface.closed() && gap.dot(surface.normal(search.triangle(), nearest)) < 0.0;
   ClosestFeatures features{nearest.distance, gap / nearest.distance, nearest.point, s};
-  if (nearest.distance < kOnSurface || inside) features = leave_mesh(segment, surface, search.triangle());
+  if (nearest.distance < kOnSurface || impl_->inside(search, gap)) {
+    features = leave_mesh(segment, surface, search.triangle());
+    if (!surface.convex() && surface.closed()) {
+      for (const double end : {0.0, 1.0}) impl_->leave_by_end(segment, end, features);
+    }
+  }
   features.distance -= capsule.radius;
   if (features.distance > margin) return std::nullopt;
   return features;

@@ -75,12 +75,15 @@ void place(const TouchingPair& pair, const Plane& plane, double s, bool remember
   } else {
     contact.god_object = pair.state.pose.to_local(contact.hand_point + contact.depth * plane.normal);
     contact.friction = Friction::sticking;
+    contact.twist = 0.0;
   }
   contact.entry_normal = pair.state.pose.orientation.conjugate() * plane.normal;
   contact.axis_parameter = s;
   contact.point = pair.state.pose * contact.god_object;
   contact.normal = plane.normal;
   contact.hand_velocity = pair.hand.surface_velocity(pair.capsule, s, offset);
+  contact.hand_spin = plane.normal.dot(pair.hand.angular_velocity(pair.capsule));
+  contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
   const Vector3 point_velocity =
       object_velocity(twist_of(pair.body, pair.state), pair.state.pose.position, contact.point);
   contact.approach = classify(contact.normal.dot(contact.hand_velocity - point_velocity));

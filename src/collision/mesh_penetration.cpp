@@ -12,12 +12,15 @@ struct WayOut {
   bool through = false;       // the face itself, not only its plane
 };
 
+double separation_from(const Segment& segment, const Triangle& face) {
+  return face.normal.dot(segment.start - face.corners[0]) + std::min(face.normal.dot(segment.along), 0.0);
+}
+
 WayOut way_out(const Segment& segment, const Triangle& face) {
   WayOut way;
+  way.separation = separation_from(segment, face);
   way.normal = face.normal;
-  const double at_start = face.normal.dot(segment.start - face.corners[0]);
   const double rise = face.normal.dot(segment.along);
-  way.separation = at_start + std::min(rise, 0.0);
   way.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
   const Stretch over = face.over(segment);
   const Stretch through{std::max(over.s0, way.stretch.s0), std::min(over.s1, way.stretch.s1)};
@@ -37,8 +40,8 @@ void keep_better(const WayOut& way, WayOut& best) {
   }
 }
 
-/// Across the segment and the edge, if that is a direction between those of the edge's faces. Seen along it, the
-/// two cross where the segment comes out.
+/// Across the segment and the edge, if that is a direction between those of the edge's faces. Seen along it,
+/// the two cross where the segment comes out.
 std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshSurface::ConvexEdge& edge,
                                              bool convex) {
   const double rise = edge.normal.dot(segment.along), other_rise = edge.other_normal.dot(segment.along);
@@ -47,7 +50,8 @@ std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshS
       (std::abs(other_rise) * edge.normal + std::abs(rise) * edge.other_normal).normalized();
   const double separation = normal.dot(segment.middle() - edge.start);
   const Vector3 offset = edge.start + separation * normal - segment.start;
-  const double a = segment.along.squaredNorm(), b = segment.along.dot(edge.along), c = edge.along.squaredNorm();
+  const double a = segment.along.squaredNorm(), b = segment.along.dot(edge.along),
+               c = edge.along.squaredNorm();
   const double d = segment.along.dot(offset), e = edge.along.dot(offset);
   const double determinant = a * c - b * b;
   if (determinant <= 0.0) return std::nullopt;
@@ -62,6 +66,7 @@ std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshS
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, int fallback) {
   WayOut best;
   for (const Triangle& face : surface.triangles()) {
+    if (separation_from(segment, face) < best.separation - kOnSurface) continue;
     const WayOut way = way_out(segment, face);
     const bool allowed = surface.convex() || (way.through && way.separation < kOnSurface);
     if (allowed) keep_better(way, best);

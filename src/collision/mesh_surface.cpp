@@ -23,8 +23,8 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < 3; ++i) {
       triangle.corners[i] = mesh.vertices[static_cast<std::size_t>(indices[i])];
     }
-    const Vector3 area = (triangle.corners[1] - triangle.corners[0])
-                             .cross(Vector3(triangle.corners[2] - triangle.corners[0]));
+    const Vector3 area =
+        (triangle.corners[1] - triangle.corners[0]).cross(Vector3(triangle.corners[2] - triangle.corners[0]));
     if (area.norm() == 0.0) continue;
     triangle.normal = area.normalized();
     triangles_.push_back(triangle);

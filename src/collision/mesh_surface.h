@@ -8,8 +8,8 @@
 namespace mrhi {
 
 /// The surface of a triangle mesh, with the normals of its edges and vertices (Baerentzen & Aanaes 2005: the
-/// angle-weighted normal at the nearest point tells inside from outside). Triangles without area are left out;
-/// neighbours are those that share indices of vertices.
+/// angle-weighted normal at the nearest point tells inside from outside). Triangles without area are left
+/// out; neighbours are those that share indices of vertices.
 class MeshSurface {
  public:
   /// Where faces meet and the solid bulges.
@@ -43,8 +43,9 @@ class MeshSurface {
 };
 
 /// The shortest translation that takes a segment, which cuts the surface or lies inside, out by a face or a
-/// convex edge; distance <= 0. Exact for a convex mesh. Elsewhere the way out has to lead through the face or edge
-/// itself; what the segment meets farther on is not looked at. Where there is none: out by `fallback`'s plane.
+/// convex edge; distance <= 0. Exact for a convex mesh. Elsewhere the way out has to lead through the face or
+/// edge itself; what the segment meets farther on is not looked at. Where there is none: out by `fallback`'s
+/// plane.
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, int fallback);
 
 }  // namespace mrhi

@@ -12,11 +12,22 @@ Vector3 MovingHand::surface_velocity(int capsule, double s, const Vector3& offse
   return velocity;
 }
 
+Vector3 MovingHand::angular_velocity(int capsule) const {
+  const auto c = static_cast<std::size_t>(capsule);
+  const Vector3 axis = capsules[c].end - capsules[c].start;
+  const double length_squared = axis.squaredNorm();
+  if (length_squared <= 0.0) return palm_spin;
+  const Vector3 across = axis.cross(end_velocity[c] - start_velocity[c]) / length_squared;
+  return across + (axis.dot(palm_spin) / length_squared) * axis;
+}
+
 MovingHand moving_hand(const HandTrack& track, int slot, double fraction, double seconds) {
   MovingHand hand;
   hand.slot = slot;
   hand.emerged = track.emerged && fraction == 0.0;
   const double rate = seconds > 0.0 ? 1.0 / seconds : 0.0;
+  const Eigen::AngleAxisd turn(track.current.palm.orientation * track.previous.palm.orientation.conjugate());
+  hand.palm_spin = (rate * turn.angle()) * turn.axis();
   for (std::size_t c = 0; c < kCapsules; ++c) {
     const Capsule &from = track.previous.capsules[c], &to = track.current.capsules[c];
     Capsule& capsule = hand.capsules[c];

@@ -62,8 +62,8 @@ struct Stretch {
   }
 };
 
-/// Closes in on the minimum of a convex function of s in 0..1 by its slope at chosen places. Where the slope is
-/// zero over a stretch, its middle is the minimum.
+/// Closes in on the minimum of a convex function of s in 0..1 by its slope at chosen places. Where the slope
+/// is zero over a stretch, its middle is the minimum.
 class ConvexMinimum {
  public:
   ConvexMinimum(double slope_at_0, double slope_at_1) : slope_lo_(slope_at_0), slope_hi_(slope_at_1) {

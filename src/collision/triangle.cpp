@@ -12,8 +12,8 @@ struct EdgeNearest {
   double t;  // along the edge, facing the stretch's middle
 };
 
-/// Nearest stretch of the segment to the edge from `corner` along `edge` (Ericson, Real-Time Collision Detection,
-/// 5.1.9).
+/// Nearest stretch of the segment to the edge from `corner` along `edge` (Ericson, Real-Time Collision
+/// Detection, 5.1.9).
 EdgeNearest nearest_on_edge(const Segment& segment, const Vector3& corner, const Vector3& edge) {
   const Vector3 offset = segment.start - corner, &along = segment.along;
   const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);

@@ -6,8 +6,8 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "interaction_node");
+  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
   try {
-    const ros::NodeHandle private_node("~");
     const mrhi::InteractionServer server(ros::NodeHandle(), private_node,
                                          mrhi::read_server_parameters(private_node));
     ros::spin();

@@ -70,8 +70,10 @@ int main(int argc, char** argv) {
     return 0;
   }
   ros::init(argc, argv, "synthetic_hand_node");
+  const ros::NodeHandle node,
+      parameters("~");  // the last handle to go would close the log before it is written to
   try {
-    mrhi::SyntheticHandPublisher(ros::NodeHandle(), ros::NodeHandle("~")).run();
+    mrhi::SyntheticHandPublisher(node, parameters).run();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());
     return 1;

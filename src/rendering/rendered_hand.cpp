@@ -51,7 +51,33 @@ class Renderer {
     return deepest;
   }
 
+  /// Neighbouring bones on either side of a thin body pull their joint to and fro: those that are still
+  /// inside leave on their own.
+  void clear_alone(Hand& hand) const {
+    for (int index = 0; index < kCapsules; ++index) {
+      Capsule& capsule = hand.capsules[static_cast<std::size_t>(index)];
+      if (capsule.radius <= 0.0) continue;
+      for (int pass = 0; pass < kClearingPasses; ++pass) {
+        const Push push = deepest(capsule, index);
+        if (push.depth <= kClear) break;
+        capsule.start += push.depth * push.normal;
+        capsule.end += push.depth * push.normal;
+      }
+    }
+  }
+
  private:
+  Push deepest(const Capsule& capsule, int index) const {
+    Push deepest;
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      for (int shape = 0; shape < static_cast<int>(scene_.bodies[b].shapes.size()); ++shape) {
+        const Push push = needed(capsule, index, static_cast<int>(b), shape, false);
+        if (push.depth > deepest.depth) deepest = push;
+      }
+    }
+    return deepest;
+  }
+
   Push needed(const Capsule& capsule, int index, int body, int shape, bool by_entry_face) const {
     const auto b = static_cast<std::size_t>(body);
     const double reach = scene_.bodies[b].bounding_radius + capsule.radius;
@@ -97,6 +123,7 @@ RenderedHand render_hand(const Hand& tracked, int slot, const ContactFinder& fin
   for (int pass = 0; pass < kClearingPasses && renderer.push_out(tracked, false, net) > kClear; ++pass) {
   }
   rendered.hand = net.apply(tracked);
+  renderer.clear_alone(rendered.hand);
   return rendered;
 }
 

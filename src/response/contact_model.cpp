@@ -1,5 +1,6 @@
 #include "mr_hand_interaction/response/contact_model.h"
 
+#include "implicit_model.h"
 #include "impulse_model.h"
 #include "penetration_model.h"
 #include "seed_model.h"
@@ -12,6 +13,8 @@ std::unique_ptr<const ContactModel> make_contact_model(const Configuration& conf
       return std::make_unique<PenetrationModel>();
     case ContactModelKind::impulse:
       return std::make_unique<ImpulseModel>();
+    case ContactModelKind::implicit:
+      return std::make_unique<ImplicitModel>();
     case ContactModelKind::seed:
       break;
   }

@@ -4,7 +4,8 @@
 
 namespace mrhi {
 
-/// Impulses only: every step in which a phalanx meets an object and still approaches it is an impact; nothing holds.
+/// Impulses only: every step in which a phalanx meets an object and still approaches it is an impact; nothing
+/// holds.
 class ImpulseModel : public ContactModel {
  public:
   void respond(ContactStep& step) const override;

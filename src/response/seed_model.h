@@ -4,8 +4,8 @@
 
 namespace mrhi {
 
-/// The paper's two phases, equation by equation: an impulse when a phalanx strikes (3.4.1), then penetration forces
-/// with Coulomb friction while it touches (3.4.2). See docs/equations.md for each difference.
+/// The paper's two phases, equation by equation: an impulse when a phalanx strikes (3.4.1), then penetration
+/// forces with Coulomb friction while it touches (3.4.2). See docs/equations.md for each difference.
 class SeedModel : public ContactModel {
  public:
   void respond(ContactStep& step) const override;

@@ -10,7 +10,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kPerNewton = 0.06;   // length of an arrow [m/N]
+constexpr double kPerNewton = 0.1;    // length of an arrow [m/N]
 constexpr double kLongest = 0.12;     // [m]
 constexpr double kShortest = 0.003;   // [m]
 constexpr double kPointSize = 0.006;  // [m]
@@ -24,7 +24,7 @@ void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {
   const double newtons = contact.force.norm();
   const double length = std::min(kPerNewton * newtons, kLongest);
   if (length < kShortest) return;
-  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.003, 0.008, 0.4 * length}, phase_color(contact));
+  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.004, 0.010, 0.4 * length}, phase_color(contact));
   arrow.points = {to_message(Vector3(contact.point - length / newtons * contact.force)),
                   to_message(contact.point)};
 }

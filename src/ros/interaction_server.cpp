@@ -101,7 +101,7 @@ void InteractionServer::idle() {
   if (!clock_.paused() && simulation_.state().started &&
       simulation_.advance_without_hands(clock_.to_simulation(stamp) - kSlack)) {
     publish(simulation_.result());
-  } else if (ros::WallTime::now() - published_ > kIdlePeriod) {
+  } else if (ros::WallTime::now() - published_ > kIdlePeriod * 0.5) {
     publish_scene(simulation_.result(), to_ros_time(stamp));
   }
 }

@@ -17,10 +17,10 @@ using visualization_msgs::MarkerArray;
 constexpr double kPassing = 0.5;  // hands and contacts go if the node does [s]
 constexpr double kForEver = 0.0;
 constexpr int kIdsPerHand = 100;
-const Vector3 kTextPlace{0.0, 0.12, 0.43};
+const Vector3 kTextPlace{0.0, 0.0, 0.1};
 
 HandStyle rendered_style() {
-  return {color(0.91, 0.76, 0.65), color(0.902, 0.450, 0.05), 1.0};
+  return {color(0.91, 0.76, 0.65), color(0.84, 0.28, 0.06), 1.0};
 }
 /// Thinner, so that it is hidden in the rendered hand where the two agree.
 HandStyle ghost_style() {
@@ -35,8 +35,8 @@ std::string heads_up(const Scene& scene, const Configuration& configuration, con
   const double g = configuration.gravity.value_or(scene.gravity).norm();
   char gravity[32];
   std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
-  return "holding: " + (held.empty() ? "nothing" : held) + "   |   " +
-         to_string(configuration.contact_model) + "   |   gravity: " + (g > 0.0 ? gravity : "none");
+  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " + to_string(configuration.contact_model) +
+         "  |  gravity: " + (g > 0.0 ? gravity : "none");
 }
 
 }  // namespace

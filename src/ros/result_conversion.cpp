@@ -17,6 +17,8 @@ geometry_msgs::Vector3 vector_message(const Vector3& v) {
 
 const char* to_string(ContactModelKind kind) {
   switch (kind) {
+    case ContactModelKind::implicit:
+      return "implicit";
     case ContactModelKind::seed:
       return "seed";
     case ContactModelKind::penetration:

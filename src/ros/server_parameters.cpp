@@ -19,12 +19,22 @@ std::string text_parameter(const std::string& name, const XmlRpc::XmlRpcValue& v
   return static_cast<std::string>(copy);
 }
 
+void require_known(const std::string& name) {
+  std::string allowed = "scene, fixed_frame";
+  for (const std::string& known : parameter_names()) {
+    if (known == name) return;
+    allowed += ", " + known;
+  }
+  throw ParameterError("unknown parameter '" + name + "'; allowed: " + allowed);
+}
+
 void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParameters& parameters) {
   if (name == "scene") {
     parameters.scene = text_parameter(name, value);
   } else if (name == "fixed_frame") {
     parameters.fixed_frame = text_parameter(name, value);
   } else if (kOthers.count(name) == 0) {
+    require_known(name);
     set_parameter(parameters.configuration, name, yaml_text(value));
   }
 }

@@ -54,7 +54,8 @@ double golden_section(const Function& f) {
 }
 
 /// The least translation that takes a capsule's axis out of a convex shape, by branch and bound over all
-/// directions: every triangle of the sphere of directions is split until it is proven not to hold a better one.
+/// directions: every triangle of the sphere of directions is split until it is proven not to hold a better
+/// one.
 template <typename ShapeType>
 class LeastTranslation {
  public:
@@ -75,7 +76,7 @@ class LeastTranslation {
   const Vector3& normal() const { return normal_; }
 
   static constexpr double kExact = 1e-11;           // of the length found [m]
-  static constexpr double kWorse = 1e-12;          // [m]
+  static constexpr double kWorse = 1e-12;           // [m]
   static constexpr double kSameDirection = 1.5e-4;  // [rad], under 0.01 degrees
 
  private:
@@ -101,8 +102,8 @@ class LeastTranslation {
   }
 
   /// No direction in the triangle needs less: a linear function is least at a corner, for any mixture of the
-  /// corners' farthest points. Tried: each point, and the mixtures of two and of three that are as long in two
-  /// and in three directions.
+  /// corners' farthest points. Tried: each point, and the mixtures of two and of three that are as long in
+  /// two and in three directions.
   static double bound(const std::array<Corner, 3>& corners) {
     Matrix3 lengths;  // (point, direction)
     for (int i = 0; i < 3; ++i) {
@@ -113,8 +114,7 @@ class LeastTranslation {
       if (weights.minCoeff() < 0 || weights.sum() <= 0) return;
       best = std::max(best, (weights.transpose() * lengths).minCoeff() / weights.sum());
     };
-    const Vector3 all =
-        (lengths.col(0) - lengths.col(1)).cross(Vector3(lengths.col(1) - lengths.col(2)));
+    const Vector3 all = (lengths.col(0) - lengths.col(1)).cross(Vector3(lengths.col(1) - lengths.col(2)));
     mix(all.sum() < 0 ? Vector3(-all) : all);
     for (int j = 0; j < 3; ++j) {
       const Vector3 difference = lengths.col(j) - lengths.col((j + 1) % 3);
@@ -135,9 +135,8 @@ class LeastTranslation {
 
   static double angle(const Vector3& a, const Vector3& b) { return (a - b).norm(); }
   bool near_best(const Triangle& triangle) const {
-    return std::all_of(triangle.corners.begin(), triangle.corners.end(), [&](const Corner& c) {
-      return angle(c.direction, normal_) < kSameDirection;
-    });
+    return std::all_of(triangle.corners.begin(), triangle.corners.end(),
+                       [&](const Corner& c) { return angle(c.direction, normal_) < kSameDirection; });
   }
 
   void search() {

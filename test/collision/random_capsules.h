@@ -33,8 +33,8 @@ inline Capsule capsule_about(const Vector3& middle, const Vector3& along, double
   return {middle - 0.5 * along, middle + 0.5 * along, radius};
 }
 
-/// A capsule that is `gap` away from a convex surface whose outward normal at `point` may be `normal`; it faces
-/// the point with an end or with its side.
+/// A capsule that is `gap` away from a convex surface whose outward normal at `point` may be `normal`; it
+/// faces the point with an end or with its side.
 inline Capsule capsule_facing(Random& random, const Vector3& point, const Vector3& normal, double gap) {
   const double radius = random.between(0.005, 0.012), length = random.between(0.005, 0.06);
   const Vector3 axis_point = point + (radius + gap) * normal;

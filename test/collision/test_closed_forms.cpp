@@ -8,8 +8,8 @@ namespace mrhi {
 namespace {
 
 constexpr int kPoses = 100000;
-constexpr double kLength = 1e-9;   // of distances, against searches that end at 1e-12 and below [m]
-constexpr double kPoint = 1e-6;    // asked for [m]
+constexpr double kLength = 1e-9;     // of distances, against searches that end at 1e-12 and below [m]
+constexpr double kPoint = 1e-6;      // asked for [m]
 constexpr double kAngle = 1.745e-4;  // asked for: 0.01 degrees [rad]
 
 /// What the comparisons could decide; a test asks for enough of each.
@@ -80,8 +80,8 @@ void compare(const Capsule& capsule, const ShapeType& shape, double shape_radius
   EXPECT_NEAR(features.distance, separation - shape_radius - capsule.radius, kLength);
 }
 
-/// Capsules in general: anywhere near, deep, along an axis of the shape, with an end on its surface or the axis
-/// through its centre, and of no length.
+/// Capsules in general: anywhere near, deep, along an axis of the shape, with an end on its surface or the
+/// axis through its centre, and of no length.
 Capsule any_capsule(Random& random, const Vector3& half, int kind) {
   const double radius = random.between(0.005, 0.012);
   Vector3 along = random.between(0.005, 0.06) * random.direction();
@@ -150,8 +150,8 @@ TEST(ClosedForms, box_agrees_with_search) {
   for (int i = 0; i < kPoses && !HasFailure(); ++i) {
     const Vector3 half =
         Vector3(random.between(0.003, 0.05), random.between(0.01, 0.05), random.between(0.01, 0.1));
-    const Capsule capsule = i % 2 == 0 ? any_capsule(random, half, (i / 2) % kKinds)
-                                       : facing_box(random, half, 1 + (i / 2) % 3);
+    const Capsule capsule =
+        i % 2 == 0 ? any_capsule(random, half, (i / 2) % kKinds) : facing_box(random, half, 1 + (i / 2) % 3);
     SCOPED_TRACE(i);
     compare(capsule, BoxShape{half}, 0.0, capsule_box(capsule, Box{half}), tally);
   }

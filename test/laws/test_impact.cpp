@@ -72,7 +72,8 @@ struct Blow {
     contacts[0].hand_velocity = hand_velocity;
   }
   void strike() {
-    ContactStep step{scene, scene.gravity, 0.001, contacts, bodies};
+    std::vector<char> solved(1, 0);
+    ContactStep step{scene, scene.gravity, 0.001, contacts, bodies, solved};
     impulse_phase(step);
   }
   double normal_velocity() const {

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """synthetic_hand_node publishes what a Leap driver would, on an exact schedule."""
 import subprocess
 import threading
@@ -43,7 +43,8 @@ class SyntheticHandTest(unittest.TestCase):
         # One run of the tap and its pause take under six seconds.
         cls.looped = cls.listener.wait_for(lambda it: cls.resets > 0 and len(it.frames) > 8 * RATE, 30.0)
         header = cls.listener.headers[0]
-        cls.human = genpy.dynamic.generate_dynamic(header["type"], header["message_definition"])[header["type"]]
+        classes = genpy.dynamic.generate_dynamic(header["type"], header["message_definition"])
+        cls.human = classes[header["type"]]
         with cls.listener.changed:
             cls.frames = [cls.human().deserialize(buffer) for buffer in cls.listener.frames]
 
@@ -85,17 +86,18 @@ class SyntheticHandTest(unittest.TestCase):
 
     def refusal(self, *arguments):
         command = ["rosrun", "mr_hand_interaction", "synthetic_hand_node", "__name:=refused", *arguments]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
-                              timeout=30)
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True, timeout=30)
         self.assertEqual(done.returncode, 1)
         return done.stdout
 
     def test_an_unknown_motion_or_parameter_stops_it_with_a_line_that_says_what_is_allowed(self):
         self.assertIn("use one of grasp_cube", self.refusal("_motion:=wave"))
-        self.assertIn("parameter /refused/speed is not known: use loop, motion", self.clear_after("_speed:=3"))
-        self.assertIn("must be a number", self.clear_after("_rate:=fast"))
+        self.assertIn("parameter /refused/speed is not known: use loop, motion",
+                      self.refusal_alone("_speed:=3"))
+        self.assertIn("must be a number", self.refusal_alone("_rate:=fast"))
 
-    def clear_after(self, argument):
+    def refusal_alone(self, argument):
         rospy.delete_param("/refused")
         return self.refusal(argument)
 

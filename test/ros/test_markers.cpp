@@ -140,8 +140,9 @@ TEST(Markers, arrows_end_at_the_contact_and_push_as_the_force_does) {
   contact.force = {0, 0, -1};
   shown.result.contacts = {contact};
   shown.update();
-  const auto arrow = std::find_if(shown.array.markers.begin(), shown.array.markers.end(),
-                                  [](const Marker& marker) { return marker.action == Marker::ADD && marker.type == Marker::ARROW; });
+  const auto arrow = std::find_if(
+      shown.array.markers.begin(), shown.array.markers.end(),
+      [](const Marker& marker) { return marker.action == Marker::ADD && marker.type == Marker::ARROW; });
   ASSERT_NE(arrow, shown.array.markers.end());
   ASSERT_EQ(arrow->points.size(), 2u);
   EXPECT_EQ(arrow->points[1].z, 0.3);

@@ -49,7 +49,7 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.material.restitution, c.material.restitution);
   EXPECT_EQ(d.material.static_friction, c.material.static_friction);
   EXPECT_EQ(d.material.dynamic_friction, c.material.dynamic_friction);
-  EXPECT_EQ(d.material.stiffness, c.material.stiffness);
+  EXPECT_EQ(d.stiffness, c.stiffness);
   EXPECT_EQ(d.hand_radius_scale, c.hand_radius_scale);
   EXPECT_EQ(d.tracking.hold_time, c.tracking.hold_time);
   EXPECT_EQ(d.tracking.max_speed, c.tracking.max_speed);
@@ -112,7 +112,7 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(1, set("material/restitution", "1").material.restitution);
   EXPECT_EQ(0.7, set("material/static_friction", "0.7").material.static_friction);
   EXPECT_EQ(0, set("material/dynamic_friction", "0").material.dynamic_friction);
-  EXPECT_EQ(1e4, set("material/stiffness", "10000").material.stiffness);
+  EXPECT_EQ(1e4, set("material/stiffness", "10000").stiffness);
   EXPECT_EQ(0.5, set("hand/radius_scale", "0.5").hand_radius_scale);
   EXPECT_EQ(0, set("tracking/hold_time", "0").tracking.hold_time);
   EXPECT_EQ(5, set("tracking/max_speed", "5").tracking.max_speed);
@@ -127,8 +127,8 @@ TEST(Parameters, RefusesAnUnknownNameAndListsTheKnown) {
 
 TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
   const std::vector<std::array<std::string, 3>> wrong{
-      {{"contact_model", "springs", "seed, penetration, impulse"}},
-      {{"contact_model", "[seed]", "seed, penetration, impulse"}},
+      {{"contact_model", "springs", "implicit, seed, penetration, impulse"}},
+      {{"contact_model", "[seed]", "implicit, seed, penetration, impulse"}},
       {{"step", "0", "above 0, at most 0.05 [s]"}},
       {{"step", "0.0501", "at most 0.05"}},
       {{"step", "-1", "above 0"}},
@@ -179,7 +179,7 @@ TEST(Parameters, FilesMayNestOrUseSlashes) {
   Configuration configuration;
   load_parameters(configuration, folder.write("p.yaml", "filter: {window: 5}\nmaterial/stiffness: 250\n"));
   EXPECT_EQ(5, configuration.filter.window);
-  EXPECT_EQ(250, configuration.material.stiffness);
+  EXPECT_EQ(250, configuration.stiffness);
   load_parameters(configuration, folder.write("empty.yaml", "# nothing\n"));
   EXPECT_EQ(5, configuration.filter.window);
 }

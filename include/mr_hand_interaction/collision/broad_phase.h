@@ -14,7 +14,8 @@ class BroadPhase {
   ~BroadPhase();
   BroadPhase(BroadPhase&&) noexcept;
 
-  /// Places body `index` as a sphere about `centre` [m].
+  /// Places body `index` as a sphere about `centre` [m]. A body never placed is never found. Allocates the
+  /// first time only.
   void update(int index, const Vector3& centre, double radius);
   /// Indices, ascending, of bodies whose box touches min..max. Valid until the next call.
   const std::vector<int>& query(const Vector3& min, const Vector3& max);

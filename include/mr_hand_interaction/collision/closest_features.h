@@ -16,7 +16,8 @@ struct ClosestFeatures {
 };
 
 /// Closed forms; shape frame at its centre. Exact also when the capsule's axis is inside the shape.
-/// Where a segment lies along a face, the middle of the stretch that touches is given.
+/// Where a segment lies along a face (to 1e-12 m), the middle of the stretch that touches is given. Where
+/// several directions are equally short, always the same one.
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere);
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box);
 ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinder);

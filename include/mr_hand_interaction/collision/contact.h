@@ -38,6 +38,8 @@ struct Contact {
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
   double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
   Friction friction = Friction::sticking;
+  double twist =
+      0.0;  ///< turn of the phalanx about n against the object since the touch, as far as it is held [rad]
   bool struck = false;   ///< the impulse of this approach has been given
   bool ignored = false;  ///< overlapped when the hand appeared: touches nothing until it has separated
 
@@ -46,6 +48,8 @@ struct Contact {
   Vector3 normal = Vector3::UnitZ();        ///< n
   Vector3 hand_point = Vector3::Zero();     ///< p: the phalanx's surface point that entered at c
   Vector3 hand_velocity = Vector3::Zero();  ///< of p [m/s]
+  double hand_spin = 0.0;                   ///< n.w of the phalanx [rad/s]
+  double patch = 0.0;                       ///< radius of the touching patch [m]
   double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
   Approach approach = Approach::separating;

@@ -14,10 +14,14 @@ struct MovingHand {
   std::array<Capsule, kCapsules> capsules;
   std::array<Vector3, kCapsules> start_velocity;  ///< [m/s]
   std::array<Vector3, kCapsules> end_velocity;    ///< [m/s]
+  Vector3 palm_spin = Vector3::Zero();            ///< angular velocity of the palm [rad/s]
 
   /// Velocity of the surface point axis_point(s) + offset of a capsule (Eq. 7 for a segment; spin about the
   /// capsule's own axis is not observed) [m/s].
   Vector3 surface_velocity(int capsule, double s, const Vector3& offset) const;
+
+  /// Angular velocity of a phalanx: across its axis from its ends, about its axis from the palm [rad/s].
+  Vector3 angular_velocity(int capsule) const;
 };
 
 /// The hand of `track` at `fraction` of the frame that lasts `seconds`.

@@ -8,8 +8,8 @@
 
 namespace mrhi {
 
-/// Where this package's config, rviz, ... are: beside the executable's lib folder (installed), where it was built, or
-/// on the ROS package path. Needs no ROS master.
+/// Where this package's config, rviz, ... are: beside the executable's lib folder (installed), where it was
+/// built, or on the ROS package path. Needs no ROS master.
 std::vector<std::string> share_folders();
 
 /// Folders in which a scene's name is looked up.

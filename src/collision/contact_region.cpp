@@ -1,0 +1,91 @@
+#include "contact_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrhi {
+namespace {
+
+/// Points less deep than the deepest by this are as deep [m].
+constexpr double kAsDeep = 1e-6;
+/// Areas are as large if they differ by less than these.
+constexpr double kSameArea = 1e-3, kNoArea = 1e-12;
+
+double cross(const RegionPoint& o, const RegionPoint& a, const RegionPoint& b) {
+  return (a.u - o.u) * (b.v - o.v) - (a.v - o.v) * (b.u - o.u);
+}
+
+}  // namespace
+
+double ContactRegion::deepest() const {
+  double depth = -1e300;
+  for (int i = 0; i < count; ++i) depth = std::max(depth, (*this)[i].depth);
+  return depth;
+}
+
+void ContactRegion::remove_gaps(double margin) {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    if ((*this)[i].depth >= -margin) (*this)[kept++] = (*this)[i];
+  }
+  count = kept;
+}
+
+void ContactRegion::sort_around() {
+  double u = 0.0, v = 0.0;
+  for (int i = 0; i < count; ++i) u += (*this)[i].u / count, v += (*this)[i].v / count;
+  std::array<double, 16> angles{};
+  for (int i = 0; i < count; ++i) {
+    const RegionPoint point = (*this)[i];
+    const double angle = std::atan2(point.v - v, point.u - u);
+    int place = i;
+    for (; place > 0 && angles[static_cast<std::size_t>(place - 1)] > angle; --place) {
+      (*this)[place] = (*this)[place - 1];
+      angles[static_cast<std::size_t>(place)] = angles[static_cast<std::size_t>(place - 1)];
+    }
+    (*this)[place] = point;
+    angles[static_cast<std::size_t>(place)] = angle;
+  }
+}
+
+void ContactRegion::erase(int i) {
+  std::copy(points.begin() + i + 1, points.begin() + count, points.begin() + i);
+  --count;
+}
+
+double ContactRegion::triangle(int i) const {
+  return std::abs(cross((*this)[(i + count - 1) % count], (*this)[i], (*this)[(i + 1) % count]));
+}
+
+void ContactRegion::reduce() {
+  if (count <= 4) return;
+  const auto by_feature = [](const RegionPoint& a, const RegionPoint& b) { return a.feature < b.feature; };
+  std::rotate(points.begin(), std::min_element(points.begin(), points.begin() + count, by_feature),
+              points.begin() + count);
+  const double deep = deepest() - kAsDeep;
+  const std::uint8_t kept = std::find_if(points.begin(), points.begin() + count,
+                                         [&](const RegionPoint& p) { return p.depth >= deep; })->feature;
+  while (count > 4) {
+    int least = -1;
+    double least_area = 0.0;
+    for (int i = 0; i < count; ++i) {
+      if ((*this)[i].feature == kept) continue;
+      const double area = triangle(i);
+      if (least >= 0 && area > (1.0 - kSameArea) * least_area - kNoArea) continue;
+      least = i, least_area = area;
+    }
+    erase(least);
+  }
+}
+
+bool first_is_reference(double area_a, double area_b, const Vector3& normal) {
+  if (std::abs(area_a - area_b) > kSameSize * (area_a + area_b)) return area_a > area_b;
+  return 0.137 * normal.x() + 0.241 * normal.y() + 0.961 * normal.z() < 0.0;
+}
+
+double border_tolerance(double size, double slope) {
+  constexpr double kMost = 0.00015, kDepth = 1e-6;
+  return std::min({kMost, 0.005 * size, kDepth / std::max(slope, 1e-12)});
+}
+
+}  // namespace mrhi

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "mr_hand_interaction/collision/body_manifold.h"
+
+namespace mrhi {
+
+/// Normals nearer than this (2.5 degrees) to a face's count as that face's.
+constexpr double kSameFace = 0.99905;
+/// Faces of sizes nearer than this are as large.
+constexpr double kSameSize = 1e-6;
+
+/// A corner of the region in which two faces overlap, seen along the normal: across the face, and how deep.
+struct RegionPoint {
+  double u, v, depth;
+  std::uint8_t feature;
+};
+
+/// The corners of such a region, a convex polygon, in their order.
+struct ContactRegion {
+  std::array<RegionPoint, 16> points;
+  int count = 0;
+
+  void add(const RegionPoint& point) { points[static_cast<std::size_t>(count++)] = point; }
+  RegionPoint& operator[](int i) { return points[static_cast<std::size_t>(i)]; }
+  const RegionPoint& operator[](int i) const { return points[static_cast<std::size_t>(i)]; }
+  double deepest() const;  ///< -1e300 if empty
+
+  void remove_gaps(double margin);
+  /// Puts points in the order of their angle about the middle.
+  void sort_around();
+  /// Leaves at most four points, the deepest among them, that keep the region large. Points within rounding of
+  /// each other's claims always lose in the same order.
+  void reduce();
+
+ private:
+  void erase(int i);
+  double triangle(int i) const;
+};
+
+/// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it is
+/// the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
+bool first_is_reference(double area_a, double area_b, const Vector3& normal);
+
+/// How far beyond a face's border a corner may lie and still be the one that touches: neither rounding nor
+/// creep must change what two aligned boxes are said to touch with. `slope` is the tangent of the angle between
+/// the faces; depths change by less than 1 um [m].
+double border_tolerance(double size, double slope);
+
+inline void add_point(Manifold& manifold, const Vector3& point, double depth, int feature) {
+  manifold.points[static_cast<std::size_t>(manifold.count++)] = {point, depth,
+                                                                  static_cast<std::uint8_t>(feature)};
+}
+
+}  // namespace mrhi

@@ -1,0 +1,136 @@
+#pragma once
+
+#include "oriented_shapes.h"
+#include "segment.h"
+
+namespace mrhi {
+
+/// The direction, out of b towards a, along which two convex shapes are farthest apart or overlap least: the
+/// greatest s(n) = n.(centre a - centre b) - reach a(n) - reach b(n). Every direction tried bounds it from
+/// below, so that a translation by -s always separates; it is exact if the best direction was tried. Shapes are
+/// symmetric about their centres: n and -n are one try.
+template <typename ShapeA, typename ShapeB>
+class ConvexAxis {
+ public:
+  ConvexAxis(const ShapeA& a, const ShapeB& b) : a_(a), b_(b), offset_(a.centre - b.centre) {}
+
+  double separation() const { return separation_; }
+  const Vector3& normal() const { return normal_; }
+  const Vector3& offset() const { return offset_; }
+
+  /// Any length; zero is no direction.
+  void try_direction(Vector3 n) {
+    const double length = n.norm();
+    if (length < kParallel) return;
+    n *= (n.dot(offset_) < 0.0 ? -1.0 : 1.0) / length;
+    const double value = at(n);
+    if (value > separation_ + kBetter) separation_ = value, normal_ = n;
+  }
+
+  /// Tries the local maxima among the directions across a unit axis: an edge or a side there, a rim on the other
+  /// shape. Seen along the axis the shapes are convex figures; the slope of s falls wherever it jumps.
+  void try_around(const Vector3& axis) {
+    Vector3 ahead = offset_ - axis.dot(offset_) * axis;
+    ahead = ahead.norm() > kParallel ? Vector3(ahead.normalized()) : any_normal(axis);
+    Ray from = ray(-axis.cross(ahead), ahead);
+    for (int i = 0; i < kSteps; ++i) {
+      const Ray to = turned(from, kCosine, kSine);
+      if (from.slope > 0.0 && to.slope <= 0.0 && bound(from, to, kStep) > separation_) refine(from, to);
+      from = to;
+    }
+  }
+
+  /// Newton's ascent over all directions, for rim on rim: there s is smooth.
+  void climb(Vector3 n) {
+    if (n.norm() < kParallel) return;
+    n.normalize();
+    for (int i = 0; i < 20; ++i) {
+      const Vector3 gradient = across(n);
+      if (gradient.norm() < 1e-15) break;
+      Vector3 step = ascent(n, gradient);
+      if (step.norm() > kLongest) step *= kLongest / step.norm();
+      const double before = at(n);
+      Vector3 next = (n + step).normalized();
+      for (int halvings = 0; halvings < 8 && at(next) <= before; ++halvings) {
+        step *= 0.5;
+        next = (n + step).normalized();
+      }
+      if (at(next) <= before) break;
+      n = next;
+    }
+    try_direction(n);
+  }
+
+ private:
+  static constexpr double kBetter = 1e-10;  // later tries must beat earlier ones by this: faces come first [m]
+  static constexpr double kLongest = 0.3;   // [rad]
+  static constexpr int kSteps = 12;
+  static constexpr double kStep = 0.2617993877991494;  // pi / kSteps
+  static constexpr double kCosine = 0.9659258262890683, kSine = 0.25881904510252074;
+
+  /// A direction n on a circle, where it turns to (n'), s and ds/dangle.
+  struct Ray {
+    Vector3 n, turn;
+    double value, slope;
+  };
+
+  double at(const Vector3& n) const { return n.dot(offset_) - a_.reach(n) - b_.reach(n); }
+  /// From b's farthest point to a's.
+  Vector3 between(const Vector3& n) const { return offset_ - a_.farthest(n) - b_.farthest(n); }
+  Vector3 across(const Vector3& n) const {
+    const Vector3 apart = between(n);
+    return apart - n.dot(apart) * n;
+  }
+  Ray ray(const Vector3& n, const Vector3& turn) const {
+    const Vector3 apart = between(n);
+    return {n, turn, n.dot(apart), turn.dot(apart)};
+  }
+  Ray turned(const Ray& from, double cosine, double sine) const {
+    return ray(cosine * from.n + sine * from.turn, cosine * from.turn - sine * from.n);
+  }
+
+  /// Not much less than the greatest s between two rays: where their tangents meet.
+  static double bound(const Ray& from, const Ray& to, double angle) {
+    const double falls = from.slope - to.slope;
+    const double meet = falls > 0.0 ? (to.value - from.value - to.slope * angle) / falls : 0.0;
+    const double curved = 0.5 * std::abs(from.value) * angle * angle;
+    return from.value + from.slope * std::max(0.0, std::min(meet, angle)) + curved;
+  }
+
+  void refine(const Ray& from, const Ray& to) {
+    double lo = 0.0, hi = kStep;
+    double angle = kStep * from.slope / (from.slope - to.slope);
+    Ray low = from, high = to, now = from;
+    for (int i = 0; i < 60; ++i) {
+      now = turned(from, std::cos(angle), std::sin(angle));
+      (now.slope > 0.0 ? low : high) = now;
+      (now.slope > 0.0 ? lo : hi) = angle;
+      if (bound(low, high, hi - lo) < separation_ + kBetter) return;
+      const double curvature = now.value + now.turn.dot((bend(a_, now.n) + bend(b_, now.n)) * now.turn);
+      double next = angle + now.slope / curvature;
+      if (!(curvature > 0.0 && next > lo && next < hi)) next = 0.5 * (lo + hi);
+      if (std::abs(next - angle) < 1e-14) break;
+      angle = next;
+    }
+    try_direction(now.n);
+  }
+
+  /// Newton's step, or up the gradient where s is not concave.
+  Vector3 ascent(const Vector3& n, const Vector3& gradient) const {
+    const Vector3 u = any_normal(n), v = n.cross(u);
+    const Matrix3 curve = at(n) * Matrix3::Identity() + bend(a_, n) + bend(b_, n);
+    const double uu = u.dot(curve * u), uv = u.dot(curve * v), vv = v.dot(curve * v);
+    const double gu = u.dot(gradient), gv = v.dot(gradient), det = uu * vv - uv * uv;
+    if (det > 1e-12 * (uu * uu + vv * vv) && uu + vv > 0.0) {
+      return (vv * gu - uv * gv) / det * u + (uu * gv - uv * gu) / det * v;
+    }
+    return kLongest / gradient.norm() * gradient;
+  }
+
+  const ShapeA& a_;
+  const ShapeB& b_;
+  Vector3 offset_, normal_ = Vector3::UnitZ();
+  double separation_ = -1e300;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "random_capsules.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of lengths of some centimetres [m]
+const Sphere kSphere{0.03};
+const Box kBox{{0.03, 0.02, 0.01}};
+const Cylinder kCylinder{0.02, 0.03};
+
+ClosestFeatures closest(const Capsule& capsule, const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return capsule_sphere(capsule, *sphere);
+  if (const auto* box = std::get_if<Box>(&shape)) return capsule_box(capsule, *box);
+  return capsule_cylinder(capsule, std::get<Cylinder>(shape));
+}
+const Shape kShapes[] = {kSphere, kBox, kCylinder};
+
+void expect_near(const Vector3& a, const Vector3& b, double tolerance = kRounding) {
+  EXPECT_LT((a - b).norm(), tolerance) << a.transpose() << " against " << b.transpose();
+}
+
+TEST(ClosestFeatures, finger_along_a_face_touches_in_the_middle_of_the_stretch) {
+  for (const double z : {0.017, 0.004}) {  // outside, and with the axis inside
+    const Capsule over_edge{{0.01, 0.005, z}, {0.05, 0.005, z}, 0.008};
+    const ClosestFeatures features = capsule_box(over_edge, kBox);
+    expect_near(features.point, {0.02, 0.005, 0.01});
+    expect_near(features.normal, Vector3::UnitZ());
+    EXPECT_NEAR(features.axis_parameter, 0.25, kRounding);
+    EXPECT_NEAR(features.distance, z - 0.01 - 0.008, kRounding);
+  }
+  const Capsule on_cap{{-0.05, 0.012, 0.037}, {0, 0.012, 0.037}, 0.008};
+  expect_near(capsule_cylinder(on_cap, kCylinder).point, {-0.008, 0.012, 0.03});
+  const Capsule beside{{0.027, 0, 0.01}, {0.027, 0, 0.09}, 0.008};
+  expect_near(capsule_cylinder(beside, kCylinder).point, {0.02, 0, 0.02});
+  const Capsule inside{{0.017, 0, 0.01}, {0.017, 0, 0.09}, 0.008};
+  expect_near(capsule_cylinder(inside, kCylinder).point, {0.02, 0, 0.02});
+}
+
+TEST(ClosestFeatures, rounding_of_a_parallel_finger_does_not_move_its_middle) {
+  for (const double tilt : {0.0, 1e-16, -1e-15, 1e-14}) {
+    const ClosestFeatures features = capsule_box({{0, 0, 0.017}, {0.02, tilt, 0.017 + tilt}, 0.008}, kBox);
+    EXPECT_NEAR(features.axis_parameter, 0.5, 1e-9) << tilt;
+  }
+}
+
+TEST(ClosestFeatures, axis_through_the_middle_leaves_by_a_fixed_side) {
+  for (const Shape& shape : kShapes) {
+    for (int i = 0; i < 3; ++i) {
+      const Capsule capsule = capsule_about(Vector3::Zero(), 0.02 * Vector3::Unit(i), 0.008);
+      const ClosestFeatures first = closest(capsule, shape), again = closest(capsule, shape);
+      EXPECT_NEAR(first.normal.norm(), 1.0, kRounding);
+      EXPECT_EQ(first.normal, again.normal);
+      expect_near(first.point + (first.distance + 0.008) * first.normal,
+                  capsule.axis_point(first.axis_parameter));
+    }
+  }
+  const ClosestFeatures through = capsule_sphere({{-0.01, 0, 0}, {0.02, 0, 0}, 0.008}, kSphere);
+  EXPECT_NEAR(through.normal.x(), 0.0, kRounding);
+  EXPECT_NEAR(through.distance, -0.038, kRounding);
+  const ClosestFeatures pierced = capsule_cylinder({{0, 0, -0.1}, {0, 0, 0.1}, 0.008}, kCylinder);
+  EXPECT_NEAR(pierced.normal.z(), 0.0, kRounding);
+  EXPECT_NEAR(pierced.distance, -0.028, kRounding);
+}
+
+TEST(ClosestFeatures, capsule_without_length_is_a_ball) {
+  const Vector3 places[] = {
+      {0.05, 0.01, 0}, {0.05, 0.04, 0.02}, {0.001, 0.002, 0.008}, {0.019, 0.001, 0.002}};
+  for (const Shape& shape : kShapes) {
+    for (const Vector3& place : places) {
+      const ClosestFeatures ball = closest({place, place, 0.005}, shape);
+      const ClosestFeatures bead = closest({place, place, 0.0}, shape);
+      EXPECT_NEAR(ball.distance, bead.distance - 0.005, kRounding);
+      expect_near(ball.point + (ball.distance + 0.005) * ball.normal, place);
+      const AxisSpan span = contact_span({place, place, 0.005}, shape, ball);
+      EXPECT_EQ(span.s0, span.s1);
+    }
+  }
+}
+
+TEST(ClosestFeatures, mirrored_capsules_have_mirrored_features) {
+  Random random(8);
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Capsule capsule = capsule_about(random.in_box({0.05, 0.05, 0.05}),
+                                          random.between(0.01, 0.05) * random.direction(), 0.008);
+    const Vector3 mirror(random.sign(), random.sign(), random.sign());
+    const Capsule other{capsule.end.cwiseProduct(mirror), capsule.start.cwiseProduct(mirror), 0.008};
+    for (const Shape& shape : kShapes) {
+      const ClosestFeatures a = closest(capsule, shape), b = closest(other, shape);
+      EXPECT_NEAR(a.distance, b.distance, kRounding);
+      if (std::abs(a.distance + 0.008) < 1e-6) continue;  // directions of gaps of rounding's size
+      expect_near(a.normal.cwiseProduct(mirror), b.normal, 1e-8);
+      expect_near(a.point.cwiseProduct(mirror), b.point, 1e-8);
+      EXPECT_NEAR(a.axis_parameter, 1.0 - b.axis_parameter, 1e-6);
+    }
+  }
+}
+
+TEST(ClosestFeatures, distance_changes_by_no_more_than_the_capsule_moves) {
+  Random random(9);
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Capsule from = capsule_about(random.in_box({0.04, 0.04, 0.04}),
+                                       random.between(0.0, 0.05) * random.direction(), 0.008);
+    Capsule to = from;
+    const double way = std::pow(10.0, random.between(-9, -3));
+    to.start += way * random.direction();
+    to.end += way * random.direction();
+    for (const Shape& shape : kShapes) {
+      const double change = closest(to, shape).distance - closest(from, shape).distance;
+      EXPECT_LE(std::abs(change), way + 2e-11);  // an axis that lies on the surface counts as inside
+    }
+  }
+}
+
+TEST(ClosestFeatures, gap_vector_changes_by_no_more_than_the_capsule_is_shifted) {
+  Random random(10);
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Capsule from = capsule_about(random.in_box({0.06, 0.06, 0.06}), 0.03 * random.direction(), 0.008);
+    const Vector3 shift = 1e-7 * random.direction();
+    const Capsule to{from.start + shift, from.end + shift, from.radius};
+    for (const Shape& shape : kShapes) {
+      const ClosestFeatures a = closest(from, shape), b = closest(to, shape);
+      if (a.distance < -0.007) continue;  // the axis is nearer than 1 mm, or inside
+      // The gap leads from a point to its projection onto a convex set, and projections do not stretch.
+      const double gap = a.distance + 0.008;
+      EXPECT_LE((gap * a.normal - (b.distance + 0.008) * b.normal).norm(), 1e-7 + 2e-11);
+    }
+  }
+}
+
+TEST(ContactSpan, is_the_part_over_the_face) {
+  const Capsule capsule{{0.01, 0.005, 0.017}, {0.05, 0.005, 0.018}, 0.008};
+  const AxisSpan span = contact_span(capsule, kBox, capsule_box(capsule, kBox));
+  EXPECT_NEAR(span.s0, 0.0, kRounding);
+  EXPECT_NEAR(span.s1, 0.5, kRounding);
+  const Capsule on_cap{{-0.05, 0.012, 0.037}, {0, 0.012, 0.037}, 0.008};
+  const AxisSpan disc = contact_span(on_cap, kCylinder, capsule_cylinder(on_cap, kCylinder));
+  EXPECT_NEAR(disc.s0, (0.05 - 0.016) / 0.05, kRounding);
+  EXPECT_NEAR(disc.s1, 1.0, kRounding);
+}
+
+TEST(ContactSpan, along_a_cylinder_shrinks_to_a_point_while_the_finger_turns_across) {
+  double before = 1.0;
+  for (const double angle : {0.0, 0.03, 0.07, 0.12, 1.5}) {
+    const Vector3 along = 0.04 * Vector3(0, std::sin(angle), std::cos(angle));
+    const Capsule capsule = capsule_about({0.027, 0, 0}, along, 0.008);
+    const AxisSpan span = contact_span(capsule, kCylinder, capsule_cylinder(capsule, kCylinder));
+    const double length = span.s1 - span.s0;
+    EXPECT_NEAR(length, std::max(0.0, 1.0 - std::sin(angle) / 0.1), 1e-9);
+    EXPECT_LE(length, before);
+    before = length;
+  }
+}
+
+TEST(ContactSpan, edges_vertices_rims_and_spheres_are_touched_at_a_point) {
+  const Capsule over_edge{{0.02, 0, 0.025}, {0.05, 0, 0.006}, 0.008};
+  const Capsule over_vertex{{0.05, 0.035, 0.02}, {0.07, 0.06, 0.05}, 0.008};
+  const Capsule over_rim{{0, 0, 0.055}, {0.04, 0, 0.02}, 0.008};
+  for (const auto& pair :
+       {std::make_pair(over_edge, Shape(kBox)), std::make_pair(over_vertex, Shape(kBox)),
+        std::make_pair(over_rim, Shape(kCylinder)), std::make_pair(over_edge, Shape(kSphere))}) {
+    const ClosestFeatures features = closest(pair.first, pair.second);
+    const AxisSpan span = contact_span(pair.first, pair.second, features);
+    EXPECT_EQ(span.s0, features.axis_parameter);
+    EXPECT_EQ(span.s1, features.axis_parameter);
+  }
+}
+
+TEST(ContactSpan, holds_the_closest_point) {
+  Random random(11);
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Capsule capsule =
+        capsule_about(random.in_box({0.05, 0.05, 0.05}), 0.03 * random.direction(), 0.008);
+    for (const Shape& shape : kShapes) {
+      const ClosestFeatures features = closest(capsule, shape);
+      const AxisSpan span = contact_span(capsule, shape, features);
+      EXPECT_LE(0.0, span.s0);
+      EXPECT_LE(span.s0, features.axis_parameter);
+      EXPECT_LE(features.axis_parameter, span.s1);
+      EXPECT_LE(span.s1, 1.0);
+    }
+  }
+}
+
+TEST(Shape, bounding_radius_holds_every_corner) {
+  auto triangles = std::make_shared<TriangleMesh>();
+  triangles->vertices = {
+      {0.1, 0, 0}, {0, 0.3, 0.4}, {0, 0, 0}, {9, 9, 9}};  // the last belongs to no triangle
+  triangles->triangles = {{{0, 1, 2}}};
+  EXPECT_DOUBLE_EQ(bounding_radius(Sphere{0.2}), 0.2);
+  EXPECT_DOUBLE_EQ(bounding_radius(Box{{0.02, 0.03, 0.06}}), 0.07);
+  EXPECT_DOUBLE_EQ(bounding_radius(Cylinder{0.03, 0.04}), 0.05);
+  EXPECT_DOUBLE_EQ(bounding_radius(Mesh{triangles, "", Vector3::Ones()}), 0.5);
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include "mesh_shapes.h"
+#include "mr_hand_interaction/collision/mesh_collision.h"
+#include "random_capsules.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kFar = 10.0;        // margin that keeps everything [m]
+constexpr double kRounding = 1e-12;  // of lengths of some centimetres, over some dozens of operations [m]
+
+/// The angle mesh is the union of these two boxes.
+const Vector3 kArmHalf[2] = {{0.03, 0.01, 0.02}, {0.01, 0.03, 0.02}};
+const Vector3 kArmCentre[2] = {{0.01, -0.01, 0}, {-0.01, 0.01, 0}};
+
+ClosestFeatures arm(const Capsule& capsule, int i) {
+  const Capsule local{capsule.start - kArmCentre[i], capsule.end - kArmCentre[i], capsule.radius};
+  ClosestFeatures features = capsule_box(local, Box{kArmHalf[i]});
+  features.point += kArmCentre[i];
+  return features;
+}
+
+TEST(MeshCollision, mesh_of_a_box_is_the_box) {
+  Random random(4);
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Vector3 half(random.between(0.01, 0.04), random.between(0.01, 0.04), random.between(0.01, 0.04));
+    const Vector3 along = random.between(0.0, 0.06) * random.direction();
+    const Capsule capsule = capsule_about(random.in_box(2 * half), along, random.between(0.005, 0.01));
+    const ClosestFeatures box = capsule_box(capsule, Box{half});
+    const MeshCollider collider(box_mesh(half));
+    const auto mesh = collider.closest(capsule, kFar);
+    SCOPED_TRACE(i);
+    ASSERT_TRUE(mesh);
+    EXPECT_NEAR(mesh->distance, box.distance, kRounding);
+    // Conditioning: the direction of a gap is known to rounding / gap, the place of a crossing likewise.
+    if (std::abs(box.distance + capsule.radius) < 1e-5) continue;
+    EXPECT_LT((mesh->normal - box.normal).norm(), 1e-8);
+    EXPECT_LT((mesh->point - box.point).norm(), 1e-7);
+    EXPECT_NEAR(mesh->axis_parameter, box.axis_parameter, 1e-5);
+  }
+}
+
+TEST(MeshCollision, capsule_along_a_face_touches_in_the_middle_of_the_stretch) {
+  const MeshCollider collider(box_mesh({0.03, 0.02, 0.01}));
+  for (const double gap : {0.001, -0.002, -0.009}) {  // the last with the axis inside
+    const double z = 0.01 + 0.008 + gap;
+    const auto features = collider.closest({{-0.01, 0.013, z}, {0.05, 0.013, z}, 0.008}, 0.002);
+    ASSERT_TRUE(features);
+    EXPECT_NEAR(features->distance, gap, kRounding);
+    EXPECT_LT((features->point - Vector3(0.01, 0.013, 0.01)).norm(), kRounding);
+    EXPECT_LT((features->normal - Vector3::UnitZ()).norm(), kRounding);
+  }
+}
+
+TEST(MeshCollision, hollow_solid_is_as_far_as_the_nearer_of_its_parts) {
+  Random random(5);
+  const MeshCollider collider(angle_mesh());
+  int outside = 0;
+  for (int i = 0; i < 50000 && !HasFailure(); ++i) {
+    const Vector3 along = random.between(0.0, 0.04) * random.direction();
+    const Capsule capsule = capsule_about(random.in_box({0.06, 0.06, 0.04}), along, 0.008);
+    const ClosestFeatures a = arm(capsule, 0), b = arm(capsule, 1);
+    const ClosestFeatures& nearer = a.distance < b.distance ? a : b;
+    const double gap = nearer.distance + capsule.radius;
+    if (gap < 1e-5) continue;
+    ++outside;
+    SCOPED_TRACE(i);
+    const auto mesh = collider.closest(capsule, kFar);
+    ASSERT_EQ(bool(mesh), true);
+    EXPECT_NEAR(mesh->distance, nearer.distance, kRounding);
+    if (std::abs(a.distance - b.distance) < 1e-9) continue;  // either part may be named
+    EXPECT_LT((mesh->normal - nearer.normal).norm(), 1e-8);
+    EXPECT_LT((mesh->point - nearer.point).norm(), 1e-7);
+  }
+  EXPECT_GT(outside, 10000);
+}
+
+/// Distance from the surface of the angle: of its eight faces, each a flat box (the caps are two each).
+double distance_from_surface(const Vector3& place) {
+  const auto to_box = [&](const Vector3& min, const Vector3& max) {
+    return (place - place.cwiseMax(min).cwiseMin(max)).norm();
+  };
+  const double a = 0.02, b = 0.04, h = 0.02;
+  double least = std::min({to_box({-a, -a, -h}, {b, -a, h}), to_box({b, -a, -h}, {b, 0, h}),
+                           to_box({0, 0, -h}, {b, 0, h}), to_box({0, 0, -h}, {0, b, h}),
+                           to_box({-a, b, -h}, {0, b, h}), to_box({-a, -a, -h}, {-a, b, h})});
+  for (const double z : {-h, h}) {
+    least = std::min({least, to_box({-a, -a, z}, {b, 0, z}), to_box({-a, -a, z}, {0, b, z})});
+  }
+  return least;
+}
+
+TEST(MeshCollision, balls_in_a_hollow_solid_leave_by_the_nearest_surface) {
+  Random random(6);
+  const MeshCollider collider(angle_mesh());
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
+    const Vector3 place = random.in_box({0.045, 0.045, 0.025});
+    const Capsule ball{place, place, 0.004};
+    const bool inside = arm(ball, 0).distance < -ball.radius || arm(ball, 1).distance < -ball.radius;
+    const auto features = collider.closest(ball, kFar);
+    SCOPED_TRACE(i);
+    ASSERT_TRUE(features);
+    const double distance = distance_from_surface(place);
+    EXPECT_NEAR(features->distance, (inside ? -distance : distance) - ball.radius, kRounding);
+    EXPECT_NEAR((features->point - place + (features->distance + ball.radius) * features->normal).norm(), 0,
+                kRounding);
+  }
+}
+
+TEST(MeshCollision, finger_in_an_arm_of_a_hollow_solid_leaves_across_the_arm) {
+  const MeshCollider collider(angle_mesh());
+  // Through the arm along x, nearer to its upper side than to its lower; the arm ends beyond the finger.
+  const auto across = collider.closest({{0.015, -0.007, 0.001}, {0.035, -0.007, 0.001}, 0.006}, 0.001);
+  ASSERT_TRUE(across);
+  EXPECT_NEAR(across->distance, -0.007 - 0.006, kRounding);
+  EXPECT_LT((across->normal - Vector3::UnitY()).norm(), kRounding);
+  EXPECT_LT((across->point - Vector3(0.025, 0, 0.001)).norm(), kRounding);
+  // A tip that came in from above by 3 mm.
+  const auto tip = collider.closest({{-0.01, 0.02, 0.017}, {-0.008, 0.022, 0.045}, 0.006}, 0.001);
+  ASSERT_TRUE(tip);
+  EXPECT_NEAR(tip->distance, -0.003 - 0.006, kRounding);
+  EXPECT_LT((tip->normal - Vector3::UnitZ()).norm(), kRounding);
+}
+
+TEST(MeshCollision, nothing_beyond_the_margin) {
+  const MeshCollider collider(box_mesh({0.02, 0.02, 0.02}));
+  const Capsule capsule{{0, 0, 0.031}, {0.01, 0, 0.031}, 0.008};
+  EXPECT_FALSE(collider.closest(capsule, 0.0029));
+  EXPECT_TRUE(collider.closest(capsule, 0.0031));
+}
+
+TEST(MeshCollision, open_surface_has_no_inside) {
+  TriangleMesh sheet;
+  sheet.vertices = {{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0, 0.05, 0}};
+  sheet.triangles = {{{0, 1, 2}}};
+  const auto below = MeshCollider(sheet).closest({{0, 0, -0.009}, {0, 0, -0.02}, 0.008}, 0.01);
+  ASSERT_TRUE(below);
+  EXPECT_NEAR(below->distance, 0.001, kRounding);
+  EXPECT_LT((below->normal + Vector3::UnitZ()).norm(), kRounding);
+}
+
+TEST(MeshCollision, mesh_without_area_is_refused) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  mesh.triangles = {{{0, 1, 2}}};
+  EXPECT_THROW(MeshCollider{mesh}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mrhi
