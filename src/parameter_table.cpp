@@ -77,7 +77,9 @@ std::vector<ParameterEntry> make_table() {
           {{"implicit", ContactModelKind::implicit},
            {"seed", ContactModelKind::seed},
            {"penetration", ContactModelKind::penetration},
-           {"impulse", ContactModelKind::impulse}},
+           {"impulse", ContactModelKind::impulse},
+           {"virtual_spring", ContactModelKind::virtual_spring},
+           {"soft_pad", ContactModelKind::soft_pad}},
           [](C & c) -> auto& { return c.contact_model; }),
       number(
           "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),

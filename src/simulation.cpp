@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/integration/free_flight.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/response/impact.h"
 #include "mr_hand_interaction/tracking/tracker.h"
 
 namespace mrhi {
@@ -123,6 +124,7 @@ void Simulation::Impl::advance_step(double fraction, double seconds, double step
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     free_flight(scene.bodies[b], solved[b] ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
+  delay_impacts(contact_step);
   keep_in_bounds();
 }
 

@@ -8,7 +8,7 @@
 
 namespace mrhi {
 
-enum class ContactModelKind { implicit, seed, penetration, impulse };
+enum class ContactModelKind { implicit, seed, penetration, impulse, virtual_spring, soft_pad };
 enum class FilterKind { none, window };
 
 struct FilterConfiguration {
@@ -36,7 +36,8 @@ struct Configuration {
 };
 
 /// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the paper's 100 N/m
-/// under the paper's models and 2000 N/m under `implicit`, which is stable with it at any step and mass.
+/// under the paper's models, 500 N/m under `virtual_spring` and `soft_pad`, and 2000 N/m under `implicit`, which
+/// is stable with it at any step and mass.
 Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

@@ -46,8 +46,7 @@ class BoxPair {
     const bool a_flat = -face_a.normal.dot(axis_.normal) >= kSameFace;
     const bool b_flat = face_b.normal.dot(axis_.normal) >= kSameFace;
     if (!a_flat && !b_flat) return crossing(margin);
-    const bool by_a =
-        a_flat && (!b_flat || first_is_reference(face_a.area(), face_b.area(), axis_.normal));
+    const bool by_a = a_flat && (!b_flat || first_is_reference(face_a.area(), face_b.area(), axis_.normal));
     return by_a ? face(face_a, BoxFace(b_, -face_a.normal), true, margin)
                 : face(face_b, BoxFace(a_, -face_b.normal), false, margin);
   }

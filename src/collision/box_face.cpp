@@ -15,8 +15,8 @@ BoxFace::BoxFace(const OrientedBox& box, const Vector3& outward) {
   along = {{box.axes.col(first), box.axes.col(second)}};
   half = {{box.half[first], box.half[second]}};
   for (std::size_t i = 0; i < 4; ++i) {
-    corners[i] = (int(positive) << face) | (int(kCorner[i][0] > 0) << first) |
-                 (int(kCorner[i][1] > 0) << second);
+    corners[i] =
+        (int(positive) << face) | (int(kCorner[i][0] > 0) << first) | (int(kCorner[i][1] > 0) << second);
     edges[i] = edge_name(i % 2 == 0 ? first : second, corners[i]);
   }
 }

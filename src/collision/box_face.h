@@ -7,9 +7,9 @@
 
 namespace mrhi {
 
-/// A box has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 * direction + two bits
-/// for the sides of the axes that follow). Touches of boxes a, b are named: corner of a, 8 + corner of b,
-/// 16 + 12 * edge of a + edge of b.
+/// A box has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 * direction + two
+/// bits for the sides of the axes that follow). Touches of boxes a, b are named: corner of a, 8 + corner of
+/// b, 16 + 12 * edge of a + edge of b.
 constexpr int kBoxCorners = 8, kBoxEdges = 12;
 
 inline int edge_name(int direction, int corner) {

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "mr_hand_interaction/collision/god_object.h"
+#include "mr_hand_interaction/collision/sweep.h"
 
 namespace mrhi {
 namespace {
@@ -34,6 +35,26 @@ bool spheres_apart(const Capsule& capsule, const Vector3& centre, double radius)
   // Distance to the axis is at least distance to its middle less half its length.
   const double half_length = 0.5 * (capsule.end - capsule.start).norm();
   return (capsule.centre() - centre).norm() > reach + half_length;
+}
+
+/// Where a body will be after `time` seconds at its present velocity.
+Pose moved(const Pose& pose, const Twist& twist, double time) {
+  const double angle = twist.angular.norm() * time;
+  Pose result{pose.position + time * twist.linear, pose.orientation};
+  if (angle > 0.0) {
+    result.orientation = Quaternion(Eigen::AngleAxisd(angle, twist.angular.normalized())) * pose.orientation;
+  }
+  return result;
+}
+
+AxisSpan span_over(const TouchingPair& pair, const ClosestFeatures& features) {
+  const PlacedShape& placed = pair.body.shapes[static_cast<std::size_t>(pair.shape_index)];
+  const Pose pose = pair.state.pose * placed.pose;
+  ClosestFeatures local = features;
+  local.normal = pose.orientation.conjugate() * local.normal;
+  local.point = pose.to_local(local.point);
+  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
+  return contact_span(to_local(capsule, pose), placed.shape, local);
 }
 
 }  // namespace
@@ -111,31 +132,56 @@ void ContactFinder::find_pair(const MovingHand& hand, int body_index, const Body
     const double margin = kMargin + speed * step;
     if (spheres_apart(capsule, state.pose.position, body.bounding_radius + margin)) continue;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
-      const auto features = closest(capsule, body_index, shape, state.pose, margin);
-      if (!features) continue;
-      ContactKey key{static_cast<std::uint16_t>(body_index), static_cast<std::uint8_t>(hand.slot),
-                     static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(shape), 0};
-      const auto first = std::lower_bound(before.begin(), before.end(), key,
-                                          [](const Contact& a, const ContactKey& k) { return a.key < k; });
-      auto last = first;
-      const std::uint64_t pair = key.order() >> 8;
-      while (last != before.end() && last->key.order() >> 8 == pair) ++last;
-      const bool apart = features->distance > kSeparation;
-      const int count = apart ? 0 : static_cast<int>(last - first);
-      const PlacedShape& placed = body.shapes[static_cast<std::size_t>(shape)];
-      const Pose pose = state.pose * placed.pose;
-      ClosestFeatures local = *features;
-      local.normal = pose.orientation.conjugate() * local.normal;
-      local.point = pose.to_local(local.point);
-      const AxisSpan span = contact_span(to_local(capsule, pose), placed.shape, local);
-      const std::size_t size = found_.size();
-      update_god_objects({hand, c, body_index, shape, body, state}, *features, span,
-                         count > 0 ? &*first : nullptr, count, found_);
-      for (std::size_t i = size; i < found_.size(); ++i) {
-        if (apart) found_[i].ignored = found_[i].struck = false;
-      }
+      const TouchingPair pair{hand, c, body_index, shape, body, state};
+      std::optional<ClosestFeatures> features = closest(capsule, body_index, shape, state.pose, margin);
+      if (features && features->distance > kMargin) features = swept(pair, twist, step, margin);
+      if (features) touch(pair, *features, before);
     }
   }
+}
+
+std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const Twist& twist, double step,
+                                                    double margin) const {
+  const auto c = static_cast<std::size_t>(pair.capsule);
+  const Capsule& capsule = pair.hand.capsules[c];
+  const auto pose_at = [&](double time) { return moved(pair.state.pose, twist, time); };
+  const auto separation = [&](double time) -> std::optional<Separation> {
+    const Capsule then{capsule.start + time * pair.hand.start_velocity[c],
+                       capsule.end + time * pair.hand.end_velocity[c], capsule.radius};
+    const Pose pose = pose_at(time);
+    const auto features = closest(then, pair.body_index, pair.shape_index, pose, margin);
+    if (!features) return std::nullopt;
+    const Vector3 hand_velocity = pair.hand.surface_velocity(pair.capsule, features->axis_parameter,
+                                                             -capsule.radius * features->normal);
+    const Vector3 relative = hand_velocity - object_velocity(twist, pose.position, features->point);
+    return Separation{*features, features->normal.dot(relative)};
+  };
+  const auto touch = first_touch(separation, step);
+  if (!touch) return std::nullopt;
+  // Told where the body is now: the place on its surface that will be met.
+  const Pose then = pose_at(touch->time);
+  ClosestFeatures features = touch->features;
+  features.point = pair.state.pose * then.to_local(features.point);
+  features.normal = pair.state.pose.orientation * (then.orientation.conjugate() * features.normal);
+  features.distance =
+      features.normal.dot(capsule.axis_point(features.axis_parameter) - features.point) - capsule.radius;
+  return features;
+}
+
+void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& features,
+                          const std::vector<Contact>& before) {
+  const ContactKey key{static_cast<std::uint16_t>(pair.body_index), static_cast<std::uint8_t>(pair.hand.slot),
+                       static_cast<std::uint8_t>(pair.capsule), static_cast<std::uint8_t>(pair.shape_index),
+                       0};
+  const auto first = std::lower_bound(before.begin(), before.end(), key,
+                                      [](const Contact& a, const ContactKey& k) { return a.key < k; });
+  auto last = first;
+  while (last != before.end() && last->key.same_pair(key)) ++last;
+  const bool apart = features.distance > kSeparation;
+  const int count = apart ? 0 : static_cast<int>(last - first);
+  const std::size_t size = found_.size();
+  update_god_objects(pair, features, span_over(pair, features), count > 0 ? &*first : nullptr, count, found_);
+  for (std::size_t i = size; apart && i < found_.size(); ++i) found_[i].ignored = found_[i].struck = false;
 }
 
 }  // namespace mrhi

@@ -63,8 +63,9 @@ void ContactRegion::reduce() {
   std::rotate(points.begin(), std::min_element(points.begin(), points.begin() + count, by_feature),
               points.begin() + count);
   const double deep = deepest() - kAsDeep;
-  const std::uint8_t kept = std::find_if(points.begin(), points.begin() + count,
-                                         [&](const RegionPoint& p) { return p.depth >= deep; })->feature;
+  const std::uint8_t kept = std::find_if(points.begin(), points.begin() + count, [&](const RegionPoint& p) {
+                              return p.depth >= deep;
+                            })->feature;
   while (count > 4) {
     int least = -1;
     double least_area = 0.0;

@@ -31,8 +31,8 @@ struct ContactRegion {
   void remove_gaps(double margin);
   /// Puts points in the order of their angle about the middle.
   void sort_around();
-  /// Leaves at most four points, the deepest among them, that keep the region large. Points within rounding of
-  /// each other's claims always lose in the same order.
+  /// Leaves at most four points, the deepest among them, that keep the region large. Points within rounding
+  /// of each other's claims always lose in the same order.
   void reduce();
 
  private:
@@ -40,18 +40,18 @@ struct ContactRegion {
   double triangle(int i) const;
 };
 
-/// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it is
-/// the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
+/// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it
+/// is the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal);
 
 /// How far beyond a face's border a corner may lie and still be the one that touches: neither rounding nor
-/// creep must change what two aligned boxes are said to touch with. `slope` is the tangent of the angle between
-/// the faces; depths change by less than 1 um [m].
+/// creep must change what two aligned boxes are said to touch with. `slope` is the tangent of the angle
+/// between the faces; depths change by less than 1 um [m].
 double border_tolerance(double size, double slope);
 
 inline void add_point(Manifold& manifold, const Vector3& point, double depth, int feature) {
   manifold.points[static_cast<std::size_t>(manifold.count++)] = {point, depth,
-                                                                  static_cast<std::uint8_t>(feature)};
+                                                                 static_cast<std::uint8_t>(feature)};
 }
 
 }  // namespace mrhi

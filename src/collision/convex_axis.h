@@ -7,8 +7,8 @@ namespace mrhi {
 
 /// The direction, out of b towards a, along which two convex shapes are farthest apart or overlap least: the
 /// greatest s(n) = n.(centre a - centre b) - reach a(n) - reach b(n). Every direction tried bounds it from
-/// below, so that a translation by -s always separates; it is exact if the best direction was tried. Shapes are
-/// symmetric about their centres: n and -n are one try.
+/// below, so that a translation by -s always separates; it is exact if the best direction was tried. Shapes
+/// are symmetric about their centres: n and -n are one try.
 template <typename ShapeA, typename ShapeB>
 class ConvexAxis {
  public:
@@ -27,8 +27,8 @@ class ConvexAxis {
     if (value > separation_ + kBetter) separation_ = value, normal_ = n;
   }
 
-  /// Tries the local maxima among the directions across a unit axis: an edge or a side there, a rim on the other
-  /// shape. Seen along the axis the shapes are convex figures; the slope of s falls wherever it jumps.
+  /// Tries the local maxima among the directions across a unit axis: an edge or a side there, a rim on the
+  /// other shape. Seen along the axis the shapes are convex figures; the slope of s falls wherever it jumps.
   void try_around(const Vector3& axis) {
     Vector3 ahead = offset_ - axis.dot(offset_) * axis;
     ahead = ahead.norm() > kParallel ? Vector3(ahead.normalized()) : any_normal(axis);
@@ -56,14 +56,17 @@ class ConvexAxis {
         next = (n + step).normalized();
       }
       if (at(next) <= before) break;
+      const bool arrived = (next - n).squaredNorm() < 1e-24;
       n = next;
+      if (arrived) break;
     }
     try_direction(n);
   }
 
  private:
-  static constexpr double kBetter = 1e-10;  // later tries must beat earlier ones by this: faces come first [m]
-  static constexpr double kLongest = 0.3;   // [rad]
+  static constexpr double kBetter =
+      1e-10;                               // later tries must beat earlier ones by this: faces come first [m]
+  static constexpr double kLongest = 0.3;  // [rad]
   static constexpr int kSteps = 12;
   static constexpr double kStep = 0.2617993877991494;  // pi / kSteps
   static constexpr double kCosine = 0.9659258262890683, kSine = 0.25881904510252074;

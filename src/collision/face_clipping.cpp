@@ -29,7 +29,8 @@ class Clipping {
     for (std::size_t i = 0; i < 2; ++i) {
       middle_[i] = reference.along[i].dot(offset);
       slope_[i] = -incident.normal.dot(reference.along[i]) / facing;
-      for (std::size_t j = 0; j < 2; ++j) side_[j][i] = incident.half[j] * reference.along[i].dot(incident.along[j]);
+      for (std::size_t j = 0; j < 2; ++j)
+        side_[j][i] = incident.half[j] * reference.along[i].dot(incident.along[j]);
     }
     height_ = reference.normal.dot(offset);
     const double size = std::min(std::min(reference.half[0], reference.half[1]),
@@ -40,10 +41,10 @@ class Clipping {
   ContactRegion region() {
     for (std::size_t i = 0; i < 4; ++i) {
       const double x = BoxFace::kCorner[i][0], y = BoxFace::kCorner[i][1];
-      polygon_.add({{{middle_[0] + x * side_[0][0] + y * side_[1][0],
-                      middle_[1] + x * side_[0][1] + y * side_[1][1]}},
-                    corner_feature(incident_.corners[i], !reference_is_a_),
-                    static_cast<int>(i)});
+      polygon_.add(
+          {{{middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}},
+           corner_feature(incident_.corners[i], !reference_is_a_),
+           static_cast<int>(i)});
     }
     for (int border = 0; border < 4 && polygon_.count > 0; ++border) clip(border);
     ContactRegion region;
@@ -79,7 +80,8 @@ class Clipping {
       const bool leaves = from_beyond <= tolerance_ && to_beyond > tolerance_;
       const bool enters = from_beyond > tolerance_ && to_beyond <= tolerance_;
       if (from_beyond <= tolerance_) kept.add(from);
-      if (leaves && from_beyond >= 0.0) kept.corners[static_cast<std::size_t>(kept.count - 1)].line = 4 + border;
+      if (leaves && from_beyond >= 0.0)
+        kept.corners[static_cast<std::size_t>(kept.count - 1)].line = 4 + border;
       if ((leaves && from_beyond < 0.0) || (enters && to_beyond < 0.0)) {
         const double part = from_beyond / (from_beyond - to_beyond);
         Corner crossing{{{from.place[0] + part * (to.place[0] - from.place[0]),

@@ -83,6 +83,8 @@ void place(const TouchingPair& pair, const Plane& plane, double s, bool remember
   contact.normal = plane.normal;
   contact.hand_velocity = pair.hand.surface_velocity(pair.capsule, s, offset);
   contact.hand_spin = plane.normal.dot(pair.hand.angular_velocity(pair.capsule));
+  contact.axis = capsule.end - capsule.start;
+  contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
   const Vector3 point_velocity =
       object_velocity(twist_of(pair.body, pair.state), pair.state.pose.position, contact.point);

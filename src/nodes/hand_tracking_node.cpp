@@ -6,8 +6,9 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "hand_tracking_node");
+  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
   try {
-    const mrhi::HandTracking tracking(ros::NodeHandle(), ros::NodeHandle("~"));
+    const mrhi::HandTracking tracking(ros::NodeHandle(), private_node);
     ros::spin();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());

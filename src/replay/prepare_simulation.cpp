@@ -1,4 +1,5 @@
 #include <functional>
+#include <stdexcept>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/replay.h"
@@ -19,19 +20,16 @@ Configuration configured(const ReplayArguments& arguments) {
   return configuration;
 }
 
-Body& free_body(Scene& scene, const std::string& option, const std::string& name) {
-  std::string names;
-  for (Body& body : scene.bodies) {
-    if (body.fixed) continue;
-    if (body.name == name) return body;
-    names += (names.empty() ? "" : ", ") + body.name;
+Body& object_of(Scene& scene, const std::string& option, const std::string& name) {
+  try {
+    return free_body(scene, name);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(option + ": " + error.what());
   }
-  throw UsageError(option + ": scene '" + scene.name + "' has no free object '" + name +
-                   "'; allowed: " + (names.empty() ? "none" : names));
 }
 
 void place(Scene& scene, const std::string& name, const Pose& pose) {
-  Body& body = free_body(scene, "--object-pose", name);
+  Body& body = object_of(scene, "--object-pose", name);
   const Bounds& bounds = scene.bounds;
   if ((pose.position.array() < bounds.min.array()).any() ||
       (pose.position.array() > bounds.max.array()).any()) {
@@ -53,7 +51,7 @@ Simulation prepare_simulation(const ReplayArguments& arguments) {
   Scene scene = load_scene(file, scene_options(configuration));
   for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
   for (const auto& [name, twist] : arguments.object_twists) {
-    free_body(scene, "--object-twist", name).start_twist = twist;
+    object_of(scene, "--object-twist", name).start_twist = twist;
   }
   return Simulation(std::move(scene), configuration);
 }

@@ -4,6 +4,8 @@
 #include "impulse_model.h"
 #include "penetration_model.h"
 #include "seed_model.h"
+#include "soft_pad_model.h"
+#include "virtual_spring_model.h"
 
 namespace mrhi {
 
@@ -15,6 +17,10 @@ std::unique_ptr<const ContactModel> make_contact_model(const Configuration& conf
       return std::make_unique<ImpulseModel>();
     case ContactModelKind::implicit:
       return std::make_unique<ImplicitModel>();
+    case ContactModelKind::virtual_spring:
+      return std::make_unique<VirtualSpringModel>();
+    case ContactModelKind::soft_pad:
+      return std::make_unique<SoftPadModel>();
     case ContactModelKind::seed:
       break;
   }

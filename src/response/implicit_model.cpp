@@ -137,7 +137,7 @@ class BodyProblem {
 }  // namespace
 
 void ImplicitModel::respond(ContactStep& step) const {
-  impulse_phase(step);
+  impulse_phase(step, ImpactFriction::coulomb);
   auto first = step.contacts.begin();
   while (first != step.contacts.end()) {
     const std::size_t index = first->key.body;

@@ -9,7 +9,7 @@ void ImpulseModel::respond(ContactStep& step) const {
     contact.force.setZero();
     contact.struck = false;
   }
-  impulse_phase(step);
+  impulse_phase(step, ImpactFriction::none);
 }
 
 }  // namespace mrhi

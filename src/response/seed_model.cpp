@@ -6,7 +6,7 @@
 namespace mrhi {
 
 void SeedModel::respond(ContactStep& step) const {
-  impulse_phase(step);
+  impulse_phase(step, ImpactFriction::none);
   // A phalanx that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
   penetration_phase(step);

@@ -21,8 +21,10 @@ const ros::WallDuration kIdlePeriod(1.0 / 30);
 const ros::WallDuration kMarkerPeriod(1.0 / 75);  // a display does not show more
 
 Scene scene_of(const ServerParameters& parameters) {
-  return load_scene(find_scene_file(parameters.scene, scene_folders()),
-                    scene_options(parameters.configuration));
+  Scene scene =
+      load_scene(find_scene_file(parameters.scene, scene_folders()), scene_options(parameters.configuration));
+  for (const auto& [name, twist] : parameters.object_twists) free_body(scene, name).start_twist = twist;
+  return scene;
 }
 
 std::string without_slash(const std::string& frame_id) {

@@ -25,6 +25,10 @@ const char* to_string(ContactModelKind kind) {
       return "penetration";
     case ContactModelKind::impulse:
       return "impulse";
+    case ContactModelKind::virtual_spring:
+      return "virtual_spring";
+    case ContactModelKind::soft_pad:
+      return "soft_pad";
   }
   return "";
 }

@@ -1,5 +1,7 @@
 #include "mr_hand_interaction/ros/server_parameters.h"
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -8,6 +10,7 @@
 namespace mrhi {
 namespace {
 
+const std::string kTwists = "object_twist/";
 /// Read by libraries that the node uses.
 const std::set<std::string> kOthers{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
 
@@ -28,11 +31,33 @@ void require_known(const std::string& name) {
   throw ParameterError("unknown parameter '" + name + "'; allowed: " + allowed);
 }
 
+Twist twist_parameter(const std::string& name, const XmlRpc::XmlRpcValue& value) {
+  XmlRpc::XmlRpcValue copy = value;
+  std::array<double, 6> v{};
+  bool good = copy.getType() == XmlRpc::XmlRpcValue::TypeArray && copy.size() == 6;
+  for (int i = 0; good && i < 6; ++i) {
+    const auto type = copy[i].getType();
+    if (type == XmlRpc::XmlRpcValue::TypeInt) {
+      v[static_cast<std::size_t>(i)] = static_cast<int>(copy[i]);
+    } else if (type == XmlRpc::XmlRpcValue::TypeDouble) {
+      v[static_cast<std::size_t>(i)] = static_cast<double>(copy[i]);
+    } else {
+      good = false;
+    }
+    good = good && std::isfinite(v[static_cast<std::size_t>(i)]);
+  }
+  if (good) return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  throw ParameterError("parameter '" + name + "': " + yaml_text(copy) +
+                       " is not allowed; allowed: six numbers [vx, vy, vz, wx, wy, wz] in m/s and rad/s");
+}
+
 void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParameters& parameters) {
   if (name == "scene") {
     parameters.scene = text_parameter(name, value);
   } else if (name == "fixed_frame") {
     parameters.fixed_frame = text_parameter(name, value);
+  } else if (name.compare(0, kTwists.size(), kTwists) == 0) {
+    parameters.object_twists[name.substr(kTwists.size())] = twist_parameter(name, value);
   } else if (kOthers.count(name) == 0) {
     require_known(name);
     set_parameter(parameters.configuration, name, yaml_text(value));

@@ -74,7 +74,7 @@ struct Blow {
   void strike() {
     std::vector<char> solved(1, 0);
     ContactStep step{scene, scene.gravity, 0.001, contacts, bodies, solved};
-    impulse_phase(step);
+    impulse_phase(step, ImpactFriction::none);
   }
   double normal_velocity() const {
     return contacts[0].normal.dot(relative_velocity(contacts[0], scene.bodies[0], bodies[0]));

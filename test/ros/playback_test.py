@@ -120,7 +120,7 @@ class PlaybackTest(unittest.TestCase):
         for stamp, frame in self.frames.items():
             if stamp not in recorded_frames or stamp not in recorded_objects or stamp not in self.objects:
                 continue
-            self.assertEqual(frame.hands, recorded_frames[stamp].hands)
+            self.assertEqual(str(frame.hands), str(recorded_frames[stamp].hands))
             for axis in "xyz":
                 now, then = (getattr(thing.pose.position, axis)
                              for thing in (self.objects[stamp], recorded_objects[stamp].objects[0]))

@@ -103,6 +103,8 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(ContactModelKind::penetration, set("contact_model", "penetration").contact_model);
   EXPECT_EQ(ContactModelKind::impulse, set("contact_model", "impulse").contact_model);
   EXPECT_EQ(ContactModelKind::seed, set("contact_model", "seed").contact_model);
+  EXPECT_EQ(ContactModelKind::virtual_spring, set("contact_model", "virtual_spring").contact_model);
+  EXPECT_EQ(ContactModelKind::soft_pad, set("contact_model", "soft_pad").contact_model);
   EXPECT_EQ(0.002, set("step", "2e-3").step);
   EXPECT_EQ(Vector3(0, 0, -9.81), set("gravity", "[0, 0, -9.81]").gravity.value());
   EXPECT_FALSE(set("gravity", "scene").gravity);
@@ -127,8 +129,8 @@ TEST(Parameters, RefusesAnUnknownNameAndListsTheKnown) {
 
 TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
   const std::vector<std::array<std::string, 3>> wrong{
-      {{"contact_model", "springs", "implicit, seed, penetration, impulse"}},
-      {{"contact_model", "[seed]", "implicit, seed, penetration, impulse"}},
+      {{"contact_model", "springs", "implicit, seed, penetration, impulse, virtual_spring, soft_pad"}},
+      {{"contact_model", "[seed]", "implicit, seed, penetration, impulse, virtual_spring, soft_pad"}},
       {{"step", "0", "above 0, at most 0.05 [s]"}},
       {{"step", "0.0501", "at most 0.05"}},
       {{"step", "-1", "above 0"}},

@@ -16,6 +16,7 @@ struct ContactKey {
 
   friend bool operator<(const ContactKey& a, const ContactKey& b) { return a.order() < b.order(); }
   friend bool operator==(const ContactKey& a, const ContactKey& b) { return a.order() == b.order(); }
+  bool same_pair(const ContactKey& other) const { return order() >> 8 == other.order() >> 8; }
   std::uint64_t order() const {
     return (std::uint64_t(body) << 32) | (std::uint64_t(hand) << 24) | (std::uint64_t(capsule) << 16) |
            (std::uint64_t(shape) << 8) | std::uint64_t(point);
@@ -49,6 +50,8 @@ struct Contact {
   Vector3 hand_point = Vector3::Zero();     ///< p: the phalanx's surface point that entered at c
   Vector3 hand_velocity = Vector3::Zero();  ///< of p [m/s]
   double hand_spin = 0.0;                   ///< n.w of the phalanx [rad/s]
+  Vector3 axis = Vector3::Zero();           ///< of the phalanx, from start to end [m]
+  double radius = 0.0;                      ///< of the phalanx [m]
   double patch = 0.0;                       ///< radius of the touching patch [m]
   double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
@@ -58,6 +61,7 @@ struct Contact {
   // What the contact model made of it in this step.
   Vector3 force = Vector3::Zero();    ///< [N]
   Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
+  double time_of_impact = 0.0;        ///< of that impact, from the step's start [s]
 };
 
 }  // namespace mrhi

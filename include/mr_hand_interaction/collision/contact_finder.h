@@ -6,6 +6,7 @@
 #include "mr_hand_interaction/collision/broad_phase.h"
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/collision/contact.h"
+#include "mr_hand_interaction/collision/god_object.h"
 #include "mr_hand_interaction/collision/mesh_collision.h"
 #include "mr_hand_interaction/collision/moving_hand.h"
 #include "mr_hand_interaction/integration/body_state.h"
@@ -34,6 +35,10 @@ class ContactFinder {
  private:
   void find_pair(const MovingHand& hand, int body, const BodyState& state, double step,
                  const std::vector<Contact>& before);
+  /// Closest features at the time within the step at which the pair first touches, if it does.
+  std::optional<ClosestFeatures> swept(const TouchingPair& pair, const Twist& twist, double step,
+                                       double margin) const;
+  void touch(const TouchingPair& pair, const ClosestFeatures& features, const std::vector<Contact>& before);
 
   const Scene& scene_;
   BroadPhase broad_phase_;

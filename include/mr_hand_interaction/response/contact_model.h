@@ -17,7 +17,7 @@ struct ContactStep {
   double step;                     ///< [s]
   std::vector<Contact>& contacts;  ///< sorted by key; the model fills force, impulse and friction
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
-  std::vector<char>& solved;       ///< set for a body whose momenta are those of the step's end, gravity included
+  std::vector<char>& solved;  ///< set for a body whose momenta are those of the step's end, gravity included
 };
 
 /// How an object answers a touch. Stateless: all memory is in the contacts.

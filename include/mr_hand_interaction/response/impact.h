@@ -23,9 +23,16 @@ Vector3 relative_velocity(const Contact& contact, const Body& body, const BodySt
 /// True if the surfaces touch or will within `step`, approach each other, and have not struck yet.
 bool strikes_now(const Contact& contact, double normal_velocity, double step);
 
+enum class ImpactFriction { none, coulomb };
+
 /// The impulse phase: Newton's impact law along the normal, once per approach, for all contacts that strike
 /// in this step together: each one's relative velocity becomes at least -restitution times what it was, with
-/// impulses that only push.
-void impulse_phase(ContactStep& step);
+/// impulses that only push. `coulomb`: sliding at the point is stopped as far as static friction times the
+/// normal impulse goes.
+void impulse_phase(ContactStep& step, ImpactFriction friction);
+
+/// Call when free flight has moved the bodies: takes back what an impact's change of velocity did before its
+/// time of impact, so that an object is not pushed ahead of the hand.
+void delay_impacts(ContactStep& step);
 
 }  // namespace mrhi

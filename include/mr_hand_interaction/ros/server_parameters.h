@@ -2,17 +2,20 @@
 
 #include <ros/node_handle.h>
 
+#include <map>
 #include <string>
 
 #include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/math.h"
 
 namespace mrhi {
 
 /// What the interaction node is told on the parameter server.
 struct ServerParameters {
-  std::string scene = "cube";         ///< ~scene: name or URDF file
-  std::string fixed_frame = "world";  ///< ~fixed_frame
-  Configuration configuration;        ///< every name of parameters.h
+  std::string scene = "cube";                  ///< ~scene: name or URDF file
+  std::string fixed_frame = "world";           ///< ~fixed_frame
+  std::map<std::string, Twist> object_twists;  ///< ~object_twist/NAME: [vx, vy, vz, wx, wy, wz] at the start
+  Configuration configuration;                 ///< every name of parameters.h
 };
 
 /// Reads the private parameters of a node. Throws ParameterError naming one that is unknown or not allowed.

@@ -26,4 +26,7 @@ struct Scene {
 /// Index of the body of that name, or nothing.
 std::optional<int> find_body(const Scene& scene, const std::string& name);
 
+/// The free body of that name. Throws std::invalid_argument that lists those there are.
+Body& free_body(Scene& scene, const std::string& name);
+
 }  // namespace mrhi

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+using testing::box_body;
+using testing::finger;
+using testing::object_twist;
+using testing::play;
+using testing::scene_of;
+
+constexpr double kRadius = 0.008;
+
+Configuration implicit(double step) {
+  Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+  configuration.step = step;
+  configuration.tracking.max_speed = 100.0;
+  return configuration;
+}
+
+Body slab(const Vector3& size, double restitution) {
+  Body body = box_body(size, 0.05);
+  body.material.restitution = restitution;
+  body.material.stiffness = 2000.0;
+  return body;
+}
+
+/// A capsule across the face that goes along +x at `speed` for good and meets the face x = -half at t =
+/// `hit`.
+std::function<Hand(double)> hitter(double speed, double half, double hit, const Vector3& offset) {
+  return [=](double t) {
+    const Vector3 centre = offset + Vector3(speed * (t - hit) - half - kRadius, 0, 0);
+    return finger(centre - Vector3(0, 0.0125, 0), centre + Vector3(0, 0.0125, 0), kRadius);
+  };
+}
+
+// Scene (c): closed form (1 + e) u, no spin.
+TEST(ImplicitSlap, through_the_middle_gives_the_closed_forms_speed_and_no_spin) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    Simulation simulation(scene_of(slab(Vector3::Constant(0.05), restitution)), implicit(0.001));
+    play(simulation, 0.0, 0.08, 1000.0, hitter(3.0, 0.025, 0.0503, Vector3::Zero()));
+    const Twist twist = object_twist(simulation);
+    const double expected = 3.0 * (1.0 + restitution);
+    EXPECT_NEAR(twist.linear.x() / expected, 1.0, 1e-4) << restitution;
+    EXPECT_LE(twist.angular.norm(), 0.005) << restitution;
+  }
+}
+
+/// Velocity after a blow along +x at r: normal impulse by Newton's law, tangential by sticking or, if that
+/// asks for more than mu j, by sliding (two-dimensional, about y).
+Twist blow(const Body& body, double speed, double restitution, double half, double lever) {
+  const double inertia = body.inertia(1, 1), m = body.mass, mu = body.material.static_friction;
+  // Contact at (-half, 0, lever); K in (x, z).
+  const double kxx = 1.0 / m + lever * lever / inertia, kzz = 1.0 / m + half * half / inertia;
+  const double kxz = half * lever / inertia;
+  const double u = (1.0 + restitution) * speed;
+  // Sticking: K (jx, jz) = (u, 0).
+  double jx = u * kzz / (kxx * kzz - kxz * kxz), jz = -jx * kxz / kzz;
+  if (std::abs(jz) > mu * jx) {
+    const double sign = jz < 0.0 ? -1.0 : 1.0;
+    jx = u / (kxx + sign * mu * kxz);
+    jz = sign * mu * jx;
+  }
+  return {Vector3(jx, 0, jz) / m, Vector3(0, (lever * jx + half * jz) / inertia, 0)};
+}
+
+TEST(ImplicitSlap, off_centre_gives_the_closed_forms_velocity_and_spin) {
+  for (const double mu : {0.8, 0.05, 0.0}) {
+    for (const double lever : {0.005, 0.01, 0.02}) {
+      Body body = slab(Vector3::Constant(0.05), 0.5);
+      body.material.static_friction = mu;
+      body.material.dynamic_friction = mu;
+      const Twist expected = blow(body, 3.0, 0.5, 0.025, lever);
+      Simulation simulation(scene_of(body), implicit(0.001));
+      play(simulation, 0.0, 0.054, 1000.0, hitter(3.0, 0.025, 0.0503, Vector3(0, 0, lever)));
+      const Twist twist = object_twist(simulation);
+      EXPECT_LE((twist.linear - expected.linear).norm(), 1e-3 * expected.linear.norm()) << mu << " " << lever;
+      EXPECT_LE((twist.angular - expected.angular).norm(), 1e-3 * expected.angular.norm())
+          << mu << " " << lever;
+    }
+  }
+}
+
+int plates_hit(double speed, double rate) {
+  int hit = 0;
+  for (int phase = 0; phase < 25; ++phase) {
+    Simulation simulation(scene_of(slab(Vector3(0.005, 0.1, 0.1), 0.0)), implicit(0.05));
+    const double time = (5.0 + phase / 25.0) / rate;
+    play(simulation, 0.0, 12.0 / rate, rate, hitter(speed, 0.0025, time, Vector3::Zero()));
+    const double reached = object_twist(simulation).linear.x() / speed;
+    hit += std::abs(reached - 1.0) <= 0.1;
+  }
+  return hit;
+}
+
+// Scene (c) at one step per frame, restitution 0: the capsule moves by ten plates' thickness in a step.
+TEST(ImplicitPlate, is_hit_in_every_phase_at_one_step_per_frame) {
+  EXPECT_EQ(plates_hit(3.0, 120.0), 25);
+  EXPECT_EQ(plates_hit(10.0, 60.0), 25);
+}
+
+TEST(ImplicitPlate, is_not_pushed_before_it_is_met) {
+  Simulation simulation(scene_of(slab(Vector3(0.005, 0.1, 0.1), 0.0)), implicit(0.05));
+  play(simulation, 0.0, 0.1, 120.0, hitter(3.0, 0.0025, 0.046, Vector3::Zero()), [](const Simulation& s) {
+    const double met = 0.046, now = to_seconds(s.result().stamp - testing::kStart);
+    const double expected = now < met ? 0.0 : 3.0 * (now - met);
+    EXPECT_NEAR(s.state().bodies[0].pose.position.x(), expected, 1e-5) << now;
+  });
+}
+
+TEST(ImplicitPlate, a_capsule_that_passes_by_does_not_touch_it) {
+  Simulation simulation(scene_of(slab(Vector3(0.005, 0.1, 0.1), 0.0)), implicit(0.05));
+  play(simulation, 0.0, 0.2, 60.0, hitter(10.0, 0.0025, 0.1, Vector3(0, 0, 0.05 + kRadius + 0.001)));
+  EXPECT_EQ(object_twist(simulation).linear.norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace mrhi
