@@ -36,8 +36,8 @@ struct Configuration {
 };
 
 /// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the paper's 100 N/m
-/// under the paper's models, 500 N/m under `virtual_spring` and `soft_pad`, and 2000 N/m under `implicit`, which
-/// is stable with it at any step and mass.
+/// under the paper's models, 500 N/m under `virtual_spring` and `soft_pad`, and 2000 N/m under
+/// `implicit`, which is stable with it at any step and mass.
 Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

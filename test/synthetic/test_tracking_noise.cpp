@@ -12,7 +12,7 @@ namespace {
 /// The same hand in every frame, or one that flies along x at 2 m/s.
 JointsFrame frame_at(int index, double speed) {
   JointsFrame frame;
-  frame.stamp = index * 10'000'000;
+  frame.stamp = Nanoseconds{10'000'000} * index;
   const Pose wrist{{speed * to_seconds(frame.stamp), 0.2, 0.0}, Quaternion::Identity()};
   frame.hands.push_back(hand_joints(human_hand(), Side::right, wrist, relaxed_posture()));
   return frame;

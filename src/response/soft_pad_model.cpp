@@ -1,0 +1,186 @@
+#include "soft_pad_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "mr_hand_interaction/collision/way_out.h"
+#include "mr_hand_interaction/response/impact.h"
+#include "mr_hand_interaction/response/penetration_force.h"
+
+namespace mrhi {
+namespace {
+
+constexpr int kPads = SoftPadModel::kAlong * SoftPadModel::kAcross;
+/// A phalanx that stands on its tip within this angle has no direction along the surface [rad].
+constexpr double kStands = 1e-6;
+
+/// The phalanx as its contact point sees it: axes along the surface and across.
+struct Skin {
+  explicit Skin(const Contact& contact)
+      : radius(contact.radius), s(contact.axis_parameter), rise(contact.normal.dot(contact.axis)) {
+    const Vector3 flat = contact.axis - rise * contact.normal;
+    run = flat.norm();
+    if (run <= kStands * contact.axis.norm()) run = 0.0;
+    slope = run > 0.0 ? rise / std::hypot(run, rise) : 0.0;
+    along = run > 0.0 ? Vector3(flat / run) : contact.normal.unitOrthogonal();
+    across = contact.normal.cross(along);
+  }
+
+  /// How far the skin at (x, y) from the pressing point lies behind it, along n; nothing beside the phalanx.
+  std::optional<double> sag(double x, double y) const {
+    // Of the spheres that make up the capsule, the one whose skin is deepest there, u of the axis away.
+    double u = 0.0;
+    if (run > 0.0) {
+      const double rim = std::sqrt(std::max(0.0, radius * radius - y * y));
+      u = std::clamp((x - rim * slope) / run, -s, 1.0 - s);
+    }
+    const double off = x - u * run;
+    const double cap = radius * radius - off * off - y * y;
+    if (cap < 0.0) return std::nullopt;
+    return radius + u * rise - std::sqrt(cap);
+  }
+
+  double radius, s;
+  double rise, run;  // of the whole axis, along n and along the surface [m]
+  double slope;      // sine of the axis's tilt
+  Vector3 along, across;
+};
+
+/// The surface that the pads press.
+class Surface {
+ public:
+  Surface(const Contact& contact, const PlacedShape& placed, const Pose& body)
+      : contact_(contact),
+        shape_(placed.shape),
+        pose_(body * placed.pose),
+        normal_(pose_.orientation.conjugate() * contact.normal) {}
+
+  /// How deep a pad at `point` is. One beside the object touches nothing. What a mesh is like about the
+  /// contact point is not known here: there the surface counts as flat.
+  double depth(const Vector3& point) const {
+    if (std::holds_alternative<Mesh>(shape_)) return contact_.normal.dot(contact_.point - point);
+    return way_out(shape_, pose_.to_local(point), normal_).value_or(0.0);
+  }
+
+ private:
+  const Contact& contact_;
+  const Shape& shape_;
+  Pose pose_;
+  Vector3 normal_;  // shape's frame
+};
+
+struct Pad {
+  Vector3 offset;   // from the pressing point, along the surface
+  Vector3 surface;  // the point of the object that it presses
+  double push;      // [N]
+};
+
+/// All pads about one contact point.
+class PadGrid {
+ public:
+  PadGrid(const Contact& contact, const Body& body, const BodyState& state, double step)
+      : n_(contact.normal), material_(body.material), step_(step) {
+    stiffness_ = material_.stiffness * contact.share / kPads;
+    damping_ = stiffness_ * SoftPadModel::kRelaxation;
+    const Vector3 velocity = relative_velocity(contact, body, state);
+    normal_velocity_ = n_.dot(velocity);
+    slide_ = velocity - normal_velocity_ * n_;
+    spin_ = contact.hand_spin - n_.dot(twist_of(body, state).angular);
+    place(contact, body, state);
+  }
+
+  /// Drags the contact's memory to where friction lets go.
+  void drag(const BodyState& state, Contact& contact) {
+    const Vector3 reach = contact.hand_point - contact.point;
+    stretch_ = reach - n_.dot(reach) * n_;
+    const Tangential deepest =
+        coulomb(stiffness_ * stretch_ + damping_ * slide_, hardest_, material_, contact.friction);
+    contact.friction = deepest.friction;
+    friction_ =
+        deepest.friction == Friction::sticking ? material_.static_friction : material_.dynamic_friction;
+    if (deepest.friction == Friction::slipping) {
+      const Vector3 kept = deepest.force / stiffness_;
+      contact.point += stretch_ - kept;
+      contact.god_object = state.pose.to_local(contact.point);
+      stretch_ = kept;
+    }
+    // Beyond this the pads next to the middle slip as well.
+    const double most = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
+    contact.twist = std::clamp(contact.twist + step_ * spin_, -most, most);
+    unturn_ = Eigen::AngleAxisd(-contact.twist, n_);
+  }
+
+  /// Gives the object what the pads push and drag it with; returns the sum of their forces [N].
+  Vector3 act(bool fixed, BodyState& state) const {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < count_; ++i) {
+      const Pad& pad = pads_[static_cast<std::size_t>(i)];
+      const Vector3 sheared = stretch_ + pad.offset - unturn_ * pad.offset;
+      Vector3 force = stiffness_ * sheared + damping_ * (slide_ + spin_ * n_.cross(pad.offset));
+      const double limit = friction_ * pad.push, wanted = force.norm();
+      if (wanted > limit) force *= limit / wanted;
+      force -= pad.push * n_;
+      if (!fixed) apply_impulse(step_ * force, pad.surface - sheared, state);
+      sum += force;
+    }
+    return sum;
+  }
+
+  bool presses() const { return hardest_ > 0.0; }
+
+ private:
+  void place(const Contact& contact, const Body& body, const BodyState& state) {
+    const Skin skin(contact);
+    const Surface object(contact, body.shapes[contact.key.shape], state.pose);
+    const double spacing = SoftPadModel::kSpacing * contact.radius;
+    for (int i = 0; i < kPads; ++i) {
+      const double x = spacing * (i % SoftPadModel::kAlong - SoftPadModel::kAlong / 2);
+      const double y = spacing * (i / SoftPadModel::kAlong - SoftPadModel::kAcross / 2);
+      const std::optional<double> sag = skin.sag(x, y);
+      if (!sag) continue;
+      const Vector3 offset = x * skin.along + y * skin.across;
+      const Vector3 point = contact.hand_point + offset + *sag * n_;
+      const double depth = object.depth(point);
+      if (depth <= 0.0) continue;
+      const double push = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
+      pads_[static_cast<std::size_t>(count_++)] = {offset, point + depth * n_, push};
+      hardest_ = std::max(hardest_, push);
+    }
+  }
+
+  Vector3 n_;
+  const Material& material_;
+  double step_;
+  double stiffness_, damping_;  // of one pad [N/m], [N s/m]
+  double normal_velocity_;      // of the phalanx against the object at the contact point
+  Vector3 slide_;               // the same along the surface
+  double spin_;                 // and about n
+  double friction_ = 0.0;
+  double hardest_ = 0.0;  // the greatest push of a pad [N]
+  Vector3 stretch_ = Vector3::Zero();
+  Matrix3 unturn_ = Matrix3::Identity();
+  std::array<Pad, kPads> pads_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+void SoftPadModel::respond(ContactStep& step) const {
+  BodyState before;
+  std::size_t current = step.bodies.size();
+  for (Contact& contact : step.contacts) {
+    contact.force.setZero();
+    const std::size_t index = contact.key.body;
+    const Body& body = step.scene.bodies[index];
+    if (index != current) before = step.bodies[current = index];
+    if (!contact.touching() || body.material.stiffness * contact.share <= 0.0) continue;
+    PadGrid pads(contact, body, before, step.step);
+    if (!pads.presses()) continue;
+    pads.drag(before, contact);
+    contact.force = pads.act(body.fixed, step.bodies[index]);
+  }
+}
+
+}  // namespace mrhi
