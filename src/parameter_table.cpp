@@ -81,6 +81,9 @@ std::vector<ParameterEntry> make_table() {
            {"virtual_spring", ContactModelKind::virtual_spring},
            {"soft_pad", ContactModelKind::soft_pad}},
           [](C & c) -> auto& { return c.contact_model; }),
+      choice<bool>(
+          "contact/torsion", {{"true", true}, {"false", false}},
+          [](C & c) -> auto& { return c.contact.torsion; }),
       number(
           "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
       {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity},

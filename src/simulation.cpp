@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "grasp.h"
+#include "frame_report.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/integration/free_flight.h"
-#include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/response/impact.h"
 #include "mr_hand_interaction/tracking/tracker.h"
@@ -46,10 +45,6 @@ struct Simulation::Impl {
   void silence(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void keep_in_bounds();
-  void note_strikes();
-  void report_contacts();
-  void update_interactions();
-  void render();
   void clear_result();
   void finish(Nanoseconds stamp);
 
@@ -120,7 +115,7 @@ void Simulation::Impl::advance_step(double fraction, double seconds, double step
   solved.assign(scene.bodies.size(), false);
   ContactStep contact_step{scene, gravity, step, state.contacts, state.bodies, solved};
   model->respond(contact_step);
-  note_strikes();
+  note_strikes(state.contacts, strikes);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     free_flight(scene.bodies[b], solved[b] ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
@@ -146,14 +141,10 @@ void Simulation::Impl::silence(Nanoseconds until) {
 }
 
 void Simulation::Impl::lose_hands(Nanoseconds now) {
-  const std::size_t bodies = scene.bodies.size();
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
-    if (!track.active || to_seconds(now - track.last_seen) <= configuration.tracking.hold_time) continue;
-    for (std::size_t b = 0; b < bodies; ++b) {
-      end_interaction({now, EventKind::hover_end, static_cast<int>(b), track.current.id},
-                      state.interactions[slot * bodies + b], result.events);
-    }
+    const bool unseen = to_seconds(now - track.last_seen) > configuration.tracking.hold_time;
+    if (track.active && unseen) end_interactions(slot, now, state, result.events);
   }
   lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
 }
@@ -173,77 +164,6 @@ void Simulation::Impl::keep_in_bounds() {
   }
 }
 
-void Simulation::Impl::note_strikes() {
-  for (const Contact& contact : state.contacts) {
-    if (contact.impulse == Vector3::Zero()) continue;
-    const auto known = std::find_if(strikes.begin(), strikes.end(),
-                                    [&contact](const Contact& other) { return other.key == contact.key; });
-    if (known == strikes.end()) {
-      strikes.push_back(contact);
-    } else {
-      known->impulse += contact.impulse;
-    }
-  }
-}
-
-/// Contacts as they are at the frame's end, with the last step's forces, and the impacts since the frame
-/// before.
-void Simulation::Impl::report_contacts() {
-  moving.clear();
-  for (int slot = 0; slot < kMaxHands; ++slot) {
-    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
-    if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, 1.0, 0.0));
-  }
-  std::vector<Contact>& contacts = result.contacts;
-  contacts = state.contacts;
-  finder.find(moving, state.bodies, 0.0, contacts);
-  for (Contact& contact : contacts) contact.impulse.setZero();
-  contacts.erase(
-      std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
-      contacts.end());
-  for (const Contact& strike : strikes) {
-    const auto same = std::find_if(contacts.begin(), contacts.end(),
-                                   [&strike](const Contact& contact) { return contact.key == strike.key; });
-    if (same == contacts.end()) {
-      contacts.push_back(strike);
-    } else {
-      same->impulse = strike.impulse;
-    }
-  }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const Contact& a, const Contact& b) { return a.key < b.key; });
-}
-
-void Simulation::Impl::update_interactions() {
-  const std::size_t bodies = scene.bodies.size();
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    const HandTrack& track = state.hands[slot];
-    if (!track.active) continue;
-    for (std::size_t b = 0; b < bodies; ++b) {
-      if (scene.bodies[b].fixed) continue;
-      Interaction& interaction = state.interactions[slot * bodies + b];
-      const InteractionLevel seen =
-          seen_level(track.current, static_cast<int>(slot), static_cast<int>(b), finder, scene,
-                     state.bodies[b].pose, result.contacts, interaction.level);
-      update_interaction(seen, {state.time, EventKind::hover_begin, static_cast<int>(b), track.current.id},
-                         interaction, result.events);
-    }
-  }
-}
-
-void Simulation::Impl::render() {
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    const HandTrack& track = state.hands[slot];
-    if (!track.active) continue;
-    result.tracked.push_back(track.current);
-    result.rendered.push_back(
-        render_hand(track.current, static_cast<int>(slot), finder, scene, state.bodies, result.contacts));
-    result.deepest_rendered =
-        std::max(result.deepest_rendered,
-                 deepest_penetration(result.rendered.back().hand, finder, scene, state.bodies));
-  }
-}
-
 void Simulation::Impl::clear_result() {
   const bool restarted = result.restarted;
   result = FrameResult();
@@ -253,9 +173,7 @@ void Simulation::Impl::clear_result() {
 
 void Simulation::Impl::finish(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_contacts();
-  update_interactions();
-  render();
+  report_frame({scene, finder, strikes, state}, result);
 }
 
 Simulation::Simulation(Scene scene, const Configuration& configuration)

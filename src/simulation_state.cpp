@@ -61,6 +61,7 @@ void add_contact(const Contact& contact, Fnv1a& hash) {
   hash.add(contact.key.order());
   hash.add(contact.god_object);
   hash.add(contact.entry_normal);
+  hash.add(contact.touched_from);
   hash.add(contact.axis_parameter);
   hash.add(contact.depth);
   hash.add(contact.twist);

@@ -22,6 +22,10 @@ struct TrackingConfiguration {
       12.0;  ///< a joint faster than this has jumped: the hand touches nothing until clear [m/s]
 };
 
+struct ContactConfiguration {
+  bool torsion = true;  ///< a fingertip resists twisting about its contact normal (`implicit`)
+};
+
 /// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.
 struct Configuration {
   ContactModelKind contact_model = ContactModelKind::seed;
@@ -30,9 +34,10 @@ struct Configuration {
   FilterConfiguration filter;
   std::optional<double> stiffness;  ///< gamma of every body that the scene says nothing else about [N/m];
                                     ///< unset: the contact model's own, see default_material()
-  Material material;  ///< of every body that the scene says nothing else about
+  Material material;                ///< of every body that the scene says nothing else about
   double hand_radius_scale = 1.0;
   TrackingConfiguration tracking;
+  ContactConfiguration contact;
 };
 
 /// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the paper's 100 N/m

@@ -23,8 +23,8 @@ struct SimulationState {
   std::vector<Interaction> interactions;  ///< one per body and hand slot: hand * bodies + body
 };
 
-/// FNV-1a over the bits of everything that matters to the future. Stamps count relative to `time`: the same motion
-/// at another time of day has the same hash.
+/// FNV-1a over the bits of everything that matters to the future. Stamps count relative to `time`: the same
+/// motion at another time of day has the same hash.
 std::uint64_t hash(const SimulationState& state);
 
 }  // namespace mrhi

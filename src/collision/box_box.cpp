@@ -11,7 +11,7 @@ namespace {
 /// An edge-edge axis has to be this much better than a face's [m].
 constexpr double kEdgeBias = 1e-6;
 /// A face's deepest point may differ so much from the best axis (kSameFace, border_tolerance).
-constexpr double kRelative = 2e-3, kAbsolute = 3e-6;
+constexpr double kRelative = 1e-3, kAbsolute = 3e-6;
 
 /// A place within this part of an edge's length from its end is the end.
 constexpr double kAtEnd = 1e-9;

@@ -2,8 +2,6 @@
 
 namespace mrhi {
 
-constexpr double BoxFace::kCorner[4][2];
-
 BoxFace::BoxFace(const OrientedBox& box, const Vector3& outward) {
   const Vector3 local = box.axes.transpose() * outward;
   int face;

@@ -10,6 +10,8 @@ namespace {
 constexpr double kAsDeep = 1e-6;
 /// Areas are as large if they differ by less than these.
 constexpr double kSameArea = 1e-3, kNoArea = 1e-12;
+/// Three points whose triangle is smaller than this part of the region's size squared are in line.
+constexpr double kStraight = 1e-4;
 
 double cross(const RegionPoint& o, const RegionPoint& a, const RegionPoint& b) {
   return (a.u - o.u) * (b.v - o.v) - (a.v - o.v) * (b.u - o.u);
@@ -57,15 +59,31 @@ double ContactRegion::triangle(int i) const {
   return std::abs(cross((*this)[(i + count - 1) % count], (*this)[i], (*this)[(i + 1) % count]));
 }
 
+std::uint8_t ContactRegion::first_deepest() const {
+  const double deep = deepest() - kAsDeep;
+  return std::find_if(points.begin(), points.begin() + count,
+                      [&](const RegionPoint& p) { return p.depth >= deep; })
+      ->feature;
+}
+
+void ContactRegion::straighten() {
+  if (count <= 2) return;
+  const std::uint8_t kept = first_deepest();
+  double longest = 0.0;
+  for (int i = 1; i < count; ++i) {
+    longest = std::max(longest, std::hypot((*this)[i].u - (*this)[0].u, (*this)[i].v - (*this)[0].v));
+  }
+  for (int i = count - 1; i >= 0 && count > 2; --i) {
+    if ((*this)[i].feature != kept && triangle(i) < kStraight * longest * longest) erase(i);
+  }
+}
+
 void ContactRegion::reduce() {
   if (count <= 4) return;
   const auto by_feature = [](const RegionPoint& a, const RegionPoint& b) { return a.feature < b.feature; };
   std::rotate(points.begin(), std::min_element(points.begin(), points.begin() + count, by_feature),
               points.begin() + count);
-  const double deep = deepest() - kAsDeep;
-  const std::uint8_t kept = std::find_if(points.begin(), points.begin() + count, [&](const RegionPoint& p) {
-                              return p.depth >= deep;
-                            })->feature;
+  const std::uint8_t kept = first_deepest();
   while (count > 4) {
     int least = -1;
     double least_area = 0.0;

@@ -34,10 +34,13 @@ struct ContactRegion {
   /// Leaves at most four points, the deepest among them, that keep the region large. Points within rounding
   /// of each other's claims always lose in the same order.
   void reduce();
+  /// Drops points, but the deepest, that others span a line through.
+  void straighten();
 
  private:
   void erase(int i);
   double triangle(int i) const;
+  std::uint8_t first_deepest() const;
 };
 
 /// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it

@@ -64,6 +64,14 @@ void roll(const TouchingPair& pair, const Capsule& capsule, const Plane& plane, 
   contact.god_object = pair.state.pose.to_local(point);
 }
 
+/// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
+/// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm.
+void swing_back(const TouchingPair& pair, const Plane& plane, bool remembered, Contact& contact) {
+  if (!remembered) contact.touched_from = pair.hand.palm.conjugate() * plane.normal;
+  const Vector3 way_back = pair.hand.palm * contact.touched_from;
+  contact.lever = std::max(contact.depth, 0.0) * (way_back - plane.normal.dot(way_back) * plane.normal);
+}
+
 void place(const TouchingPair& pair, const Plane& plane, double s, bool remembered, Contact& contact) {
   const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
   const Vector3 offset = -capsule.radius * plane.normal;
@@ -77,6 +85,8 @@ void place(const TouchingPair& pair, const Plane& plane, double s, bool remember
     contact.friction = Friction::sticking;
     contact.twist = 0.0;
   }
+  swing_back(pair, plane, remembered && contact.depth > 0.0 && contact.friction == Friction::sticking,
+             contact);
   contact.entry_normal = pair.state.pose.orientation.conjugate() * plane.normal;
   contact.axis_parameter = s;
   contact.point = pair.state.pose * contact.god_object;

@@ -28,6 +28,7 @@ MovingHand moving_hand(const HandTrack& track, int slot, double fraction, double
   const double rate = seconds > 0.0 ? 1.0 / seconds : 0.0;
   const Eigen::AngleAxisd turn(track.current.palm.orientation * track.previous.palm.orientation.conjugate());
   hand.palm_spin = (rate * turn.angle()) * turn.axis();
+  hand.palm = Eigen::AngleAxisd(fraction * turn.angle(), turn.axis()) * track.previous.palm.orientation;
   for (std::size_t c = 0; c < kCapsules; ++c) {
     const Capsule &from = track.previous.capsules[c], &to = track.current.capsules[c];
     Capsule& capsule = hand.capsules[c];

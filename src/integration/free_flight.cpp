@@ -27,7 +27,8 @@ Vector3 inverse_differential(const Vector3& theta, const Vector3& rate) {
   return rate + 0.5 * commutator + theta.cross(commutator) / 12.0;
 }
 
-/// Body angular velocity when the body has turned by `theta` (body axes) from where its momentum was `momentum`.
+/// Body angular velocity when the body has turned by `theta` (body axes) from where its momentum was
+/// `momentum`.
 Vector3 angular_velocity(const Body& body, const Vector3& momentum, const Vector3& theta) {
   return body.inverse_inertia * (exponential(theta).conjugate() * momentum);
 }

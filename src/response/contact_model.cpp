@@ -16,7 +16,7 @@ std::unique_ptr<const ContactModel> make_contact_model(const Configuration& conf
     case ContactModelKind::impulse:
       return std::make_unique<ImpulseModel>();
     case ContactModelKind::implicit:
-      return std::make_unique<ImplicitModel>();
+      return std::make_unique<ImplicitModel>(configuration.contact.torsion);
     case ContactModelKind::virtual_spring:
       return std::make_unique<VirtualSpringModel>();
     case ContactModelKind::soft_pad:

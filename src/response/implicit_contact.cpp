@@ -27,19 +27,19 @@ double yielding_energy(double stiffness, double stretch, double limit) {
 
 }  // namespace
 
-ImplicitContact::ImplicitContact(Contact& contact, const Material& material, const Vector3& centre,
-                                 double step)
+ImplicitContact::ImplicitContact(Contact& contact, const Material& material, bool torsion,
+                                 const Vector3& centre, double step)
     : contact_(contact),
       normal_(contact.normal),
       arm_(contact.point - centre),
       step_(step),
       ahead_(step + std::max(0.0, kRelaxation - 0.5 * step)),
       stiffness_(material.stiffness * contact.share),
-      twist_stiffness_(stiffness_ * kTwistLever * kTwistLever),
+      twist_stiffness_(torsion ? stiffness_ * kTwistLever * kTwistLever : 0.0),
       friction_(contact.friction == Friction::sticking ? material.static_friction
                                                        : material.dynamic_friction),
       dynamic_friction_(material.dynamic_friction) {
-  const Vector3 reach = contact.hand_point - contact.point;
+  const Vector3 reach = contact.hand_point - contact.point + contact.lever;
   stretch_ = reach - normal_.dot(reach) * normal_;
 }
 
@@ -140,16 +140,18 @@ void ImplicitContact::finish(const Vector3& linear, const Vector3& angular, cons
   const bool sticks =
       contact_.friction == Friction::sticking ? wanted <= slip_limit_ : wanted <= kStickAgain * slip_limit_;
   contact_.friction = sticks ? Friction::sticking : Friction::slipping;
+  // What slides is what the spring and its damping, in line with the friction, do not follow.
+  const double followed = step_ / ahead_;
   if (!sticks && response.push > 0.0) {
     const Vector3 tangential = response.force + response.push * normal_;
-    const double rim = std::min(tangential.norm(), dynamic_friction_ * response.push);
-    const Vector3 kept =
-        tangential.norm() > 0.0 ? Vector3(tangential.normalized() * rim / stiffness_) : along * 0.0;
-    contact_.god_object = state.pose.to_local(contact_.point + stretch_ + step_ * along - kept);
+    const double rim = std::min(1.0, dynamic_friction_ * response.push / tangential.norm());
+    const Vector3 kept = stretch_ + followed * (rim * tangential / stiffness_ - stretch_);
+    contact_.god_object =
+        state.pose.to_local(contact_.point + stretch_ - contact_.lever + step_ * along - kept);
   }
-  const double turned = contact_.twist + step_ * (contact_.hand_spin - normal_.dot(angular));
-  const double most = twist_stiffness_ > 0.0 ? twist_limit_ / twist_stiffness_ : 0.0;
-  contact_.twist = std::clamp(turned, -most, most);
+  if (twist_stiffness_ > 0.0) {
+    contact_.twist += followed * (response.torque / twist_stiffness_ - contact_.twist);
+  }
 }
 
 }  // namespace mrhi

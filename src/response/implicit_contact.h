@@ -10,7 +10,8 @@ namespace mrhi {
 /// the end of the step, as a function of the object's velocity then. World axes.
 class ImplicitContact {
  public:
-  ImplicitContact(Contact& contact, const Material& material, const Vector3& centre, double step);
+  ImplicitContact(Contact& contact, const Material& material, bool torsion, const Vector3& centre,
+                  double step);
 
   /// Sets Coulomb's limits by the normal force at this velocity of the object (linear [m/s], angular
   /// [rad/s]).

@@ -34,8 +34,9 @@ class BodyProblem {
     free_.head<3>() += step.step * step.gravity;
   }
 
-  void add(Contact& contact, const Material& material) {
-    if (count_ < kMaxContacts) contacts_[count_++].emplace(contact, material, state_.pose.position, step_);
+  void add(Contact& contact, const Material& material, bool torsion) {
+    if (count_ == kMaxContacts) return;
+    contacts_[count_++].emplace(contact, material, torsion, state_.pose.position, step_);
   }
 
   /// Newton's method with the friction limits of the last iterate; each iterate's problem is convex.
@@ -149,7 +150,7 @@ void ImplicitModel::respond(ContactStep& step) const {
     for (auto contact = first; contact != last; ++contact) {
       contact->force.setZero();
       contact->struck = contact->struck || contact->depth > 0.0;
-      if (!contact->ignored) problem.add(*contact, body.material);
+      if (!contact->ignored) problem.add(*contact, body.material, torsion_);
     }
     first = last;
     if (body.fixed) continue;

@@ -10,7 +10,11 @@ namespace mrhi {
 /// zero it becomes the seed model. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
+  explicit ImplicitModel(bool torsion) : torsion_(torsion) {}
   void respond(ContactStep& step) const override;
+
+ private:
+  bool torsion_;
 };
 
 }  // namespace mrhi

@@ -81,8 +81,10 @@ Outcome run(const std::string& file, const std::string& scene_name) {
 
 class Recordings : public ::testing::TestWithParam<const char*> {};
 
-// Objects cannot leave the hand faster than Newton's law lets them: a squeezed object is not shot away either.
-TEST_P(Recordings, stay_finite_with_the_rendered_hand_outside_and_objects_no_faster_than_the_hand_makes_them) {
+// Objects cannot leave the hand faster than Newton's law lets them: a squeezed object is not shot away
+// either.
+TEST_P(Recordings,
+       stay_finite_with_the_rendered_hand_outside_and_objects_no_faster_than_the_hand_makes_them) {
   const std::vector<std::string> files = testing::recordings();
   MRHI_NEED_RECORDINGS(files);
   int touched = 0;

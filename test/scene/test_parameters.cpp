@@ -90,12 +90,19 @@ TEST(Parameters, DefaultFileHoldsTheDefaultOfEveryParameter) {
 }
 
 TEST(Parameters, NamesAreTheContracts) {
-  const std::vector<std::string> contract{"contact_model",        "filter/type",
-                                          "filter/window",        "gravity",
-                                          "hand/radius_scale",    "material/dynamic_friction",
-                                          "material/restitution", "material/static_friction",
-                                          "material/stiffness",   "step",
-                                          "tracking/hold_time",   "tracking/max_speed"};
+  const std::vector<std::string> contract{"contact/torsion",
+                                          "contact_model",
+                                          "filter/type",
+                                          "filter/window",
+                                          "gravity",
+                                          "hand/radius_scale",
+                                          "material/dynamic_friction",
+                                          "material/restitution",
+                                          "material/static_friction",
+                                          "material/stiffness",
+                                          "step",
+                                          "tracking/hold_time",
+                                          "tracking/max_speed"};
   EXPECT_EQ(contract, parameter_names());
 }
 

@@ -9,8 +9,8 @@
 
 namespace mrhi::testing {
 
-/// Folder of the real hand recordings, which are not part of the package: $MR_HAND_RECORDINGS, else the folder
-/// shared/recordings beside the repository. May not exist.
+/// Folder of the real hand recordings, which are not part of the package: $MR_HAND_RECORDINGS, else the
+/// folder shared/recordings beside the repository. May not exist.
 inline std::string recordings_folder() {
   const char* set = std::getenv("MR_HAND_RECORDINGS");
   return set != nullptr && *set != '\0' ? set : "../shared/recordings";
@@ -34,8 +34,8 @@ inline std::vector<std::string> recordings() {
 
 }  // namespace mrhi::testing
 
-#define MRHI_NEED_RECORDINGS(files)                                                                   \
-  if ((files).empty()) {                                                                              \
-    GTEST_SKIP() << "no hand recordings in " << mrhi::testing::recordings_folder()                    \
-                 << ": set MR_HAND_RECORDINGS to their folder";                                       \
+#define MRHI_NEED_RECORDINGS(files)                                                \
+  if ((files).empty()) {                                                           \
+    GTEST_SKIP() << "no hand recordings in " << mrhi::testing::recordings_folder() \
+                 << ": set MR_HAND_RECORDINGS to their folder";                    \
   }

@@ -33,12 +33,13 @@ struct ManifoldShape {
 };
 
 /// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
-/// deepest among them. No memory, no allocation.
+/// deepest among them. Deterministic; no memory, no allocation.
+///
 /// Sphere, box and cylinder with each other: the deepest point is as deep as the shortest translation that
-/// separates them, to rounding; where a normal is within 2.5 degrees of a face's, the face's is taken, so
-/// that what lies on a face keeps its normal, and the depth is right to 0.1 % + 2 um. A standing cylinder
-/// whose rim is less than 20 um out of level keeps its points: right to 3 um then. Mesh: corners and edges of
-/// each are measured in the other (mesh_manifold.h says how exactly).
+/// separates them, to rounding. Where that is within 2.5 degrees of a face's normal, the face's is taken (the
+/// larger face's, if two meet), so that what lies on a face keeps its normal and its points: right to 0.1 % +
+/// 3 um. A rim cut deeper than it is curved there may be taken 1 % too deep.
+/// Mesh: corners and edges of each are measured in the other; mesh_manifold.h says how well.
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin);
 

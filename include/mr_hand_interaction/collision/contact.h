@@ -37,6 +37,7 @@ struct Contact {
   // Memory: lasts while the surfaces touch.
   Vector3 god_object = Vector3::Zero();     ///< c, on the object's surface, body frame
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
+  Vector3 touched_from = Vector3::UnitZ();  ///< n as the touch began, palm frame
   double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
   Friction friction = Friction::sticking;
   double twist =
@@ -45,9 +46,10 @@ struct Contact {
   bool ignored = false;  ///< overlapped when the hand appeared: touches nothing until it has separated
 
   // This step.
-  Vector3 point = Vector3::Zero();          ///< c in world
-  Vector3 normal = Vector3::UnitZ();        ///< n
-  Vector3 hand_point = Vector3::Zero();     ///< p: the phalanx's surface point that entered at c
+  Vector3 point = Vector3::Zero();       ///< c in world
+  Vector3 normal = Vector3::UnitZ();     ///< n
+  Vector3 hand_point = Vector3::Zero();  ///< p: the phalanx's surface point that entered at c
+  Vector3 lever = Vector3::Zero();  ///< by which p, brought back to the surface the way it came, is off n [m]
   Vector3 hand_velocity = Vector3::Zero();  ///< of p [m/s]
   double hand_spin = 0.0;                   ///< n.w of the phalanx [rad/s]
   Vector3 axis = Vector3::Zero();           ///< of the phalanx, from start to end [m]

@@ -14,6 +14,7 @@ struct MovingHand {
   std::array<Capsule, kCapsules> capsules;
   std::array<Vector3, kCapsules> start_velocity;  ///< [m/s]
   std::array<Vector3, kCapsules> end_velocity;    ///< [m/s]
+  Quaternion palm = Quaternion::Identity();       ///< orientation
   Vector3 palm_spin = Vector3::Zero();            ///< angular velocity of the palm [rad/s]
 
   /// Velocity of the surface point axis_point(s) + offset of a capsule (Eq. 7 for a segment; spin about the
