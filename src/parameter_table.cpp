@@ -13,7 +13,8 @@ namespace {
 template <class T>
 using Member = std::function<T&(Configuration&)>;
 
-ParameterEntry number(const std::string& name, const std::string& unit, Range range, Member<double> member) {
+ParameterEntry number(const std::string& name, const std::string& unit, Range range,
+                      const Member<double>& member) {
   return {name, range.describe() + unit, [=](Configuration& configuration, const YAML::Node& node) {
             const std::optional<double> value = yaml_number(node);
             if (!value || !range.contains(*value)) return false;
@@ -22,7 +23,7 @@ ParameterEntry number(const std::string& name, const std::string& unit, Range ra
           }};
 }
 
-ParameterEntry integer(const std::string& name, int min, int max, Member<int> member) {
+ParameterEntry integer(const std::string& name, int min, int max, const Member<int>& member) {
   const std::string allowed = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
   return {name, allowed, [=](Configuration& configuration, const YAML::Node& node) {
             const std::optional<int> value = yaml_integer(node);
@@ -34,8 +35,9 @@ ParameterEntry integer(const std::string& name, int min, int max, Member<int> me
 
 template <class T>
 ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
-                      Member<T> member) {
+                      const Member<T>& member) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& option : choices) words.push_back(option.first);
   return {name, text::joined(words), [=](Configuration& configuration, const YAML::Node& node) {
             for (const auto& option : choices) {

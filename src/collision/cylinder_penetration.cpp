@@ -63,7 +63,7 @@ std::optional<ClosestFeatures> leave_by_rim(const Segment& axis, const Cylinder&
   const double a = cylinder.radius, b = std::max(cylinder.radius * std::abs(sine), kParallel);
   const std::optional<Vector2> on_rim = nearest_on_ellipse(a, b, place);
   if (!on_rim) return std::nullopt;
-  const Vector2 nearest = *on_rim;
+  const Vector2& nearest = *on_rim;
   const Vector2 outward = Vector2(nearest.x() / a, nearest.y() / b * (a / b)).normalized();
   const Vector3 normal = outward.x() * across + outward.y() * up;
   const double separation = outward.dot(place - nearest);

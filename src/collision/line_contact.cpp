@@ -58,11 +58,12 @@ Manifold line_on_face(const Line& line, bool line_is_a, const BoxFace& face, dou
     const double start = border.sign * face.along[d].dot(line.middle - face.centre);
     const double along = border.sign * face.along[d].dot(line.along);
     const Stretch before = stretch;
-    if (start + along * stretch.s0 > face.half[d] + tolerance && along < 0.0) {
+    const double border_at = face.half[d] + tolerance;
+    const bool first_out = along < 0.0 && start + along * stretch.s0 > border_at;
+    const bool last_out = along > 0.0 && start + along * stretch.s1 > border_at;
+    if (first_out || last_out) {
       stretch.clip(start, along, face.half[d]);
-    } else if (start + along * stretch.s1 > face.half[d] + tolerance && along > 0.0) {
-      stretch.clip(start, along, face.half[d]);
-    } else if (start > face.half[d] + tolerance) {
+    } else if (start > border_at) {
       return {};
     }
     if (stretch.s0 > before.s0) features[0] = 2 + static_cast<int>(i);

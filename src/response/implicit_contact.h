@@ -33,6 +33,7 @@ class ImplicitContact {
   /// Writes force, stick or slip and the dragged god object back, at the solution.
   void finish(const Vector3& linear, const Vector3& angular, const BodyState& state);
 
+  bool rubs() const { return slip_limit_ > 0.0; }
   const Vector3& arm() const { return arm_; }
   const Vector3& normal() const { return normal_; }
 

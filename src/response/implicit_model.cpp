@@ -17,7 +17,12 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr std::size_t kMaxContacts = 96;  // on one body
 constexpr int kMaxIterations = 40;
+constexpr int kMaxHeldIterations = 60;
+constexpr int kMaxLimits = 8;
 constexpr int kMaxHalvings = 12;
+/// The first full steps need no check: they are exact while contacts neither open nor slip, and what is wrong
+/// with them shows in the next iterate.
+constexpr int kUncheckedIterations = 2;
 constexpr double kConverged = 1e-10;  // of the forces' impulse
 
 /// The problem of one body: find the velocity V at the end of the step.
@@ -45,12 +50,10 @@ class BodyProblem {
     for (int i = 0; i < kMaxIterations; ++i) {
       limit_friction(velocity);
       assemble(velocity);
-      if (error() <= kConverged * impulse_scale_ + 1e-18) break;
-      const Vector6 direction = -hessian_.llt().solve(gradient_);
-      velocity += line_search(velocity, direction, i) * direction;
+      if (solved()) return velocity;
+      advance(i >= kUncheckedIterations, velocity);
     }
-    limit_friction(velocity);
-    return velocity;
+    return solve_with_held_limits();
   }
 
   void finish(const Vector6& velocity) {
@@ -62,6 +65,28 @@ class BodyProblem {
   Vector3 angular_momentum(const Vector6& velocity) const { return inertia_ * velocity.tail<3>(); }
 
  private:
+  /// Where the limits keep chasing the velocity: they are held while the convex problem is solved to its end,
+  /// then renewed. The solution for any limits is passive, so whenever this stops nothing is thrown.
+  Vector6 solve_with_held_limits() {
+    Vector6 velocity = start_;
+    for (int renewed = 0; renewed < kMaxLimits; ++renewed) {
+      limit_friction(velocity);
+      for (int i = 0; i < kMaxHeldIterations; ++i) {
+        assemble(velocity);
+        if (solved()) break;
+        advance(true, velocity);
+      }
+    }
+    return velocity;
+  }
+
+  bool solved() const { return error() <= kConverged * impulse_scale_ + 1e-18; }
+
+  void advance(bool checked, Vector6& velocity) const {
+    const Vector6 direction = -hessian_.llt().solve(gradient_);
+    velocity += (checked ? line_search(velocity, direction) : 1.0) * direction;
+  }
+
   void limit_friction(const Vector6& velocity) {
     for (std::size_t i = 0; i < count_; ++i)
       contacts_[i]->limit_friction(velocity.head<3>(), velocity.tail<3>());
@@ -78,7 +103,7 @@ class BodyProblem {
     for (std::size_t i = 0; i < count_; ++i) {
       const ImplicitContact& contact = *contacts_[i];
       const ImplicitContact::Response response = contact.evaluate(velocity.head<3>(), velocity.tail<3>());
-      if (response.push <= 0.0) continue;
+      if (response.push <= 0.0 && !contact.rubs()) continue;
       const Vector3& r = contact.arm();
       const Vector3& n = contact.normal();
       gradient_.head<3>() -= step_ * response.force;
@@ -110,10 +135,8 @@ class BodyProblem {
     return sum;
   }
 
-  /// Part of the way that lowers the energy. The first full steps need no check: they are exact while
-  /// contacts neither open nor slip, and what is wrong with them shows in the next iterate.
-  double line_search(const Vector6& velocity, const Vector6& direction, int iteration) const {
-    if (iteration < 2) return 1.0;
+  /// Part of the way that lowers the energy.
+  double line_search(const Vector6& velocity, const Vector6& direction) const {
     const double before = energy(velocity), descent = gradient_.dot(direction);
     double part = 1.0;
     for (int i = 0; i < kMaxHalvings; ++i, part *= 0.5) {

@@ -136,8 +136,9 @@ class PadGrid {
     const Surface object(contact, body.shapes[contact.key.shape], state.pose);
     const double spacing = SoftPadModel::kSpacing * contact.radius;
     for (int i = 0; i < kPads; ++i) {
-      const double x = spacing * (i % SoftPadModel::kAlong - SoftPadModel::kAlong / 2);
-      const double y = spacing * (i / SoftPadModel::kAlong - SoftPadModel::kAcross / 2);
+      const int along = i % SoftPadModel::kAlong - SoftPadModel::kAlong / 2;
+      const int across = i / SoftPadModel::kAlong - SoftPadModel::kAcross / 2;
+      const double x = spacing * along, y = spacing * across;
       const std::optional<double> sag = skin.sag(x, y);
       if (!sag) continue;
       const Vector3 offset = x * skin.along + y * skin.across;
