@@ -15,7 +15,8 @@ std::vector<Contact> contacts_at_end(const FrameEnd& end) {
     if (track.active && !track.appeared) hands.push_back(moving_hand(track, slot, 1.0, 0.0));
   }
   std::vector<Contact> contacts = end.state.contacts;
-  end.finder.find(hands, end.state.bodies, 0.0, contacts);
+  end.neighbours.begin_step(end.state.bodies, 0.0);
+  end.finder.find(hands, end.neighbours, end.state.bodies, 0.0, contacts);
   for (Contact& contact : contacts) contact.impulse.setZero();
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),

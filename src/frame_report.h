@@ -10,6 +10,7 @@ namespace mrhi {
 /// What a frame's result is made from, once bodies and hands are at the frame's stamp.
 struct FrameEnd {
   const Scene& scene;
+  Neighbours& neighbours;
   ContactFinder& finder;
   const std::vector<Contact>& strikes;  ///< impacts since the frame before, one entry per contact
   SimulationState& state;               ///< its interactions are updated

@@ -87,6 +87,9 @@ std::vector<ParameterEntry> make_table() {
           "contact/torsion", {{"true", true}, {"false", false}},
           [](C & c) -> auto& { return c.contact.torsion; }),
       number(
+          "contact/object_stiffness", " [N/m]", {0, no_limit, false},
+          [](C & c) -> auto& { return c.contact.object_stiffness; }),
+      number(
           "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
       {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity},
       choice<FilterKind>(

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "frame_report.h"
+#include "mr_hand_interaction/collision/body_contact_finder.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/integration/free_flight.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/response/impact.h"
 #include "mr_hand_interaction/tracking/tracker.h"
 
 namespace mrhi {
@@ -34,7 +34,10 @@ struct Simulation::Impl {
         gravity(configuration.gravity.value_or(scene.gravity)),
         step_length(static_cast<Nanoseconds>(std::llround(configuration.step * 1e9))),
         model(make_contact_model(configuration)),
-        finder(scene) {
+        geometry(scene),
+        neighbours(scene),
+        finder(scene, geometry, gravity),
+        body_finder(scene, geometry, gravity) {
     reset();
   }
 
@@ -52,8 +55,11 @@ struct Simulation::Impl {
   const Configuration configuration;
   const Vector3 gravity;
   const Nanoseconds step_length;
-  const std::unique_ptr<const ContactModel> model;
+  const std::unique_ptr<ContactModel> model;
+  const SceneGeometry geometry;
+  Neighbours neighbours;
   ContactFinder finder;
+  BodyContactFinder body_finder;
 
   SimulationState state;
   FrameResult result;
@@ -64,7 +70,7 @@ struct Simulation::Impl {
 
   std::vector<MovingHand> moving;
   std::vector<Contact> strikes;
-  std::vector<char> solved;  // by body: the contact model has seen to gravity
+  StepChanges changes;
 };
 
 void Simulation::Impl::reset() {
@@ -101,7 +107,7 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
   frame_to = to;
   steps = static_cast<int>((to - from + step_length - 1) / step_length);
   steps_done = 0;
-  finder.begin_frame(state.hands, state.bodies, to_seconds(to - from));
+  neighbours.begin_frame(state.hands, state.bodies);
 }
 
 /// One step, `fraction` of the way into a frame that lasts `seconds`.
@@ -111,15 +117,17 @@ void Simulation::Impl::advance_step(double fraction, double seconds, double step
     const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
     if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, fraction, seconds));
   }
-  finder.find(moving, state.bodies, step, state.contacts);
-  solved.assign(scene.bodies.size(), false);
-  ContactStep contact_step{scene, gravity, step, state.contacts, state.bodies, solved};
+  neighbours.begin_step(state.bodies, step);
+  finder.find(moving, neighbours, state.bodies, step, state.contacts);
+  body_finder.find(neighbours, state.bodies, step, state.body_contacts);
+  changes.reset(scene.bodies.size());
+  ContactStep contact_step{scene, gravity, step, state.contacts, state.body_contacts, state.bodies, changes};
   model->respond(contact_step);
   note_strikes(state.contacts, strikes);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    free_flight(scene.bodies[b], solved[b] ? Vector3::Zero() : gravity, step, state.bodies[b]);
+    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
-  delay_impacts(contact_step);
+  changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   keep_in_bounds();
 }
 
@@ -134,7 +142,7 @@ void Simulation::Impl::silence(Nanoseconds until) {
   }
   while (state.time + step_length <= until) {
     lose_hands(state.time);
-    finder.begin_frame(state.hands, state.bodies, to_seconds(step_length));
+    neighbours.begin_frame(state.hands, state.bodies);
     advance_step(0.0, 0.0, to_seconds(step_length));
     state.time += step_length;
   }
@@ -157,9 +165,7 @@ void Simulation::Impl::keep_in_bounds() {
     if ((p.array() >= scene.bounds.min.array()).all() && (p.array() <= scene.bounds.max.array()).all())
       continue;
     state.bodies[b] = start_state(body);
-    state.contacts.erase(std::remove_if(state.contacts.begin(), state.contacts.end(),
-                                        [b](const Contact& contact) { return contact.key.body == b; }),
-                         state.contacts.end());
+    forget_contacts(b, state);
     result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
   }
 }
@@ -173,7 +179,7 @@ void Simulation::Impl::clear_result() {
 
 void Simulation::Impl::finish(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_frame({scene, finder, strikes, state}, result);
+  report_frame({scene, neighbours, finder, strikes, state}, result);
 }
 
 Simulation::Simulation(Scene scene, const Configuration& configuration)

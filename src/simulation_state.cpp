@@ -1,5 +1,6 @@
 #include "mr_hand_interaction/simulation_state.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace mrhi {
@@ -70,7 +71,25 @@ void add_contact(const Contact& contact, Fnv1a& hash) {
   hash.add(contact.ignored);
 }
 
+void add_contact(const BodyContact& contact, Fnv1a& hash) {
+  hash.add(contact.key.order());
+  hash.add(contact.anchor_a);
+  hash.add(contact.anchor_b);
+  hash.add(contact.depth);
+  hash.add(contact.friction);
+  hash.add(contact.struck);
+}
+
 }  // namespace
+
+void forget_contacts(std::size_t body, SimulationState& state) {
+  const auto forget = [](auto& contacts, auto concerns) {
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(), concerns), contacts.end());
+  };
+  forget(state.contacts, [body](const Contact& contact) { return contact.key.body == body; });
+  forget(state.body_contacts,
+         [body](const BodyContact& contact) { return contact.key.a == body || contact.key.b == body; });
+}
 
 std::uint64_t hash(const SimulationState& state) {
   Fnv1a hash;
@@ -82,6 +101,7 @@ std::uint64_t hash(const SimulationState& state) {
   }
   for (const HandTrack& track : state.hands) add_track(track, state.time, hash);
   for (const Contact& contact : state.contacts) add_contact(contact, hash);
+  for (const BodyContact& contact : state.body_contacts) add_contact(contact, hash);
   for (const Interaction& interaction : state.interactions) hash.add(interaction.level);
   return hash.value();
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mr_hand_interaction/collision/body_contact.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/interaction.h"
@@ -19,9 +20,13 @@ struct SimulationState {
   int restart_frames = 0;                 ///< how many in a row followed on from each other
   std::vector<BodyState> bodies;          ///< one per Scene::bodies, fixtures too
   std::vector<HandTrack> hands;           ///< slots; see HandTrack::active
-  std::vector<Contact> contacts;          ///< sorted by key
+  std::vector<Contact> contacts;          ///< of hands with bodies, sorted by key
+  std::vector<BodyContact> body_contacts; ///< of bodies with each other, sorted by key
   std::vector<Interaction> interactions;  ///< one per body and hand slot: hand * bodies + body
 };
+
+/// Takes all contacts of a body away.
+void forget_contacts(std::size_t body, SimulationState& state);
 
 /// FNV-1a over the bits of everything that matters to the future. Stamps count relative to `time`: the same
 /// motion at another time of day has the same hash.

@@ -1,7 +1,6 @@
 #include "mr_hand_interaction/collision/contact_finder.h"
 
 #include <algorithm>
-#include <limits>
 #include <variant>
 
 #include "mr_hand_interaction/collision/god_object.h"
@@ -12,8 +11,6 @@ namespace {
 
 /// Contacts are followed from this gap on, plus what the pair can close within a step [m].
 constexpr double kMargin = 0.001;
-/// Room for what bodies may do between two frames beyond flying on [m].
-constexpr double kBroadMargin = 0.02;
 
 struct LocalClosest {
   const Capsule& capsule;
@@ -37,16 +34,6 @@ bool spheres_apart(const Capsule& capsule, const Vector3& centre, double radius)
   return (capsule.centre() - centre).norm() > reach + half_length;
 }
 
-/// Where a body will be after `time` seconds at its present velocity.
-Pose moved(const Pose& pose, const Twist& twist, double time) {
-  const double angle = twist.angular.norm() * time;
-  Pose result{pose.position + time * twist.linear, pose.orientation};
-  if (angle > 0.0) {
-    result.orientation = Quaternion(Eigen::AngleAxisd(angle, twist.angular.normalized())) * pose.orientation;
-  }
-  return result;
-}
-
 AxisSpan span_over(const TouchingPair& pair, const ClosestFeatures& features) {
   const PlacedShape& placed = pair.body.shapes[static_cast<std::size_t>(pair.shape_index)];
   const Pose pose = pair.state.pose * placed.pose;
@@ -59,46 +46,16 @@ AxisSpan span_over(const TouchingPair& pair, const ClosestFeatures& features) {
 
 }  // namespace
 
-ContactFinder::ContactFinder(const Scene& scene)
-    : scene_(scene), broad_phase_(scene.bodies.size()), meshes_(scene.bodies.size()), near_(kMaxHands) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    for (const PlacedShape& placed : scene.bodies[b].shapes) {
-      const Mesh* mesh = std::get_if<Mesh>(&placed.shape);
-      meshes_[b].push_back(mesh != nullptr ? std::make_unique<MeshCollider>(*mesh->triangles) : nullptr);
-    }
-  }
-  for (std::vector<int>& near : near_) near.reserve(scene.bodies.size());
+ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity)
+    : scene_(scene), geometry_(geometry), gravity_(gravity) {
   found_.reserve(64 * kMaxHands);
 }
 
-void ContactFinder::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
-                                double seconds) {
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const double way = twist_of(scene_.bodies[b], bodies[b]).linear.norm() * seconds;
-    broad_phase_.update(static_cast<int>(b), bodies[b].pose.position,
-                        scene_.bodies[b].bounding_radius + way + kBroadMargin);
-  }
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-    near_[slot].clear();
-    if (!hands[slot].active) continue;
-    Vector3 min = Vector3::Constant(std::numeric_limits<double>::max()), max = -min;
-    for (const Hand* hand : {&hands[slot].previous, &hands[slot].current}) {
-      for (const Capsule& capsule : hand->capsules) {
-        if (capsule.radius <= 0.0) continue;
-        const Vector3 reach = Vector3::Constant(capsule.radius);
-        min = min.cwiseMin(capsule.start.cwiseMin(capsule.end) - reach);
-        max = max.cwiseMax(capsule.start.cwiseMax(capsule.end) + reach);
-      }
-    }
-    near_[slot] = broad_phase_.query(min, max);
-  }
-}
-
-void ContactFinder::find(const std::vector<MovingHand>& hands, const std::vector<BodyState>& bodies,
-                         double step, std::vector<Contact>& contacts) {
+void ContactFinder::find(const std::vector<MovingHand>& hands, const Neighbours& neighbours,
+                         const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts) {
   found_.clear();
   for (const MovingHand& hand : hands) {
-    for (const int body : near_[static_cast<std::size_t>(hand.slot)]) {
+    for (const int body : neighbours.near_hand(hand.slot)) {
       find_pair(hand, body, bodies[static_cast<std::size_t>(body)], step, contacts);
     }
   }
@@ -112,7 +69,7 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
   const PlacedShape& placed = scene_.bodies[b].shapes[i];
   const Pose pose = body_pose * placed.pose;
   std::optional<ClosestFeatures> features =
-      std::visit(LocalClosest{to_local(capsule, pose), meshes_[b][i].get(), margin}, placed.shape);
+      std::visit(LocalClosest{to_local(capsule, pose), geometry_.meshes[b][i].get(), margin}, placed.shape);
   if (!features || features->distance > margin) return std::nullopt;
   features->normal = pose.orientation * features->normal;
   features->point = pose * features->point;
@@ -122,44 +79,45 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
 void ContactFinder::find_pair(const MovingHand& hand, int body_index, const BodyState& state, double step,
                               const std::vector<Contact>& before) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(body_index)];
-  const Twist twist = twist_of(body, state);
+  const MovingBody moving(body, state, gravity_);
+  const Twist& twist = moving.twist;
+  const double falls = 0.5 * step * moving.acceleration.norm();
   for (int c = 0; c < kCapsules; ++c) {
     const auto ci = static_cast<std::size_t>(c);
     const Capsule& capsule = hand.capsules[ci];
     if (capsule.radius <= 0.0) continue;
     const double speed = std::max(hand.start_velocity[ci].norm(), hand.end_velocity[ci].norm()) +
-                         twist.linear.norm() + twist.angular.norm() * body.bounding_radius;
+                         twist.linear.norm() + twist.angular.norm() * body.bounding_radius + falls;
     const double margin = kMargin + speed * step;
     if (spheres_apart(capsule, state.pose.position, body.bounding_radius + margin)) continue;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
       const TouchingPair pair{hand, c, body_index, shape, body, state};
       std::optional<ClosestFeatures> features = closest(capsule, body_index, shape, state.pose, margin);
-      if (features && features->distance > kMargin) features = swept(pair, twist, step, margin);
+      if (features && features->distance > kMargin) features = swept(pair, moving, step, margin);
       if (features) touch(pair, *features, before);
     }
   }
 }
 
-std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const Twist& twist, double step,
-                                                    double margin) const {
+std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const MovingBody& moving,
+                                                    double step, double margin) const {
   const auto c = static_cast<std::size_t>(pair.capsule);
   const Capsule& capsule = pair.hand.capsules[c];
-  const auto pose_at = [&](double time) { return moved(pair.state.pose, twist, time); };
-  const auto separation = [&](double time) -> std::optional<Separation> {
+  const auto separation = [&](double time) -> std::optional<Separation<ClosestFeatures>> {
     const Capsule then{capsule.start + time * pair.hand.start_velocity[c],
                        capsule.end + time * pair.hand.end_velocity[c], capsule.radius};
-    const Pose pose = pose_at(time);
+    const Pose pose = moving.at(time);
     const auto features = closest(then, pair.body_index, pair.shape_index, pose, margin);
     if (!features) return std::nullopt;
     const Vector3 hand_velocity = pair.hand.surface_velocity(pair.capsule, features->axis_parameter,
                                                              -capsule.radius * features->normal);
-    const Vector3 relative = hand_velocity - object_velocity(twist, pose.position, features->point);
-    return Separation{*features, features->normal.dot(relative)};
+    const Vector3 relative = hand_velocity - moving.velocity(time, features->point - pose.position);
+    return Separation<ClosestFeatures>{*features, features->distance, features->normal.dot(relative)};
   };
-  const auto touch = first_touch(separation, step);
+  const auto touch = first_touch<ClosestFeatures>(separation, step);
   if (!touch) return std::nullopt;
   // Told where the body is now: the place on its surface that will be met.
-  const Pose then = pose_at(touch->time);
+  const Pose then = moving.at(touch->time);
   ClosestFeatures features = touch->features;
   features.point = pair.state.pose * then.to_local(features.point);
   features.normal = pair.state.pose.orientation * (then.orientation.conjugate() * features.normal);

@@ -220,15 +220,22 @@ struct BroadPhase::Impl {
 
   static bool add(FclObject* a, FclObject* b, void* data) {
     Impl& self = *static_cast<Impl*>(data);
-    const Body& body = self.body_of(a == &self.asked ? b : a);
-    self.found.push_back(static_cast<int>(&body - self.bodies.data()));
+    self.found.push_back(self.index_of(a == &self.asked ? b : a));
     return false;
   }
+  static bool add_pair(FclObject* a, FclObject* b, void* data) {
+    Impl& self = *static_cast<Impl*>(data);
+    const int i = self.index_of(a), j = self.index_of(b);
+    self.found_pairs.emplace_back(std::min(i, j), std::max(i, j));
+    return false;
+  }
+  int index_of(const FclObject* object) { return static_cast<int>(&body_of(object) - bodies.data()); }
 
   std::vector<Body> bodies;
   FclManager manager;
   std::vector<FclObject*> moved;
   std::vector<int> found;
+  std::vector<std::pair<int, int>> found_pairs;
   std::shared_ptr<FclBox> box = std::make_shared<FclBox>(0.0, 0.0, 0.0);
   FclObject asked{box};
 };
@@ -259,6 +266,13 @@ const std::vector<int>& BroadPhase::query(const Vector3& min, const Vector3& max
   impl_->manager.collide(&impl_->asked, impl_.get(), &Impl::add);
   std::sort(impl_->found.begin(), impl_->found.end());
   return impl_->found;
+}
+
+const std::vector<std::pair<int, int>>& BroadPhase::pairs() {
+  impl_->place_moved();
+  impl_->found_pairs.clear();
+  if (impl_->bodies.size() > 1) impl_->manager.collide(impl_.get(), &Impl::add_pair);
+  return impl_->found_pairs;
 }
 
 }  // namespace mrhi

@@ -1,20 +1,38 @@
 #pragma once
 
-#include "mr_hand_interaction/response/contact_model.h"
+#include "body_problem.h"
+#include "impact_solver.h"
+#include "island_problem.h"
 
 namespace mrhi {
 
-/// The paper's two phases solved at the end of the step: Newton's impact law where a phalanx strikes, and the
+/// The paper's two phases solved at the end of the step: Newton's impact law where surfaces strike, and the
 /// god-object springs with Coulomb friction and soft-finger torsion as functions of the velocity that
-/// results. One convex problem per body, M (v - v*) = h sum J^T f(v), by Newton's method; as the step goes to
-/// zero it becomes the seed model. See docs/contact.md.
+/// results. One convex problem per island of touching bodies, M (v - v*) = h sum J' f(v), by Newton's method;
+/// as the step goes to zero it becomes the seed model. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
-  explicit ImplicitModel(bool torsion) : torsion_(torsion) {}
-  void respond(ContactStep& step) const override;
+  /// `object_stiffness`: of a touch between two bodies [N/m].
+  ImplicitModel(bool torsion, double object_stiffness)
+      : torsion_(torsion), object_stiffness_(object_stiffness) {}
+  void respond(ContactStep& step) override;
 
  private:
-  bool torsion_;
+  void respond(ContactStep& step, const Islands::Island& island);
+  void gather(const ContactStep& step, const Islands::Island& island);
+  int place_of(int body);
+  template <typename Problem>
+  void settle_all(ContactStep& step, const Problem& problem) const;
+
+  const bool torsion_;
+  const double object_stiffness_;
+  ImpactSolver impacts_;
+  Islands islands_;
+  IslandProblem several_;
+  // The island at hand: its bodies, and its contacts with the entries they stand for.
+  std::vector<int> bodies_, places_;
+  std::vector<IslandContact> contacts_;
+  std::vector<ContactIndex> entries_;
 };
 
 }  // namespace mrhi

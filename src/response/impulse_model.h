@@ -1,5 +1,6 @@
 #pragma once
 
+#include "impact_solver.h"
 #include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
@@ -8,7 +9,10 @@ namespace mrhi {
 /// holds.
 class ImpulseModel : public ContactModel {
  public:
-  void respond(ContactStep& step) const override;
+  void respond(ContactStep& step) override;
+
+ private:
+  ImpactSolver impacts_;
 };
 
 }  // namespace mrhi

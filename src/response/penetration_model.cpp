@@ -4,7 +4,7 @@
 
 namespace mrhi {
 
-void PenetrationModel::respond(ContactStep& step) const {
+void PenetrationModel::respond(ContactStep& step) {
   penetration_phase(step);
 }
 

@@ -1,12 +1,11 @@
 #include "seed_model.h"
 
-#include "mr_hand_interaction/response/impact.h"
 #include "mr_hand_interaction/response/penetration_force.h"
 
 namespace mrhi {
 
-void SeedModel::respond(ContactStep& step) const {
-  impulse_phase(step, ImpactFriction::none);
+void SeedModel::respond(ContactStep& step) {
+  impacts_.resolve(step, ImpactFriction::none);
   // A phalanx that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
   penetration_phase(step);

@@ -168,7 +168,7 @@ class PadGrid {
 
 }  // namespace
 
-void SoftPadModel::respond(ContactStep& step) const {
+void SoftPadModel::respond(ContactStep& step) {
   BodyState before;
   std::size_t current = step.bodies.size();
   for (Contact& contact : step.contacts) {

@@ -20,7 +20,7 @@ class SoftPadModel : public ContactModel {
   /// A pad has a damper beside its spring: its damping over its stiffness [s].
   static constexpr double kRelaxation = 0.01;
 
-  void respond(ContactStep& step) const override;
+  void respond(ContactStep& step) override;
 };
 
 }  // namespace mrhi

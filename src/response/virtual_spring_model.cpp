@@ -37,7 +37,7 @@ Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contac
 
 }  // namespace
 
-void VirtualSpringModel::respond(ContactStep& step) const {
+void VirtualSpringModel::respond(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     const std::size_t body = contact.key.body;
     contact.force = coupling_force(step.scene.bodies[body], step.bodies[body], contact);

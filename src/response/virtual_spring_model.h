@@ -19,7 +19,7 @@ class VirtualSpringModel : public ContactModel {
   /// N/m [kg].
   static constexpr double kPhalanxMass = 0.01;
 
-  void respond(ContactStep& step) const override;
+  void respond(ContactStep& step) override;
 };
 
 }  // namespace mrhi

@@ -17,7 +17,9 @@ class GodObject : public ::testing::Test {
   void make(const Vector3& size) {
     scene_ = testing::scene_of(testing::box_body(size, 0.1));
     bodies_ = {start_state(scene_.bodies[0])};
-    finder_ = std::make_unique<ContactFinder>(scene_);
+    geometry_ = std::make_unique<SceneGeometry>(scene_);
+    neighbours_ = std::make_unique<Neighbours>(scene_);
+    finder_ = std::make_unique<ContactFinder>(scene_, *geometry_, Vector3::Zero());
   }
   void move_to(const Vector3& start, const Vector3& end) {
     MovingHand hand;
@@ -27,8 +29,9 @@ class GodObject : public ::testing::Test {
     std::vector<HandTrack> tracks(kMaxHands);
     tracks[0].active = true;
     tracks[0].previous.capsules = tracks[0].current.capsules = hand.capsules;
-    finder_->begin_frame(tracks, bodies_, 0.001);
-    finder_->find({hand}, bodies_, 0.001, contacts_);
+    neighbours_->begin_frame(tracks, bodies_);
+    neighbours_->begin_step(bodies_, 0.001);
+    finder_->find({hand}, *neighbours_, bodies_, 0.001, contacts_);
   }
   /// A fingertip that stands on its tip, `depth` below the top face, `x` along it.
   void poke(double depth, double x = 0.0) {
@@ -39,6 +42,8 @@ class GodObject : public ::testing::Test {
 
   Scene scene_;
   std::vector<BodyState> bodies_;
+  std::unique_ptr<SceneGeometry> geometry_;
+  std::unique_ptr<Neighbours> neighbours_;
   std::unique_ptr<ContactFinder> finder_;
   std::vector<Contact> contacts_;
 };

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "mr_hand_interaction/response/impact.h"
+#include "response/impact_solver.h"
 #include "support/fixtures.h"
 
 namespace mrhi {
@@ -72,9 +73,11 @@ struct Blow {
     contacts[0].hand_velocity = hand_velocity;
   }
   void strike() {
-    std::vector<char> solved(1, 0);
-    ContactStep step{scene, scene.gravity, 0.001, contacts, bodies, solved};
-    impulse_phase(step, ImpactFriction::none);
+    std::vector<BodyContact> none;
+    StepChanges changes;
+    changes.reset(1);
+    ContactStep step{scene, scene.gravity, 0.001, contacts, none, bodies, changes};
+    ImpactSolver().resolve(step, ImpactFriction::none);
   }
   double normal_velocity() const {
     return contacts[0].normal.dot(relative_velocity(contacts[0], scene.bodies[0], bodies[0]));

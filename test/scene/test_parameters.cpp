@@ -90,7 +90,8 @@ TEST(Parameters, DefaultFileHoldsTheDefaultOfEveryParameter) {
 }
 
 TEST(Parameters, NamesAreTheContracts) {
-  const std::vector<std::string> contract{"contact/torsion",
+  const std::vector<std::string> contract{"contact/object_stiffness",
+                                          "contact/torsion",
                                           "contact_model",
                                           "filter/type",
                                           "filter/window",

@@ -1,32 +1,30 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
-#include "mr_hand_interaction/collision/broad_phase.h"
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/collision/mesh_collision.h"
+#include "mr_hand_interaction/collision/moving_body.h"
 #include "mr_hand_interaction/collision/moving_hand.h"
+#include "mr_hand_interaction/collision/neighbours.h"
+#include "mr_hand_interaction/collision/scene_geometry.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
 
-/// Finds what each hand touches, or is about to touch: broad phase once a frame, closest features in every
-/// step.
+/// Finds what each hand touches, or is about to touch in the step.
 class ContactFinder {
  public:
-  explicit ContactFinder(const Scene& scene);  ///< keeps a reference
-
-  /// Once a frame: which bodies each hand may come near within `seconds`.
-  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies, double seconds);
+  /// Keeps references.
+  ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
 
   /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory;
   /// see god_object.h.
-  void find(const std::vector<MovingHand>& hands, const std::vector<BodyState>& bodies, double step,
-            std::vector<Contact>& contacts);
+  void find(const std::vector<MovingHand>& hands, const Neighbours& neighbours,
+            const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts);
 
   /// Closest features in world between a capsule and one shape of a body, if nearer than `margin` [m].
   std::optional<ClosestFeatures> closest(const Capsule& capsule, int body, int shape, const Pose& body_pose,
@@ -36,14 +34,13 @@ class ContactFinder {
   void find_pair(const MovingHand& hand, int body, const BodyState& state, double step,
                  const std::vector<Contact>& before);
   /// Closest features at the time within the step at which the pair first touches, if it does.
-  std::optional<ClosestFeatures> swept(const TouchingPair& pair, const Twist& twist, double step,
+  std::optional<ClosestFeatures> swept(const TouchingPair& pair, const MovingBody& moving, double step,
                                        double margin) const;
   void touch(const TouchingPair& pair, const ClosestFeatures& features, const std::vector<Contact>& before);
 
   const Scene& scene_;
-  BroadPhase broad_phase_;
-  std::vector<std::vector<std::unique_ptr<MeshCollider>>> meshes_;  // [body][shape], null unless a mesh
-  std::vector<std::vector<int>> near_;                              // [hand slot] bodies
+  const SceneGeometry& geometry_;
+  const Vector3 gravity_;
   std::vector<Contact> found_;
 };
 

@@ -3,9 +3,11 @@
 #include <memory>
 #include <vector>
 
+#include "mr_hand_interaction/collision/body_contact.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/response/step_changes.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -13,20 +15,22 @@ namespace mrhi {
 /// What a contact model works on in one step.
 struct ContactStep {
   const Scene& scene;
-  const Vector3& gravity;          ///< [m/s^2]
-  double step;                     ///< [s]
-  std::vector<Contact>& contacts;  ///< sorted by key; the model fills force, impulse and friction
+  const Vector3& gravity;                   ///< [m/s^2]
+  double step;                              ///< [s]
+  std::vector<Contact>& contacts;           ///< with hands, sorted by key; the model fills what acts
+  std::vector<BodyContact>& body_contacts;  ///< of bodies with each other, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
-  std::vector<char>& solved;  ///< set for a body whose momenta are those of the step's end, gravity included
+  StepChanges& changes;
 };
 
-/// How an object answers a touch. Stateless: all memory is in the contacts.
+/// How an object answers a touch. All memory is in the contacts: a model keeps nothing but scratch space.
 class ContactModel {
  public:
   virtual ~ContactModel() = default;
-  virtual void respond(ContactStep& step) const = 0;
+  virtual void respond(ContactStep& step) = 0;
 };
 
-std::unique_ptr<const ContactModel> make_contact_model(const Configuration& configuration);
+/// Objects touch each other by the law of `implicit` under every model.
+std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration);
 
 }  // namespace mrhi

@@ -2,7 +2,6 @@
 
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
-#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 
@@ -20,19 +19,8 @@ void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& stat
 /// Velocity of the hand's surface relative to the object's at the contact: c1' - c2' [m/s].
 Vector3 relative_velocity(const Contact& contact, const Body& body, const BodyState& state);
 
-/// True if the surfaces touch or will within `step`, approach each other, and have not struck yet.
-bool strikes_now(const Contact& contact, double normal_velocity, double step);
-
-enum class ImpactFriction { none, coulomb };
-
-/// The impulse phase: Newton's impact law along the normal, once per approach, for all contacts that strike
-/// in this step together: each one's relative velocity becomes at least -restitution times what it was, with
-/// impulses that only push. `coulomb`: sliding at the point is stopped as far as static friction times the
-/// normal impulse goes.
-void impulse_phase(ContactStep& step, ImpactFriction friction);
-
-/// Call when free flight has moved the bodies: takes back what an impact's change of velocity did before its
-/// time of impact, so that an object is not pushed ahead of the hand.
-void delay_impacts(ContactStep& step);
+/// When a gap [m] that changes by `rate` [m/s], which itself changes by `acceleration`, is closed: the first
+/// time from now on, 0 if it is closed already, infinite if never [s].
+double time_to_close(double gap, double rate, double acceleration);
 
 }  // namespace mrhi

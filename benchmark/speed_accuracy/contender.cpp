@@ -1,0 +1,196 @@
+#include "contender.h"
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+#include "configured.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+// What a contender says: 'p' a block is done; otherwise a report, ended by a line "end".
+constexpr char kPause = 'p';
+constexpr double kLongestBlock = 30.0;  // [s]
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\t') c = ' ';
+  return text;
+}
+
+std::string report_of(const RunResult& result) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "supported\t" << result.supported << "\ntime\t" << result.time.median << '\t'
+      << result.time.percentile_99 << '\n';
+  for (const Measure& m : result.measures)
+    out << "measure\t" << m.suffix << '\t' << m.error << '\t' << m.unit << '\t' << m.failed << '\n';
+  return out.str();
+}
+
+void send(int pipe, const std::string& text) {
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t n = write(pipe, text.data() + sent, text.size() - sent);
+    if (n <= 0) _exit(1);
+    sent += static_cast<std::size_t>(n);
+  }
+}
+
+/// Peers print what they like; the program's own output stays readable.
+void silence_output() {
+  if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(1);
+  if (std::freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
+}
+
+struct Pipes {
+  int read_end, write_end;
+};
+Pipes make_pipe() {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe to a contender");
+  return {ends[0], ends[1]};
+}
+
+std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> result(1);
+  for (const char c : line) {
+    if (c == '\t') {
+      result.emplace_back();
+    } else {
+      result.back() += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+const EngineMaker& load(const std::string& file) {
+  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (module == nullptr) throw std::runtime_error(dlerror());
+  using Export = const EngineMaker* (*)();
+  const auto entry = reinterpret_cast<Export>(dlsym(module, "speed_accuracy_engine"));
+  if (entry == nullptr) throw std::runtime_error(file + ": exports no engine");
+  return *entry();
+}
+
+std::vector<EngineModule> engine_modules() {
+  return {SPEED_ACCURACY_ENGINES};
+}
+
+std::vector<std::string> settings_of(const EngineModule& module) {
+  const Pipes pipes = make_pipe();
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      std::string names;
+      for (const std::string& name : load(module.file).settings()) names += name + "\n";
+      send(pipes.write_end, names);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      _exit(1);
+    }
+    _exit(0);
+  }
+  close(pipes.write_end);
+  std::string text;
+  char buffer[1024];
+  for (ssize_t n; (n = read(pipes.read_end, buffer, sizeof(buffer))) > 0;)
+    text.append(buffer, static_cast<std::size_t>(n));
+  close(pipes.read_end);
+  waitpid(child, nullptr, 0);
+  std::vector<std::string> names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) names.push_back(line);
+  return names;
+}
+
+Contender::Contender(const EngineModule& module, const std::string& setting, const ScenePlan& scene, bool quick,
+                     double step)
+    : engine_(module.name), setting_(setting) {
+  const Pipes down = make_pipe(), up = make_pipe();
+  process_ = fork();
+  if (process_ < 0) throw std::runtime_error("no process for a contender");
+  if (process_ == 0) {
+    close(down.write_end), close(up.read_end);
+    silence_output();
+    const auto wait = [&down] {
+      char go;
+      if (read(down.read_end, &go, 1) != 1) _exit(1);
+    };
+    wait();
+    std::string report;
+    try {
+      const auto experiment = scene.make(quick);
+      const auto pause = [&] {
+        send(up.write_end, std::string(1, kPause));
+        wait();
+      };
+      report = report_of(run_experiment(load(module.file), setting, *experiment, step, pause));
+    } catch (const std::exception& error) {
+      report = "trouble\t" + one_line(error.what()) + "\n";
+    }
+    send(up.write_end, report + "end\n");
+    _exit(0);
+  }
+  close(down.read_end), close(up.write_end);
+  to_child_ = down.write_end;
+  from_child_ = up.read_end;
+}
+
+Contender::~Contender() {
+  close(to_child_), close(from_child_);
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+bool Contender::work(double seconds) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (write(to_child_, "g", 1) != 1) {
+    trouble_ = "crashed";
+    return false;
+  }
+  while (true) {
+    pollfd wait{from_child_, POLLIN, 0};
+    if (poll(&wait, 1, static_cast<int>(1e3 * kLongestBlock)) == 0) {
+      trouble_ = "does not come back from a step";
+      return false;
+    }
+    char buffer[4096];
+    const ssize_t n = read(from_child_, buffer, sizeof(buffer));
+    if (n <= 0) {
+      trouble_ = "crashed";
+      return false;
+    }
+    if (n == 1 && buffer[0] == kPause && received_.empty()) break;
+    received_.append(buffer, static_cast<std::size_t>(n));
+    if (received_.size() < 4 || received_.compare(received_.size() - 4, 4, "end\n") != 0) continue;
+    finish(received_);
+    return false;
+  }
+  used_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (used_ > seconds) trouble_ = "too slow";
+  return trouble_.empty();
+}
+
+void Contender::finish(const std::string& report) {
+  std::istringstream lines(report);
+  for (std::string line; std::getline(lines, line) && line != "end";) {
+    const std::vector<std::string> f = fields(line);
+    if (f[0] == "trouble") trouble_ = f.at(1);
+    if (f[0] == "supported") result_.supported = f.at(1) == "1";
+    if (f[0] == "time") result_.time = {std::stod(f.at(1)), std::stod(f.at(2))};
+    if (f[0] == "measure") result_.measures.push_back({f.at(1), std::stod(f.at(2)), f.at(3), f.at(4) == "1"});
+  }
+}
+
+}  // namespace mrhi::benchmark

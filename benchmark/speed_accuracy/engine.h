@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "world.h"
+
+namespace mrhi::benchmark {
+
+struct Motion {
+  Pose pose;    ///< of the centre of mass
+  Twist twist;  ///< world axes
+};
+
+/// One world in one physics engine, advanced by one step length.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  /// Where the hand's part is as the step begins and as it ends. Not part of the measured time.
+  virtual void move(std::size_t kinematic, const Pose& now, const Pose& next) = 0;
+  /// Called once all parts have been moved, before step(). Not part of the measured time.
+  virtual void before_step() {}
+  /// Collision, contact, integration: what is measured.
+  virtual void step() = 0;
+  /// Called after step(). Not part of the measured time.
+  virtual void after_step() {}
+  virtual Motion motion(std::size_t body) const = 0;
+};
+
+/// How worlds of one engine are made. One object in each engine's module.
+class EngineMaker {
+ public:
+  virtual ~EngineMaker() = default;
+  /// The engine as it comes, and the best settings found, each described so that it can be repeated.
+  virtual std::vector<std::string> settings() const = 0;
+  /// Nothing if the engine has no means for this world.
+  virtual std::unique_ptr<Engine> make(const std::string& setting, const World& world, double step) const = 0;
+};
+
+}  // namespace mrhi::benchmark
+
+/// The one symbol that an engine's module exports.
+#define MRHI_ENGINE_MODULE(Maker)                                                                    \
+  extern "C" __attribute__((visibility("default"))) const mrhi::benchmark::EngineMaker*             \
+  speed_accuracy_engine() {                                                                          \
+    static const Maker maker;                                                                        \
+    return &maker;                                                                                   \
+  }

@@ -1,0 +1,155 @@
+// Built twice, against Bullet in single and in double precision; the two must never meet in one process.
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+#include <memory>
+
+#include "../engine.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+struct Setting {
+  const char* name;
+  bool awake;         // bodies never fall asleep
+  bool split;         // split impulse at any depth (Bullet's own only begins at 40 mm)
+  int iterations;     // of the solver, 10 by default
+  double stiffness;   // of the hand's surface [N/m], 0: rigid
+  double damping;     // of the hand's surface [N s/m]
+};
+
+// "soft contact": Bullet's contact stiffness and damping, chosen by trying stiffnesses from 500 to 20000 N/m on the
+// pinch. "split impulse": the best found for slaps and plates, restitution at any speed.
+constexpr Setting kSettings[] = {
+    {"default", false, false, 10, 0.0, 0.0},
+    {"soft contact 2000 N/m 10 N s/m; no sleeping; 50 iterations", true, false, 50, 2000.0, 10.0},
+    {"split impulse at any depth; no sleeping; 50 iterations; restitution at any speed", true, true, 50, 0.0, 0.0},
+};
+
+btVector3 to_bullet(const Vector3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+btTransform to_bullet(const Pose& pose) {
+  const Quaternion& q = pose.orientation;
+  return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
+                                  static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
+                     to_bullet(pose.position));
+}
+Vector3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+class BulletEngine final : public Engine {
+ public:
+  BulletEngine(const Setting& setting, const World& world, double step)
+      : setting_(setting), step_(static_cast<btScalar>(step)) {
+    // Bullet multiplies the coefficients of the two surfaces.
+    friction_ = static_cast<btScalar>(std::sqrt(world.friction));
+    restitution_ = static_cast<btScalar>(std::sqrt(world.restitution));
+    world_.setGravity(to_bullet(world.gravity));
+    world_.getSolverInfo().m_numIterations = setting.iterations;
+    if (setting.split) {
+      world_.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
+      world_.getSolverInfo().m_restitutionVelocityThreshold = 0;
+    }
+    for (const BodySpec& spec : world.bodies) bodies_.push_back(&add(spec));
+    for (const KinematicSpec& spec : world.kinematics) hand_.push_back(&add(spec));
+  }
+  ~BulletEngine() override {
+    for (const auto& body : all_) world_.removeRigidBody(body.get());
+  }
+
+  void move(std::size_t kinematic, const Pose&, const Pose& next) override {
+    // Bullet takes a kinematic body's velocity from where its motion state puts it.
+    hand_[kinematic]->getMotionState()->setWorldTransform(to_bullet(next));
+  }
+  void step() override { world_.stepSimulation(step_, 0); }
+
+  Motion motion(std::size_t index) const override {
+    const btRigidBody& body = *bodies_[index];
+    const btTransform& place = body.getWorldTransform();
+    const btQuaternion q = place.getRotation();
+    return {{from_bullet(place.getOrigin()), Quaternion(q.w(), q.x(), q.y(), q.z()).normalized()},
+            {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())}};
+  }
+
+ private:
+  btRigidBody& add(const BodySpec& spec) {
+    if (const Box* box = std::get_if<Box>(&spec.shape)) {
+      shapes_.push_back(std::make_unique<btBoxShape>(to_bullet(box->half_extents)));
+    } else {
+      shapes_.push_back(
+          std::make_unique<btSphereShape>(static_cast<btScalar>(std::get<Sphere>(spec.shape).radius)));
+    }
+    const btScalar mass = spec.fixed ? btScalar(0) : static_cast<btScalar>(spec.mass);
+    btRigidBody& body = add(mass, *shapes_.back(), to_bullet(spec.inertia), spec.pose);
+    if (spec.fixed) {
+      world_.addRigidBody(&body);
+      return body;
+    }
+    body.setLinearVelocity(to_bullet(spec.twist.linear));
+    body.setAngularVelocity(to_bullet(spec.twist.angular));
+    if (setting_.awake) body.setActivationState(DISABLE_DEACTIVATION);
+    world_.addRigidBody(&body);
+    return body;
+  }
+
+  btRigidBody& add(const KinematicSpec& spec) {
+    auto compound = std::make_unique<btCompoundShape>();
+    for (const Capsule& capsule : spec.capsules) {
+      const Vector3 axis = capsule.end - capsule.start;
+      shapes_.push_back(std::make_unique<btCapsuleShapeZ>(static_cast<btScalar>(capsule.radius),
+                                                          static_cast<btScalar>(axis.norm())));
+      const Pose place{capsule.centre(), Quaternion::FromTwoVectors(Vector3::UnitZ(), axis)};
+      compound->addChildShape(to_bullet(place), shapes_.back().get());
+    }
+    shapes_.push_back(std::move(compound));
+    btRigidBody& body = add(0, *shapes_.back(), btVector3(0, 0, 0), spec.pose);
+    body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    body.setActivationState(DISABLE_DEACTIVATION);
+    if (setting_.stiffness > 0.0) {
+      body.setContactStiffnessAndDamping(static_cast<btScalar>(setting_.stiffness),
+                                         static_cast<btScalar>(setting_.damping));
+    }
+    world_.addRigidBody(&body, btBroadphaseProxy::KinematicFilter, btBroadphaseProxy::DefaultFilter);
+    return body;
+  }
+
+  btRigidBody& add(btScalar mass, btCollisionShape& shape, const btVector3& inertia, const Pose& pose) {
+    states_.push_back(std::make_unique<btDefaultMotionState>(to_bullet(pose)));
+    btRigidBody::btRigidBodyConstructionInfo info(mass, states_.back().get(), &shape, inertia);
+    info.m_friction = friction_;
+    info.m_restitution = restitution_;
+    all_.push_back(std::make_unique<btRigidBody>(info));
+    return *all_.back();
+  }
+
+  Setting setting_;
+  btScalar step_, friction_, restitution_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broad_phase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_{&dispatcher_, &broad_phase_, &solver_, &configuration_};
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btMotionState>> states_;
+  std::vector<std::unique_ptr<btRigidBody>> all_;
+  std::vector<btRigidBody*> bodies_, hand_;
+};
+
+class BulletMaker final : public EngineMaker {
+ public:
+  std::vector<std::string> settings() const override {
+    std::vector<std::string> names;
+    for (const Setting& setting : kSettings) names.push_back(setting.name);
+    return names;
+  }
+  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    for (const Setting& setting : kSettings)
+      if (name == setting.name) return std::make_unique<BulletEngine>(setting, world, step);
+    return nullptr;
+  }
+};
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+MRHI_ENGINE_MODULE(mrhi::benchmark::BulletMaker)

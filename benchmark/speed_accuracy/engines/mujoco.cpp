@@ -1,0 +1,214 @@
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+
+#include "../engine.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+struct Setting {
+  const char* name;
+  const char* option;      // attributes of <option>
+  bool feed_forward;       // the hand's acceleration is given
+  double time_constant;    // solref [s], never below two steps (MuJoCo's own limit); 0: MuJoCo's default 0.02
+  bool direct;             // solref by stiffness and damping, the damping from the restitution
+};
+
+// The hand's parts are heavy free bodies whose place and velocity are set in every step: mocap bodies have no
+// velocity in MuJoCo, so that friction could not drag anything along.
+constexpr Setting kSettings[] = {
+    {"default", "", false, 0.0, false},
+    {"hand acceleration given; solref 0.004 or 2 steps; noslip 3; elliptic cone; implicit integrator",
+     "noslip_iterations=\"3\" cone=\"elliptic\" integrator=\"implicit\"", true, 0.004, false},
+    {"RK4; elliptic cone", "cone=\"elliptic\" integrator=\"RK4\"", false, 0.0, false},
+    {"direct solref from restitution; elliptic cone; hand acceleration given", "cone=\"elliptic\"", true, 0.0, true},
+};
+
+constexpr double kHandMass = 1e4;     // [kg]
+constexpr double kHandInertia = 1e3;  // [kg m^2]
+
+std::string text(const Vector3& v) {
+  std::ostringstream out;
+  out.precision(17);
+  out << v.x() << ' ' << v.y() << ' ' << v.z();
+  return out.str();
+}
+std::string text(const Quaternion& q) {
+  std::ostringstream out;
+  out.precision(17);
+  out << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z();
+  return out.str();
+}
+std::string place(const Pose& pose) {
+  return " pos=\"" + text(pose.position) + "\" quat=\"" + text(pose.orientation) + "\"";
+}
+
+std::string geometry(const BodySpec& spec) {
+  if (const Box* box = std::get_if<Box>(&spec.shape))
+    return "<geom type=\"box\" size=\"" + text(box->half_extents) + "\"";
+  return "<geom type=\"sphere\" size=\"" + std::to_string(std::get<Sphere>(spec.shape).radius) + "\"";
+}
+
+std::string inertial(double mass, const Vector3& inertia) {
+  return "<inertial pos=\"0 0 0\" mass=\"" + std::to_string(mass) + "\" diaginertia=\"" + text(inertia) + "\"/>";
+}
+
+/// Damping ratio at which a bounce gives back the part `restitution` of the speed.
+double damping_ratio(double restitution) {
+  if (restitution <= 1e-3) return 1.0;
+  const double l = std::log(restitution);
+  return -l / std::sqrt(M_PI * M_PI + l * l);
+}
+
+std::string solref(const Setting& setting, const World& world, double step) {
+  std::ostringstream out;
+  if (setting.direct) {
+    // As stiff as the step resolves: a half period of contact is eight steps.
+    const double rate = M_PI / (8.0 * step);
+    out << " solref=\"" << -rate * rate << ' ' << -2.0 * damping_ratio(world.restitution) * rate << "\"";
+  } else if (setting.time_constant > 0.0) {
+    out << " solref=\"" << std::max(setting.time_constant, 2.0 * step) << " 1\"";
+  }
+  return out.str();
+}
+
+std::string xml(const Setting& setting, const World& world, double step) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "<mujoco><option timestep=\"" << step << "\" gravity=\"" << text(world.gravity) << "\" " << setting.option
+      << "/><size njmax=\"" << 2000 + 40 * world.bodies.size() << "\" nconmax=\"" << 500 + 10 * world.bodies.size()
+      << "\" nstack=\"" << 4'000'000 + 40'000 * world.bodies.size() << "\"/><default><geom friction=\""
+      << world.friction << " 0.005 0.0001\"" << solref(setting, world, step) << "/></default><worldbody>";
+  for (const BodySpec& spec : world.bodies) {
+    if (spec.fixed) {
+      out << geometry(spec) << place(spec.pose) << " contype=\"1\" conaffinity=\"1\"/>";
+    } else {
+      out << "<body" << place(spec.pose) << "><freejoint/>" << inertial(spec.mass, spec.inertia) << geometry(spec)
+          << " contype=\"1\" conaffinity=\"3\"/></body>";
+    }
+  }
+  for (const KinematicSpec& spec : world.kinematics) {
+    out << "<body" << place(spec.pose) << "><freejoint/>"
+        << inertial(kHandMass, Vector3::Constant(kHandInertia));
+    for (const Capsule& capsule : spec.capsules) {
+      out << "<geom type=\"capsule\" size=\"" << capsule.radius << "\" fromto=\"" << text(capsule.start) << ' '
+          << text(capsule.end) << "\" contype=\"2\" conaffinity=\"0\"/>";
+    }
+    out << "</body>";
+  }
+  out << "</worldbody></mujoco>";
+  return out.str();
+}
+
+mjModel* load(const std::string& text) {
+  mju_user_error = [](const char* message) { throw std::runtime_error(message); };
+  mju_user_warning = [](const char*) {};
+  auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), "world.xml", static_cast<int>(text.size()));
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), "world.xml")], text.data(), text.size());
+  char error[500] = "";
+  mjModel* model = mj_loadXML("world.xml", files.get(), error, sizeof(error));
+  mj_deleteVFS(files.get());
+  if (model == nullptr) throw std::runtime_error(error);
+  return model;
+}
+
+class MujocoEngine final : public Engine {
+ public:
+  MujocoEngine(const Setting& setting, const World& world, double step)
+      : setting_(setting), step_(step), gravity_(world.gravity), model_(load(xml(setting, world, step))), data_(mj_makeData(model_)) {
+    int joint = 0;
+    for (const BodySpec& spec : world.bodies) {
+      joints_.push_back(spec.fixed ? -1 : joint++);
+      if (!spec.fixed) set_twist(joints_.back(), spec.pose.orientation, spec.twist);
+    }
+    for (const KinematicSpec& spec : world.kinematics) {
+      hand_.push_back(joint++);
+      last_.push_back({});
+    }
+    mj_forward(model_, data_);
+  }
+  ~MujocoEngine() override {
+    mj_deleteData(data_);
+    mj_deleteModel(model_);
+  }
+
+  void move(std::size_t kinematic, const Pose& now, const Pose& next) override {
+    const int joint = hand_[kinematic];
+    mjtNum* q = data_->qpos + 7 * joint;
+    Eigen::Map<Vector3> position(q);
+    position = now.position;
+    q[3] = now.orientation.w(), q[4] = now.orientation.x(), q[5] = now.orientation.y(), q[6] = now.orientation.z();
+    const Twist twist = twist_between(now, next, step_);
+    mjtNum* force = data_->xfrc_applied + 6 * model_->jnt_bodyid[joint];
+    Eigen::Map<Vector3> linear(force), angular(force + 3);
+    linear = -kHandMass * gravity_;
+    if (!setting_.feed_forward) {
+      set_twist(joint, now.orientation, twist);
+      return;
+    }
+    // From the velocity of the last step to that of this one: what the step starts from and what it leads to.
+    Twist& last = last_[kinematic];
+    set_twist(joint, now.orientation, last);
+    linear += kHandMass / step_ * (twist.linear - last.linear);
+    angular = kHandInertia / step_ * (twist.angular - last.angular);
+    last = twist;
+  }
+
+  void step() override { mj_step(model_, data_); }
+
+  void after_step() override {
+    // MuJoCo puts a world that has blown up back to its start and goes on.
+    for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+      if (data_->warning[kind].number > 0) throw std::runtime_error("unstable");
+  }
+
+  Motion motion(std::size_t index) const override {
+    const int joint = joints_[index];
+    if (joint < 0) return {};
+    const mjtNum *q = data_->qpos + 7 * joint, *v = data_->qvel + 6 * joint;
+    const Quaternion turn(q[3], q[4], q[5], q[6]);
+    return {{{q[0], q[1], q[2]}, turn}, {{v[0], v[1], v[2]}, turn * Vector3(v[3], v[4], v[5])}};
+  }
+
+ private:
+  /// MuJoCo has a free body's angular velocity in body axes.
+  void set_twist(int joint, const Quaternion& turn, const Twist& twist) {
+    mjtNum* v = data_->qvel + 6 * joint;
+    Eigen::Map<Vector3> linear(v), angular(v + 3);
+    linear = twist.linear;
+    angular = turn.conjugate() * twist.angular;
+  }
+
+  Setting setting_;
+  double step_;
+  Vector3 gravity_;
+  mjModel* model_;
+  mjData* data_;
+  std::vector<int> joints_, hand_;
+  std::vector<Twist> last_;
+};
+
+class MujocoMaker final : public EngineMaker {
+ public:
+  std::vector<std::string> settings() const override {
+    std::vector<std::string> names;
+    for (const Setting& setting : kSettings) names.push_back(setting.name);
+    return names;
+  }
+  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    for (const Setting& setting : kSettings)
+      if (name == setting.name) return std::make_unique<MujocoEngine>(setting, world, step);
+    return nullptr;
+  }
+};
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+MRHI_ENGINE_MODULE(mrhi::benchmark::MujocoMaker)

@@ -1,0 +1,190 @@
+#include <ode/ode.h>
+
+#include <array>
+#include <cmath>
+
+#include "../engine.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+struct Setting {
+  const char* name;
+  bool dantzig;       // dWorldStep; else dWorldQuickStep
+  int iterations;     // of QuickStep, 20 by default
+  double stiffness;   // of contacts [N/m], 0: rigid with ODE's own error reduction
+  double damping;     // [N s/m]
+};
+
+// Friction is Coulomb's (dContactApprox1) throughout: ODE's own default takes mu as a force in newtons. Soft: the
+// stiffness was chosen by trying 500 to 50000 N/m on the pinch, with the damping that is critical for 0.1 kg.
+constexpr Setting kSettings[] = {
+    {"QuickStep default; Coulomb pyramid", false, 20, 0.0, 0.0},
+    {"Dantzig default; Coulomb pyramid", true, 0, 0.0, 0.0},
+    {"Dantzig; soft contact 2000 N/m 10 N s/m", true, 0, 2000.0, 10.0},
+    {"QuickStep 100 iterations; soft contact 2000 N/m 10 N s/m", false, 100, 2000.0, 10.0},
+};
+
+constexpr int kMaxContacts = 16;  // of one pair
+
+Vector3 from_ode(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+/// ODE is started and stopped once per process.
+struct Library {
+  Library() { dInitODE2(0); }
+  ~Library() { dCloseODE(); }
+};
+
+class OdeEngine final : public Engine {
+ public:
+  OdeEngine(const Setting& setting, const World& world, double step)
+      : setting_(setting), step_(step), friction_(world.friction), restitution_(world.restitution) {
+    static const Library library;
+    world_ = dWorldCreate();
+    space_ = dHashSpaceCreate(nullptr);
+    contacts_ = dJointGroupCreate(0);
+    dWorldSetGravity(world_, world.gravity.x(), world.gravity.y(), world.gravity.z());
+    if (!setting.dantzig) dWorldSetQuickStepNumIterations(world_, setting.iterations);
+    for (const BodySpec& spec : world.bodies) add(spec);
+    for (const KinematicSpec& spec : world.kinematics) add(spec);
+  }
+  ~OdeEngine() override {
+    dJointGroupDestroy(contacts_);
+    dSpaceDestroy(space_);
+    dWorldDestroy(world_);
+  }
+
+  void move(std::size_t kinematic, const Pose& now, const Pose& next) override {
+    const dBodyID body = hand_[kinematic];
+    place(body, now);
+    const Twist twist = twist_between(now, next, step_);
+    dBodySetLinearVel(body, twist.linear.x(), twist.linear.y(), twist.linear.z());
+    dBodySetAngularVel(body, twist.angular.x(), twist.angular.y(), twist.angular.z());
+  }
+
+  void step() override {
+    dJointGroupEmpty(contacts_);
+    dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
+      static_cast<OdeEngine*>(self)->collide(a, b);
+    });
+    if (setting_.dantzig) {
+      dWorldStep(world_, step_);
+    } else {
+      dWorldQuickStep(world_, step_);
+    }
+  }
+
+  Motion motion(std::size_t index) const override {
+    const dBodyID body = bodies_[index];
+    if (body == nullptr) return {};
+    const dReal* q = dBodyGetQuaternion(body);
+    return {{from_ode(dBodyGetPosition(body)), Quaternion(q[0], q[1], q[2], q[3])},
+            {from_ode(dBodyGetLinearVel(body)), from_ode(dBodyGetAngularVel(body))}};
+  }
+
+ private:
+  static void place(dBodyID body, const Pose& pose) {
+    const Quaternion& q = pose.orientation;
+    const dQuaternion turn = {q.w(), q.x(), q.y(), q.z()};
+    dBodySetPosition(body, pose.position.x(), pose.position.y(), pose.position.z());
+    dBodySetQuaternion(body, turn);
+  }
+
+  void add(const BodySpec& spec) {
+    dGeomID geometry;
+    if (const Box* box = std::get_if<Box>(&spec.shape)) {
+      const Vector3 size = 2.0 * box->half_extents;
+      geometry = dCreateBox(space_, size.x(), size.y(), size.z());
+    } else {
+      geometry = dCreateSphere(space_, std::get<Sphere>(spec.shape).radius);
+    }
+    bodies_.push_back(nullptr);
+    if (spec.fixed) {
+      const Vector3& p = spec.pose.position;
+      dGeomSetPosition(geometry, p.x(), p.y(), p.z());
+      return;
+    }
+    const dBodyID body = bodies_.back() = dBodyCreate(world_);
+    dMass mass;
+    dMassSetParameters(&mass, spec.mass, 0, 0, 0, spec.inertia.x(), spec.inertia.y(), spec.inertia.z(), 0, 0, 0);
+    dBodySetMass(body, &mass);
+    place(body, spec.pose);
+    const Twist& twist = spec.twist;
+    dBodySetLinearVel(body, twist.linear.x(), twist.linear.y(), twist.linear.z());
+    dBodySetAngularVel(body, twist.angular.x(), twist.angular.y(), twist.angular.z());
+    dGeomSetBody(geometry, body);
+  }
+
+  void add(const KinematicSpec& spec) {
+    const dBodyID body = dBodyCreate(world_);
+    dBodySetKinematic(body);
+    place(body, spec.pose);
+    for (const Capsule& capsule : spec.capsules) {
+      const Vector3 axis = capsule.end - capsule.start, centre = capsule.centre();
+      const dGeomID geometry = dCreateCapsule(space_, capsule.radius, axis.norm());
+      dGeomSetBody(geometry, body);
+      dGeomSetOffsetPosition(geometry, centre.x(), centre.y(), centre.z());
+      const Quaternion q = Quaternion::FromTwoVectors(Vector3::UnitZ(), axis);
+      const dQuaternion turn = {q.w(), q.x(), q.y(), q.z()};
+      dGeomSetOffsetQuaternion(geometry, turn);
+    }
+    hand_.push_back(body);
+  }
+
+  static bool is_free(dBodyID body) { return body != nullptr && !dBodyIsKinematic(body); }
+
+  void collide(dGeomID a, dGeomID b) {
+    const dBodyID first = dGeomGetBody(a), second = dGeomGetBody(b);
+    if (!is_free(first) && !is_free(second)) return;
+    std::array<dContact, kMaxContacts> found;
+    const int count = dCollide(a, b, kMaxContacts, &found[0].geom, sizeof(dContact));
+    for (int i = 0; i < count; ++i) {
+      dContact& contact = found[static_cast<std::size_t>(i)];
+      contact.surface = surface();
+      dJointAttach(dJointCreateContact(world_, contacts_, &contact), first, second);
+    }
+  }
+
+  dSurfaceParameters surface() const {
+    dSurfaceParameters surface{};
+    surface.mode = dContactApprox1;
+    surface.mu = friction_;
+    if (restitution_ > 0.0) {
+      surface.mode |= dContactBounce;
+      surface.bounce = restitution_;
+    }
+    if (setting_.stiffness > 0.0) {
+      surface.mode |= dContactSoftERP | dContactSoftCFM;
+      const double stiff = step_ * setting_.stiffness;
+      surface.soft_erp = stiff / (stiff + setting_.damping);
+      surface.soft_cfm = 1.0 / (stiff + setting_.damping);
+    }
+    return surface;
+  }
+
+  Setting setting_;
+  double step_, friction_, restitution_;
+  dWorldID world_;
+  dSpaceID space_;
+  dJointGroupID contacts_;
+  std::vector<dBodyID> bodies_, hand_;
+};
+
+class OdeMaker final : public EngineMaker {
+ public:
+  std::vector<std::string> settings() const override {
+    std::vector<std::string> names;
+    for (const Setting& setting : kSettings) names.push_back(setting.name);
+    return names;
+  }
+  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    for (const Setting& setting : kSettings)
+      if (name == setting.name) return std::make_unique<OdeEngine>(setting, world, step);
+    return nullptr;
+  }
+};
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+MRHI_ENGINE_MODULE(mrhi::benchmark::OdeMaker)

@@ -1,0 +1,144 @@
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "../engine.h"
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+// Every contact model as it comes. "frame" measures the same steps with all that surrounds them: the hand's
+// frame is taken, filtered and followed, contacts and events are reported and the hand is rendered.
+struct Setting {
+  const char* name;
+  ContactModelKind model;
+  double stiffness;  // [N/m], 0: the model's own
+  bool whole_frame;
+};
+
+constexpr std::array<Setting, 8> kSettings{{
+    {"implicit", ContactModelKind::implicit, 0.0, false},
+    {"implicit; stiffness 20000", ContactModelKind::implicit, 20000.0, false},
+    {"implicit; whole frame", ContactModelKind::implicit, 0.0, true},
+    {"seed", ContactModelKind::seed, 0.0, false},
+    {"penetration", ContactModelKind::penetration, 0.0, false},
+    {"impulse", ContactModelKind::impulse, 0.0, false},
+    {"virtual_spring", ContactModelKind::virtual_spring, 0.0, false},
+    {"soft_pad", ContactModelKind::soft_pad, 0.0, false},
+}};
+
+Body body_of(const BodySpec& spec, const Material& material, std::size_t index) {
+  Body body;
+  body.name = "body_" + std::to_string(index);
+  body.fixed = spec.fixed;
+  body.mass = spec.mass;
+  body.inertia = spec.inertia.asDiagonal();
+  body.start = spec.pose;
+  body.start_twist = spec.twist;
+  body.material = material;
+  std::visit([&body](const auto& shape) { body.shapes.push_back({shape, {}}); }, spec.shape);
+  return body;
+}
+
+mrhi::Scene scene_of(const World& world, const Configuration& configuration) {
+  Material material = default_material(configuration);
+  material.restitution = world.restitution;
+  material.static_friction = material.dynamic_friction = world.friction;
+  mrhi::Scene scene;
+  scene.name = "benchmark";
+  scene.gravity = world.gravity;
+  scene.bounds = {Vector3::Constant(-1e3), Vector3::Constant(1e3)};
+  for (const BodySpec& spec : world.bodies)
+    scene.bodies.push_back(body_of(spec, material, scene.bodies.size()));
+  return scene;
+}
+
+Configuration configuration_of(const Setting& setting, double step) {
+  Configuration configuration;
+  configuration.contact_model = setting.model;
+  configuration.step = step;
+  configuration.filter.type = FilterKind::none;
+  if (setting.stiffness > 0.0) configuration.stiffness = setting.stiffness;
+  return configuration;
+}
+
+class OurEngine final : public Engine {
+ public:
+  OurEngine(const Setting& setting, const World& world, double step)
+      : whole_frame_(setting.whole_frame),
+        step_(std::llround(step * 1e9)),
+        parts_(world.kinematics),
+        simulation_(scene_of(world, configuration_of(setting, 1e-9 * static_cast<double>(step_))),
+                    configuration_of(setting, 1e-9 * static_cast<double>(step_))) {
+    frame_.stamp = 1'000'000'000;
+    std::size_t first = 0;
+    for (const KinematicSpec& part : parts_) {
+      first_capsule_.push_back(first);
+      first += part.capsules.size();
+    }
+    frame_.hands.resize((first + kCapsules - 1) / kCapsules);
+    if (frame_.hands.size() > kMaxHands) throw std::runtime_error("more capsules than four hands have");
+    for (std::size_t i = 0; i < frame_.hands.size(); ++i) frame_.hands[i].id = static_cast<std::uint32_t>(i + 1);
+    for (std::size_t i = 0; i < parts_.size(); ++i) place(i, parts_[i].pose);
+    simulation_.advance(frame_);
+  }
+
+  void move(std::size_t kinematic, const Pose&, const Pose& next) override { place(kinematic, next); }
+
+  void before_step() override {
+    frame_.stamp += step_;
+    if (!whole_frame_) simulation_.begin(frame_);
+  }
+  void step() override {
+    if (whole_frame_) simulation_.begin(frame_);
+    while (simulation_.step()) {
+    }
+    if (whole_frame_) simulation_.end();
+  }
+  void after_step() override {
+    if (!whole_frame_) simulation_.end();
+  }
+
+  Motion motion(std::size_t body) const override {
+    const BodyState& state = simulation_.state().bodies[body];
+    return {state.pose, twist_of(simulation_.scene().bodies[body], state)};
+  }
+
+ private:
+  void place(std::size_t part, const Pose& pose) {
+    for (std::size_t c = 0; c < parts_[part].capsules.size(); ++c) {
+      const std::size_t index = first_capsule_[part] + c;
+      const Capsule& local = parts_[part].capsules[c];
+      Hand& hand = frame_.hands[index / kCapsules];
+      hand.capsules[index % kCapsules] = {pose * local.start, pose * local.end, local.radius};
+      if (index % kCapsules == 0) hand.palm = pose;
+    }
+  }
+
+  bool whole_frame_;
+  Nanoseconds step_;
+  std::vector<KinematicSpec> parts_;
+  std::vector<std::size_t> first_capsule_;
+  HandFrame frame_;
+  Simulation simulation_;
+};
+
+class OurMaker final : public EngineMaker {
+ public:
+  std::vector<std::string> settings() const override {
+    std::vector<std::string> names;
+    for (const Setting& setting : kSettings) names.push_back(setting.name);
+    return names;
+  }
+  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    for (const Setting& setting : kSettings)
+      if (name == setting.name) return std::make_unique<OurEngine>(setting, world, step);
+    return nullptr;
+  }
+};
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+MRHI_ENGINE_MODULE(mrhi::benchmark::OurMaker)

@@ -1,0 +1,166 @@
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+#include "arguments.h"
+#include "configured.h"
+#include "contender.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+const std::vector<double> kSteps{0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008333333, 0.016666667};
+const std::vector<double> kQuickSteps{0.001, 0.004, 0.008333333};
+constexpr double kBudget = 20.0, kQuickBudget = 1.0;  // of a contender [s]
+
+struct Plan {
+  std::vector<ScenePlan> scenes;
+  std::vector<std::pair<EngineModule, std::vector<std::string>>> engines;  // with settings
+  bool quick = false;
+};
+
+bool chosen(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> known_scenes(const std::vector<ScenePlan>& scenes) {
+  std::vector<std::string> names;
+  for (const ScenePlan& scene : scenes) names.push_back(scene.name);
+  for (const ScenePlan& scene : scenes)
+    if (!chosen(names, scene.group)) names.push_back(scene.group);
+  return names;
+}
+
+Plan plan_for(const Arguments& arguments) {
+  Plan plan;
+  plan.quick = arguments.quick;
+  for (ScenePlan& scene : all_scenes())
+    if (chosen(arguments.scenes, scene.name) || chosen(arguments.scenes, scene.group))
+      plan.scenes.push_back(std::move(scene));
+  for (const EngineModule& module : engine_modules())
+    if (chosen(arguments.engines, module.name)) plan.engines.push_back({module, settings_of(module)});
+  return plan;
+}
+
+/// All engines with one scene and step, taking turns, each round beginning with another.
+std::vector<std::unique_ptr<Contender>> race(const Plan& plan, const ScenePlan& scene, double step) {
+  std::vector<std::unique_ptr<Contender>> contenders;
+  for (const auto& [module, settings] : plan.engines)
+    for (const std::string& setting : settings)
+      contenders.push_back(std::make_unique<Contender>(module, setting, scene, plan.quick, step));
+  std::vector<Contender*> running;
+  for (const auto& contender : contenders) running.push_back(contender.get());
+  const double budget = plan.quick ? kQuickBudget : kBudget;
+  while (!running.empty()) {
+    std::rotate(running.begin(), running.begin() + 1, running.end());
+    running.erase(std::remove_if(running.begin(), running.end(),
+                                 [budget](Contender* contender) { return !contender->work(budget); }),
+                  running.end());
+  }
+  return contenders;
+}
+
+void write_row(std::ostream& csv, const std::string& scene, const Contender& contender, double step,
+               const Measure& measure) {
+  const StepTime& time = contender.result().time;
+  csv << scene << measure.suffix << ',' << contender.engine() << ',' << contender.setting() << ',' << step << ','
+      << time.median << ',' << time.percentile_99 << ',' << measure.error << ',' << measure.unit << ','
+      << (measure.failed || !std::isfinite(measure.error)) << '\n';
+}
+
+/// What a scene measures is known from those that came through; one that did not has failed in all of it.
+void write_rows(std::ostream& csv, const std::string& scene, double step,
+                const std::vector<std::unique_ptr<Contender>>& contenders,
+                std::map<std::string, std::vector<Measure>>& measures) {
+  for (const auto& contender : contenders)
+    if (!contender->result().measures.empty()) measures[scene] = contender->result().measures;
+  for (const auto& contender : contenders) {
+    if (!contender->result().supported) continue;
+    std::vector<Measure> rows = contender->result().measures;
+    if (!contender->trouble().empty()) {
+      std::cerr << scene << ", " << contender->engine() << " (" << contender->setting() << "), step " << 1e3 * step
+                << " ms: " << contender->trouble() << '\n';
+      rows = measures[scene];
+      for (Measure& row : rows) row.error = std::nan(""), row.failed = true;
+    }
+    for (const Measure& row : rows) write_row(csv, scene, *contender, step, row);
+  }
+}
+
+void make_folder(const std::string& path) {
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = path.find('/', end + 1);
+    const std::string part = path.substr(0, end);
+    if (mkdir(part.c_str(), 0777) != 0 && errno != EEXIST)
+      throw std::runtime_error("--output: cannot make the folder '" + part + "': " + std::strerror(errno));
+  }
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// The charts need Python with matplotlib; without them the figures are there all the same.
+void draw_charts(const std::string& csv) {
+  const std::string command =
+      quoted(SPEED_ACCURACY_PYTHON) + " " + quoted(SPEED_ACCURACY_PLOT_SCRIPT) + " " + quoted(csv);
+  if (std::system(command.c_str()) != 0) std::cerr << "no charts: failed: " << command << '\n';
+}
+
+void run(const Arguments& arguments) {
+  make_folder(arguments.output);
+  const std::string file = arguments.output + "/speed_accuracy.csv";
+  std::ofstream csv(file);
+  if (!csv) throw std::runtime_error("cannot write '" + file + "'");
+  csv.precision(9);
+  csv << "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n";
+  const Plan plan = plan_for(arguments);
+  std::map<std::string, std::vector<Measure>> measures;
+  const auto begin = std::chrono::steady_clock::now();
+  for (const ScenePlan& scene : plan.scenes) {
+    if (!scene.missing.empty()) {
+      std::cout << scene.name << "  skipped: " << scene.missing << '\n';
+      continue;
+    }
+    if (scene.prepare) scene.prepare(load(engine_modules().front().file));
+    for (const double step : !scene.steps.empty() ? scene.steps : plan.quick ? kQuickSteps : kSteps) {
+      write_rows(csv, scene.name, step, race(plan, scene, step), measures);
+      csv.flush();
+    }
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    std::cout << scene.name << "  " << std::lround(passed.count()) << " s\n" << std::flush;
+  }
+  csv.close();
+  draw_charts(file);
+}
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+int main(int argc, char** argv) {
+  using namespace mrhi::benchmark;
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    std::vector<std::string> engines;
+    for (const EngineModule& module : engine_modules()) engines.push_back(module.name);
+    run(parse_arguments({argv + 1, argv + argc}, known_scenes(all_scenes()), engines));
+  } catch (const UsageError& error) {
+    std::cerr << "speed_accuracy: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "speed_accuracy: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

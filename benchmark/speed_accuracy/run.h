@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+
+#include "experiment.h"
+
+namespace mrhi::benchmark {
+
+/// How long a step took.
+struct StepTime {
+  double median = 0.0;        ///< [us]
+  double percentile_99 = 0.0;  ///< [us]
+};
+
+struct RunResult {
+  bool supported = true;  ///< false: the engine has no means for this world
+  StepTime time;
+  std::vector<Measure> measures;
+};
+
+/// Plays an experiment in an engine and times every step. `pause` is called between blocks of some
+/// milliseconds, so that runs of several engines can take turns; an exception means a failed run.
+RunResult run_experiment(const EngineMaker& maker, const std::string& setting, Experiment& experiment, double step,
+                         const std::function<void()>& pause);
+
+}  // namespace mrhi::benchmark

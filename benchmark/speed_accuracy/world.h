@@ -1,0 +1,73 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "mr_hand_interaction/collision/capsule.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/shape.h"
+
+namespace mrhi::benchmark {
+
+/// A free body or a fixture, centre of mass at its origin. SI units, world axes.
+struct BodySpec {
+  std::variant<Sphere, Box> shape;
+  double mass = 0.1;                   ///< [kg]
+  Vector3 inertia = Vector3::Ones();   ///< principal moments, body axes [kg m^2]
+  Pose pose;
+  Twist twist;
+  bool fixed = false;
+};
+
+/// What the hand moves: capsules that keep their places relative to each other. Nothing moves it but the hand.
+struct KinematicSpec {
+  std::vector<Capsule> capsules;  ///< in its own frame
+  Pose pose;                      ///< at the start
+};
+
+/// What every engine is given. One friction coefficient and one restitution hold between all surfaces.
+struct World {
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
+  double friction = 0.8;
+  double restitution = 0.0;
+  std::vector<BodySpec> bodies;
+  std::vector<KinematicSpec> kinematics;
+};
+
+/// A homogeneous box; `size` holds whole edge lengths [m].
+inline BodySpec box(const Vector3& size, double mass, const Pose& pose = {}, const Twist& twist = {}) {
+  const Vector3 squares = size.cwiseProduct(size);
+  BodySpec body;
+  body.shape = Box{0.5 * size};
+  body.mass = mass;
+  body.inertia = mass / 12.0 * (Vector3::Constant(squares.sum()) - squares);
+  body.pose = pose;
+  body.twist = twist;
+  return body;
+}
+
+/// A homogeneous ball.
+inline BodySpec ball(double radius, double mass, const Pose& pose = {}, const Twist& twist = {}) {
+  BodySpec body;
+  body.shape = Sphere{radius};
+  body.mass = mass;
+  body.inertia = Vector3::Constant(0.4 * mass * radius * radius);
+  body.pose = pose;
+  body.twist = twist;
+  return body;
+}
+
+/// A fixture whose top is the plane z = 0.
+inline BodySpec floor_slab() {
+  BodySpec slab = box({4.0, 4.0, 0.2}, 1.0, {Vector3(0, 0, -0.1), Quaternion::Identity()});
+  slab.fixed = true;
+  return slab;
+}
+
+/// Constant velocity that takes `from` to `to` in `seconds`.
+inline Twist twist_between(const Pose& from, const Pose& to, double seconds) {
+  const Eigen::AngleAxisd turn(to.orientation * from.orientation.conjugate());
+  return {(to.position - from.position) / seconds, turn.angle() / seconds * turn.axis()};
+}
+
+}  // namespace mrhi::benchmark

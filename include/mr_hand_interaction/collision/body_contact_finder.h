@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "mr_hand_interaction/collision/body_contact.h"
+#include "mr_hand_interaction/collision/moving_body.h"
+#include "mr_hand_interaction/collision/neighbours.h"
+#include "mr_hand_interaction/collision/scene_geometry.h"
+
+namespace mrhi {
+
+/// Finds where bodies touch each other, or will within the step.
+class BodyContactFinder {
+ public:
+  /// Keeps references.
+  BodyContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
+
+  /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory.
+  void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies, double step,
+            std::vector<BodyContact>& contacts);
+
+ private:
+  void find_pair(int a, int b, const std::vector<BodyState>& bodies, double step,
+                 const std::vector<BodyContact>& before);
+
+  const Scene& scene_;
+  const SceneGeometry& geometry_;
+  const Vector3 gravity_;
+  std::vector<BodyContact> found_;
+};
+
+}  // namespace mrhi

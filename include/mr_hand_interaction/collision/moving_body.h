@@ -1,0 +1,21 @@
+#pragma once
+
+#include "mr_hand_interaction/integration/body_state.h"
+
+namespace mrhi {
+
+/// A body through one step: where it is at its start, and how it goes on if nothing touches it.
+struct MovingBody {
+  MovingBody(const Body& of, const BodyState& state, const Vector3& gravity);
+
+  Pose at(double time) const;  ///< [s] from the step's start
+  /// Velocity, at that time, of its point that is `arm` off its centre [m/s].
+  Vector3 velocity(double time, const Vector3& arm) const;
+
+  const Body& body;
+  const Pose& pose;
+  Twist twist;           ///< at the step's start
+  Vector3 acceleration;  ///< zero for a fixture [m/s^2]
+};
+
+}  // namespace mrhi

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "mr_hand_interaction/collision/broad_phase.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
+
+namespace mrhi {
+
+/// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
+/// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
+/// not part of it: what it lists may be more than needed, never less.
+class Neighbours {
+ public:
+  explicit Neighbours(const Scene& scene);  ///< keeps a reference
+
+  /// Once a frame: the hands' way in it.
+  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies);
+  /// Every step, of `step` seconds.
+  void begin_step(const std::vector<BodyState>& bodies, double step);
+
+  /// Bodies near the hand in `slot`, ascending.
+  const std::vector<int>& near_hand(int slot) const { return near_hand_[static_cast<std::size_t>(slot)]; }
+  /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
+  /// free.
+  const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+
+ private:
+  struct Room {
+    Vector3 centre = Vector3::Zero();
+    double slack_squared = -1.0;  // of the way that the body may go from there [m^2]
+  };
+  struct Reach {
+    Vector3 min, max;  // of a hand in this frame; min > max without a hand
+  };
+  bool place_those_leaving(const std::vector<BodyState>& bodies, double step);
+  void list_near_hands();
+  void list_pairs();
+
+  const Scene& scene_;
+  BroadPhase broad_phase_;
+  std::vector<Room> rooms_;
+  std::vector<Reach> reaches_;
+  std::vector<std::vector<int>> near_hand_;
+  std::vector<std::pair<int, int>> pairs_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "mr_hand_interaction/integration/body_state.h"
+
+namespace mrhi {
+
+/// An impact on one body.
+struct BodyImpact {
+  int body;         ///< index in Scene::bodies
+  Vector3 impulse;  ///< [N s]
+  Vector3 arm;      ///< from the centre of mass to where it acts [m]
+  double time;      ///< from the step's start [s]
+};
+
+/// What a step's response has done to the bodies, as far as their motion through the step depends on it.
+class StepChanges {
+ public:
+  void reset(std::size_t bodies);
+
+  /// The body's momenta are those of the step's end, gravity included.
+  void mark_solved(int body) { solved_[static_cast<std::size_t>(body)] = true; }
+  bool solved(std::size_t body) const { return solved_[body]; }
+
+  /// Impacts whose impulses `bodies` have just been given.
+  void note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies);
+
+  /// Call when free flight has moved the bodies by `step` seconds: takes back what the impacts' changes of
+  /// velocity did before their times, so that an object is not pushed ahead of the hand. What springs did
+  /// about the impacts counts with them: an object that is held and struck stays where it is held.
+  void delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
+                     std::vector<BodyState>& bodies) const;
+
+ private:
+  struct Struck {
+    int body;
+    Vector3 linear_before, angular_before;  // momenta before the impacts
+    Vector3 linear, angular;                // of all impulses together [N s], [N m s]
+    Vector3 linear_moment, angular_moment;  // each times its time
+    double size, size_moment;               // magnitudes, and each times its time
+  };
+  Struck& struck(int body, const BodyState& after);
+
+  std::vector<char> solved_;
+  std::vector<int> places_;  // by body: in struck_, or -1
+  std::vector<Struck> struck_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,170 @@
+#include "mr_hand_interaction/collision/body_contact_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mr_hand_interaction/collision/sweep.h"
+
+namespace mrhi {
+namespace {
+
+/// Contacts are followed from this gap on; pairs farther apart are swept through the step [m].
+constexpr double kMargin = 0.001;
+/// Surfaces this far apart have ended their approach: the next one may strike again [m].
+constexpr double kApart = 1e-5;
+
+/// Two alike bodies have their own; the springs of a pair are in series.
+Material together(const Material& a, const Material& b) {
+  Material material;
+  material.restitution = std::sqrt(a.restitution * b.restitution);
+  material.static_friction = std::sqrt(a.static_friction * b.static_friction);
+  material.dynamic_friction = std::sqrt(a.dynamic_friction * b.dynamic_friction);
+  return material;
+}
+
+double fastest_point(const MovingBody& moving) {
+  return moving.twist.angular.norm() * moving.body.bounding_radius;
+}
+
+/// Distance of a point from a shape is at least this [m].
+double at_least_away(const Vector3& point, const PlacedShape& placed, const Pose& body_pose) {
+  const Box* box = std::get_if<Box>(&placed.shape);
+  if (box == nullptr) return 0.0;
+  const Vector3 local = placed.pose.to_local(body_pose.to_local(point));
+  return (local.cwiseAbs() - box->half_extents).cwiseMax(0.0).norm();
+}
+
+struct ShapePair {
+  const MovingBody& a;
+  const MovingBody& b;
+  const PlacedShape& placed_a;
+  const PlacedShape& placed_b;
+  const ManifoldShape& shape_a;
+  const ManifoldShape& shape_b;
+
+  Manifold at(double time, double margin) const {
+    return body_manifold(shape_a, a.at(time) * placed_a.pose, shape_b, b.at(time) * placed_b.pose, margin);
+  }
+  Manifold now(double margin) const {
+    return body_manifold(shape_a, a.pose * placed_a.pose, shape_b, b.pose * placed_b.pose, margin);
+  }
+};
+
+const ManifoldPoint& deepest(const Manifold& manifold) {
+  return *std::max_element(manifold.points.begin(), manifold.points.begin() + manifold.count,
+                           [](const auto& x, const auto& y) { return x.depth < y.depth; });
+}
+
+struct Touch {
+  Manifold manifold;
+  double time = -1.0;  // of a first touch within the step
+};
+
+std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
+  const auto separation = [&](double time) -> std::optional<Separation<Manifold>> {
+    const Manifold manifold = pair.at(time, margin);
+    if (manifold.count == 0) return std::nullopt;
+    const ManifoldPoint& nearest = deepest(manifold);
+    const Vector3 relative = pair.a.velocity(time, nearest.point - pair.a.at(time).position) -
+                             pair.b.velocity(time, nearest.point - pair.b.at(time).position);
+    return Separation<Manifold>{manifold, -nearest.depth, manifold.normal.dot(relative)};
+  };
+  const auto touch = first_touch<Manifold>(separation, step);
+  if (!touch) return std::nullopt;
+  return Touch{touch->features, touch->time};
+}
+
+std::optional<Touch> find_touch(const ShapePair& pair, double step, double margin) {
+  const Manifold manifold = pair.now(margin);
+  if (manifold.count == 0) return std::nullopt;
+  if (deepest(manifold).depth >= -kMargin) return Touch{manifold};
+  return swept(pair, step, margin);
+}
+
+const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before) {
+  const auto same = std::lower_bound(before.begin(), before.end(), key,
+                                     [](const BodyContact& c, const BodyContactKey& k) { return c.key < k; });
+  return same != before.end() && same->key == key ? &*same : nullptr;
+}
+
+/// The anchors' stretch is kept; they move along with the place where the surfaces meet, so that rolling
+/// stretches nothing.
+void anchor(const MovingBody& a, const MovingBody& b, bool lasting, BodyContact& contact) {
+  contact.stretch.setZero();
+  if (lasting) {
+    const Vector3 apart = a.pose * contact.anchor_a - b.pose * contact.anchor_b;
+    contact.stretch = apart - contact.normal.dot(apart) * contact.normal;
+  } else {
+    contact.friction = Friction::sticking;
+  }
+  contact.anchor_a = a.pose.to_local(contact.point + 0.5 * contact.stretch);
+  contact.anchor_b = b.pose.to_local(contact.point - 0.5 * contact.stretch);
+}
+
+BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
+                         const ManifoldPoint& point, const BodyContact* memory) {
+  BodyContact contact;
+  if (memory != nullptr) contact = *memory;
+  const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
+  contact.key = key;
+  contact.point = point.point;
+  contact.normal = touch.manifold.normal;
+  contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
+  contact.share = 1.0 / touch.manifold.count;
+  contact.first_touch = touch.time;
+  contact.force.setZero();
+  contact.struck = contact.struck && point.depth > -kApart;
+  contact.material = together(pair.a.body.material, pair.b.body.material);
+  const double then = std::max(touch.time, 0.0);
+  contact.arm_a = point.point - pair.a.at(then).position;
+  contact.arm_b = point.point - pair.b.at(then).position;
+  anchor(pair.a, pair.b, lasting, contact);
+  return contact;
+}
+
+}  // namespace
+
+BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& geometry,
+                                     const Vector3& gravity)
+    : scene_(scene), geometry_(geometry), gravity_(gravity) {
+  found_.reserve(16 * scene.bodies.size());
+}
+
+void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies, double step,
+                             std::vector<BodyContact>& contacts) {
+  found_.clear();
+  for (const auto& [a, b] : neighbours.pairs()) find_pair(a, b, bodies, step, contacts);
+  std::sort(found_.begin(), found_.end(),
+            [](const BodyContact& x, const BodyContact& y) { return x.key < y.key; });
+  contacts.swap(found_);
+}
+
+void BodyContactFinder::find_pair(int index_a, int index_b, const std::vector<BodyState>& bodies, double step,
+                                  const std::vector<BodyContact>& before) {
+  const auto ia = static_cast<std::size_t>(index_a), ib = static_cast<std::size_t>(index_b);
+  const MovingBody a(scene_.bodies[ia], bodies[ia], gravity_), b(scene_.bodies[ib], bodies[ib], gravity_);
+  const double speed = (a.twist.linear - b.twist.linear).norm() + fastest_point(a) + fastest_point(b);
+  const double falls = 0.5 * step * (a.acceleration - b.acceleration).norm();
+  const double margin = kMargin + (speed + falls) * step;
+  const double reach = a.body.bounding_radius + b.body.bounding_radius + margin;
+  if ((a.pose.position - b.pose.position).squaredNorm() > reach * reach) return;
+  for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
+    if (at_least_away(b.pose.position, a.body.shapes[i], a.pose) > b.body.bounding_radius + margin) continue;
+    for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
+      const ShapePair pair{
+          a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
+      const auto touch = find_touch(pair, step, margin);
+      if (!touch) continue;
+      for (int p = 0; p < touch->manifold.count; ++p) {
+        const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
+        if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
+        const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
+                                 static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
+        found_.push_back(make_contact(key, pair, *touch, point, memory_of(key, before)));
+      }
+    }
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,24 @@
+#include "mr_hand_interaction/collision/moving_body.h"
+
+namespace mrhi {
+
+MovingBody::MovingBody(const Body& of, const BodyState& state, const Vector3& gravity)
+    : body(of),
+      pose(state.pose),
+      twist(twist_of(of, state)),
+      acceleration(of.fixed ? Vector3(Vector3::Zero()) : gravity) {}
+
+Pose MovingBody::at(double time) const {
+  const double angle = twist.angular.norm() * time;
+  Pose result{pose.position + time * (twist.linear + 0.5 * time * acceleration), pose.orientation};
+  if (angle > 0.0) {
+    result.orientation = Quaternion(Eigen::AngleAxisd(angle, twist.angular.normalized())) * pose.orientation;
+  }
+  return result;
+}
+
+Vector3 MovingBody::velocity(double time, const Vector3& arm) const {
+  return twist.linear + time * acceleration + twist.angular.cross(arm);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,213 @@
+#include "impact_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mr_hand_interaction/collision/god_object.h"
+#include "mr_hand_interaction/response/impact.h"
+
+namespace mrhi {
+namespace {
+
+constexpr int kMaxSweeps = 500;
+constexpr double kConverged = 1e-13;  // of the approach velocity
+/// Impulses that grow beyond this multiple of what the blows need have no end.
+constexpr double kPressed = 4.0;
+
+Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
+  const Body& body = step.scene.bodies[index];
+  Strike::Partner partner;
+  if (body.fixed) return partner;
+  partner.state = &step.bodies[index];
+  partner.inverse_mass = 1.0 / body.mass;
+  partner.inverse_inertia = world_inverse_inertia(body, partner.state->pose.orientation);
+  partner.arm = arm;
+  return partner;
+}
+
+/// Moves the arms on to where the two surfaces meet, at one point: so that the blow keeps angular momentum.
+void meet(Strike& strike) {
+  const Vector3 point = 0.5 * (strike.a.velocity() + strike.b.velocity());
+  for (Strike::Partner* partner : {&strike.a, &strike.b}) {
+    if (partner->state == nullptr) continue;
+    partner->arm += strike.time * (point - partner->inverse_mass * partner->state->linear_momentum);
+  }
+}
+
+/// Moves one impact towards its target, never pulling; returns by how much its velocity was off [m/s].
+double relax_normal(Strike& strike) {
+  const double velocity = strike.normal.dot(strike.relative_velocity());
+  const double wanted = std::max(0.0, strike.magnitude + strike.mass * (strike.target - velocity));
+  const double change = wanted - strike.magnitude;
+  strike.magnitude = wanted;
+  strike.a.push(change * strike.normal);
+  strike.b.push(-change * strike.normal);
+  return std::abs(change) / strike.mass;
+}
+
+/// Stops the sliding at one impact as far as Coulomb's law lets it; returns the change of the impulse over
+/// the normal's effective mass [m/s].
+double relax_tangential(Strike& strike) {
+  if (strike.friction <= 0.0) return 0.0;
+  const Eigen::Vector2d needed = strike.along_mass * (strike.along.transpose() * strike.relative_velocity());
+  Vector3 wanted = strike.drag + strike.along * needed;
+  const double most = strike.friction * strike.magnitude, length = wanted.norm();
+  if (length > most) wanted *= most / length;
+  const Vector3 change = wanted - strike.drag;
+  strike.drag = wanted;
+  strike.a.push(-change);
+  strike.b.push(change);
+  return change.norm() / strike.mass;
+}
+
+}  // namespace
+
+Vector3 Strike::Partner::velocity() const {
+  if (state == nullptr) return Vector3::Zero();
+  return inverse_mass * state->linear_momentum + (inverse_inertia * state->angular_momentum).cross(arm);
+}
+
+void Strike::Partner::push(const Vector3& impulse) {
+  if (state == nullptr) return;
+  state->linear_momentum += impulse;
+  state->angular_momentum += arm.cross(impulse);
+}
+
+Matrix3 Strike::Partner::inverse_effective_mass() const {
+  if (state == nullptr) return Matrix3::Zero();
+  const Matrix3 cross = cross_matrix(arm);
+  return inverse_mass * Matrix3::Identity() - cross * inverse_inertia * cross;
+}
+
+Vector3 Strike::relative_velocity() const {
+  return drive + a.velocity() - b.velocity();
+}
+
+void ImpactSolver::resolve(ContactStep& step, ImpactFriction friction) {
+  for (Contact& contact : step.contacts) contact.impulse.setZero();
+  for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
+  islands_.build(step);
+  for (std::size_t first = 0; first < islands_.size();) {
+    collect(step, islands_.next(first), friction);
+    if (strikes_.empty()) continue;
+    if (solve()) {
+      report(step);
+    } else {
+      // Fingers that close from both sides press the body, they do not strike it: Newton's law has no
+      // solution, and the springs take over.
+      undo();
+    }
+  }
+}
+
+void ImpactSolver::collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction) {
+  strikes_.clear();
+  most_ = 0.0;
+  for (const ContactIndex& entry : island) {
+    const auto i = static_cast<std::size_t>(entry.index);
+    if (entry.between_bodies) {
+      add(step, step.body_contacts[i], friction);
+    } else {
+      add(step, step.contacts[i], friction);
+    }
+  }
+}
+
+void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction friction) {
+  if (contact.ignored || contact.struck) return;
+  const Body& body = step.scene.bodies[contact.key.body];
+  const BodyState& state = step.bodies[contact.key.body];
+  const double rate = contact.normal.dot(relative_velocity(contact, body, state));
+  if (classify(rate) != Approach::colliding) return;
+  const double acceleration = -contact.normal.dot(step.gravity);
+  const double time = time_to_close(-contact.depth, rate, acceleration);
+  if (time >= step.step) return;
+  Strike strike;
+  strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
+  strike.drive = contact.hand_velocity;
+  strike.normal = contact.normal;
+  strike.time = contact.time_of_impact = time;
+  strike.impulse = &contact.impulse;
+  contact.struck = true;
+  strike.target = rate;
+  add_strike(strike, rate + time * acceleration, body.material, friction);
+}
+
+void ImpactSolver::add(ContactStep& step, BodyContact& contact, ImpactFriction friction) {
+  if (contact.struck) return;
+  Strike strike;
+  strike.a = partner(step, contact.key.a, contact.arm_a);
+  strike.b = partner(step, contact.key.b, contact.arm_b);
+  strike.drive.setZero();
+  strike.normal = contact.normal;
+  const double rate = contact.normal.dot(strike.relative_velocity());
+  const double acceleration =
+      strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;  // free bodies fall together
+  if (classify(rate) != Approach::colliding && contact.first_touch < 0.0) return;
+  strike.time =
+      contact.first_touch >= 0.0 ? contact.first_touch : time_to_close(-contact.depth, rate, acceleration);
+  if (strike.time >= step.step) return;
+  if (contact.first_touch < 0.0) meet(strike);
+  strike.target = contact.normal.dot(strike.relative_velocity());
+  const double speed = strike.target + strike.time * acceleration;
+  if (classify(speed) != Approach::colliding) return;
+  strike.impulse = &contact.impulse;
+  contact.struck = true;
+  add_strike(strike, speed, contact.material, friction);
+}
+
+/// `strike.target` has the rate at the step's start, `speed` (< 0) is the rate on impact.
+void ImpactSolver::add_strike(Strike strike, double speed, const Material& material,
+                              ImpactFriction friction) {
+  strike.target -= (1.0 + material.restitution) * speed;
+  const Matrix3 k = strike.a.inverse_effective_mass() + strike.b.inverse_effective_mass();
+  strike.mass = 1.0 / strike.normal.dot(k * strike.normal);
+  if (friction == ImpactFriction::coulomb) {
+    strike.friction = material.static_friction;
+    strike.along.col(0) = strike.normal.unitOrthogonal();
+    strike.along.col(1) = strike.normal.cross(strike.along.col(0));
+    strike.along_mass = (strike.along.transpose() * k * strike.along).inverse();
+  }
+  most_ += -(1.0 + material.restitution) * speed / strike.b.inverse_mass;
+  strikes_.push_back(strike);
+}
+
+/// Finds impulses that together give every strike its velocity; false if there are none.
+bool ImpactSolver::solve() {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    double error = 0.0, scale = 0.0, sum = 0.0;
+    for (Strike& strike : strikes_) {
+      error = std::max({error, relax_normal(strike), relax_tangential(strike)});
+      scale = std::max(scale, strike.magnitude / strike.mass);
+      sum += strike.magnitude;
+    }
+    if (error <= kConverged * scale) return true;
+    if (sum > kPressed * most_) return false;
+  }
+  return true;
+}
+
+void ImpactSolver::undo() {
+  for (Strike& strike : strikes_) {
+    const Vector3 impulse = strike.drag - strike.magnitude * strike.normal;
+    strike.a.push(impulse);
+    strike.b.push(-impulse);
+  }
+}
+
+void ImpactSolver::report(ContactStep& step) {
+  impacts_.clear();
+  const auto note = [&](const Strike& strike, const Strike::Partner& partner, const Vector3& impulse) {
+    if (partner.state == nullptr) return;
+    const auto body = static_cast<int>(partner.state - step.bodies.data());
+    impacts_.push_back({body, impulse, partner.arm, strike.time});
+  };
+  for (const Strike& strike : strikes_) {
+    *strike.impulse = strike.drag - strike.magnitude * strike.normal;
+    note(strike, strike.a, -*strike.impulse);
+    note(strike, strike.b, *strike.impulse);
+  }
+  step.changes.note_impacts(impacts_, step.bodies);
+}
+
+}  // namespace mrhi

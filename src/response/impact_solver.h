@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "islands.h"
+#include "mr_hand_interaction/response/contact_model.h"
+
+namespace mrhi {
+
+enum class ImpactFriction { none, coulomb };
+
+/// One surface strikes another.
+struct Strike {
+  /// A body that takes part; nothing of it is set for a hand or a fixture, which an impulse does not move.
+  struct Partner {
+    BodyState* state = nullptr;
+    double inverse_mass = 0.0;
+    Matrix3 inverse_inertia;  // world axes
+    Vector3 arm;
+
+    Vector3 velocity() const;
+    void push(const Vector3& impulse);
+    Matrix3 inverse_effective_mass() const;
+  };
+  Partner a, b;
+  Vector3 drive;                      // velocity of the hand's point, which has a's part then [m/s]
+  Vector3 normal;                     // from b to a
+  double target = 0.0;                // n.(c1' - c2') after the impact [m/s]
+  double mass = 0.0;                  // effective along n [kg]
+  double magnitude = 0.0;             // j so far [N s]
+  double time = 0.0;                  // of impact, from the step's start [s]
+  double friction = 0.0;              // Coulomb's coefficient
+  Eigen::Matrix<double, 3, 2> along;  // unit vectors across n
+  Eigen::Matrix2d along_mass;         // effective across n [kg]
+  Vector3 drag = Vector3::Zero();     // tangential impulse so far [N s]
+  Vector3* impulse = nullptr;         // where the contact wants it told
+
+  Vector3 relative_velocity() const;
+};
+
+/// The impulse phase: Newton's impact law along the normal, once per approach, for all contacts that strike
+/// in this step together: each one's relative velocity becomes at least -restitution times what it was on
+/// impact, with impulses that only push. With ImpactFriction::coulomb, sliding at the point is stopped as far
+/// as static friction times the normal impulse goes.
+class ImpactSolver {
+ public:
+  void resolve(ContactStep& step, ImpactFriction friction);
+
+ private:
+  void collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction);
+  void add(ContactStep& step, Contact& contact, ImpactFriction friction);
+  void add(ContactStep& step, BodyContact& contact, ImpactFriction friction);
+  void add_strike(Strike strike, double speed, const Material& material, ImpactFriction friction);
+  bool solve();
+  void undo();
+  void report(ContactStep& step);
+
+  Islands islands_;
+  std::vector<Strike> strikes_;
+  std::vector<BodyImpact> impacts_;
+  double most_ = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
+};
+
+}  // namespace mrhi

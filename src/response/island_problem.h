@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <vector>
+
+#include "island_contact.h"
+
+namespace mrhi {
+
+/// Several bodies that touch each other, and what presses them: six unknowns a body, solved together. A
+/// Problem for Newton. Keeps its memory from island to island.
+class IslandProblem {
+ public:
+  /// Bodies by their index in the scene; each contact's a and b are places in `bodies`. Keeps a reference to
+  /// the contacts until the next call.
+  void begin(const ContactStep& step, const std::vector<int>& bodies, std::vector<IslandContact>& contacts);
+
+  void restart() { velocity_ = start_; }
+  void limit_friction();
+  void assemble();
+  double error() const;
+  double scale() const { return scale_; }
+  void find_direction();
+  void move(double part) { velocity_ += part * direction_; }
+  double energy() const;
+  double descent() const { return gradient_.dot(direction_); }
+
+  Vector3 relative_velocity(const IslandContact& contact) const;
+  double relative_spin(const IslandContact& contact) const;
+  /// Gives the bodies their momenta at the step's end.
+  void finish(const std::vector<int>& bodies, std::vector<BodyState>& states) const;
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  struct Mass {
+    double mass;
+    double gyration_squared;  // [m^2]
+    Matrix3 inertia;          // world axes
+  };
+  /// Blocks of the Hessian that two bodies share: row below or on the diagonal.
+  struct Block {
+    int row, column;
+    Matrix6 value;
+  };
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(6 * masses_.size()); }
+  Vector3 velocity_at(int body, const Vector3& arm) const;
+  void list_blocks();
+  void find_direction_dense();
+  void find_direction_sparse();
+
+  std::vector<IslandContact>* contacts_ = nullptr;
+  double step_ = 0.0;
+  std::vector<Mass> masses_;
+  Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;
+  std::vector<Block> blocks_;         // the diagonal ones first, then those of touching pairs, sorted
+  std::vector<std::size_t> couples_;  // by contact: its block off the diagonal
+  Eigen::MatrixXd dense_;
+  double scale_ = 0.0;
+};
+
+}  // namespace mrhi

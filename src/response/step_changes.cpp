@@ -1,0 +1,63 @@
+#include "mr_hand_interaction/response/step_changes.h"
+
+namespace mrhi {
+
+void StepChanges::reset(std::size_t bodies) {
+  solved_.assign(bodies, false);
+  for (const Struck& struck : struck_) places_[static_cast<std::size_t>(struck.body)] = -1;
+  places_.resize(bodies, -1);
+  struck_.clear();
+}
+
+StepChanges::Struck& StepChanges::struck(int body, const BodyState& after) {
+  int& place = places_[static_cast<std::size_t>(body)];
+  if (place < 0) {
+    place = static_cast<int>(struck_.size());
+    const Vector3 none = Vector3::Zero();
+    struck_.push_back(
+        {body, after.linear_momentum, after.angular_momentum, none, none, none, none, 0.0, 0.0});
+  }
+  return struck_[static_cast<std::size_t>(place)];
+}
+
+void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies) {
+  const std::size_t known = struck_.size();
+  for (const BodyImpact& impact : impacts) {
+    Struck& body = struck(impact.body, bodies[static_cast<std::size_t>(impact.body)]);
+    const Vector3 turn = impact.arm.cross(impact.impulse);
+    if (static_cast<std::size_t>(places_[static_cast<std::size_t>(impact.body)]) >= known) {
+      body.linear_before -= impact.impulse;
+      body.angular_before -= turn;
+    }
+    body.linear += impact.impulse;
+    body.angular += turn;
+    body.linear_moment += impact.time * impact.impulse;
+    body.angular_moment += impact.time * turn;
+    body.size += impact.impulse.norm();
+    body.size_moment += impact.time * impact.impulse.norm();
+  }
+}
+
+void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
+                                std::vector<BodyState>& bodies) const {
+  for (const Struck& struck : struck_) {
+    if (struck.size_moment <= 0.0) continue;
+    const auto index = static_cast<std::size_t>(struck.body);
+    const Body& body = scene[index];
+    BodyState& state = bodies[index];
+    const double time = struck.size_moment / struck.size;
+    const Vector3 fallen = (body.mass * step) * gravity;
+    const Vector3 linear_by_springs = state.linear_momentum - fallen - struck.linear_before - struck.linear;
+    const Vector3 angular_by_springs = state.angular_momentum - struck.angular_before - struck.angular;
+    state.pose.position -= (struck.linear_moment + time * linear_by_springs) / body.mass;
+    const Vector3 turned = -(world_inverse_inertia(body, state.pose.orientation) *
+                             (struck.angular_moment + time * angular_by_springs));
+    const double angle = turned.norm();
+    if (angle > 0.0) {
+      state.pose.orientation =
+          (Quaternion(Eigen::AngleAxisd(angle, turned / angle)) * state.pose.orientation).normalized();
+    }
+  }
+}
+
+}  // namespace mrhi

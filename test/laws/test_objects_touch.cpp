@@ -1,0 +1,267 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/grips.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+using testing::ball_body;
+using testing::box_body;
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+/// Objects by themselves: the simulation is advanced by frames without hands.
+class Objects {
+ public:
+  explicit Objects(Scene scene, double step = 0.001)
+      : simulation_(wide(std::move(scene)), configuration(step)), frame_(std::max(step, 0.001)) {
+    simulation_.advance({at(0.0), {}});
+  }
+
+  void run(double seconds, const std::function<void()>& each = nullptr) {
+    const long last = count_ + std::lround(seconds / frame_);
+    while (count_ < last) {
+      simulation_.advance({at(static_cast<double>(++count_) * frame_), {}});
+      if (each) each();
+    }
+  }
+  const BodyState& state(std::size_t body) const { return simulation_.state().bodies[body]; }
+  Twist twist(std::size_t body) const { return testing::object_twist(simulation_, body); }
+  const Simulation& simulation() const { return simulation_; }
+
+  Vector3 momentum() const {
+    Vector3 sum = Vector3::Zero();
+    for (const BodyState& state : simulation_.state().bodies) sum += state.linear_momentum;
+    return sum;
+  }
+  Vector3 angular_momentum() const {
+    Vector3 sum = Vector3::Zero();
+    for (const BodyState& state : simulation_.state().bodies)
+      sum += state.pose.position.cross(state.linear_momentum) + state.angular_momentum;
+    return sum;
+  }
+  double energy() const {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < simulation_.scene().bodies.size(); ++b)
+      sum += kinetic_energy(simulation_.scene().bodies[b], state(b));
+    return sum;
+  }
+
+ private:
+  static Scene wide(Scene scene) {
+    scene.bounds = {Vector3::Constant(-100.0), Vector3::Constant(100.0)};
+    return scene;
+  }
+  static Configuration configuration(double step) {
+    Configuration configuration = testing::implicit_configuration();
+    configuration.step = step;
+    return configuration;
+  }
+  Simulation simulation_;
+  double frame_;
+  long count_ = 0;
+};
+
+Body placed(Body body, const std::string& name, const Vector3& position,
+            const Vector3& velocity = Vector3::Zero(), const Vector3& spin = Vector3::Zero()) {
+  body.name = name;
+  body.start.position = position;
+  body.start_twist = {velocity, spin};
+  return body;
+}
+
+Body with(Body body, double restitution, double friction) {
+  body.material.restitution = restitution;
+  body.material.static_friction = body.material.dynamic_friction = friction;
+  return body;
+}
+
+Body floor_block(double friction) {
+  Body block =
+      placed(with(box_body(Vector3(2.0, 2.0, 0.1), 1.0), 0.0, friction), "floor", Vector3(0, 0, -0.05));
+  block.fixed = true;
+  return block;
+}
+
+Scene of(std::vector<Body> bodies, double gravity = 0.0) {
+  Scene scene;
+  scene.name = "objects";
+  scene.bodies = std::move(bodies);
+  scene.gravity = Vector3(0, 0, -gravity);
+  return scene;
+}
+
+TEST(ObjectsTouch, elastic_balls_exchange_velocity_in_a_head_on_blow) {
+  const Body ball = with(ball_body(0.03, 0.2), 1.0, 0.0);
+  Objects balls(
+      of({placed(ball, "a", Vector3(-0.1, 0, 0), Vector3(1, 0, 0)), placed(ball, "b", Vector3(0.1, 0, 0))}));
+  balls.run(0.5);
+  EXPECT_NEAR(balls.twist(0).linear.x(), 0.0, 1e-12);
+  EXPECT_NEAR(balls.twist(1).linear.x(), 1.0, 1e-12);
+  // Where they would be had each passed through the other: the blow fell at its own time.
+  EXPECT_NEAR(balls.state(1).pose.position.x(), 0.4 + 0.06, 1e-6);
+}
+
+/// A cloud of balls of several sizes and masses that meet again and again.
+Scene cloud() {
+  std::vector<Body> balls;
+  for (int i = 0; i < 12; ++i) {
+    const double radius = 0.02 + 0.002 * (i % 4), mass = 0.05 * (1 + i % 3);
+    const Vector3 place(0.09 * (i % 3 - 1), 0.09 * (i / 3 % 2), 0.09 * (i / 6));
+    const Vector3 velocity = Vector3(-1.0 - 0.1 * i, 0.7, 0.4 - 0.05 * i).cwiseProduct(place) * 6.0;
+    balls.push_back(
+        placed(with(ball_body(radius, mass), 1.0, 0.0), "ball" + std::to_string(i), place, velocity));
+  }
+  return of(balls);
+}
+
+TEST(ObjectsTouch, elastic_balls_keep_momentum_and_energy) {
+  Objects balls(cloud());
+  const Vector3 momentum = balls.momentum();
+  const double energy = balls.energy();
+  int blows = 0;
+  balls.run(1.0, [&] {
+    for (const BodyContact& contact : balls.simulation().state().body_contacts)
+      blows += contact.impulse.norm() > 0.0 ? 1 : 0;
+  });
+  EXPECT_GE(blows, 4);
+  EXPECT_NEAR((balls.momentum() - momentum).norm(), 0.0, 1e-12 * energy);
+  EXPECT_NEAR(balls.energy() / energy, 1.0, 1e-9);
+}
+
+TEST(ObjectsTouch, rough_spinning_boxes_keep_linear_and_angular_momentum_and_lose_energy) {
+  const Body box = with(box_body(Vector3(0.06, 0.05, 0.04), 0.1), 0.5, 0.6);
+  Objects boxes(of({placed(box, "a", Vector3(-0.08, 0.01, 0), Vector3(0.5, 0, 0), Vector3(3, -2, 1)),
+                    placed(box, "b", Vector3(0.08, 0, 0.01), Vector3(-0.4, 0, 0), Vector3(0, 4, -2))}));
+  const Vector3 momentum = boxes.momentum(), turning = boxes.angular_momentum();
+  const double energy = boxes.energy();
+  boxes.run(0.6);
+  EXPECT_LT(boxes.energy(), 0.95 * energy);
+  EXPECT_NEAR((boxes.momentum() - momentum).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((boxes.angular_momentum() - turning).norm() / turning.norm(), 0.0, 1e-12);
+}
+
+TEST(ObjectsTouch, a_stack_of_three_cubes_stands_for_a_minute) {
+  const Body cube = with(box_body(Vector3::Constant(0.05), 0.1), 0.3, 0.8);
+  std::vector<Body> bodies{floor_block(0.8)};
+  for (int i = 0; i < 3; ++i)
+    bodies.push_back(
+        placed(cube, "cube" + std::to_string(i), Vector3(0.002 * i, -0.003 * i, 0.025 + 0.0501 * i)));
+  Objects stack(of(bodies, kGravity));
+  stack.run(1.0);
+  std::vector<BodyState> settled = stack.simulation().state().bodies;
+  stack.run(59.0);
+  for (std::size_t b = 1; b <= 3; ++b) {
+    const Pose& now = stack.state(b).pose;
+    EXPECT_NEAR((now.position - settled[b].pose.position).norm(), 0.0, 1e-6) << b;
+    EXPECT_NEAR(now.orientation.angularDistance(settled[b].pose.orientation), 0.0, 1e-5) << b;
+    // Two springs of 1e5 N/m carry at most 3 N each: the stack gives by less than 0.1 mm.
+    EXPECT_NEAR(now.position.z(), 0.025 + 0.05 * static_cast<double>(b - 1), 1e-4) << b;
+  }
+}
+
+TEST(ObjectsTouch, a_cube_slides_on_a_fixture_as_far_as_coulomb_lets_it) {
+  const double friction = 0.4, speed = 1.0;
+  const Body cube = with(box_body(Vector3::Constant(0.05), 0.1), 0.0, friction);
+  for (const double step : {0.00025, 0.001, 0.004, 1.0 / 60.0}) {
+    Objects slide(of({floor_block(friction),
+                      placed(cube, "cube", Vector3(-0.5, 0, 0.025 - 2.4525e-6 * 4), Vector3(speed, 0, 0))},
+                     kGravity),
+                  step);
+    slide.run(1.0);
+    const double way = slide.state(1).pose.position.x() + 0.5;
+    // Friction acts with the velocity at each step's end, which leaves v h / 2 out.
+    EXPECT_NEAR(way, speed * speed / (2.0 * friction * kGravity) - 0.5 * speed * step, 0.001) << step;
+    EXPECT_NEAR(slide.twist(1).linear.norm(), 0.0, 1e-6) << step;
+    if (step > 0.001) continue;
+    EXPECT_NEAR(way / (speed * speed / (2.0 * friction * kGravity)), 1.0, 0.01);
+  }
+}
+
+TEST(ObjectsTouch, a_ball_rolls_on_without_loss) {
+  const double radius = 0.03, speed = 0.5;
+  const Body ball = with(ball_body(radius, 0.1), 0.0, 0.8);
+  Objects roll(of({floor_block(0.8), placed(ball, "ball", Vector3(-0.5, 0, radius - 0.981e-5),
+                                            Vector3(speed, 0, 0), Vector3(0, speed / radius, 0))},
+                  kGravity));
+  roll.run(1.0);
+  EXPECT_NEAR(roll.twist(1).linear.x(), speed, 1e-3 * speed);
+  EXPECT_NEAR(roll.twist(1).angular.y(), speed / radius, 1e-3 * speed / radius);
+}
+
+TEST(ObjectsTouch, a_ball_dropped_without_loss_comes_back_to_its_height) {
+  const double radius = 0.03;
+  Body ball = with(ball_body(radius, 0.1), 1.0, 0.0);
+  Body ground = floor_block(0.0);
+  ground.material.restitution = 1.0;
+  for (const double step : {0.001, 0.004}) {
+    Objects bounce(of({ground, placed(ball, "ball", Vector3(0, 0, radius + 0.3))}, kGravity), step);
+    double highest = 0.0;
+    const double period = 2.0 * std::sqrt(2.0 * 0.3 / kGravity);
+    bounce.run(3.5 * period);
+    bounce.run(0.6 * period, [&] { highest = std::max(highest, bounce.state(1).pose.position.z()); });
+    // Between two steps the highest point can be missed by g h^2 / 8.
+    EXPECT_NEAR(highest, radius + 0.3, 1e-4) << step;
+  }
+}
+
+TEST(ObjectsTouch, three_bodies_in_a_row_are_pushed_by_a_finger_as_one) {
+  const Body cube = with(box_body(Vector3::Constant(0.05), 0.1), 0.0, 0.8);
+  std::vector<Body> row;
+  for (int i = 0; i < 3; ++i)
+    row.push_back(placed(cube, "cube" + std::to_string(i), Vector3(0.05 * i, 0, 0)));
+  Scene scene = of(row);
+  Simulation simulation(scene, testing::implicit_configuration());
+  const auto hand_at = [](double t) {
+    Hand hand = testing::empty_hand();
+    testing::add_fingertip(hand, capsule_index(1, 3), Vector3(-0.025 - 0.01 + 0.1 * t, 0, 0),
+                           -Vector3::UnitX());
+    return hand;
+  };
+  testing::play(simulation, 0.0, 1.0, 1000.0, hand_at);
+  // The finger's spring gives back part of what it took up: the row leaves faster than the finger comes,
+  // twice as fast at most.
+  const double speed = testing::object_twist(simulation, 0).linear.x();
+  EXPECT_GE(speed, 0.1);
+  EXPECT_LE(speed, 0.2);
+  for (std::size_t b = 1; b < 3; ++b)
+    EXPECT_NEAR(testing::object_twist(simulation, b).linear.x(), speed, 1e-4);
+  EXPECT_GT(simulation.state().bodies[2].pose.position.x(), 0.1 + 0.05);
+}
+
+TEST(ObjectsTouch, a_held_cube_carries_another_on_top_of_it) {
+  const testing::PinchScene pinch;
+  Scene scene = pinch.scene();
+  Body rider = box_body(Vector3::Constant(0.04), 0.03);
+  scene.bodies.push_back(placed(rider, "rider", Vector3(0, 0, 0.025 + 0.02)));
+  Configuration configuration = testing::implicit_configuration();
+  Simulation simulation(scene, configuration);
+  const auto sway = [](double t) -> Vector3 {
+    const double x = std::max(0.0, t - 0.5);
+    return testing::smooth(x, 0.5) * testing::swing(x, 0.004, 0.5) + 0.5 * 0.5 * x * x * Vector3::UnitZ();
+  };
+  // Pressed on by half a metre per second squared upwards: less than friction needs for the swing sideways.
+  testing::play(simulation, 0.0, 1.5, 1000.0, [&](double t) { return pinch.hand(t, sway(t)); });
+  const BodyState &cube = simulation.state().bodies[0], &top = simulation.state().bodies[1];
+  EXPECT_NEAR((top.pose.position - cube.pose.position - Vector3(0, 0, 0.045)).norm(), 0.0, 2e-3);
+}
+
+/// Bodies listed the other way round are the same scene.
+TEST(ObjectsTouch, the_order_in_which_objects_are_listed_does_not_matter) {
+  Scene scene = cloud();
+  Scene reversed = scene;
+  std::reverse(reversed.bodies.begin(), reversed.bodies.end());
+  Objects one(scene), other(reversed);
+  one.run(0.3);
+  other.run(0.3);
+  const std::size_t count = scene.bodies.size();
+  for (std::size_t b = 0; b < count; ++b)
+    EXPECT_NEAR((one.state(b).pose.position - other.state(count - 1 - b).pose.position).norm(), 0.0, 1e-10)
+        << b;
+}
+
+}  // namespace
+}  // namespace mrhi
