@@ -8,13 +8,24 @@
 namespace mrhi {
 namespace {
 
+/// The hand where it is at the frame's end.
+HandMotion resting_hand(const HandTrack& track, int slot) {
+  HandTrack resting = track;
+  resting.previous = resting.current;
+  HandMotion motion(resting, slot, 0.0);
+  motion.move_to(1.0);
+  return motion;
+}
+
 std::vector<Contact> contacts_at_end(const FrameEnd& end) {
-  std::vector<MovingHand> hands;
+  std::vector<HandMotion> hands;
   for (int slot = 0; slot < kMaxHands; ++slot) {
     const HandTrack& track = end.state.hands[static_cast<std::size_t>(slot)];
-    if (track.active && !track.appeared) hands.push_back(moving_hand(track, slot, 1.0, 0.0));
+    if (track.active && !track.appeared) hands.push_back(resting_hand(track, slot));
   }
-  std::vector<Contact> contacts = end.state.contacts;
+  std::vector<Contact> contacts;
+  contacts.reserve(end.state.contacts.capacity());  // the finder keeps what it is given, for the next step
+  contacts = end.state.contacts;
   end.neighbours.begin_step(end.state.bodies, 0.0);
   end.finder.find(hands, end.neighbours, end.state.bodies, 0.0, contacts);
   for (Contact& contact : contacts) contact.impulse.setZero();

@@ -44,7 +44,8 @@ struct Simulation::Impl {
   void reset();
   Rejection judge(Nanoseconds stamp);
   void plan(Nanoseconds from, Nanoseconds to);
-  void advance_step(double fraction, double seconds, double step);
+  void begin_hands(double seconds);
+  void advance_step(double fraction, double step);
   void silence(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void keep_in_bounds();
@@ -68,9 +69,13 @@ struct Simulation::Impl {
   Nanoseconds frame_from = 0, frame_to = 0;
   int steps = 0, steps_done = 0;
 
-  std::vector<MovingHand> moving;
+  std::vector<HandMotion> hands;  // those that can touch
   std::vector<Contact> strikes;
   StepChanges changes;
+  std::function<void(Stage)> ended;
+  void end_stage(Stage stage) const {
+    if (ended) ended(stage);
+  }
 };
 
 void Simulation::Impl::reset() {
@@ -79,8 +84,9 @@ void Simulation::Impl::reset() {
   state.hands.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
   state.contacts.reserve(64 * kMaxHands);
-  moving.reserve(kMaxHands);
+  hands.reserve(kMaxHands);
   strikes.clear();
+  strikes.reserve(64 * kMaxHands);
   steps = steps_done = 0;
 }
 
@@ -107,28 +113,38 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
   frame_to = to;
   steps = static_cast<int>((to - from + step_length - 1) / step_length);
   steps_done = 0;
+  begin_hands(to_seconds(to - from));
+}
+
+void Simulation::Impl::begin_hands(double seconds) {
+  hands.clear();
+  for (int slot = 0; slot < kMaxHands; ++slot) {
+    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
+    if (track.active && !track.appeared) hands.emplace_back(track, slot, seconds);
+  }
   neighbours.begin_frame(state.hands, state.bodies);
 }
 
-/// One step, `fraction` of the way into a frame that lasts `seconds`.
-void Simulation::Impl::advance_step(double fraction, double seconds, double step) {
-  moving.clear();
-  for (int slot = 0; slot < kMaxHands; ++slot) {
-    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
-    if (track.active && !track.appeared) moving.push_back(moving_hand(track, slot, fraction, seconds));
-  }
+/// One step, `fraction` of the way into the frame.
+void Simulation::Impl::advance_step(double fraction, double step) {
+  for (HandMotion& hand : hands) hand.move_to(fraction);
   neighbours.begin_step(state.bodies, step);
-  finder.find(moving, neighbours, state.bodies, step, state.contacts);
+  end_stage(Stage::neighbours);
+  finder.find(hands, neighbours, state.bodies, step, state.contacts);
+  end_stage(Stage::hand_contacts);
   body_finder.find(neighbours, state.bodies, step, state.body_contacts);
+  end_stage(Stage::body_contacts);
   changes.reset(scene.bodies.size());
   ContactStep contact_step{scene, gravity, step, state.contacts, state.body_contacts, state.bodies, changes};
   model->respond(contact_step);
   note_strikes(state.contacts, strikes);
+  end_stage(Stage::response);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   keep_in_bounds();
+  end_stage(Stage::flight);
 }
 
 /// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
@@ -142,8 +158,8 @@ void Simulation::Impl::silence(Nanoseconds until) {
   }
   while (state.time + step_length <= until) {
     lose_hands(state.time);
-    neighbours.begin_frame(state.hands, state.bodies);
-    advance_step(0.0, 0.0, to_seconds(step_length));
+    begin_hands(0.0);
+    advance_step(0.0, to_seconds(step_length));
     state.time += step_length;
   }
 }
@@ -209,7 +225,7 @@ bool Simulation::step() {
   Impl& s = *impl_;
   if (s.steps_done >= s.steps) return false;
   const double seconds = to_seconds(s.frame_to - s.frame_from);
-  s.advance_step(static_cast<double>(s.steps_done) / s.steps, seconds, seconds / s.steps);
+  s.advance_step(static_cast<double>(s.steps_done) / s.steps, seconds / s.steps);
   ++s.steps_done;
   return true;
 }
@@ -252,6 +268,10 @@ void Simulation::reset() {
   impl_->clear_result();
 }
 
+void Simulation::watch(std::function<void(Stage)> ended) {
+  impl_->ended = std::move(ended);
+}
+
 const Scene& Simulation::scene() const {
   return impl_->scene;
 }
@@ -263,6 +283,22 @@ const SimulationState& Simulation::state() const {
 }
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
+}
+
+const char* to_string(Stage stage) {
+  switch (stage) {
+    case Stage::neighbours:
+      return "neighbours";
+    case Stage::hand_contacts:
+      return "hand contacts";
+    case Stage::body_contacts:
+      return "body contacts";
+    case Stage::response:
+      return "response";
+    case Stage::flight:
+      break;
+  }
+  return "flight";
 }
 
 const char* to_string(Rejection rejection) {

@@ -11,7 +11,8 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-const std::string& known(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
+const std::string& known(const std::string& option, const std::string& name,
+                         const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw UsageError(option + ": '" + name + "' is not known; allowed: " + joined(names));
   return name;

@@ -41,9 +41,9 @@ class EngineMaker {
 }  // namespace mrhi::benchmark
 
 /// The one symbol that an engine's module exports.
-#define MRHI_ENGINE_MODULE(Maker)                                                                    \
-  extern "C" __attribute__((visibility("default"))) const mrhi::benchmark::EngineMaker*             \
-  speed_accuracy_engine() {                                                                          \
-    static const Maker maker;                                                                        \
-    return &maker;                                                                                   \
+#define MRHI_ENGINE_MODULE(Maker)                                                       \
+  extern "C" __attribute__((visibility("default"))) const mrhi::benchmark::EngineMaker* \
+  speed_accuracy_engine() {                                                             \
+    static const Maker maker;                                                           \
+    return &maker;                                                                      \
   }

@@ -37,11 +37,12 @@ class Experiment {
 
 struct ScenePlan {
   std::string name;
-  std::string group;  ///< name by which several are chosen together
+  std::string group;          ///< name by which several are chosen together
   std::vector<double> steps;  ///< step lengths [s]; empty: all
   std::function<std::unique_ptr<Experiment>(bool quick)> make;
   std::function<void(const EngineMaker& ours)> prepare = nullptr;  ///< before the first run; may be empty
-  std::string missing = {};                                   ///< why it cannot be run here, or empty
+  bool full_only = false;                                          ///< left out by --quick
+  std::string missing = {};                                        ///< why it cannot be run here, or empty
 };
 
 /// All scenes, in the order in which they are run.

@@ -14,13 +14,14 @@
 #include "arguments.h"
 #include "configured.h"
 #include "contender.h"
+#include "results.h"
 
 namespace mrhi::benchmark {
 namespace {
 
 const std::vector<double> kSteps{0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008333333, 0.016666667};
-const std::vector<double> kQuickSteps{0.001, 0.004, 0.008333333};
-constexpr double kBudget = 20.0, kQuickBudget = 1.0;  // of a contender [s]
+const std::vector<double> kQuickSteps{0.001, 0.008333333};
+constexpr double kBudget = 10.0, kQuickBudget = 1.0;  // of a contender [s]
 
 struct Plan {
   std::vector<ScenePlan> scenes;
@@ -43,12 +44,19 @@ std::vector<std::string> known_scenes(const std::vector<ScenePlan>& scenes) {
 Plan plan_for(const Arguments& arguments) {
   Plan plan;
   plan.quick = arguments.quick;
-  for (ScenePlan& scene : all_scenes())
+  for (ScenePlan& scene : all_scenes()) {
+    if (plan.quick && scene.full_only) continue;
     if (chosen(arguments.scenes, scene.name) || chosen(arguments.scenes, scene.group))
       plan.scenes.push_back(std::move(scene));
+  }
   for (const EngineModule& module : engine_modules())
     if (chosen(arguments.engines, module.name)) plan.engines.push_back({module, settings_of(module)});
   return plan;
+}
+
+std::vector<double> steps_of(const ScenePlan& scene, bool quick) {
+  if (scene.steps.empty()) return quick ? kQuickSteps : kSteps;
+  return quick ? std::vector<double>{scene.steps.front()} : scene.steps;
 }
 
 /// All engines with one scene and step, taking turns, each round beginning with another.
@@ -56,44 +64,17 @@ std::vector<std::unique_ptr<Contender>> race(const Plan& plan, const ScenePlan& 
   std::vector<std::unique_ptr<Contender>> contenders;
   for (const auto& [module, settings] : plan.engines)
     for (const std::string& setting : settings)
-      contenders.push_back(std::make_unique<Contender>(module, setting, scene, plan.quick, step));
+      contenders.push_back(std::make_unique<Contender>(module, setting, scene, plan.quick, step,
+                                                       plan.quick ? kQuickBudget : kBudget));
   std::vector<Contender*> running;
   for (const auto& contender : contenders) running.push_back(contender.get());
-  const double budget = plan.quick ? kQuickBudget : kBudget;
   while (!running.empty()) {
     std::rotate(running.begin(), running.begin() + 1, running.end());
     running.erase(std::remove_if(running.begin(), running.end(),
-                                 [budget](Contender* contender) { return !contender->work(budget); }),
+                                 [](Contender* contender) { return !contender->work(); }),
                   running.end());
   }
   return contenders;
-}
-
-void write_row(std::ostream& csv, const std::string& scene, const Contender& contender, double step,
-               const Measure& measure) {
-  const StepTime& time = contender.result().time;
-  csv << scene << measure.suffix << ',' << contender.engine() << ',' << contender.setting() << ',' << step << ','
-      << time.median << ',' << time.percentile_99 << ',' << measure.error << ',' << measure.unit << ','
-      << (measure.failed || !std::isfinite(measure.error)) << '\n';
-}
-
-/// What a scene measures is known from those that came through; one that did not has failed in all of it.
-void write_rows(std::ostream& csv, const std::string& scene, double step,
-                const std::vector<std::unique_ptr<Contender>>& contenders,
-                std::map<std::string, std::vector<Measure>>& measures) {
-  for (const auto& contender : contenders)
-    if (!contender->result().measures.empty()) measures[scene] = contender->result().measures;
-  for (const auto& contender : contenders) {
-    if (!contender->result().supported) continue;
-    std::vector<Measure> rows = contender->result().measures;
-    if (!contender->trouble().empty()) {
-      std::cerr << scene << ", " << contender->engine() << " (" << contender->setting() << "), step " << 1e3 * step
-                << " ms: " << contender->trouble() << '\n';
-      rows = measures[scene];
-      for (Measure& row : rows) row.error = std::nan(""), row.failed = true;
-    }
-    for (const Measure& row : rows) write_row(csv, scene, *contender, step, row);
-  }
 }
 
 void make_folder(const std::string& path) {
@@ -123,18 +104,17 @@ void run(const Arguments& arguments) {
   const std::string file = arguments.output + "/speed_accuracy.csv";
   std::ofstream csv(file);
   if (!csv) throw std::runtime_error("cannot write '" + file + "'");
-  csv.precision(9);
-  csv << "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n";
+  write_header(csv);
   const Plan plan = plan_for(arguments);
   std::map<std::string, std::vector<Measure>> measures;
   const auto begin = std::chrono::steady_clock::now();
   for (const ScenePlan& scene : plan.scenes) {
     if (!scene.missing.empty()) {
-      std::cout << scene.name << "  skipped: " << scene.missing << '\n';
+      std::cout << scene.name << "  skipped: " << scene.missing << '\n' << std::flush;
       continue;
     }
     if (scene.prepare) scene.prepare(load(engine_modules().front().file));
-    for (const double step : !scene.steps.empty() ? scene.steps : plan.quick ? kQuickSteps : kSteps) {
+    for (const double step : steps_of(scene, plan.quick)) {
       write_rows(csv, scene.name, step, race(plan, scene, step), measures);
       csv.flush();
     }

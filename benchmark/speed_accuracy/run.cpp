@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace mrhi::benchmark {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBlock = 4e-3;           // [s]
+constexpr double kBlock = 4e-3;               // [s]
 constexpr std::size_t kMaxSamples = 400'000;  // of step times; later ones replace earlier ones in turn
 
 double microseconds(Clock::duration duration) {
@@ -29,9 +31,12 @@ double clock_cost() {
 
 class Stopwatch {
  public:
-  explicit Stopwatch(const std::function<void()>& pause) : pause_(pause), block_begin_(Clock::now()) {
+  Stopwatch(double seconds, const std::function<void()>& pause)
+      : seconds_(seconds), pause_(pause), block_begin_(Clock::now()) {
     samples_.reserve(kMaxSamples);
   }
+
+  void begin_block() { block_begin_ = Clock::now(); }
 
   void time(Engine& engine) {
     const auto begin = Clock::now();
@@ -45,6 +50,8 @@ class Stopwatch {
     }
     ++count_;
     if (microseconds(end - block_begin_) < 1e6 * kBlock) return;
+    used_ += 1e-6 * microseconds(end - block_begin_);
+    if (used_ > seconds_) throw std::runtime_error("too slow");
     pause_();
     block_begin_ = Clock::now();
   }
@@ -62,6 +69,7 @@ class Stopwatch {
     return *place;
   }
 
+  double seconds_, used_ = 0.0;
   const std::function<void()>& pause_;
   const double clock_cost_ = clock_cost();
   Clock::time_point block_begin_;
@@ -72,6 +80,7 @@ class Stopwatch {
 /// False if the engine has no means for the experiment's world.
 bool play(const EngineMaker& maker, const std::string& setting, Experiment& experiment, double step,
           Stopwatch& stopwatch) {
+  stopwatch.begin_block();
   const int steps = static_cast<int>(std::ceil(experiment.duration() / step - 1e-9));
   for (int trial = 0; trial < experiment.trials(); ++trial) {
     World world = experiment.world(trial);
@@ -96,18 +105,27 @@ bool play(const EngineMaker& maker, const std::string& setting, Experiment& expe
 
 }  // namespace
 
-RunResult run_experiment(const EngineMaker& maker, const std::string& setting, Experiment& experiment, double step,
-                         const std::function<void()>& pause) {
+RunResult run_experiment(const EngineMaker& maker, const std::string& setting, Experiment& experiment,
+                         double step, double seconds, const std::function<void()>& pause) {
   RunResult result;
-  if (experiment.reference_step() > 0.0) {
-    Stopwatch unused(pause);
-    result.supported = play(maker, setting, experiment, experiment.reference_step(), unused);
-    experiment.reference_done();
+  Stopwatch stopwatch(seconds, pause);
+  try {
+    if (experiment.reference_step() > 0.0) {
+      Stopwatch unused(10.0 * seconds, pause);
+      result.supported = play(maker, setting, experiment, experiment.reference_step(), unused);
+      experiment.reference_done();
+    }
+    result.supported = result.supported && play(maker, setting, experiment, step, stopwatch);
+  } catch (const std::exception& error) {
+    result.trouble = error.what();
   }
-  Stopwatch stopwatch(pause);
-  result.supported = result.supported && play(maker, setting, experiment, step, stopwatch);
   result.time = stopwatch.result();
-  if (result.supported) result.measures = experiment.measures();
+  if (!result.supported) return result;
+  result.measures = experiment.measures();
+  for (Measure& measure : result.measures) {
+    if (!result.trouble.empty()) measure.error = std::numeric_limits<double>::quiet_NaN();
+    measure.failed = measure.failed || !std::isfinite(measure.error);
+  }
   return result;
 }
 

@@ -8,7 +8,7 @@ namespace mrhi::benchmark {
 
 /// How long a step took.
 struct StepTime {
-  double median = 0.0;        ///< [us]
+  double median = 0.0;         ///< [us]
   double percentile_99 = 0.0;  ///< [us]
 };
 
@@ -16,11 +16,13 @@ struct RunResult {
   bool supported = true;  ///< false: the engine has no means for this world
   StepTime time;
   std::vector<Measure> measures;
+  std::string trouble;  ///< why the run was broken off, or empty; its measures have failed then
 };
 
 /// Plays an experiment in an engine and times every step. `pause` is called between blocks of some
-/// milliseconds, so that runs of several engines can take turns; an exception means a failed run.
-RunResult run_experiment(const EngineMaker& maker, const std::string& setting, Experiment& experiment, double step,
-                         const std::function<void()>& pause);
+/// milliseconds, so that runs of several engines can take turns. A run that takes longer than `seconds` is
+/// broken off.
+RunResult run_experiment(const EngineMaker& maker, const std::string& setting, Experiment& experiment,
+                         double step, double seconds, const std::function<void()>& pause);
 
 }  // namespace mrhi::benchmark

@@ -12,14 +12,15 @@ namespace mrhi::benchmark {
 /// A free body or a fixture, centre of mass at its origin. SI units, world axes.
 struct BodySpec {
   std::variant<Sphere, Box> shape;
-  double mass = 0.1;                   ///< [kg]
-  Vector3 inertia = Vector3::Ones();   ///< principal moments, body axes [kg m^2]
+  double mass = 0.1;                  ///< [kg]
+  Vector3 inertia = Vector3::Ones();  ///< principal moments, body axes [kg m^2]
   Pose pose;
   Twist twist;
   bool fixed = false;
 };
 
-/// What the hand moves: capsules that keep their places relative to each other. Nothing moves it but the hand.
+/// What the hand moves: capsules that keep their places relative to each other. Nothing moves it but the
+/// hand.
 struct KinematicSpec {
   std::vector<Capsule> capsules;  ///< in its own frame
   Pose pose;                      ///< at the start

@@ -29,7 +29,7 @@ struct ContactConfiguration {
 
 /// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.
 struct Configuration {
-  ContactModelKind contact_model = ContactModelKind::seed;
+  ContactModelKind contact_model = ContactModelKind::implicit;
   double step = 0.001;             ///< longest step of the simulation [s]
   std::optional<Vector3> gravity;  ///< overrides the scene's [m/s^2]
   FilterConfiguration filter;

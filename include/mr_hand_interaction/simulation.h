@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,11 @@ struct FrameResult {
   bool restarted = false;         ///< time went back (a looping bag): everything is at its start
 };
 
+/// The stages of a step, in their order.
+enum class Stage : std::uint8_t { neighbours, hand_contacts, body_contacts, response, flight };
+constexpr int kStages = 5;
+const char* to_string(Stage stage);
+
 /// Hands and objects through time. One call per frame:
 ///   if (simulation.begin(frame) == Rejection::none) { while (simulation.step()) {} use(simulation.end()); }
 /// or advance(), which does just that. Copyable by copying state().
@@ -58,6 +64,10 @@ class Simulation {
 
   /// Everything back to its start; the next frame may have any stamp.
   void reset();
+
+  /// For those who measure: `ended` is called at the end of each stage of a step. The simulation itself reads
+  /// no clock.
+  void watch(std::function<void(Stage)> ended);
 
   const Scene& scene() const;
   const Configuration& configuration() const;

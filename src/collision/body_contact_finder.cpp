@@ -23,6 +23,10 @@ Material together(const Material& a, const Material& b) {
   return material;
 }
 
+Vector3 velocity_of(const Body& body, const BodyState& state) {
+  return body.fixed ? Vector3(Vector3::Zero()) : Vector3(state.linear_momentum / body.mass);
+}
+
 double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
@@ -143,14 +147,17 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
 void BodyContactFinder::find_pair(int index_a, int index_b, const std::vector<BodyState>& bodies, double step,
                                   const std::vector<BodyContact>& before) {
   const auto ia = static_cast<std::size_t>(index_a), ib = static_cast<std::size_t>(index_b);
-  const MovingBody a(scene_.bodies[ia], bodies[ia], gravity_), b(scene_.bodies[ib], bodies[ib], gravity_);
-  const double speed = (a.twist.linear - b.twist.linear).norm() + fastest_point(a) + fastest_point(b);
-  const double falls = 0.5 * step * (a.acceleration - b.acceleration).norm();
-  const double margin = kMargin + (speed + falls) * step;
-  const double reach = a.body.bounding_radius + b.body.bounding_radius + margin;
-  if ((a.pose.position - b.pose.position).squaredNorm() > reach * reach) return;
+  const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
+  const Vector3 approach = velocity_of(body_a, bodies[ia]) - velocity_of(body_b, bodies[ib]);
+  const double falls = body_a.fixed ? 0.5 * step * gravity_.norm() : 0.0;
+  const double travel = kMargin + (approach.norm() + falls) * step;
+  // However they spin, bodies stay in their spheres.
+  const double reach = body_a.bounding_radius + body_b.bounding_radius + travel;
+  if ((bodies[ia].pose.position - bodies[ib].pose.position).squaredNorm() > reach * reach) return;
+  const MovingBody a(body_a, bodies[ia], gravity_), b(body_b, bodies[ib], gravity_);
+  const double margin = travel + (fastest_point(a) + fastest_point(b)) * step;
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
-    if (at_least_away(b.pose.position, a.body.shapes[i], a.pose) > b.body.bounding_radius + margin) continue;
+    if (at_least_away(b.pose.position, a.body.shapes[i], a.pose) > body_b.bounding_radius + travel) continue;
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};

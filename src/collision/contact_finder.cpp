@@ -27,22 +27,35 @@ Capsule to_local(const Capsule& capsule, const Pose& pose) {
   return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
 }
 
-bool spheres_apart(const Capsule& capsule, const Vector3& centre, double radius) {
-  const double reach = radius + capsule.radius;
-  // Distance to the axis is at least distance to its middle less half its length.
-  const double half_length = 0.5 * (capsule.end - capsule.start).norm();
-  return (capsule.centre() - centre).norm() > reach + half_length;
+/// Half the size of an axis-aligned box about the capsule.
+Vector3 half_size(const Capsule& capsule) {
+  return 0.5 * (capsule.end - capsule.start).cwiseAbs() + Vector3::Constant(capsule.radius);
 }
 
-AxisSpan span_over(const TouchingPair& pair, const ClosestFeatures& features) {
-  const PlacedShape& placed = pair.body.shapes[static_cast<std::size_t>(pair.shape_index)];
-  const Pose pose = pair.state.pose * placed.pose;
-  ClosestFeatures local = features;
-  local.normal = pose.orientation.conjugate() * local.normal;
-  local.point = pose.to_local(local.point);
-  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
-  return contact_span(to_local(capsule, pose), placed.shape, local);
+/// True if the capsule is outside an axis-aligned cube about `centre`.
+bool beside(const Capsule& capsule, const Vector3& centre, double half) {
+  const double reach = half + capsule.radius;
+  for (int i = 0; i < 3; ++i) {
+    const double from = capsule.start[i] - centre[i], to = capsule.end[i] - centre[i];
+    if (std::min(from, to) > reach || std::max(from, to) < -reach) return true;
+  }
+  return false;
 }
+
+/// A quick look before the closed form is asked; in the shape's frame.
+struct FarApart {
+  const Capsule& capsule;
+  double margin;
+
+  bool operator()(const Box& box) const {
+    const Vector3 gap = capsule.centre().cwiseAbs() - half_size(capsule) - box.half_extents;
+    return gap.maxCoeff() > margin;
+  }
+  template <typename Other>
+  bool operator()(const Other&) const {
+    return false;
+  }
+};
 
 }  // namespace
 
@@ -51,15 +64,19 @@ ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, 
   found_.reserve(64 * kMaxHands);
 }
 
-void ContactFinder::find(const std::vector<MovingHand>& hands, const Neighbours& neighbours,
+void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours& neighbours,
                          const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts) {
   found_.clear();
-  for (const MovingHand& hand : hands) {
+  memory_ = 0;
+  for (const HandMotion& motion : hands) {
+    const MovingHand& hand = motion.hand();
     for (const int body : neighbours.near_hand(hand.slot)) {
       find_pair(hand, body, bodies[static_cast<std::size_t>(body)], step, contacts);
     }
   }
-  std::sort(found_.begin(), found_.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  const auto in_order = [](const Contact& a, const Contact& b) { return a.key < b.key; };
+  if (!std::is_sorted(found_.begin(), found_.end(), in_order))
+    std::sort(found_.begin(), found_.end(), in_order);
   contacts.swap(found_);
 }
 
@@ -79,30 +96,62 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
 void ContactFinder::find_pair(const MovingHand& hand, int body_index, const BodyState& state, double step,
                               const std::vector<Contact>& before) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(body_index)];
-  const MovingBody moving(body, state, gravity_);
-  const Twist& twist = moving.twist;
-  const double falls = 0.5 * step * moving.acceleration.norm();
+  const double linear_speed = body.fixed ? 0.0 : state.linear_momentum.norm() / body.mass;
+  const double falls = body.fixed ? 0.0 : 0.5 * step * gravity_.norm();
+  // However it spins, the body stays in its sphere.
+  const double farthest = body.bounding_radius + kMargin + (hand.top_speed + linear_speed + falls) * step;
+  std::optional<MovingBody> moving;
+  double body_speed = 0.0;
+  frames_.clear();
   for (int c = 0; c < kCapsules; ++c) {
     const auto ci = static_cast<std::size_t>(c);
     const Capsule& capsule = hand.capsules[ci];
-    if (capsule.radius <= 0.0) continue;
-    const double speed = std::max(hand.start_velocity[ci].norm(), hand.end_velocity[ci].norm()) +
-                         twist.linear.norm() + twist.angular.norm() * body.bounding_radius + falls;
-    const double margin = kMargin + speed * step;
-    if (spheres_apart(capsule, state.pose.position, body.bounding_radius + margin)) continue;
+    if (capsule.radius <= 0.0 || beside(capsule, state.pose.position, farthest)) continue;
+    if (!moving) {
+      moving.emplace(body, state, gravity_);
+      body_speed = linear_speed + falls + moving->twist.angular.norm() * body.bounding_radius;
+      for (const PlacedShape& placed : body.shapes)
+        frames_.push_back({moving->rotation * placed.pose.orientation.toRotationMatrix(),
+                           moving->to_world(placed.pose.position)});
+    }
+    const double speed = std::max(hand.start_velocity[ci].norm(), hand.end_velocity[ci].norm()) + body_speed;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
-      const TouchingPair pair{hand, c, body_index, shape, body, state};
-      std::optional<ClosestFeatures> features = closest(capsule, body_index, shape, state.pose, margin);
-      if (features && features->distance > kMargin) features = swept(pair, moving, step, margin);
-      if (features) touch(pair, *features, before);
+      find_touch({hand, c, body_index, shape, *moving}, frames_[static_cast<std::size_t>(shape)], step,
+                 kMargin + speed * step, before);
     }
   }
 }
 
-std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const MovingBody& moving,
-                                                    double step, double margin) const {
+void ContactFinder::find_touch(const TouchingPair& pair, const PlacedFrame& frame, double step, double margin,
+                               const std::vector<Contact>& before) {
+  const auto b = static_cast<std::size_t>(pair.body_index), i = static_cast<std::size_t>(pair.shape_index);
+  const Shape& shape = pair.moving.body.shapes[i].shape;
+  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
+  const Capsule local{frame.rotation.transpose() * (capsule.start - frame.position),
+                      frame.rotation.transpose() * (capsule.end - frame.position), capsule.radius};
+  if (std::visit(FarApart{local, margin}, shape)) return;
+  auto features = std::visit(LocalClosest{local, geometry_.meshes[b][i].get(), margin}, shape);
+  if (!features || features->distance > margin) return;
+  if (features->distance > kMargin) {
+    features = swept(pair, step, margin);
+    if (!features) return;
+    const Vector3 normal = frame.rotation.transpose() * features->normal;
+    const Vector3 point = frame.rotation.transpose() * (features->point - frame.position);
+    const AxisSpan span =
+        contact_span(local, shape, {features->distance, normal, point, features->axis_parameter});
+    return touch(pair, *features, span, before);
+  }
+  const AxisSpan span = contact_span(local, shape, *features);
+  features->normal = frame.rotation * features->normal;
+  features->point = frame.rotation * features->point + frame.position;
+  touch(pair, *features, span, before);
+}
+
+std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, double step,
+                                                    double margin) const {
   const auto c = static_cast<std::size_t>(pair.capsule);
   const Capsule& capsule = pair.hand.capsules[c];
+  const MovingBody& moving = pair.moving;
   const auto separation = [&](double time) -> std::optional<Separation<ClosestFeatures>> {
     const Capsule then{capsule.start + time * pair.hand.start_velocity[c],
                        capsule.end + time * pair.hand.end_velocity[c], capsule.radius};
@@ -119,26 +168,28 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
   // Told where the body is now: the place on its surface that will be met.
   const Pose then = moving.at(touch->time);
   ClosestFeatures features = touch->features;
-  features.point = pair.state.pose * then.to_local(features.point);
-  features.normal = pair.state.pose.orientation * (then.orientation.conjugate() * features.normal);
+  features.point = moving.to_world(then.to_local(features.point));
+  features.normal = moving.rotation * (then.orientation.conjugate() * features.normal);
   features.distance =
       features.normal.dot(capsule.axis_point(features.axis_parameter) - features.point) - capsule.radius;
   return features;
 }
 
-void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& features,
+void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                           const std::vector<Contact>& before) {
   const ContactKey key{static_cast<std::uint16_t>(pair.body_index), static_cast<std::uint8_t>(pair.hand.slot),
                        static_cast<std::uint8_t>(pair.capsule), static_cast<std::uint8_t>(pair.shape_index),
                        0};
-  const auto first = std::lower_bound(before.begin(), before.end(), key,
-                                      [](const Contact& a, const ContactKey& k) { return a.key < k; });
+  // Pairs come in the order of their keys, but for several hands.
+  if (memory_ == before.size() || key < before[memory_].key) memory_ = 0;
+  while (memory_ < before.size() && before[memory_].key < key) ++memory_;
+  const auto first = before.begin() + static_cast<std::ptrdiff_t>(memory_);
   auto last = first;
   while (last != before.end() && last->key.same_pair(key)) ++last;
   const bool apart = features.distance > kSeparation;
   const int count = apart ? 0 : static_cast<int>(last - first);
   const std::size_t size = found_.size();
-  update_god_objects(pair, features, span_over(pair, features), count > 0 ? &*first : nullptr, count, found_);
+  update_god_objects(pair, features, span, count > 0 ? &*first : nullptr, count, found_);
   for (std::size_t i = size; apart && i < found_.size(); ++i) found_[i].ignored = found_[i].struck = false;
 }
 

@@ -14,17 +14,19 @@ constexpr double kSameFace = 0.5;
 constexpr double kRestingSpeed = 1e-9;
 
 struct Plane {
-  Vector3 point;   // on the surface, world
-  Vector3 normal;  // world
-  bool entry;      // the face that the phalanx entered by, which is not the nearest any more
+  Vector3 point;         // on the surface, world
+  Vector3 normal;        // world
+  Vector3 local_normal;  // body frame
+  bool entry;            // the face that the phalanx entered by, which is not the nearest any more
 };
 
 /// The plane of the face that the phalanx pushes on.
 Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
-  if (memory == nullptr) return {features.point, features.normal, false};
-  const Vector3 entry = pair.state.pose.orientation * memory->entry_normal;
-  if (entry.dot(features.normal) >= kSameFace) return {features.point, features.normal, false};
-  return {pair.state.pose * memory->god_object, entry, true};
+  const Vector3 local = pair.moving.rotation.transpose() * features.normal;
+  if (memory == nullptr || memory->entry_normal.dot(local) >= kSameFace)
+    return {features.point, features.normal, local, false};
+  return {pair.moving.to_world(memory->god_object), pair.moving.rotation * memory->entry_normal,
+          memory->entry_normal, true};
 }
 
 const Contact* nearest_memory(const Contact* before, int count, double s) {
@@ -45,8 +47,15 @@ const Contact* memory_of_point(const Contact* before, int count, int point) {
   return nullptr;
 }
 
-Contact make_contact(const TouchingPair& pair, int point) {
-  Contact contact;
+/// A contact that goes on from its memory, or begins.
+Contact& begin_contact(const TouchingPair& pair, int point, const Contact* memory,
+                       std::vector<Contact>& contacts) {
+  if (memory != nullptr) {
+    contacts.push_back(*memory);
+    return contacts.back();
+  }
+  contacts.emplace_back();
+  Contact& contact = contacts.back();
   contact.key = {static_cast<std::uint16_t>(pair.body_index), static_cast<std::uint8_t>(pair.hand.slot),
                  static_cast<std::uint8_t>(pair.capsule), static_cast<std::uint8_t>(pair.shape_index),
                  static_cast<std::uint8_t>(point)};
@@ -59,20 +68,32 @@ Contact make_contact(const TouchingPair& pair, int point) {
 void roll(const TouchingPair& pair, const Capsule& capsule, const Plane& plane, double s, Contact& contact) {
   const Vector3 shift = (s - contact.axis_parameter) * (capsule.end - capsule.start);
   const Vector3 along = shift - plane.normal.dot(shift) * plane.normal;
-  Vector3 point = pair.state.pose * contact.god_object + along;
-  point -= plane.normal.dot(point - plane.point) * plane.normal;
-  contact.god_object = pair.state.pose.to_local(point);
+  contact.point = pair.moving.to_world(contact.god_object) + along;
+  contact.point -= plane.normal.dot(contact.point - plane.point) * plane.normal;
 }
 
 /// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
 /// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm.
 void swing_back(const TouchingPair& pair, const Plane& plane, bool remembered, Contact& contact) {
-  if (!remembered) contact.touched_from = pair.hand.palm.conjugate() * plane.normal;
+  if (!remembered) contact.touched_from = pair.hand.palm.transpose() * plane.normal;
   const Vector3 way_back = pair.hand.palm * contact.touched_from;
   contact.lever = std::max(contact.depth, 0.0) * (way_back - plane.normal.dot(way_back) * plane.normal);
 }
 
-void place(const TouchingPair& pair, const Plane& plane, double s, bool remembered, Contact& contact) {
+/// How the phalanx moves in this step.
+struct PhalanxMotion {
+  explicit PhalanxMotion(const TouchingPair& pair)
+      : start(pair.hand.start_velocity[static_cast<std::size_t>(pair.capsule)]),
+        spread(pair.hand.end_velocity[static_cast<std::size_t>(pair.capsule)] - start),
+        swing(pair.hand.swing(pair.capsule)),
+        spin(pair.hand.angular_velocity(pair.capsule)) {}
+
+  const Vector3& start;
+  Vector3 spread, swing, spin;
+};
+
+void place(const TouchingPair& pair, const PhalanxMotion& motion, const Plane& plane, double s,
+           bool remembered, Contact& contact) {
   const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
   const Vector3 offset = -capsule.radius * plane.normal;
   contact.hand_point = capsule.axis_point(s) + offset;
@@ -81,23 +102,24 @@ void place(const TouchingPair& pair, const Plane& plane, double s, bool remember
   if (remembered && contact.depth > 0.0) {
     roll(pair, capsule, plane, s, contact);
   } else {
-    contact.god_object = pair.state.pose.to_local(contact.hand_point + contact.depth * plane.normal);
+    contact.point = contact.hand_point + contact.depth * plane.normal;
     contact.friction = Friction::sticking;
     contact.twist = 0.0;
   }
   swing_back(pair, plane, remembered && contact.depth > 0.0 && contact.friction == Friction::sticking,
              contact);
-  contact.entry_normal = pair.state.pose.orientation.conjugate() * plane.normal;
+  contact.god_object = pair.moving.to_local(contact.point);
+  contact.entry_normal = plane.local_normal;
   contact.axis_parameter = s;
-  contact.point = pair.state.pose * contact.god_object;
   contact.normal = plane.normal;
-  contact.hand_velocity = pair.hand.surface_velocity(pair.capsule, s, offset);
-  contact.hand_spin = plane.normal.dot(pair.hand.angular_velocity(pair.capsule));
+  contact.hand_velocity = motion.start + s * motion.spread + motion.swing.cross(offset);
+  contact.hand_spin = plane.normal.dot(motion.spin);
   contact.axis = capsule.end - capsule.start;
   contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
+  const Twist& twist = pair.moving.twist;
   const Vector3 point_velocity =
-      object_velocity(twist_of(pair.body, pair.state), pair.state.pose.position, contact.point);
+      twist.linear + twist.angular.cross(contact.point - pair.moving.pose.position);
   contact.approach = classify(contact.normal.dot(contact.hand_velocity - point_velocity));
 }
 
@@ -127,26 +149,25 @@ void update_god_objects(const TouchingPair& pair, const ClosestFeatures& feature
   const Plane plane = contact_plane(pair, features, nearest);
   const bool lies_flat =
       span.s1 > span.s0 && reaches_surface(pair, plane, span.s0) && reaches_surface(pair, plane, span.s1);
+  const PhalanxMotion motion(pair);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
-    Contact contact = nearest != nullptr ? *nearest : make_contact(pair, point);
+    Contact& contact = begin_contact(pair, point, nearest, contacts);
     const double s = plane.entry ? deepest_end(pair, plane) : features.axis_parameter;
-    place(pair, plane, s, nearest != nullptr && nearest->depth > 0.0, contact);
+    place(pair, motion, plane, s, nearest != nullptr && nearest->depth > 0.0, contact);
     contact.share = 1.0;
-    contacts.push_back(contact);
     return;
   }
   const std::array<double, 2> ends{{span.s0, span.s1}};
   for (int point = 0; point < 2; ++point) {
     const Contact* memory = memory_of_point(before, count, point);
-    Contact contact = memory != nullptr ? *memory : make_contact(pair, point);
+    Contact& contact = begin_contact(pair, point, memory, contacts);
     if (memory == nullptr && nearest != nullptr) {
       contact.struck = nearest->struck;
       contact.ignored = nearest->ignored;
     }
-    place(pair, plane, ends[static_cast<std::size_t>(point)], memory != nullptr && memory->depth > 0.0,
-          contact);
-    contacts.push_back(contact);
+    place(pair, motion, plane, ends[static_cast<std::size_t>(point)],
+          memory != nullptr && memory->depth > 0.0, contact);
   }
   share_load(contacts[contacts.size() - 2], contacts.back());
 }

@@ -3,10 +3,15 @@
 namespace mrhi {
 
 MovingBody::MovingBody(const Body& of, const BodyState& state, const Vector3& gravity)
-    : body(of),
-      pose(state.pose),
-      twist(twist_of(of, state)),
-      acceleration(of.fixed ? Vector3(Vector3::Zero()) : gravity) {}
+    : body(of), pose(state.pose), rotation(state.pose.orientation.toRotationMatrix()), acceleration(gravity) {
+  if (of.fixed) {
+    acceleration.setZero();
+    return;
+  }
+  twist.linear = state.linear_momentum / of.mass;
+  const Vector3 momentum = rotation.transpose() * state.angular_momentum;
+  twist.angular = rotation * (of.inverse_inertia * momentum);
+}
 
 Pose MovingBody::at(double time) const {
   const double angle = twist.angular.norm() * time;

@@ -9,6 +9,7 @@
 namespace mrhi {
 namespace {
 
+constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
 constexpr int kMaxSweeps = 500;
 constexpr double kConverged = 1e-13;  // of the approach velocity
 /// Impulses that grow beyond this multiple of what the blows need have no end.
@@ -83,12 +84,16 @@ Vector3 Strike::relative_velocity() const {
   return drive + a.velocity() - b.velocity();
 }
 
-void ImpactSolver::resolve(ContactStep& step, ImpactFriction friction) {
+ImpactSolver::ImpactSolver() {
+  strikes_.reserve(kUsualStrikes);
+  impacts_.reserve(2 * kUsualStrikes);
+}
+
+void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction) {
   for (Contact& contact : step.contacts) contact.impulse.setZero();
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
-  islands_.build(step);
-  for (std::size_t first = 0; first < islands_.size();) {
-    collect(step, islands_.next(first), friction);
+  for (std::size_t first = 0; first < islands.size();) {
+    collect(step, islands.next(first), friction);
     if (strikes_.empty()) continue;
     if (solve()) {
       report(step);

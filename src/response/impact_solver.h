@@ -44,7 +44,8 @@ struct Strike {
 /// as static friction times the normal impulse goes.
 class ImpactSolver {
  public:
-  void resolve(ContactStep& step, ImpactFriction friction);
+  ImpactSolver();
+  void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction);
 
  private:
   void collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction);
@@ -55,7 +56,6 @@ class ImpactSolver {
   void undo();
   void report(ContactStep& step);
 
-  Islands islands_;
   std::vector<Strike> strikes_;
   std::vector<BodyImpact> impacts_;
   double most_ = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]

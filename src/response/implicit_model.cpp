@@ -5,7 +5,8 @@
 namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
-  impacts_.resolve(step, ImpactFriction::coulomb);
+  islands_.build(step);
+  impacts_.resolve(step, islands_, ImpactFriction::coulomb);
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();
@@ -16,25 +17,31 @@ void ImplicitModel::respond(ContactStep& step) {
     contact.struck = contact.struck || contact.depth > 0.0;
   }
   places_.resize(step.scene.bodies.size(), -1);
-  islands_.build(step);
   for (std::size_t first = 0; first < islands_.size();) respond(step, islands_.next(first));
 }
 
 void ImplicitModel::respond(ContactStep& step, const Islands::Island& island) {
   gather(step, island);
+  if (contacts_.empty()) return;
   if (bodies_.size() == 1) {
     const auto body = static_cast<std::size_t>(bodies_[0]);
-    BodyProblem problem(step, body, contacts_);
-    Newton<BodyProblem>(problem).solve();
-    if (problem.scale() <= 0.0) return;
-    settle_all(step, problem);
-    problem.finish(step.bodies[body]);
+    one_.begin(step, body, contacts_);
+    const bool agree = Newton<BodyProblem>(one_).solve();
+    if (one_.scale() <= 0.0) return;
+    one_.finish(agree, contacts_, step.bodies[body]);
   } else {
     several_.begin(step, bodies_, contacts_);
-    Newton<IslandProblem>(several_).solve();
+    const bool agree = Newton<IslandProblem>(several_).solve();
     if (several_.scale() <= 0.0) return;
-    settle_all(step, several_);
-    several_.finish(bodies_, step.bodies);
+    several_.finish(agree, bodies_, step.bodies);
+  }
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const auto index = static_cast<std::size_t>(entries_[i].index);
+    if (entries_[i].between_bodies) {
+      settle(step, contacts_[i], step.body_contacts[index]);
+    } else {
+      settle(step, contacts_[i], step.contacts[index]);
+    }
   }
   for (const int body : bodies_) step.changes.mark_solved(body);
 }
@@ -49,14 +56,16 @@ void ImplicitModel::gather(const ContactStep& step, const Islands::Island& islan
     const auto i = static_cast<std::size_t>(entry.index);
     if (entry.between_bodies) {
       const BodyContact& contact = step.body_contacts[i];
-      contacts_.push_back(body_spring(step, contact, object_stiffness_));
+      contacts_.emplace_back();
+      make_spring(step, contact, object_stiffness_, contacts_.back());
       if (!step.scene.bodies[contact.key.a].fixed) contacts_.back().a = place_of(contact.key.a);
       contacts_.back().b = place_of(contact.key.b);
     } else {
       const Contact& contact = step.contacts[i];
       const int place = place_of(contact.key.body);
       if (contact.ignored) continue;
-      contacts_.push_back(hand_spring(step, contact, torsion_));
+      contacts_.emplace_back();
+      make_spring(step, contact, torsion_, contacts_.back());
       contacts_.back().b = place;
     }
     entries_.push_back(entry);
@@ -70,20 +79,6 @@ int ImplicitModel::place_of(int body) {
     bodies_.push_back(body);
   }
   return place;
-}
-
-template <typename Problem>
-void ImplicitModel::settle_all(ContactStep& step, const Problem& problem) const {
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Vector3 u = problem.relative_velocity(contacts_[i]);
-    const double spin = problem.relative_spin(contacts_[i]);
-    const auto index = static_cast<std::size_t>(entries_[i].index);
-    if (entries_[i].between_bodies) {
-      settle(step, contacts_[i], u, spin, step.body_contacts[index]);
-    } else {
-      settle(step, contacts_[i], u, spin, step.contacts[index]);
-    }
-  }
 }
 
 }  // namespace mrhi

@@ -21,13 +21,12 @@ class ImplicitModel : public ContactModel {
   void respond(ContactStep& step, const Islands::Island& island);
   void gather(const ContactStep& step, const Islands::Island& island);
   int place_of(int body);
-  template <typename Problem>
-  void settle_all(ContactStep& step, const Problem& problem) const;
 
   const bool torsion_;
   const double object_stiffness_;
   ImpactSolver impacts_;
   Islands islands_;
+  BodyProblem one_;
   IslandProblem several_;
   // The island at hand: its bodies, and its contacts with the entries they stand for.
   std::vector<int> bodies_, places_;

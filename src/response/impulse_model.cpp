@@ -7,7 +7,8 @@ void ImpulseModel::respond(ContactStep& step) {
     contact.force.setZero();
     contact.struck = false;
   }
-  impacts_.resolve(step, ImpactFriction::none);
+  islands_.build(step);
+  impacts_.resolve(step, islands_, ImpactFriction::none);
 }
 
 }  // namespace mrhi

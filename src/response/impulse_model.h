@@ -12,6 +12,7 @@ class ImpulseModel : public ContactModel {
   void respond(ContactStep& step) override;
 
  private:
+  Islands islands_;
   ImpactSolver impacts_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <vector>
 
@@ -16,19 +17,18 @@ class IslandProblem {
   void begin(const ContactStep& step, const std::vector<int>& bodies, std::vector<IslandContact>& contacts);
 
   void restart() { velocity_ = start_; }
-  void limit_friction();
-  void assemble();
+  void evaluate(bool renew_limits);
   double error() const;
   double scale() const { return scale_; }
+  void factorise();
   void find_direction();
   void move(double part) { velocity_ += part * direction_; }
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 
-  Vector3 relative_velocity(const IslandContact& contact) const;
-  double relative_spin(const IslandContact& contact) const;
-  /// Gives the bodies their momenta at the step's end.
-  void finish(const std::vector<int>& bodies, std::vector<BodyState>& states) const;
+  /// Gives the bodies their momenta at the step's end: what the forces make of them where these and the
+  /// velocity `agree`, so that none is lost between bodies.
+  void finish(bool agree, const std::vector<int>& bodies, std::vector<BodyState>& states) const;
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -46,9 +46,10 @@ class IslandProblem {
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(6 * masses_.size()); }
   Vector3 velocity_at(int body, const Vector3& arm) const;
+  Vector3 relative_velocity(const IslandContact& contact) const;
+  double relative_spin(const IslandContact& contact) const;
   void list_blocks();
-  void find_direction_dense();
-  void find_direction_sparse();
+  void factorise_sparse();
 
   std::vector<IslandContact>* contacts_ = nullptr;
   double step_ = 0.0;
@@ -57,6 +58,8 @@ class IslandProblem {
   std::vector<Block> blocks_;         // the diagonal ones first, then those of touching pairs, sorted
   std::vector<std::size_t> couples_;  // by contact: its block off the diagonal
   Eigen::MatrixXd dense_;
+  Eigen::LLT<Eigen::MatrixXd> dense_factors_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_factors_;
   double scale_ = 0.0;
 };
 

@@ -6,27 +6,32 @@ namespace mrhi {
 
 /// Solves a contact problem for its velocity: Newton's method with the friction limits of the last iterate;
 /// each iterate's problem is convex. A Problem has
-///   restart()         puts the velocity back to the step's start
-///   limit_friction()  renews Coulomb's limits at the velocity
-///   assemble()        gradient and Hessian there
-///   error(), scale()  impulse that is missing, impulses that act [N s]
-///   find_direction()  towards the solution
-///   move(part)        along the direction; move(-part) goes back
-///   energy(), descent()  of the convex problem, and its slope along the direction [J]
+///   restart()             puts the velocity back to the step's start
+///   evaluate(renew)       what acts at the velocity, with Coulomb's limits renewed there first or held
+///   error(), scale()      impulse that is missing, impulses that act [N s]
+///   factorise()           the Hessian of the convex problem there
+///   find_direction()      towards the solution, by the last Hessian
+///   move(part)            along the direction; move(-part) goes back
+///   energy(), descent()   of the convex problem, and its slope along the direction [J]
 template <typename Problem>
 class Newton {
  public:
   explicit Newton(Problem& problem) : problem_(problem) {}
 
-  void solve() {
+  /// True if the forces and the velocity found agree.
+  bool solve() {
     problem_.restart();
+    double last = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
-      problem_.limit_friction();
-      problem_.assemble();
-      if (solved()) return;
-      advance(i >= kUncheckedIterations);
+      problem_.evaluate(true);
+      if (solved()) return true;
+      const double error = problem_.error();
+      const bool near = i > 0 && error < kFast * last;
+      last = error;
+      advance(i >= kUncheckedIterations && !near, near);
     }
     solve_with_held_limits();
+    return false;
   }
 
  private:
@@ -37,7 +42,13 @@ class Newton {
   /// The first full steps need no check: they are exact while contacts neither open nor slip, and what is
   /// wrong with them shows in the next iterate.
   static constexpr int kUncheckedIterations = 2;
-  static constexpr double kConverged = 1e-10;  // of the forces' impulse
+  /// A step that leaves less than this part of the error was taken where the Hessian hardly changes.
+  static constexpr double kFast = 0.05;
+  /// Below this error the energy is rounding and no guide any more; of the forces' impulse.
+  static constexpr double kFine = 1e-5;
+  /// The momenta at the step's end are what the forces found make of those at its start, so that what is
+  /// missing here costs no momentum; of the forces' impulse.
+  static constexpr double kConverged = 1e-7;
 
   bool solved() const { return problem_.error() <= kConverged * problem_.scale() + 1e-18; }
 
@@ -46,18 +57,18 @@ class Newton {
   void solve_with_held_limits() {
     problem_.restart();
     for (int renewed = 0; renewed < kMaxLimits; ++renewed) {
-      problem_.limit_friction();
-      for (int i = 0; i < kMaxHeldIterations; ++i) {
-        problem_.assemble();
-        if (solved()) break;
-        advance(true);
+      problem_.evaluate(true);
+      for (int i = 0; i < kMaxHeldIterations && !solved(); ++i) {
+        advance(true, false);
+        problem_.evaluate(false);
       }
     }
   }
 
-  void advance(bool checked) {
+  void advance(bool checked, bool same_hessian) {
+    if (!same_hessian) problem_.factorise();
     problem_.find_direction();
-    if (!checked) return problem_.move(1.0);
+    if (!checked || problem_.error() <= kFine * problem_.scale()) return problem_.move(1.0);
     const double before = problem_.energy(), descent = problem_.descent();
     double part = 1.0;
     problem_.move(part);

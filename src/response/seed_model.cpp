@@ -5,7 +5,8 @@
 namespace mrhi {
 
 void SeedModel::respond(ContactStep& step) {
-  impacts_.resolve(step, ImpactFriction::none);
+  islands_.build(step);
+  impacts_.resolve(step, islands_, ImpactFriction::none);
   // A phalanx that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
   penetration_phase(step);

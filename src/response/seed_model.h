@@ -12,6 +12,7 @@ class SeedModel : public ContactModel {
   void respond(ContactStep& step) override;
 
  private:
+  Islands islands_;
   ImpactSolver impacts_;
 };
 

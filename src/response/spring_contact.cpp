@@ -9,45 +9,53 @@ double yielding_energy(double stiffness, double stretch, double limit) {
   return limit * stretch - 0.5 * limit * limit / stiffness;
 }
 
-}  // namespace
-
-double SpringContact::potential(const Vector3& u, double spin) const {
-  const double rate = normal.dot(u);
-  // Integral of the push from the rate up: where it is released, that of a line times a line.
-  const auto released = [this](double from, double to) {
-    const auto antiderivative = [this](double x) {
-      const double r = 1.0 / kReleaseSpeed;
-      return stiffness * (depth * x - 0.5 * (ahead + depth * r) * x * x + ahead * r * x * x * x / 3.0);
-    };
-    return to > from ? antiderivative(to) - antiderivative(from) : 0.0;
+/// Integral of the push from the rate up, until it is none any more.
+double push_energy(double stiffness, double depth, double ahead, double rate) {
+  // Where the push is released, that of a line times a parabola.
+  const auto antiderivative = [=](double x) {
+    const double r = 1.0 / (kReleaseSpeed * kReleaseSpeed), x2 = x * x;
+    return stiffness * (depth * x - 0.5 * ahead * x2 - depth * r * x * x2 / 3.0 + 0.25 * ahead * r * x2 * x2);
   };
   const double gone = depth / ahead;  // the rate at which the surfaces just part
-  double energy = released(std::max(rate, 0.0), std::min(gone, kReleaseSpeed));
+  const double from = std::max(rate, 0.0), to = std::min(gone, kReleaseSpeed);
+  double energy = to > from ? antiderivative(to) - antiderivative(from) : 0.0;
   if (rate < std::min(gone, 0.0) || (rate < 0.0 && gone > 0.0)) {
-    const double from = depth_ahead(rate), to = depth_ahead(0.0);
-    energy += 0.5 * stiffness * (from * from - to * to) / ahead;
+    const double deep = std::max(0.0, depth - ahead * rate), at_rest = std::max(0.0, depth);
+    energy += 0.5 * stiffness * (deep * deep - at_rest * at_rest) / ahead;
   }
-  energy += yielding_energy(stiffness, stretch_ahead(u).norm(), slip_limit) / ahead;
-  energy += yielding_energy(twist_stiffness, std::abs(twist + ahead * spin), twist_limit) / ahead;
   return energy;
 }
 
-SpringContact::Settled SpringContact::settle(const Vector3& u, double spin) const {
-  const Response response = evaluate(u, spin);
-  Settled settled{response.force, before, Vector3::Zero(), twist};
-  const double wanted = stiffness * stretch_ahead(u).norm();
-  const bool sticks = wanted <= (before == Friction::sticking ? 1.0 : kStickAgain) * slip_limit;
+}  // namespace
+
+double potential(const Spring<double>& spring, const Vector3& u, double spin) {
+  const Vector3 normal = vector(spring.normal);
+  const double rate = normal.dot(u);
+  const Vector3 drawn = vector(spring.stretch) + spring.ahead * (u - rate * normal);
+  const double turned = std::abs(spring.twist + spring.ahead * spin);
+  return push_energy(spring.stiffness, spring.depth, spring.ahead, rate) +
+         (yielding_energy(spring.stiffness, drawn.norm(), spring.slip_limit) +
+          yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
+             spring.ahead;
+}
+
+Settled settle(const Spring<double>& spring, const SpringResponse<double>& response, Friction before,
+               double dynamic_friction, double step) {
+  Settled settled{before, Vector3::Zero(), spring.twist};
+  const bool sticks =
+      response.wanted <= (before == Friction::sticking ? 1.0 : kStickAgain) * spring.slip_limit;
   settled.friction = sticks ? Friction::sticking : Friction::slipping;
   // What slides is what the spring and its damping, in line with the friction, do not follow.
-  const double followed = step / ahead;
+  const double followed = step / spring.ahead;
   if (!sticks && response.push > 0.0) {
-    const Vector3 along = u - normal.dot(u) * normal;
-    const Vector3 tangential = response.force + response.push * normal;
+    const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
+    const Vector3 tangential = vector(response.force) + response.push * vector(spring.normal);
     const double rim = std::min(1.0, dynamic_friction * response.push / tangential.norm());
-    const Vector3 kept = stretch + followed * (rim * tangential / stiffness - stretch);
-    settled.slide = stretch + step * along - kept;
+    const Vector3 kept = stretch + followed * (rim * tangential / spring.stiffness - stretch);
+    settled.slide = stretch + followed * (drawn - stretch) - kept;
   }
-  if (twist_stiffness > 0.0) settled.twist += followed * (response.torque / twist_stiffness - twist);
+  if (spring.twist_stiffness > 0.0)
+    settled.twist += followed * (response.torque / spring.twist_stiffness - spring.twist);
   return settled;
 }
 

@@ -1,109 +1,97 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
+#include "lanes.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/response/penetration_force.h"
 
 namespace mrhi {
 
-/// The spring of one contact as the implicit model solves it: where its two ends will be at the end of the
-/// step, as a function of their relative velocity then. Body 1 is the hand, or body a; forces are on body 2,
-/// the object, or body b. World axes, n from 2 to 1.
-struct SpringContact {
-  // At the step's start.
-  Vector3 normal;
-  Vector3 stretch;  ///< of the spring along the surface: end on 1 less end on 2 [m]
-  double depth;     ///< [m]
-  double twist;     ///< turn of 1 about n against 2, as far as it is held [rad]
-  double patch;     ///< radius of the touching patch [m]
-
-  // What it is made of.
-  double step;             ///< [s]
-  double ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
-  double stiffness;        ///< [N/m]
-  double twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
-  double friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
-  double dynamic_friction;
-  Friction before;
-
-  // Coulomb's limits, by the normal force of the last iterate.
-  double slip_limit = 0.0;   ///< [N]
-  double twist_limit = 0.0;  ///< [N m]
-
-  /// What acts at a relative velocity `u` of 1 at the contact point and a relative spin about n.
-  struct Response {
-    Vector3 force;  ///< [N]
-    double torque;  ///< about n [N m]
-    double push;    ///< normal part of the force, >= 0 [N]
-    // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
-    double across;
-    double along;
-    double slip;
-    Vector3 direction;    ///< d, unit, of the sliding
-    double torque_slope;  ///< -d torque / d spin of 2 [N m s]
-  };
-  /// What is kept in the contact's memory at the end of the step.
-  struct Settled {
-    Vector3 force;
-    Friction friction;
-    Vector3 slide;  ///< by how much 2's end has to follow along the surface [m]
-    double twist;
-  };
-
-  void limit_friction(const Vector3& u);
-  Response evaluate(const Vector3& u, double spin) const;
-  /// Convex function of the velocities whose gradient gives the response [W].
-  double potential(const Vector3& u, double spin) const;
-  Settled settle(const Vector3& u, double spin) const;
-
-  bool acts(const Response& response) const { return response.push > 0.0 || slip_limit > 0.0; }
-
- private:
-  double depth_ahead(double rate) const { return std::max(0.0, depth - ahead * rate); }
-  double push(double rate) const {
-    return stiffness * depth_ahead(rate) * std::clamp(1.0 - rate / kReleaseSpeed, 0.0, 1.0);
-  }
-  Vector3 stretch_ahead(const Vector3& u) const { return stretch + ahead * (u - normal.dot(u) * normal); }
+/// What a spring contact gives at a relative velocity and spin of its ends.
+template <typename Real>
+struct SpringResponse {
+  Triple<Real> force;  ///< on 2 [N]
+  Real push;           ///< normal part of the force, >= 0 [N]
+  Real wanted;         ///< size of the tangential force that would keep it from sliding [N]
+  Real torque;         ///< on 2 about n [N m]
+  // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
+  Real across, along, slip;
+  Triple<Real> drawn;  ///< d times a length: the stretch at the step's end [m]
+  Real drawn_squared;  ///< of that length
+  Real torque_slope;   ///< -d torque / d spin of 2 [N m s]
 };
 
-inline void SpringContact::limit_friction(const Vector3& u) {
-  constexpr double kPatchTorque = 2.0 / 3.0;  // of mu N a: a patch of radius a that presses evenly
-  const double force = push(normal.dot(u));
-  slip_limit = friction * force;
-  twist_limit = kPatchTorque * slip_limit * patch;
+/// The spring of one contact as the implicit model solves it: where its two ends will be at the end of the
+/// step, as a function of their relative velocity then. Body 1 is the hand, or body a; forces are on body 2,
+/// the object, or body b. World axes, n from 2 to 1. Real is double, or Lanes for four contacts at once.
+template <typename Real>
+struct Spring {
+  // At the step's start.
+  Triple<Real> normal;
+  Triple<Real> stretch;  ///< along the surface: end on 1 less end on 2 [m]
+  Real depth;            ///< [m]
+  Real twist;            ///< turn of 1 about n against 2, as far as it is held [rad]
+
+  // What it is made of.
+  Real ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
+  Real stiffness;        ///< [N/m]
+  Real twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
+  Real friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
+  Real patch_friction;   ///< torque that the patch bears, over the push [m]
+
+  // Coulomb's limits, by the normal force of the last iterate.
+  Real slip_limit;   ///< [N]
+  Real twist_limit;  ///< [N m]
+
+  /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
+  /// limits by the normal force there first, where asked.
+  void respond(const Triple<Real>& u, const Real& spin, bool renew_limits, SpringResponse<Real>& response);
+};
+
+template <typename Real>
+void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
+                           SpringResponse<Real>& response) {
+  const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real rate = u.dot(normal);
+  const Real deep = greater(zero, depth - ahead * rate);
+  const Real parting = lesser(greater(rate, zero) * (1.0 / kReleaseSpeed), one);
+  const Real kept = one - parting * parting;
+  const Real push = stiffness * deep * kept;
+  response.push = push;
+  response.across = where_at_most(push, zero, zero,
+                                  Real(stiffness * (ahead * kept + deep * parting * (2.0 / kReleaseSpeed))));
+  if (renew_limits) {
+    slip_limit = friction * push;
+    twist_limit = patch_friction * push;
+  }
+
+  response.drawn = stretch + ahead * (u - rate * normal);
+  response.drawn_squared = response.drawn.dot(response.drawn);
+  const Real length = root(response.drawn_squared);
+  response.wanted = stiffness * length;
+  // Beyond the limit the spring yields: it bears the limit at any stretch.
+  const Real tiny = constant<Real>(1e-300);
+  const Real borne =
+      where_at_most(response.wanted, slip_limit, stiffness, Real(slip_limit / greater(length, tiny)));
+  response.force = borne * response.drawn - push * normal;
+  response.along = where_at_most(slip_limit, zero, zero, Real(borne * ahead));
+  response.slip = where_at_most(response.wanted, slip_limit, zero, response.along);
+
+  const Real torque = twist_stiffness * (twist + ahead * spin);
+  response.torque = greater(zero - twist_limit, lesser(torque, twist_limit));
+  const Real size = greater(torque, zero - torque);
+  response.torque_slope = where_at_most(twist_limit, size, zero, Real(twist_stiffness * ahead));
 }
 
-inline SpringContact::Response SpringContact::evaluate(const Vector3& u, double spin) const {
-  const double rate = normal.dot(u);
-  const double deep = depth_ahead(rate);
-  Response response;
-  response.push = push(rate);
-  response.across = 0.0;
-  if (deep > 0.0 && rate < kReleaseSpeed) {
-    response.across = rate <= 0.0 ? stiffness * ahead
-                                  : stiffness * (ahead * (1.0 - rate / kReleaseSpeed) + deep / kReleaseSpeed);
-  }
-  response.force = -response.push * normal;
+/// Convex function of the velocities whose gradient gives the response at the limits that are set [W].
+double potential(const Spring<double>& spring, const Vector3& u, double spin);
 
-  const Vector3 drawn = stretch_ahead(u);
-  const double length_squared = drawn.squaredNorm();
-  response.slip = 0.0;
-  if (stiffness * stiffness * length_squared <= slip_limit * slip_limit) {
-    response.force += stiffness * drawn;
-    response.along = slip_limit > 0.0 ? stiffness * ahead : 0.0;
-  } else {
-    const double length = std::sqrt(length_squared);
-    response.direction = drawn / length;
-    response.force += slip_limit * response.direction;
-    response.along = response.slip = slip_limit * ahead / length;
-  }
-
-  const double wanted = twist_stiffness * (twist + ahead * spin);
-  response.torque = std::clamp(wanted, -twist_limit, twist_limit);
-  response.torque_slope = std::abs(wanted) < twist_limit ? twist_stiffness * ahead : 0.0;
-  return response;
-}
+/// What is kept in a contact's memory at the end of the step.
+struct Settled {
+  Friction friction;
+  Vector3 slide;  ///< by how much 2's end has to follow along the surface [m]
+  double twist;
+};
+Settled settle(const Spring<double>& spring, const SpringResponse<double>& response, Friction before,
+               double dynamic_friction, double step);
 
 }  // namespace mrhi

@@ -6,6 +6,7 @@ void StepChanges::reset(std::size_t bodies) {
   solved_.assign(bodies, false);
   for (const Struck& struck : struck_) places_[static_cast<std::size_t>(struck.body)] = -1;
   places_.resize(bodies, -1);
+  struck_.reserve(bodies);
   struck_.clear();
 }
 

@@ -30,25 +30,32 @@ Quaternion turn(double degrees, const Vector3& axis) {
   return Quaternion(Eigen::AngleAxisd(degrees * M_PI / 180.0, axis));
 }
 
-constexpr double kNearly = 0.003;  // [m] gap from which the fingers close slowly, so that they touch gently
+constexpr double kNearly =
+    0.003;  // [m] mean gap from which the fingers close slowly, so that they touch gently
 
-/// Postures of a hand round an object: open, nearly touching, just touching with all tips, pressing.
+/// Postures of a hand round an object: open, nearly touching, just touching with all tips, pressing. From one
+/// to the next but the first each tip moves in proportion to its depth, so that the springs of tips whose
+/// depths balance stay in balance all the way: closing and opening do not push the object.
 struct GraspPostures {
   HandPosture open, near, touching, pressing;
   double touching_share;  ///< of the way from near to pressing
 
   explicit GraspPostures(const Grasp& grasp) {
-    const auto at = [&grasp](double gap) {
-      return place_fingertips(human_hand(), grasp.wrist, grasp.contacts, gap, grasp.preferred);
-    };
-    open = at(grasp.opening);
-    near = at(kNearly);
-    touching = at(0.0);
-    pressing = at(-1.0);
-    double depth = 0.0;
-    for (const FingertipContact& contact : grasp.contacts) depth += contact.depth;
-    depth /= static_cast<double>(grasp.contacts.size());
-    touching_share = kNearly / (kNearly + depth);
+    double mean_depth = 0.0;
+    for (const FingertipContact& contact : grasp.contacts) mean_depth += contact.depth;
+    mean_depth /= static_cast<double>(grasp.contacts.size());
+    open = place_fingertips(human_hand(), grasp.wrist, grasp.contacts, grasp.opening, grasp.preferred);
+    near = pressed(grasp, -kNearly / mean_depth);
+    touching = pressed(grasp, 0.0);
+    pressing = pressed(grasp, 1.0);
+    touching_share = kNearly / (kNearly + mean_depth);
+  }
+
+ private:
+  /// All tips at `share` of their depths; below 0 they are off the surface.
+  static HandPosture pressed(Grasp grasp, double share) {
+    for (FingertipContact& contact : grasp.contacts) contact.depth *= share;
+    return place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred);
   }
 };
 
@@ -120,8 +127,9 @@ ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vect
   return script.motion();
 }
 
-constexpr double kThumbDepth = 0.006, kFingerDepth = 0.0025;  // the thumb bears against three or four fingers
-constexpr double kBallThumbDepth = 0.006, kBallFingerDepth = 0.0035;  // four fingers, on a round surface
+// The thumb bears against three fingers opposite it, or against four round a ball, which push obliquely.
+constexpr double kThumbDepth = 0.006, kFingerDepth = 0.002;
+constexpr double kBallThumbDepth = 0.006, kBallFingerDepth = 0.00198;
 
 /// Thumb on the near face (-y), three fingers on the far one of a body `width` thick, the hand above.
 std::vector<FingertipContact> opposed_contacts(double width, double spacing) {

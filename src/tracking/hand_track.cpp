@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mrhi {
 
@@ -10,6 +11,23 @@ void SampleHistory::push(const Hand& sample, int keep) {
     samples[static_cast<std::size_t>(i)] = samples[static_cast<std::size_t>(i - 1)];
   }
   samples[0] = sample;
+}
+
+// With s(u) the share of the way at the share u of the duration T, the hand is at s (way + speed u T) beyond
+// where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + way/T^2 max|s''|.
+Nanoseconds rejoin_duration(double way, double away) {
+  // What an object endures that is held half as firmly again as its weight needs.
+  constexpr double kAcceleration = 5.0;               // [m/s^2]
+  constexpr double kShortest = 0.05, kLongest = 0.4;  // [s]
+  constexpr double kOfSpeed = 4.63, kOfWay = 5.78;    // the two maxima of minimum jerk
+  const double b = kOfSpeed * way / away;
+  const double duration = (b + std::sqrt(b * b + 4.0 * kAcceleration * kOfWay * way)) / (2.0 * kAcceleration);
+  return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kShortest, kLongest));
+}
+
+Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
+  const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
+  return blend(rejoin.from, tracked, u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
 }
 
 Hand blend(const Hand& from, const Hand& to, double fraction) {

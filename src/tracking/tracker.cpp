@@ -54,7 +54,8 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
   return assignment;
 }
 
-double fastest_joint(const Hand& from, const Hand& to, double seconds) {
+/// Longest way of a joint that both hands have [m].
+double farthest_joint(const Hand& from, const Hand& to) {
   double distance_squared = 0.0;
   for (std::size_t c = 0; c < kCapsules; ++c) {
     const Capsule &a = from.capsules[c], &b = to.capsules[c];
@@ -62,7 +63,7 @@ double fastest_joint(const Hand& from, const Hand& to, double seconds) {
     distance_squared =
         std::max({distance_squared, (a.start - b.start).squaredNorm(), (a.end - b.end).squaredNorm()});
   }
-  return std::sqrt(distance_squared) / seconds;
+  return std::sqrt(distance_squared);
 }
 
 void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
@@ -78,14 +79,14 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
 }
 
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
-  const Nanoseconds away = stamp - track.last_seen;
-  if (fastest_joint(track.history.samples[0], hand, to_seconds(away)) > configuration.tracking.max_speed) {
+  const double away = to_seconds(stamp - track.last_seen);
+  if (farthest_joint(track.history.samples[0], hand) > configuration.tracking.max_speed * away) {
     appear(hand, stamp, track);
     return;
   }
   if (track.held) {
     track.history.clear();
-    track.rejoin = {track.current, stamp, away};
+    track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), away)};
   }
   track.emerged = track.appeared;
   track.appeared = track.held = false;
@@ -93,11 +94,9 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   track.previous = track.current;
   track.current = filtered(track.history, configuration.filter);
   track.last_seen = stamp;
-  if (track.rejoin.duration > 0) {
-    const double fraction = to_seconds(stamp - track.rejoin.begin) / to_seconds(track.rejoin.duration);
-    track.current = blend(track.rejoin.from, track.current, fraction);
-    if (fraction >= 1.0) track.rejoin.duration = 0;
-  }
+  if (track.rejoin.duration == 0) return;
+  track.current = catching_up(track.rejoin, track.current, stamp);
+  if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
 }
 
 void hold(HandTrack& track) {

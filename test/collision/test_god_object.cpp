@@ -22,16 +22,13 @@ class GodObject : public ::testing::Test {
     finder_ = std::make_unique<ContactFinder>(scene_, *geometry_, Vector3::Zero());
   }
   void move_to(const Vector3& start, const Vector3& end) {
-    MovingHand hand;
-    hand.capsules[kTip] = {start, end, kRadius};
-    hand.start_velocity.fill(Vector3::Zero());
-    hand.end_velocity.fill(Vector3::Zero());
     std::vector<HandTrack> tracks(kMaxHands);
     tracks[0].active = true;
-    tracks[0].previous.capsules = tracks[0].current.capsules = hand.capsules;
+    tracks[0].current.capsules[kTip] = {start, end, kRadius};
+    tracks[0].previous = tracks[0].current;
     neighbours_->begin_frame(tracks, bodies_);
     neighbours_->begin_step(bodies_, 0.001);
-    finder_->find({hand}, *neighbours_, bodies_, 0.001, contacts_);
+    finder_->find({HandMotion(tracks[0], 0, 0.0)}, *neighbours_, bodies_, 0.001, contacts_);
   }
   /// A fingertip that stands on its tip, `depth` below the top face, `x` along it.
   void poke(double depth, double x = 0.0) {

@@ -77,7 +77,9 @@ struct Blow {
     StepChanges changes;
     changes.reset(1);
     ContactStep step{scene, scene.gravity, 0.001, contacts, none, bodies, changes};
-    ImpactSolver().resolve(step, ImpactFriction::none);
+    Islands islands;
+    islands.build(step);
+    ImpactSolver().resolve(step, islands, ImpactFriction::none);
   }
   double normal_velocity() const {
     return contacts[0].normal.dot(relative_velocity(contacts[0], scene.bodies[0], bodies[0]));

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "support/grips.h"
 
 namespace mrhi {
@@ -39,31 +41,38 @@ Hand carried(double t, const Vector3& velocity) {
   return testing::moved(testing::symmetric_pinch(kHalf, closing_gap(t, kOverlap)), pose);
 }
 
-const Vector3 kVelocities[] = {Vector3::Zero(), Vector3(0.0, 0.0, 0.2), Vector3(0.1, 0.2, 0.1)};
+const Vector3 kVelocities[] = {Vector3::Zero(), Vector3(0.0, 0.0, 0.24), Vector3(0.1, 0.2, 0.1)};
 
-TEST(ImplicitDropout, shorter_than_hold_time_does_not_drop_what_is_held) {
+/// How a carried cube sits in the hand a second after a dropout of `dropout` seconds at 1.5 s; nothing if it
+/// was not held throughout or does not go with the hand.
+std::optional<Vector3> seat_after(double dropout, const Vector3& velocity) {
+  Simulation simulation(cube(), as_shipped());
+  bool grasped = false, dropped = false;
+  int frame = 0;
+  for (double t = 0.0; t < 2.5; t = ++frame / kRate) {
+    const bool seen = t < 1.5 || t >= 1.5 + dropout;
+    HandFrame input{at(t), {}};
+    if (seen) input.hands.push_back(carried(t, velocity));
+    simulation.advance(input);
+    grasped = grasped || has_event(simulation, EventKind::grasp_begin);
+    dropped =
+        dropped || has_event(simulation, EventKind::grasp_end) || has_event(simulation, EventKind::hand_lost);
+  }
+  if (!grasped || dropped || (object_twist(simulation).linear - velocity).norm() > 0.005) return {};
+  return simulation.state().bodies[0].pose.position - simulation.result().tracked.at(0).palm.position;
+}
+
+// A hand that is lost stops dead, which asks for 5.9 N of the 6.4 N that friction has, and at an angle to the
+// faces for a little more than it has: 0.13 mm. Catching up again adds nothing, however long it was away.
+TEST(ImplicitDropout, shorter_than_hold_time_does_not_drop_or_shift_what_is_held) {
   for (const Vector3& velocity : kVelocities) {
-    for (const double dropout : {0.05, 0.1, 0.15}) {
-      Simulation simulation(cube(), as_shipped());
-      bool grasped = false, dropped = false;
-      double t = 0.0;
-      for (int frame = 0; (t = frame / kRate) < 2.5; ++frame) {
-        const bool seen = t < 1.5 || t >= 1.5 + dropout;
-        HandFrame input{at(t), {}};
-        if (seen) input.hands.push_back(carried(t, velocity));
-        simulation.advance(input);
-        grasped = grasped || has_event(simulation, EventKind::grasp_begin);
-        dropped = dropped || has_event(simulation, EventKind::grasp_end) ||
-                  has_event(simulation, EventKind::hand_lost);
-      }
-      EXPECT_TRUE(grasped);
-      EXPECT_FALSE(dropped) << dropout;
-      // A hand that stops dead and then catches up at twice its speed asks for more than friction has (8 N of
-      // 6.4 N at 0.2 m/s), so a moving cube may slip a little; the filter's window lags by a frame.
-      const Vector3 hand = carried((2.5 * kRate - 1.0) / kRate - 1.0 / kRate, velocity).palm.position;
-      const Vector3 seat = simulation.state().bodies[0].pose.position - (hand + Vector3(0, 0, 0.1));
-      EXPECT_LE(seat.norm(), velocity.isZero() ? 1e-6 : 0.002) << dropout << " at " << velocity.transpose();
-      EXPECT_LE((object_twist(simulation).linear - velocity).norm(), 0.005) << dropout;
+    const auto undisturbed = seat_after(0.0, velocity), shortest = seat_after(0.05, velocity);
+    ASSERT_TRUE(undisturbed && shortest) << velocity.transpose();
+    EXPECT_LE((*shortest - *undisturbed).norm(), velocity.x() == 0.0 ? 1e-5 : 2e-4) << velocity.transpose();
+    for (const double dropout : {0.1, 0.15}) {
+      const auto seat = seat_after(dropout, velocity);
+      ASSERT_TRUE(seat) << dropout << " at " << velocity.transpose();
+      EXPECT_LE((*seat - *shortest).norm(), 1e-6) << dropout << " at " << velocity.transpose();
     }
   }
 }

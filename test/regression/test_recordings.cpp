@@ -56,7 +56,10 @@ void note(const Simulation& simulation, Outcome& outcome) {
 }
 
 Outcome run(const std::string& file, const std::string& scene_name) {
-  Simulation simulation(load_scene("config/scenes/" + scene_name + ".urdf", {}), Configuration{});
+  const Configuration configuration;
+  SceneOptions options;
+  options.default_material = default_material(configuration);
+  Simulation simulation(load_scene("config/scenes/" + scene_name + ".urdf", options), configuration);
   Outcome outcome;
   for (const Body& body : simulation.scene().bodies) {
     outcome.restitution = std::max(outcome.restitution, body.material.restitution);

@@ -72,10 +72,38 @@ TEST_F(Tracker, after_a_short_loss_it_catches_up_without_a_snap) {
   frame(0.05, {});
   frame(0.10, {hand_at(0.20)});
   EXPECT_DOUBLE_EQ(x(), 0.10);
-  frame(0.15, {hand_at(0.20)});
+  frame(0.30, {hand_at(0.20)});
   EXPECT_NEAR(x(), 0.15, 1e-12);
-  frame(0.20, {hand_at(0.20)});
+  frame(0.50, {hand_at(0.20)});
   EXPECT_NEAR(x(), 0.20, 1e-12);
+}
+
+// Differences of frames of 1/120 s are the mean over two of them: a little below the law's own maximum.
+TEST_F(Tracker, a_hand_that_moves_on_is_caught_up_with_by_5_m_per_s2_never_ahead_of_it) {
+  constexpr double kFrame = 1.0 / 120.0, kSpeed = 0.24, kLost = 0.5;
+  for (const double away : {0.05, 0.10, 0.15}) {
+    hands_.assign(kMaxHands, HandTrack());
+    std::vector<double> way;
+    for (double t = 0.0; t < 1.5; t += kFrame) {
+      const bool seen = t < kLost || t >= kLost + away;
+      frame(t, seen ? std::vector<Hand>{hand_at(kSpeed * t)} : std::vector<Hand>{});
+      EXPECT_LE(x(), kSpeed * t + 1e-12);
+      if (t >= kLost + 2.0 * kFrame) way.push_back(x());  // from when it has stopped
+    }
+    for (std::size_t i = 2; i < way.size(); ++i) {
+      const double speed = (way[i] - way[i - 1]) / kFrame, before = (way[i - 1] - way[i - 2]) / kFrame;
+      EXPECT_GE(speed, -1e-12);
+      EXPECT_LE(std::abs(speed - before) / kFrame, 5.0) << away << " frame " << i;
+    }
+    EXPECT_NEAR(way.back(), way[way.size() - 2] + kSpeed * kFrame, 1e-9) << away;
+    EXPECT_EQ(hands_[0].rejoin.duration, 0) << away;
+  }
+}
+
+TEST(Rejoin, takes_as_long_as_the_way_needs_within_bounds) {
+  EXPECT_EQ(rejoin_duration(0.0, 0.1), at(0.05) - at(0.0));
+  EXPECT_EQ(rejoin_duration(0.5, 0.1), at(0.4) - at(0.0));
+  EXPECT_GT(rejoin_duration(0.02, 0.1), rejoin_duration(0.01, 0.1));
 }
 
 TEST_F(Tracker, filter_starts_afresh_after_a_loss) {

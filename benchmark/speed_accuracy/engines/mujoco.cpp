@@ -12,10 +12,10 @@ namespace {
 
 struct Setting {
   const char* name;
-  const char* option;      // attributes of <option>
-  bool feed_forward;       // the hand's acceleration is given
-  double time_constant;    // solref [s], never below two steps (MuJoCo's own limit); 0: MuJoCo's default 0.02
-  bool direct;             // solref by stiffness and damping, the damping from the restitution
+  const char* option;    // attributes of <option>
+  bool feed_forward;     // the hand's acceleration is given
+  double time_constant;  // solref [s], never below two steps (MuJoCo's own limit); 0: MuJoCo's default 0.02
+  bool direct;           // solref by stiffness and damping, the damping from the restitution
 };
 
 // The hand's parts are heavy free bodies whose place and velocity are set in every step: mocap bodies have no
@@ -25,7 +25,8 @@ constexpr Setting kSettings[] = {
     {"hand acceleration given; solref 0.004 or 2 steps; noslip 3; elliptic cone; implicit integrator",
      "noslip_iterations=\"3\" cone=\"elliptic\" integrator=\"implicit\"", true, 0.004, false},
     {"RK4; elliptic cone", "cone=\"elliptic\" integrator=\"RK4\"", false, 0.0, false},
-    {"direct solref from restitution; elliptic cone; hand acceleration given", "cone=\"elliptic\"", true, 0.0, true},
+    {"direct solref from restitution; elliptic cone; hand acceleration given", "cone=\"elliptic\"", true, 0.0,
+     true},
 };
 
 constexpr double kHandMass = 1e4;     // [kg]
@@ -54,7 +55,8 @@ std::string geometry(const BodySpec& spec) {
 }
 
 std::string inertial(double mass, const Vector3& inertia) {
-  return "<inertial pos=\"0 0 0\" mass=\"" + std::to_string(mass) + "\" diaginertia=\"" + text(inertia) + "\"/>";
+  return "<inertial pos=\"0 0 0\" mass=\"" + std::to_string(mass) + "\" diaginertia=\"" + text(inertia) +
+         "\"/>";
 }
 
 /// Damping ratio at which a bounce gives back the part `restitution` of the speed.
@@ -76,27 +78,34 @@ std::string solref(const Setting& setting, const World& world, double step) {
   return out.str();
 }
 
+/// Numbers of working memory: some matrices of all degrees of freedom, up to half a gigabyte.
+std::size_t stack_size(const World& world) {
+  const std::size_t freedoms = 6 * (world.bodies.size() + world.kinematics.size());
+  return std::min<std::size_t>(400'000 + 16 * freedoms * freedoms, 64'000'000);
+}
+
 std::string xml(const Setting& setting, const World& world, double step) {
   std::ostringstream out;
   out.precision(17);
-  out << "<mujoco><option timestep=\"" << step << "\" gravity=\"" << text(world.gravity) << "\" " << setting.option
-      << "/><size njmax=\"" << 2000 + 40 * world.bodies.size() << "\" nconmax=\"" << 500 + 10 * world.bodies.size()
-      << "\" nstack=\"" << 4'000'000 + 40'000 * world.bodies.size() << "\"/><default><geom friction=\""
-      << world.friction << " 0.005 0.0001\"" << solref(setting, world, step) << "/></default><worldbody>";
+  out << "<mujoco><option timestep=\"" << step << "\" gravity=\"" << text(world.gravity) << "\" "
+      << setting.option << "/><size njmax=\"" << 1000 + 40 * world.bodies.size() << "\" nconmax=\""
+      << 200 + 10 * world.bodies.size() << "\" nstack=\"" << stack_size(world)
+      << "\"/><default><geom friction=\"" << world.friction << " 0.005 0.0001\""
+      << solref(setting, world, step) << "/></default><worldbody>";
   for (const BodySpec& spec : world.bodies) {
     if (spec.fixed) {
       out << geometry(spec) << place(spec.pose) << " contype=\"1\" conaffinity=\"1\"/>";
     } else {
-      out << "<body" << place(spec.pose) << "><freejoint/>" << inertial(spec.mass, spec.inertia) << geometry(spec)
-          << " contype=\"1\" conaffinity=\"3\"/></body>";
+      out << "<body" << place(spec.pose) << "><freejoint/>" << inertial(spec.mass, spec.inertia)
+          << geometry(spec) << " contype=\"1\" conaffinity=\"3\"/></body>";
     }
   }
   for (const KinematicSpec& spec : world.kinematics) {
     out << "<body" << place(spec.pose) << "><freejoint/>"
         << inertial(kHandMass, Vector3::Constant(kHandInertia));
     for (const Capsule& capsule : spec.capsules) {
-      out << "<geom type=\"capsule\" size=\"" << capsule.radius << "\" fromto=\"" << text(capsule.start) << ' '
-          << text(capsule.end) << "\" contype=\"2\" conaffinity=\"0\"/>";
+      out << "<geom type=\"capsule\" size=\"" << capsule.radius << "\" fromto=\"" << text(capsule.start)
+          << ' ' << text(capsule.end) << "\" contype=\"2\" conaffinity=\"0\"/>";
     }
     out << "</body>";
   }
@@ -121,13 +130,17 @@ mjModel* load(const std::string& text) {
 class MujocoEngine final : public Engine {
  public:
   MujocoEngine(const Setting& setting, const World& world, double step)
-      : setting_(setting), step_(step), gravity_(world.gravity), model_(load(xml(setting, world, step))), data_(mj_makeData(model_)) {
+      : setting_(setting),
+        step_(step),
+        gravity_(world.gravity),
+        model_(load(xml(setting, world, step))),
+        data_(mj_makeData(model_)) {
     int joint = 0;
     for (const BodySpec& spec : world.bodies) {
       joints_.push_back(spec.fixed ? -1 : joint++);
       if (!spec.fixed) set_twist(joints_.back(), spec.pose.orientation, spec.twist);
     }
-    for (const KinematicSpec& spec : world.kinematics) {
+    for (std::size_t i = 0; i < world.kinematics.size(); ++i) {
       hand_.push_back(joint++);
       last_.push_back({});
     }
@@ -143,7 +156,8 @@ class MujocoEngine final : public Engine {
     mjtNum* q = data_->qpos + 7 * joint;
     Eigen::Map<Vector3> position(q);
     position = now.position;
-    q[3] = now.orientation.w(), q[4] = now.orientation.x(), q[5] = now.orientation.y(), q[6] = now.orientation.z();
+    q[3] = now.orientation.w(), q[4] = now.orientation.x(), q[5] = now.orientation.y(),
+    q[6] = now.orientation.z();
     const Twist twist = twist_between(now, next, step_);
     mjtNum* force = data_->xfrc_applied + 6 * model_->jnt_bodyid[joint];
     Eigen::Map<Vector3> linear(force), angular(force + 3);

@@ -10,24 +10,30 @@ namespace {
 
 struct Setting {
   const char* name;
-  bool dantzig;       // dWorldStep; else dWorldQuickStep
-  int iterations;     // of QuickStep, 20 by default
-  double stiffness;   // of contacts [N/m], 0: rigid with ODE's own error reduction
-  double damping;     // [N s/m]
+  bool dantzig;      // dWorldStep; else dWorldQuickStep
+  int iterations;    // of QuickStep, 20 by default
+  double stiffness;  // of contacts [N/m], 0: rigid with ODE's own error reduction
+  double damping;    // [N s/m]
+  bool aligned;      // the friction pyramid has an edge along the sliding
 };
 
-// Friction is Coulomb's (dContactApprox1) throughout: ODE's own default takes mu as a force in newtons. Soft: the
-// stiffness was chosen by trying 500 to 50000 N/m on the pinch, with the damping that is critical for 0.1 kg.
+// Friction is Coulomb's (dContactApprox1) throughout: ODE's own default takes mu as a force in newtons. Soft:
+// the best on pinch, creep and catch of 1000 to 50000 N/m with 3 to 150 N s/m; none is best at every step.
 constexpr Setting kSettings[] = {
-    {"QuickStep default; Coulomb pyramid", false, 20, 0.0, 0.0},
-    {"Dantzig default; Coulomb pyramid", true, 0, 0.0, 0.0},
-    {"Dantzig; soft contact 2000 N/m 10 N s/m", true, 0, 2000.0, 10.0},
-    {"QuickStep 100 iterations; soft contact 2000 N/m 10 N s/m", false, 100, 2000.0, 10.0},
+    {"QuickStep default; Coulomb pyramid", false, 20, 0.0, 0.0, false},
+    {"Dantzig default; Coulomb pyramid", true, 0, 0.0, 0.0, false},
+    {"Dantzig; Coulomb pyramid along the sliding", true, 0, 0.0, 0.0, true},
+    {"Dantzig; soft contact 2000 N/m 10 N s/m", true, 0, 2000.0, 10.0, false},
+    {"Dantzig; soft contact 10000 N/m 3 N s/m", true, 0, 10000.0, 3.0, false},
+    {"Dantzig; soft contact 50000 N/m 10 N s/m", true, 0, 50000.0, 10.0, false},
+    {"QuickStep 100 iterations; soft contact 2000 N/m 10 N s/m", false, 100, 2000.0, 10.0, false},
 };
 
 constexpr int kMaxContacts = 16;  // of one pair
 
-Vector3 from_ode(const dReal* v) { return {v[0], v[1], v[2]}; }
+Vector3 from_ode(const dReal* v) {
+  return {v[0], v[1], v[2]};
+}
 
 /// ODE is started and stopped once per process.
 struct Library {
@@ -64,9 +70,8 @@ class OdeEngine final : public Engine {
 
   void step() override {
     dJointGroupEmpty(contacts_);
-    dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
-      static_cast<OdeEngine*>(self)->collide(a, b);
-    });
+    dSpaceCollide(space_, this,
+                  [](void* self, dGeomID a, dGeomID b) { static_cast<OdeEngine*>(self)->collide(a, b); });
     if (setting_.dantzig) {
       dWorldStep(world_, step_);
     } else {
@@ -106,7 +111,8 @@ class OdeEngine final : public Engine {
     }
     const dBodyID body = bodies_.back() = dBodyCreate(world_);
     dMass mass;
-    dMassSetParameters(&mass, spec.mass, 0, 0, 0, spec.inertia.x(), spec.inertia.y(), spec.inertia.z(), 0, 0, 0);
+    dMassSetParameters(&mass, spec.mass, 0, 0, 0, spec.inertia.x(), spec.inertia.y(), spec.inertia.z(), 0, 0,
+                       0);
     dBodySetMass(body, &mass);
     place(body, spec.pose);
     const Twist& twist = spec.twist;
@@ -141,8 +147,24 @@ class OdeEngine final : public Engine {
     for (int i = 0; i < count; ++i) {
       dContact& contact = found[static_cast<std::size_t>(i)];
       contact.surface = surface();
+      if (setting_.aligned) align(first, second, contact);
       dJointAttach(dJointCreateContact(world_, contacts_, &contact), first, second);
     }
+  }
+
+  static Vector3 velocity(dBodyID body, const dReal* point) {
+    if (body == nullptr) return Vector3::Zero();
+    dVector3 result;
+    dBodyGetPointVel(body, point[0], point[1], point[2], result);
+    return from_ode(result);
+  }
+  static void align(dBodyID first, dBodyID second, dContact& contact) {
+    const Vector3 n = from_ode(contact.geom.normal);
+    const Vector3 v = velocity(first, contact.geom.pos) - velocity(second, contact.geom.pos);
+    const Vector3 sliding = v - n.dot(v) * n;
+    if (sliding.norm() < 1e-6) return;
+    contact.surface.mode |= dContactFDir1;
+    Eigen::Map<Vector3>(contact.fdir1) = sliding.normalized();
   }
 
   dSurfaceParameters surface() const {

@@ -1,5 +1,5 @@
-// Catching: a ball drifts into an open hand that moves along, and the fingers close over it. Once held it should
-// rest in the hand.
+// Catching: a ball drifts into an open hand that moves along, and the fingers close over it. Once held it
+// should rest in the hand.
 #include "../experiment.h"
 #include "pinch_hand.h"
 

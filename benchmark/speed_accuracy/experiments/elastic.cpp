@@ -53,7 +53,8 @@ class Elastic final : public Experiment {
   /// Spheres that pass through each other keep their momentum too: nearly all must have been struck.
   std::vector<Measure> measures() const override {
     const bool failed = 2 * struck_ < velocities_.size() || !(energy_error_ < 2.0);
-    return {{"_energy", 100.0 * energy_error_, "%", failed}, {"_momentum", 100.0 * momentum_error_, "%", failed}};
+    return {{"_energy", 100.0 * energy_error_, "%", failed},
+            {"_momentum", 100.0 * momentum_error_, "%", failed}};
   }
 
  private:
@@ -68,7 +69,7 @@ class Elastic final : public Experiment {
 
 void add_elastic_scenes(std::vector<ScenePlan>& scenes) {
   scenes.push_back(
-      {"elastic", "elastic", {}, [](bool quick) { return std::make_unique<Elastic>(quick ? 4 : 6); }});
+      {"elastic", "elastic", {}, [](bool quick) { return std::make_unique<Elastic>(quick ? 3 : 5); }});
 }
 
 }  // namespace mrhi::benchmark

@@ -1,5 +1,5 @@
-// Scene (b): free rotation about the intermediate axis. Angular momentum and energy are constant; the body turns
-// over with a period that elliptic integrals give.
+// Scene (b): free rotation about the intermediate axis. Angular momentum and energy are constant; the body
+// turns over with a period that elliptic integrals give.
 #include "../experiment.h"
 
 namespace mrhi::benchmark {
@@ -25,9 +25,9 @@ double flip_period() {
   const double twice_energy = kSpin.dot(i.cwiseProduct(kSpin)), l2 = i.cwiseProduct(kSpin).squaredNorm();
   double first = i.x(), last = i.z();
   if (l2 <= twice_energy * i.y()) std::swap(first, last);
-  const double rate =
-      std::sqrt((last - i.y()) * (l2 - twice_energy * first) / (first * i.y() * last));
-  const double m = (i.y() - first) * (twice_energy * last - l2) / ((last - i.y()) * (l2 - twice_energy * first));
+  const double rate = std::sqrt((last - i.y()) * (l2 - twice_energy * first) / (first * i.y() * last));
+  const double m =
+      (i.y() - first) * (twice_energy * last - l2) / ((last - i.y()) * (l2 - twice_energy * first));
   return 2.0 * elliptic_k(m) / rate;
 }
 

@@ -16,7 +16,8 @@ class Sliding final : public Experiment {
     World world;
     world.gravity = Vector3(0, 0, -kGravity);
     world.friction = kFriction;
-    world.bodies.push_back(box(Vector3::Constant(kCube), 0.1, {Vector3(0, 0, 0.5 * kCube), Quaternion::Identity()},
+    world.bodies.push_back(box(Vector3::Constant(kCube), 0.1,
+                               {Vector3(0, 0, 0.5 * kCube), Quaternion::Identity()},
                                {kSpeed * direction(trial), Vector3::Zero()}));
     world.bodies.push_back(floor_slab());
     return world;
@@ -76,7 +77,8 @@ class Bouncing final : public Experiment {
   /// A ball that lies on the floor, where it was to bounce, has failed.
   std::vector<Measure> measures() const override {
     const int high = samples_ - low_;
-    return {{"", high > 0 ? 100.0 * std::sqrt(squares_ / high) : 100.0, "% of the energy", lost_ || high < low_}};
+    return {
+        {"", high > 0 ? 100.0 * std::sqrt(squares_ / high) : 100.0, "% of the energy", lost_ || high < low_}};
   }
 
  private:
@@ -132,9 +134,11 @@ class Stack final : public Experiment {
 
 void add_gravity_scenes(std::vector<ScenePlan>& scenes) {
   scenes.push_back({"sliding", "sliding", {}, [](bool) { return std::make_unique<Sliding>(); }});
+  scenes.push_back({"bouncing", "bouncing", {}, [](bool quick) {
+                      return std::make_unique<Bouncing>(quick ? 2.0 : 10.0);
+                    }});
   scenes.push_back(
-      {"bouncing", "bouncing", {}, [](bool quick) { return std::make_unique<Bouncing>(quick ? 2.0 : 10.0); }});
-  scenes.push_back({"stack", "stack", {}, [](bool quick) { return std::make_unique<Stack>(quick ? 2.0 : 10.0); }});
+      {"stack", "stack", {}, [](bool quick) { return std::make_unique<Stack>(quick ? 2.0 : 5.0); }});
 }
 
 }  // namespace mrhi::benchmark

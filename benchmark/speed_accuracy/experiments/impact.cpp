@@ -1,5 +1,5 @@
-// Scene (c): a phalanx hits a cube, and a thin plate. Newton's law gives the speed after a central blow by a hand
-// that nothing stops: (1 + e) times the hand's, with no spin.
+// Scene (c): a phalanx hits a cube, and a thin plate. Newton's law gives the speed after a central blow by a
+// hand that nothing stops: (1 + e) times the hand's, with no spin.
 #include "../experiment.h"
 
 namespace mrhi::benchmark {
@@ -22,7 +22,7 @@ class Blow : public Experiment {
     return world;
   }
 
-  /// Comes from at rest far away, so that engines that take velocities from poses have the right one in time.
+  /// Comes from 0.1 m away, so that engines that take velocities from poses have the right one in time.
   void hand(int trial, double t, std::vector<Pose>& poses) const override {
     const double first_gap = 0.1 + kSpeed / 60.0 * trial / kPhases;
     const double x = 0.5 * size_.x() + 0.008 + first_gap - kSpeed * std::min(t, stop(trial));

@@ -1,5 +1,5 @@
-// Scene (a): a cube held in a pinch while the hand swings, shakes, or is tracked with noise. A rigid cube held
-// by dry friction would not move in the hand at all.
+// Scene (a): a cube held in a pinch while the hand swings, shakes, or is tracked with noise. A rigid cube
+// held by dry friction would not move in the hand at all.
 #include <random>
 
 #include "../experiment.h"
@@ -9,9 +9,9 @@
 namespace mrhi::benchmark {
 namespace {
 
-constexpr double kSettled = 0.5;     // [s]
-constexpr double kRamp = 0.5;        // over which the motion swells [s]
-constexpr double kLost = 0.03;       // [m]
+constexpr double kSettled = 0.5;      // [s]
+constexpr double kRamp = 0.5;         // over which the motion swells [s]
+constexpr double kLost = 0.03;        // [m]
 constexpr double kFrameRate = 120.0;  // of the noisy tracker [Hz]
 constexpr double kDegrees = M_PI / 180.0;
 
@@ -28,7 +28,9 @@ class Noise {
     std::mt19937 generator(seed);
     for (std::size_t i = 0; i < frames; ++i) samples_.push_back(rms * normal3(generator));
   }
-  const Vector3& operator[](std::size_t frame) const { return samples_[std::min(frame, samples_.size() - 1)]; }
+  const Vector3& operator[](std::size_t frame) const {
+    return samples_[std::min(frame, samples_.size() - 1)];
+  }
 
  private:
   /// Sums of twelve uniform numbers: the same on every machine, unlike std::normal_distribution.
@@ -44,7 +46,8 @@ class Pinch final : public Experiment {
  public:
   Pinch(const Motion3& motion, double seconds) : motion_(motion), seconds_(kSettled + seconds) {
     const auto frames = static_cast<std::size_t>(seconds_ * kFrameRate) + 2;
-    for (unsigned i = 0; i <= PinchHand::kParts; ++i) noise_.emplace_back(7 + i, frames, i == 0 ? 3e-4 : 1.5e-4);
+    for (unsigned i = 0; i <= PinchHand::kParts; ++i)
+      noise_.emplace_back(7 + i, frames, i == 0 ? 3e-4 : 1.5e-4);
   }
 
   double duration() const override { return seconds_; }
@@ -119,8 +122,7 @@ class Creep final : public Experiment {
   World world(int) const override {
     World world;
     world.gravity = Vector3(0, 0, -gravity_);
-    // At first the cube lies on nothing: its weight is borne once the fingers have closed, after which it is
-    // watched.
+    // Nothing bears the cube at first: it falls by some millimetres until the fingers have closed.
     world.bodies.push_back(box(Vector3::Constant(2.0 * hand_.half), 0.1));
     world.kinematics = hand_.parts();
     return world;
@@ -155,7 +157,8 @@ class Creep final : public Experiment {
 void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   const auto add = [&scenes](const char* name, const Motion3& motion) {
     scenes.push_back({name, "pinch", {}, [motion](bool quick) {
-                        return std::make_unique<Pinch>(motion, quick ? 2.5 : 10.0);
+                        const double full = motion.further_cubes > 0 ? 1.5 : 6.0;
+                        return std::make_unique<Pinch>(motion, quick ? std::min(full, 2.0) : full);
                       }});
   };
   add("pinch_swing", {0.1, 0.5, false, 0});
@@ -164,7 +167,7 @@ void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   add("pinch_swing_19_more", {0.1, 0.5, false, 19});
   const auto creep = [&scenes](const char* name, double gravity) {
     scenes.push_back({name, "creep", {}, [gravity](bool quick) {
-                        return std::make_unique<Creep>(gravity, quick ? 3.0 : 10.0);
+                        return std::make_unique<Creep>(gravity, quick ? 2.0 : 6.0);
                       }});
   };
   creep("creep_0g", 0.0);

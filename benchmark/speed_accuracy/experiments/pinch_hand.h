@@ -15,7 +15,8 @@ inline double smooth(double t, double duration) {
 }
 
 /// The pinching hand of scene (a): a thumb and four fingers, each of four capsules of radius 8 mm and segment
-/// 25 mm, their distal ones along opposite faces of a 50 mm cube. Each finger is one part; all start 10 mm away.
+/// 25 mm, their distal ones along opposite faces of a 50 mm cube. Each finger is one part; all start 10 mm
+/// away.
 struct PinchHand {
   double overlap = 0.002;  ///< of the closed fingers and the cube's surface [m]
   double half = 0.025;     ///< of the cube [m]
@@ -30,7 +31,8 @@ struct PinchHand {
     for (int finger = 0; finger < kParts; ++finger) {
       Vector3 end(0, 0, 0.0125);
       for (int bone = 0; bone < 4; ++bone) {
-        const Vector3 start = end - (bone == 0 ? Vector3(0, 0, 0.025) : Vector3(-side(finger) * 0.018, 0, 0.0173));
+        const Vector3 start =
+            end - (bone == 0 ? Vector3(0, 0, 0.025) : Vector3(-side(finger) * 0.018, 0, 0.0173));
         parts[static_cast<std::size_t>(finger)].capsules.push_back({start, end, kRadius});
         end = start + Vector3(side(finger) * 0.004, 0, 0);
       }

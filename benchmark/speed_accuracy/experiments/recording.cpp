@@ -1,13 +1,13 @@
-// A recorded hand closes on an object: "recording" is told from our own converged solution, "recording_self" from
-// each engine's own solution at a small step.
+// A recorded hand closes on an object: "recording" is told from our own converged solution, "recording_self"
+// from each engine's own solution at a small step.
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 
-#include "configured.h"
 #include "../experiment.h"
 #include "../run.h"
+#include "configured.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
@@ -15,13 +15,14 @@ namespace mrhi::benchmark {
 namespace {
 
 constexpr const char* kRecording = "ljp_pinch_115.csv";
-constexpr double kObject = 0.02;             // edge [m]
-constexpr double kReferenceStep = 0.0000625;  // [s]
-constexpr double kOwnReferenceStep = 0.000125;  // [s]
+constexpr double kObject = 0.02;                                                 // edge [m]
+constexpr double kReferenceStep = 0.0000625;                                     // [s]
+constexpr double kOwnReferenceStep = 0.000125, kQuickOwnReferenceStep = 0.0005;  // [s]
 
 std::string recording_file() {
   const char* folder = std::getenv("MR_HAND_RECORDINGS");
-  return std::string(folder != nullptr && *folder != '\0' ? folder : SPEED_ACCURACY_RECORDINGS) + "/" + kRecording;
+  return std::string(folder != nullptr && *folder != '\0' ? folder : SPEED_ACCURACY_RECORDINGS) + "/" +
+         kRecording;
 }
 
 /// The capsules of a recorded hand over time, each a rigid body of its mean length.
@@ -61,7 +62,8 @@ class RecordedHand {
     const std::size_t a = b - 1;
     const double part = std::clamp((t - times_[a]) / (times_[b] - times_[a]), 0.0, 1.0);
     const Capsule &from = hands_[a].capsules[used_[i]], &to = hands_[b].capsules[used_[i]];
-    const Vector3 start = from.start + part * (to.start - from.start), end = from.end + part * (to.end - from.end);
+    const Vector3 start = from.start + part * (to.start - from.start),
+                  end = from.end + part * (to.end - from.end);
     return {0.5 * (start + end), Quaternion::FromTwoVectors(Vector3::UnitZ(), end - start)};
   }
 
@@ -70,7 +72,8 @@ class RecordedHand {
     double closest = 1e9;
     Pose pose;
     for (const Hand& hand : hands_) {
-      const Vector3 thumb = hand.capsules[capsule_index(0, 3)].end, index = hand.capsules[capsule_index(1, 3)].end;
+      const Vector3 thumb = hand.capsules[capsule_index(0, 3)].end,
+                    index = hand.capsules[capsule_index(1, 3)].end;
       const Vector3 line = index - thumb;
       if (line.norm() >= closest) continue;
       closest = line.norm();
@@ -156,15 +159,20 @@ void add_recording_scenes(std::vector<ScenePlan>& scenes) {
     if (shared->hand) return;
     shared->hand = std::make_unique<RecordedHand>(file);
     Recording run(*shared->hand, {}, 0.0);
-    run_experiment(ours, "implicit", run, kReferenceStep, [] {});
+    run_experiment(ours, "implicit", run, kReferenceStep, 60.0, [] {});
     shared->reference = run.track();
   };
   for (const bool self : {false, true}) {
-    const auto make = [shared, self](bool) {
+    const auto make = [shared, self](bool quick) {
       return std::make_unique<Recording>(*shared->hand, self ? Track() : shared->reference,
-                                         self ? kOwnReferenceStep : 0.0);
+                                         self ? (quick ? kQuickOwnReferenceStep : kOwnReferenceStep) : 0.0);
     };
-    scenes.push_back({self ? "recording_self" : "recording", "recording", {}, make, prepare,
+    scenes.push_back({self ? "recording_self" : "recording",
+                      "recording",
+                      {},
+                      make,
+                      prepare,
+                      false,
                       there ? "" : "no file " + file + "; set MR_HAND_RECORDINGS to the recordings' folder"});
   }
 }

@@ -1,5 +1,5 @@
-// Deep squeeze: two fingertips are tracked 15 mm into a 10 mm plate from both sides, and open again. Each should
-// go on pushing from its own side, so that the plate stays where it is and, let go, does not fly off.
+// Deep squeeze: two fingertips are tracked 15 mm into a 10 mm plate from both sides, and open again. Each
+// should go on pushing from its own side, so that the plate stays where it is and, let go, does not fly off.
 #include "../experiment.h"
 #include "pinch_hand.h"
 
@@ -22,8 +22,9 @@ class DeepSqueeze final : public Experiment {
   void hand(int, double t, std::vector<Pose>& poses) const override {
     const double way = smooth(t, kClosing) - smooth(t - kOpen, kClosing);
     const double x = 0.5 * kThickness + kRadius + kGap - (kGap + kDepth) * way;
-    poses[0] = {Vector3(x, 0, 0), Quaternion::Identity()};
-    poses[1] = {Vector3(-x, 0, 0), Quaternion::Identity()};
+    // Opposite each other, so that nothing turns the plate, and off its centre, so that no symmetry holds it.
+    poses[0] = {Vector3(x, 0.006, 0.004), Quaternion::Identity()};
+    poses[1] = {Vector3(-x, 0.006, 0.004), Quaternion::Identity()};
   }
   bool observe(int, double t, const Engine& engine) override {
     const Motion motion = engine.motion(0);

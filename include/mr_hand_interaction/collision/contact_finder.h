@@ -6,7 +6,6 @@
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/collision/moving_body.h"
 #include "mr_hand_interaction/collision/moving_hand.h"
 #include "mr_hand_interaction/collision/neighbours.h"
 #include "mr_hand_interaction/collision/scene_geometry.h"
@@ -23,7 +22,7 @@ class ContactFinder {
 
   /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory;
   /// see god_object.h.
-  void find(const std::vector<MovingHand>& hands, const Neighbours& neighbours,
+  void find(const std::vector<HandMotion>& hands, const Neighbours& neighbours,
             const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts);
 
   /// Closest features in world between a capsule and one shape of a body, if nearer than `margin` [m].
@@ -31,17 +30,27 @@ class ContactFinder {
                                          double margin) const;
 
  private:
+  /// A shape of a body in world.
+  struct PlacedFrame {
+    Matrix3 rotation;
+    Vector3 position;
+  };
+
   void find_pair(const MovingHand& hand, int body, const BodyState& state, double step,
                  const std::vector<Contact>& before);
+  void find_touch(const TouchingPair& pair, const PlacedFrame& frame, double step, double margin,
+                  const std::vector<Contact>& before);
   /// Closest features at the time within the step at which the pair first touches, if it does.
-  std::optional<ClosestFeatures> swept(const TouchingPair& pair, const MovingBody& moving, double step,
-                                       double margin) const;
-  void touch(const TouchingPair& pair, const ClosestFeatures& features, const std::vector<Contact>& before);
+  std::optional<ClosestFeatures> swept(const TouchingPair& pair, double step, double margin) const;
+  void touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+             const std::vector<Contact>& before);
 
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
+  std::vector<PlacedFrame> frames_;  // of the body at hand
   std::vector<Contact> found_;
+  std::size_t memory_ = 0;  // where the last pair had its contacts in the last step
 };
 
 }  // namespace mrhi

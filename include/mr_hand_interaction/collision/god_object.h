@@ -4,9 +4,8 @@
 
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/collision/contact.h"
+#include "mr_hand_interaction/collision/moving_body.h"
 #include "mr_hand_interaction/collision/moving_hand.h"
-#include "mr_hand_interaction/integration/body_state.h"
-#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 
@@ -19,8 +18,7 @@ struct TouchingPair {
   int capsule;
   int body_index;
   int shape_index;
-  const Body& body;
-  const BodyState& state;
+  const MovingBody& moving;
 };
 
 /// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now

@@ -12,8 +12,12 @@ struct MovingBody {
   /// Velocity, at that time, of its point that is `arm` off its centre [m/s].
   Vector3 velocity(double time, const Vector3& arm) const;
 
+  Vector3 to_world(const Vector3& local) const { return rotation * local + pose.position; }
+  Vector3 to_local(const Vector3& world) const { return rotation.transpose() * (world - pose.position); }
+
   const Body& body;
-  const Pose& pose;
+  const Pose& pose;      ///< at the step's start
+  Matrix3 rotation;      ///< of that pose
   Twist twist;           ///< at the step's start
   Vector3 acceleration;  ///< zero for a fixture [m/s^2]
 };

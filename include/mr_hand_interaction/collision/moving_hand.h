@@ -6,26 +6,45 @@
 
 namespace mrhi {
 
-/// The capsules of one hand in one step: where they are at its start, and how fast their ends move through
-/// it.
+/// The capsules of one hand through a frame: all points move on straight lines at constant speed.
 struct MovingHand {
   int slot = 0;          ///< of the track
   bool emerged = false;  ///< this is its first step since it appeared: what it overlaps is ignored
-  std::array<Capsule, kCapsules> capsules;
+  std::array<Capsule, kCapsules> capsules;        ///< at the step's start
   std::array<Vector3, kCapsules> start_velocity;  ///< [m/s]
   std::array<Vector3, kCapsules> end_velocity;    ///< [m/s]
-  Quaternion palm = Quaternion::Identity();       ///< orientation
+  std::array<double, kCapsules> speed{};          ///< of the faster end [m/s]
+  double top_speed = 0.0;                         ///< of the fastest [m/s]
+  Matrix3 palm = Matrix3::Identity();             ///< orientation
   Vector3 palm_spin = Vector3::Zero();            ///< angular velocity of the palm [rad/s]
 
   /// Velocity of the surface point axis_point(s) + offset of a capsule (Eq. 7 for a segment; spin about the
   /// capsule's own axis is not observed) [m/s].
   Vector3 surface_velocity(int capsule, double s, const Vector3& offset) const;
 
+  /// Angular velocity of a phalanx across its axis, as its ends tell [rad/s].
+  Vector3 swing(int capsule) const;
   /// Angular velocity of a phalanx: across its axis from its ends, about its axis from the palm [rad/s].
   Vector3 angular_velocity(int capsule) const;
 };
 
-/// The hand of `track` at `fraction` of the frame that lasts `seconds`.
-MovingHand moving_hand(const HandTrack& track, int slot, double fraction, double seconds);
+/// The hand of a track in a frame that lasts some time; made once a frame, then moved from step to step.
+class HandMotion {
+ public:
+  /// `seconds` may be 0 for a hand that keeps still.
+  HandMotion(const HandTrack& track, int slot, double seconds);
+
+  /// Moves the hand on to `fraction` of the frame.
+  void move_to(double fraction);
+  const MovingHand& hand() const { return hand_; }
+
+ private:
+  MovingHand hand_;
+  std::array<Capsule, kCapsules> from_;
+  double seconds_;
+  bool emerged_;
+  Matrix3 palm_from_;
+  Eigen::AngleAxisd palm_turn_;
+};
 
 }  // namespace mrhi

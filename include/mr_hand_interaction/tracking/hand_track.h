@@ -20,8 +20,8 @@ struct SampleHistory {
   void clear() { size = 0; }
 };
 
-/// After a short loss the hand does not snap from where it was held to where it is: it catches up in as much
-/// time as it was away.
+/// After a short loss the hand does not snap from where it was held to where it is: it catches up, continuous
+/// in velocity and never ahead of the tracked hand.
 struct Rejoin {
   Hand from;                 ///< pose that was held
   Nanoseconds begin = 0;     ///< stamp of the first frame after the loss
@@ -40,6 +40,14 @@ struct HandTrack {
   SampleHistory history;
   Rejoin rejoin;
 };
+
+/// How long a hand takes to catch up with one that has gone `way` [m] in the `away` seconds of its loss and
+/// goes on as fast: what keeps it to 5 m/s^2, but 0.05 to 0.4 s.
+Nanoseconds rejoin_duration(double way, double away);
+
+/// The hand at `stamp` on its way from where it was held to the tracked hand (minimum jerk: Flash & Hogan
+/// 1985).
+Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp);
 
 /// Pose between two of one hand: all points move on straight lines.
 Hand blend(const Hand& from, const Hand& to, double fraction);

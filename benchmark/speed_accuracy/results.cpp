@@ -1,0 +1,42 @@
+#include "results.h"
+
+#include <cmath>
+#include <iostream>
+
+namespace mrhi::benchmark {
+namespace {
+
+void write_row(std::ostream& csv, const std::string& scene, const Contender& contender, double step,
+               const Measure& measure) {
+  const StepTime& time = contender.result().time;
+  csv << scene << measure.suffix << ',' << contender.engine() << ',' << contender.setting() << ',' << step
+      << ',' << time.median << ',' << time.percentile_99 << ',' << measure.error << ',' << measure.unit << ','
+      << (measure.failed || !std::isfinite(measure.error)) << '\n';
+}
+
+}  // namespace
+
+void write_header(std::ostream& csv) {
+  csv.precision(9);
+  csv << "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n";
+}
+
+void write_rows(std::ostream& csv, const std::string& scene, double step,
+                const std::vector<std::unique_ptr<Contender>>& contenders,
+                std::map<std::string, std::vector<Measure>>& measures) {
+  for (const auto& contender : contenders)
+    if (!contender->result().measures.empty()) measures[scene] = contender->result().measures;
+  for (const auto& contender : contenders) {
+    if (!contender->result().supported) continue;
+    std::vector<Measure> rows = contender->result().measures;
+    if (!contender->trouble().empty()) {
+      std::cerr << scene << ", " << contender->engine() << " (" << contender->setting() << "), step "
+                << 1e3 * step << " ms: " << contender->trouble() << '\n';
+      if (rows.empty()) rows = measures[scene];
+      for (Measure& row : rows) row.error = std::nan(""), row.failed = true;
+    }
+    for (const Measure& row : rows) write_row(csv, scene, *contender, step, row);
+  }
+}
+
+}  // namespace mrhi::benchmark

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "support/grips.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// Every allocation of this program goes through here: operator new and Eigen's own call malloc.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+}
+
+namespace mrhi {
+namespace {
+
+using testing::PinchScene;
+
+/// Allocations in the steps (not in taking and reporting frames) of two seconds of scene (a), once warm.
+long allocations_while_swinging(Scene scene, ContactModelKind model) {
+  const PinchScene pinch;
+  scene.bounds = {Vector3::Constant(-1e3), Vector3::Constant(1e3)};  // to be put back is an event
+  Configuration configuration = testing::unfiltered(model);
+  Simulation simulation(std::move(scene), configuration);
+  long counted = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    const double t = frame / 100.0;
+    const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, 0.1, 0.5);
+    simulation.begin({testing::at(t), {pinch.hand(t, sway)}});
+    const long before = allocations;
+    while (simulation.step()) {
+    }
+    if (t >= 1.0) counted += allocations - before;
+    simulation.end();
+  }
+  return counted;
+}
+
+TEST(NoAllocation, counting_works) {
+  const long before = allocations;
+  std::vector<int> some(1000);
+  EXPECT_EQ(some.size(), 1000u);
+  EXPECT_GT(allocations, before);
+}
+
+TEST(NoAllocation, in_a_step_of_a_held_cube_once_warm) {
+  for (const ContactModelKind model :
+       {ContactModelKind::implicit, ContactModelKind::seed, ContactModelKind::penetration,
+        ContactModelKind::impulse, ContactModelKind::virtual_spring, ContactModelKind::soft_pad}) {
+    EXPECT_EQ(allocations_while_swinging(PinchScene().scene(), model), 0) << static_cast<int>(model);
+  }
+}
+
+TEST(NoAllocation, in_a_step_with_far_objects_and_with_one_that_rides_on_the_held_cube) {
+  Scene scene = PinchScene().scene();
+  for (int i = 0; i < 19; ++i) {
+    Body far = testing::box_body(Vector3::Constant(0.05), 0.1);
+    far.name = "far" + std::to_string(i);
+    far.start.position = Vector3(0.6 + 0.2 * (i % 3), 0.2 * (i / 3), 0.5);
+    scene.bodies.push_back(far);
+  }
+  EXPECT_EQ(allocations_while_swinging(scene, ContactModelKind::implicit), 0);
+  Body rider = testing::box_body(Vector3::Constant(0.04), 0.03);
+  rider.name = "rider";
+  rider.start.position = Vector3(0, 0, 0.045);
+  scene.bodies.push_back(rider);
+  EXPECT_EQ(allocations_while_swinging(scene, ContactModelKind::implicit), 0);
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/simulation.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace mrhi::testing {
+
+struct Moment {
+  double time;  // [s]
+  Pose object;
+  Twist twist;
+  bool held;
+  Pose palm;
+
+  Pose in_hand() const { return palm.inverse() * object; }
+};
+
+/// What a motion is done with.
+struct Staging {
+  ContactModelKind model = ContactModelKind::implicit;
+  std::string side = "right";
+  double gravity = 0.0;       // along world's z [m/s^2]
+  double gravity_from = 0.0;  // when it sets in: none of the shipped objects stands on anything [s]
+  bool stand = false;         // a table under the object
+};
+
+/// A table under the body, or where the hand takes it from below (a flat body) two rails under its ends.
+inline Body stand_under(const Body& body) {
+  constexpr double kHalfHeight = 0.02, kRail = 0.006;
+  Body stand;
+  stand.name = "stand";
+  stand.fixed = true;
+  stand.material = body.material;
+  const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
+  const double below = box != nullptr ? box->half_extents.z() : body.bounding_radius;
+  if (box != nullptr && box->half_extents.z() < 0.01) {
+    const Vector3 rail(kRail, box->half_extents.y(), kHalfHeight),
+        end(box->half_extents.x() - kRail, 0.0, 0.0);
+    stand.shapes.push_back({Box{rail}, {end, Quaternion::Identity()}});
+    stand.shapes.push_back({Box{rail}, {-end, Quaternion::Identity()}});
+  } else {
+    stand.shapes.push_back({Box{Vector3(0.2, 0.2, kHalfHeight)}, {}});
+  }
+  stand.start.position = body.start.position - Vector3(0.0, 0.0, below + kHalfHeight);
+  return stand;
+}
+
+inline Scene staged_scene(const ScriptedMotion& motion, const Configuration& configuration, bool stand) {
+  SceneOptions options;
+  options.default_material = default_material(configuration);
+  Scene scene = load_scene(find_scene_file(motion.scene, {"config/scenes"}), options);
+  scene.bodies.at(0).start_twist = motion.object_twist;
+  if (stand) scene.bodies.push_back(stand_under(scene.bodies[0]));
+  return scene;
+}
+
+/// One run of a motion on its shipped scene, as a user meets it (default filter and step); a moment for each
+/// frame with a hand in it.
+inline std::vector<Moment> perform(const std::string& motion, const Staging& staging) {
+  SyntheticHandOptions options;
+  options.motion = motion;
+  options.side = staging.side;
+  SyntheticHand source(options);
+  Configuration configuration;
+  configuration.contact_model = staging.model;
+  configuration.gravity = Vector3::Zero();
+  const Scene scene = staged_scene(source.motion(), configuration, staging.stand);
+  Simulation weightless(scene, configuration);
+  configuration.gravity = Vector3(0.0, 0.0, staging.gravity);
+  Simulation heavy(scene, configuration);
+  bool is_heavy = false;
+  std::vector<Moment> moments;
+  while (source.next_run() == 0) {
+    const JointsFrame joints = source.next();
+    const double time = to_seconds(joints.stamp);
+    HandFrame frame{joints.stamp, {}};
+    for (const HandJoints& hand : joints.hands)
+      frame.hands.push_back(complete_hand(hand, default_device_mount()));
+    if (!is_heavy && time >= staging.gravity_from) {
+      heavy.set_state(weightless.state());
+      is_heavy = true;
+    }
+    Simulation& simulation = is_heavy ? heavy : weightless;
+    if (simulation.advance(frame) != Rejection::none) ADD_FAILURE() << "frame refused";
+    if (frame.hands.empty()) break;
+    const BodyState& body = simulation.state().bodies.at(0);
+    moments.push_back({time, body.pose, twist_of(simulation.scene().bodies.at(0), body),
+                       simulation.state().interactions.at(0).level == InteractionLevel::grasp,
+                       simulation.result().tracked.at(0).palm});
+  }
+  return moments;
+}
+
+/// When a grasping motion begins to carry the object, and when it begins to open the hand [s].
+inline double carrying_from(const ScriptedMotion& motion) {
+  return motion.keyframes.at(motion.keyframes.size() - 7).time;
+}
+inline double opening_from(const ScriptedMotion& motion) {
+  return motion.keyframes.at(motion.keyframes.size() - 5).time;
+}
+
+inline const Moment& moment_at(const std::vector<Moment>& moments, double time) {
+  const auto found = std::find_if(moments.begin(), moments.end(),
+                                  [time](const Moment& moment) { return moment.time >= time; });
+  return found == moments.end() ? moments.back() : *found;
+}
+
+/// Held from when it is carried until the hand opens, without a break.
+inline bool held_throughout(const std::vector<Moment>& moments, double from, double to) {
+  return std::all_of(moments.begin(), moments.end(), [&](const Moment& moment) {
+    return moment.held || moment.time < from || moment.time > to;
+  });
+}
+
+/// How far the object is moved in the palm, from when it is carried until the hand opens: [m] and [rad].
+struct Shift {
+  double way, turn;
+};
+inline Shift shift_in_hand(const std::vector<Moment>& moments, double from, double to) {
+  const Pose before = moment_at(moments, from).in_hand(), after = moment_at(moments, to).in_hand();
+  return {(after.position - before.position).norm(), before.orientation.angularDistance(after.orientation)};
+}
+
+/// Greatest velocity that the object gets from a strike.
+inline Vector3 struck_velocity(const std::string& motion, const Staging& staging) {
+  Vector3 fastest = Vector3::Zero();
+  for (const Moment& moment : perform(motion, staging)) {
+    if (moment.twist.linear.norm() > fastest.norm()) fastest = moment.twist.linear;
+  }
+  return fastest;
+}
+
+}  // namespace mrhi::testing
