@@ -82,14 +82,21 @@ void swing_back(const TouchingPair& pair, const Plane& plane, bool remembered, C
 
 /// How the phalanx moves in this step.
 struct PhalanxMotion {
-  explicit PhalanxMotion(const TouchingPair& pair)
-      : start(pair.hand.start_velocity[static_cast<std::size_t>(pair.capsule)]),
-        spread(pair.hand.end_velocity[static_cast<std::size_t>(pair.capsule)] - start),
-        swing(pair.hand.swing(pair.capsule)),
-        spin(pair.hand.angular_velocity(pair.capsule)) {}
+  explicit PhalanxMotion(const TouchingPair& pair) {
+    const auto c = static_cast<std::size_t>(pair.capsule);
+    const Capsule& capsule = pair.hand.capsules[c];
+    axis = capsule.end - capsule.start;
+    start = pair.hand.start_velocity[c];
+    spread = pair.hand.end_velocity[c] - start;
+    const double length_squared = axis.squaredNorm();
+    if (length_squared > 0.0) swing = axis.cross(spread) / length_squared;
+    spin = length_squared > 0.0 ? Vector3(swing + (axis.dot(pair.hand.palm_spin) / length_squared) * axis)
+                                : pair.hand.palm_spin;
+  }
 
-  const Vector3& start;
-  Vector3 spread, swing, spin;
+  Vector3 axis, start, spread;
+  Vector3 swing = Vector3::Zero();  // angular velocity across the axis, as the ends tell
+  Vector3 spin;                     // the same with what the palm tells about the axis
 };
 
 void place(const TouchingPair& pair, const PhalanxMotion& motion, const Plane& plane, double s,
@@ -114,7 +121,7 @@ void place(const TouchingPair& pair, const PhalanxMotion& motion, const Plane& p
   contact.normal = plane.normal;
   contact.hand_velocity = motion.start + s * motion.spread + motion.swing.cross(offset);
   contact.hand_spin = plane.normal.dot(motion.spin);
-  contact.axis = capsule.end - capsule.start;
+  contact.axis = motion.axis;
   contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
   const Twist& twist = pair.moving.twist;

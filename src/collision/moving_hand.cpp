@@ -6,23 +6,12 @@ namespace mrhi {
 
 Vector3 MovingHand::surface_velocity(int capsule, double s, const Vector3& offset) const {
   const auto c = static_cast<std::size_t>(capsule);
-  return start_velocity[c] + s * (end_velocity[c] - start_velocity[c]) + swing(capsule).cross(offset);
-}
-
-Vector3 MovingHand::swing(int capsule) const {
-  const auto c = static_cast<std::size_t>(capsule);
   const Vector3 axis = capsules[c].end - capsules[c].start;
+  const Vector3 spread = end_velocity[c] - start_velocity[c];
   const double length_squared = axis.squaredNorm();
-  if (length_squared <= 0.0) return Vector3::Zero();
-  return axis.cross(end_velocity[c] - start_velocity[c]) / length_squared;
-}
-
-Vector3 MovingHand::angular_velocity(int capsule) const {
-  const auto c = static_cast<std::size_t>(capsule);
-  const Vector3 axis = capsules[c].end - capsules[c].start;
-  const double length_squared = axis.squaredNorm();
-  if (length_squared <= 0.0) return palm_spin;
-  return swing(capsule) + (axis.dot(palm_spin) / length_squared) * axis;
+  Vector3 velocity = start_velocity[c] + s * spread;
+  if (length_squared > 0.0) velocity += (axis.cross(spread) / length_squared).cross(offset);
+  return velocity;
 }
 
 HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)

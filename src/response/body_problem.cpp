@@ -1,37 +1,53 @@
 #include "body_problem.h"
 
+#include <array>
+
 namespace mrhi {
 namespace {
 
-/// Lower triangle of a sum of weighted outer products w w' of lanes.
-class OuterProducts {
+/// Lower triangle of a symmetric 6 x 6 matrix that is summed up in lanes.
+class LowerTriangle {
  public:
-  OuterProducts() {
+  LowerTriangle() {
     for (Lanes& entry : entries_) entry.setZero();
   }
-  void add(const Lanes& weight, const std::array<Lanes, 6>& w) {
-    std::size_t at = 0;
+  Lanes& at(std::size_t row, std::size_t column) { return entries_[row * (row + 1) / 2 + column]; }
+
+  /// Adds weight w w' for w = J' f, the wrench of a force at an arm from the body's centre.
+  void add_product(const Lanes& weight, const Triple<Lanes>& f, const Triple<Lanes>& arm) {
+    const Triple<Lanes> torque = arm.cross(f);
+    const std::array<const Lanes*, 6> w{{&f.x, &f.y, &f.z, &torque.x, &torque.y, &torque.z}};
     for (std::size_t i = 0; i < 6; ++i) {
-      const Lanes weighted = weight * w[i];
-      for (std::size_t j = 0; j <= i; ++j) entries_[at++] += weighted * w[j];
+      const Lanes weighted = weight * *w[i];
+      for (std::size_t j = 0; j <= i; ++j) at(i, j) += weighted * *w[j];
     }
   }
-  void add_to(Eigen::Matrix<double, 6, 6>& matrix) const {
-    std::size_t at = 0;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j <= i; ++j) matrix(i, j) += sum(entries_[at++]);
+  /// Adds J' J weight for the velocity of a point at an arm from the centre.
+  void add_isotropic(const Lanes& weight, const Triple<Lanes>& r) {
+    const Triple<Lanes> moment = weight * r;
+    const Lanes xx = moment.x * r.x, yy = moment.y * r.y, zz = moment.z * r.z;
+    for (std::size_t i = 0; i < 3; ++i) at(i, i) += weight;
+    at(3, 1) -= moment.z, at(3, 2) += moment.y, at(4, 0) += moment.z;
+    at(4, 2) -= moment.x, at(5, 0) -= moment.y, at(5, 1) += moment.x;
+    at(3, 3) += yy + zz, at(4, 4) += xx + zz, at(5, 5) += xx + yy;
+    at(4, 3) -= moment.x * r.y, at(5, 3) -= moment.x * r.z, at(5, 4) -= moment.y * r.z;
+  }
+  /// Adds weight n n' to the part of the angular velocity.
+  void add_twist(const Lanes& weight, const Triple<Lanes>& n) {
+    const Triple<Lanes> turn = weight * n;
+    at(3, 3) += turn.x * n.x, at(4, 4) += turn.y * n.y, at(5, 5) += turn.z * n.z;
+    at(4, 3) += turn.x * n.y, at(5, 3) += turn.x * n.z, at(5, 4) += turn.y * n.z;
+  }
+  void write(Eigen::Matrix<double, 6, 6>& matrix) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j <= i; ++j)
+        matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = sum(at(i, j));
     }
   }
 
  private:
   std::array<Lanes, 21> entries_;
 };
-
-/// J' f of a force at an arm from the body's centre.
-std::array<Lanes, 6> wrench_of(const Triple<Lanes>& force, const Triple<Lanes>& arm) {
-  const Triple<Lanes> torque = arm.cross(force);
-  return {{force.x, force.y, force.z, torque.x, torque.y, torque.z}};
-}
 
 }  // namespace
 
@@ -47,6 +63,7 @@ void BodyProblem::begin(const ContactStep& step, std::size_t index,
   gyration_squared_ = body.inertia.trace() / (3.0 * body.mass);
   start_.head<3>() = state.linear_momentum / body.mass;
   start_.tail<3>() = rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
+  hessian_.setZero();
   free_ = start_;
   free_.head<3>() += step.step * step.gravity;
 
@@ -95,39 +112,18 @@ void BodyProblem::evaluate(bool renew_limits) {
 }
 
 void BodyProblem::factorise() {
-  // J' S J of the slopes S: their part that is alike in all directions by its moments about the centre.
-  const Lanes zero = Lanes::Zero();
-  OuterProducts products;
-  Lanes alike = zero;
-  Triple<Lanes> first{zero, zero, zero};
-  std::array<Lanes, 6> second{{zero, zero, zero, zero, zero, zero}}, twists = second;
+  LowerTriangle slopes;  // J' S J of the contacts' slopes S
   for (const Four& four : fours_) {
     const SpringResponse<Lanes>& response = four.response;
     const Triple<Lanes>& n = four.spring.normal;
-    const Triple<Lanes>& r = four.arm;
-    const Triple<Lanes> moment = response.along * r, turn = response.torque_slope * n;
-    alike += response.along;
-    first = first + moment;
-    const std::array<Lanes, 6> squares{
-        {moment.x * r.x, moment.y * r.y, moment.z * r.z, moment.x * r.y, moment.x * r.z, moment.y * r.z}};
-    const std::array<Lanes, 6> turns{
-        {turn.x * n.x, turn.y * n.y, turn.z * n.z, turn.x * n.y, turn.x * n.z, turn.y * n.z}};
-    for (std::size_t i = 0; i < 6; ++i) second[i] += squares[i], twists[i] += turns[i];
-    products.add(response.across - response.along, wrench_of(n, r));
-    if (!any_above(response.slip, zero)) continue;
-    products.add(-response.slip / greater(response.drawn_squared, constant<Lanes>(1e-300)),
-                 wrench_of(response.drawn, r));
+    slopes.add_isotropic(response.along, four.arm);
+    slopes.add_twist(response.torque_slope, n);
+    slopes.add_product(response.across - response.along, n, four.arm);
+    if (!any_above(response.slip, Lanes::Zero())) continue;
+    slopes.add_product(-response.slip / greater(response.drawn_squared, constant<Lanes>(1e-300)),
+                       response.drawn, four.arm);
   }
-  hessian_.setZero();
-  products.add_to(hessian_);
-  hessian_.diagonal().head<3>().array() += sum(alike);
-  hessian_.bottomLeftCorner<3, 3>() += cross_matrix(sum(first));
-  const double xx = sum(second[0]), yy = sum(second[1]), zz = sum(second[2]);
-  hessian_.diagonal().tail<3>() +=
-      Vector3(yy + zz, xx + zz, xx + yy) + Vector3(sum(twists[0]), sum(twists[1]), sum(twists[2]));
-  hessian_(4, 3) += sum(twists[3]) - sum(second[3]);
-  hessian_(5, 3) += sum(twists[4]) - sum(second[4]);
-  hessian_(5, 4) += sum(twists[5]) - sum(second[5]);
+  slopes.write(hessian_);
   hessian_ *= step_;
   hessian_.diagonal().head<3>().array() += mass_;
   hessian_.bottomRightCorner<3, 3>() += inertia_;

@@ -11,6 +11,8 @@ namespace mrhi {
 /// number of contacts. A Problem for Newton. Contacts are worked on four at a time.
 class BodyProblem {
  public:
+  static constexpr bool kTrustsLastStep = true;  // nothing shares momentum with the body
+
   /// Each contact's b is this body.
   void begin(const ContactStep& step, std::size_t body, const std::vector<IslandContact>& contacts);
 

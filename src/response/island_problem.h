@@ -12,6 +12,8 @@ namespace mrhi {
 /// Problem for Newton. Keeps its memory from island to island.
 class IslandProblem {
  public:
+  static constexpr bool kTrustsLastStep = false;  // momentum is conserved between the bodies
+
   /// Bodies by their index in the scene; each contact's a and b are places in `bodies`. Keeps a reference to
   /// the contacts until the next call.
   void begin(const ContactStep& step, const std::vector<int>& bodies, std::vector<IslandContact>& contacts);

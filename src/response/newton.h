@@ -12,6 +12,7 @@ namespace mrhi {
 ///   factorise()           the Hessian of the convex problem there
 ///   find_direction()      towards the solution, by the last Hessian
 ///   move(part)            along the direction; move(-part) goes back
+///   kTrustsLastStep       whether the last step's effect may go unmeasured
 ///   energy(), descent()   of the convex problem, and its slope along the direction [J]
 template <typename Problem>
 class Newton {
@@ -28,6 +29,10 @@ class Newton {
       const double error = problem_.error();
       const bool near = i > 0 && error < kFast * last;
       last = error;
+      if (near && Problem::kTrustsLastStep && error <= kTrusted * problem_.scale()) {
+        advance(false, true);
+        return false;
+      }
       advance(i >= kUncheckedIterations && !near, near);
     }
     solve_with_held_limits();
@@ -44,6 +49,8 @@ class Newton {
   static constexpr int kUncheckedIterations = 2;
   /// A step that leaves less than this part of the error was taken where the Hessian hardly changes.
   static constexpr double kFast = 0.05;
+  /// Fast convergence takes an error of this size below kConverged in one more step.
+  static constexpr double kTrusted = 1e-5;
   /// Below this error the energy is rounding and no guide any more; of the forces' impulse.
   static constexpr double kFine = 1e-5;
   /// The momenta at the step's end are what the forces found make of those at its start, so that what is

@@ -44,12 +44,13 @@ struct Spring {
 
   /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
   /// limits by the normal force there first, where asked.
-  void respond(const Triple<Real>& u, const Real& spin, bool renew_limits, SpringResponse<Real>& response);
+  [[gnu::always_inline]] inline void respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
+                                             SpringResponse<Real>& response);
 };
 
 template <typename Real>
-void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
-                           SpringResponse<Real>& response) {
+inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
+                                  SpringResponse<Real>& response) {
   const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real rate = u.dot(normal);
   const Real deep = greater(zero, depth - ahead * rate);

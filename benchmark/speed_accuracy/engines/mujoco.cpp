@@ -85,10 +85,12 @@ std::size_t stack_size(const World& world) {
 }
 
 std::string xml(const Setting& setting, const World& world, double step) {
+  // Room for constraints, which MuJoCo takes as dense rows: four contacts of four rows on the floor.
+  const std::size_t rows = world.gravity.isZero() ? 4 : 16;
   std::ostringstream out;
   out.precision(17);
   out << "<mujoco><option timestep=\"" << step << "\" gravity=\"" << text(world.gravity) << "\" "
-      << setting.option << "/><size njmax=\"" << 1000 + 40 * world.bodies.size() << "\" nconmax=\""
+      << setting.option << "/><size njmax=\"" << 1000 + rows * world.bodies.size() << "\" nconmax=\""
       << 200 + 10 * world.bodies.size() << "\" nstack=\"" << stack_size(world)
       << "\"/><default><geom friction=\"" << world.friction << " 0.005 0.0001\""
       << solref(setting, world, step) << "/></default><worldbody>";

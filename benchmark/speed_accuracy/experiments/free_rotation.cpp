@@ -88,7 +88,7 @@ class FreeRotation final : public Experiment {
 
 void add_free_rotation_scenes(std::vector<ScenePlan>& scenes) {
   scenes.push_back({"free_rotation", "free_rotation", {}, [](bool quick) {
-                      return std::make_unique<FreeRotation>(quick ? 10.0 : 60.0);
+                      return std::make_unique<FreeRotation>(quick ? 10.0 : 30.0);
                     }});
 }
 

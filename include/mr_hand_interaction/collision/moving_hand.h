@@ -21,11 +21,6 @@ struct MovingHand {
   /// Velocity of the surface point axis_point(s) + offset of a capsule (Eq. 7 for a segment; spin about the
   /// capsule's own axis is not observed) [m/s].
   Vector3 surface_velocity(int capsule, double s, const Vector3& offset) const;
-
-  /// Angular velocity of a phalanx across its axis, as its ends tell [rad/s].
-  Vector3 swing(int capsule) const;
-  /// Angular velocity of a phalanx: across its axis from its ends, about its axis from the palm [rad/s].
-  Vector3 angular_velocity(int capsule) const;
 };
 
 /// The hand of a track in a frame that lasts some time; made once a frame, then moved from step to step.
