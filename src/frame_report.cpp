@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "grasp.h"
+#include "mr_hand_interaction/collision/near_bodies.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 
 namespace mrhi {
@@ -59,10 +60,15 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
+    const std::vector<int> near = near_bodies(track.current, end.scene, state.bodies, kHoverEnds);
+    auto next = near.begin();
     for (std::size_t b = 0; b < bodies; ++b) {
-      if (end.scene.bodies[b].fixed) continue;
-      Interaction& interaction = state.interactions[slot * bodies + b];
       const int body = static_cast<int>(b);
+      const bool is_near = next != near.end() && *next == body;
+      if (is_near) ++next;
+      Interaction& interaction = state.interactions[slot * bodies + b];
+      const bool may_end = interaction.level != InteractionLevel::none || !end.strikes.empty();
+      if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
       const InteractionLevel seen =
           seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene, state.bodies[b].pose,
                      result.contacts, interaction.level);

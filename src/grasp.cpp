@@ -4,7 +4,6 @@ namespace mrhi {
 namespace {
 
 constexpr double kHoverBegins = 0.03;  // [m]
-constexpr double kHoverEnds = 0.045;   // [m]
 /// What is left of the pushes when they are added as vectors, relative to their sum as numbers.
 constexpr double kBalanced = 0.6;
 

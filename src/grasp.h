@@ -5,6 +5,9 @@
 
 namespace mrhi {
 
+/// A hand that hovers over a body does so until it is farther away than this [m].
+constexpr double kHoverEnds = 0.045;
+
 /// What the contacts of now, and the distance between them where nothing touches, say of a hand and a body.
 /// A grasp is two or more parts of the hand that press the body from sides that largely balance.
 /// `before` widens the distance at which hovering ends.

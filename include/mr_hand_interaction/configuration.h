@@ -24,7 +24,7 @@ struct TrackingConfiguration {
 
 struct ContactConfiguration {
   bool torsion = true;  ///< a fingertip resists twisting about its contact normal (`implicit`)
-  double object_stiffness = 1e5;  ///< of a touch between two objects, which are harder than a hand [N/m]
+  double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
 };
 
 /// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.

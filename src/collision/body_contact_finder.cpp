@@ -23,10 +23,6 @@ Material together(const Material& a, const Material& b) {
   return material;
 }
 
-Vector3 velocity_of(const Body& body, const BodyState& state) {
-  return body.fixed ? Vector3(Vector3::Zero()) : Vector3(state.linear_momentum / body.mass);
-}
-
 double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
@@ -138,22 +134,49 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies, double step,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
-  for (const auto& [a, b] : neighbours.pairs()) find_pair(a, b, bodies, step, contacts);
+  reaches_.resize(bodies.size());
+  for (const int body : neighbours.paired()) {
+    const auto b = static_cast<std::size_t>(body);
+    reaches_[b] = reach_of(scene_.bodies[b], bodies[b], step);
+  }
+  for (const auto& [a, b] : neighbours.pairs()) {
+    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+    const Reach &of_a = reaches_[ia], &of_b = reaches_[ib];
+    const Vector3 apart = (of_a.centre - of_b.centre).cwiseAbs() - of_a.half - of_b.half;
+    if (apart.maxCoeff() <= 0.0) find_pair(ia, ib, bodies, step, contacts);
+  }
   std::sort(found_.begin(), found_.end(),
             [](const BodyContact& x, const BodyContact& y) { return x.key < y.key; });
   contacts.swap(found_);
 }
 
-void BodyContactFinder::find_pair(int index_a, int index_b, const std::vector<BodyState>& bodies, double step,
-                                  const std::vector<BodyContact>& before) {
-  const auto ia = static_cast<std::size_t>(index_a), ib = static_cast<std::size_t>(index_b);
+/// The axis-aligned box that a body may touch another from within in this step.
+BodyContactFinder::Reach BodyContactFinder::reach_of(const Body& body, const BodyState& state,
+                                                     double step) const {
+  Reach reach;
+  reach.centre = state.pose.position;
+  reach.half = Vector3::Constant(body.bounding_radius);
+  reach.travel = 0.5 * kMargin;
+  if (!body.fixed) {
+    reach.travel += step * (state.linear_momentum.norm() / body.mass + 0.5 * step * gravity_.norm());
+  }
+  double turned = 0.0;
+  const Box* box = body.shapes.size() == 1 ? std::get_if<Box>(&body.shapes[0].shape) : nullptr;
+  if (box != nullptr) {
+    const Pose pose = state.pose * body.shapes[0].pose;
+    reach.centre = pose.position;
+    reach.half = pose.orientation.toRotationMatrix().cwiseAbs() * box->half_extents;
+    // No faster than the momentum about the axis of least inertia.
+    turned = step * body.bounding_radius * state.angular_momentum.norm() * body.inverse_inertia.trace();
+  }
+  reach.half.array() += reach.travel + turned;
+  return reach;
+}
+
+void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vector<BodyState>& bodies,
+                                  double step, const std::vector<BodyContact>& before) {
   const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
-  const Vector3 approach = velocity_of(body_a, bodies[ia]) - velocity_of(body_b, bodies[ib]);
-  const double falls = body_a.fixed ? 0.5 * step * gravity_.norm() : 0.0;
-  const double travel = kMargin + (approach.norm() + falls) * step;
-  // However they spin, bodies stay in their spheres.
-  const double reach = body_a.bounding_radius + body_b.bounding_radius + travel;
-  if ((bodies[ia].pose.position - bodies[ib].pose.position).squaredNorm() > reach * reach) return;
+  const double travel = reaches_[ia].travel + reaches_[ib].travel;
   const MovingBody a(body_a, bodies[ia], gravity_), b(body_b, bodies[ib], gravity_);
   const double margin = travel + (fastest_point(a) + fastest_point(b)) * step;
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {

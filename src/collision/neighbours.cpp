@@ -6,8 +6,11 @@
 namespace mrhi {
 namespace {
 
-constexpr double kRoom = 0.02;      // around a body at rest [m]
-constexpr double kRoomTime = 0.02;  // what a moving one has beyond that: its way in this time [s]
+// Room around a body at rest, and as a part of its size; what a moving one has beyond that: its way in some
+// time. More room is asked for more rarely, but lists more pairs that are not near.
+constexpr double kRoom = 0.002;  // [m]
+constexpr double kRoomPart = 0.1;
+constexpr double kRoomTime = 0.01;  // [s]
 /// From this gap on contacts are followed, with what gravity adds to a step's way [m].
 constexpr double kFollowed = 0.004;
 
@@ -60,7 +63,7 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
                               travel * travel * bodies[b].linear_momentum.squaredNorm());
     if (way <= room.slack_squared) continue;
     const double speed = body.fixed ? 0.0 : bodies[b].linear_momentum.norm() / body.mass;
-    const double slack = kRoom + (kRoomTime + 2.0 * step) * speed;
+    const double slack = kRoom + kRoomPart * body.bounding_radius + (kRoomTime + 2.0 * step) * speed;
     room = {position, slack * slack};
     broad_phase_.update(static_cast<int>(b), position, body.bounding_radius + slack + kFollowed);
     any = true;
@@ -86,6 +89,10 @@ void Neighbours::list_pairs() {
     pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
+  paired_.clear();
+  for (const auto& [a, b] : pairs_) paired_.push_back(a), paired_.push_back(b);
+  std::sort(paired_.begin(), paired_.end());
+  paired_.erase(std::unique(paired_.begin(), paired_.end()), paired_.end());
 }
 
 }  // namespace mrhi

@@ -3,13 +3,15 @@
 #include <algorithm>
 
 #include "hand_joints.h"
+#include "mr_hand_interaction/collision/near_bodies.h"
 
 namespace mrhi {
 namespace {
 
-constexpr int kShapingPasses = 12;   // push out and keep together, alternately
-constexpr int kClearingPasses = 60;  // then push out alone until clear
-constexpr double kClear = 1e-6;      // deeper than this is pushed [m]
+constexpr int kShapingPasses = 12;     // push out and keep together, alternately
+constexpr int kClearingPasses = 60;    // then push out alone until clear
+constexpr double kFarthestPush = 0.1;  // that a joint is moved out of what the hand is in [m]
+constexpr double kClear = 1e-6;        // deeper than this is pushed [m]
 
 struct Push {
   double depth = 0.0;  // [m]
@@ -31,17 +33,21 @@ const Contact* memory(const std::vector<Contact>& contacts, int slot, int capsul
 class Renderer {
  public:
   Renderer(int slot, const ContactFinder& finder, const Scene& scene, const std::vector<BodyState>& bodies,
-           const std::vector<Contact>& contacts)
-      : slot_(slot), finder_(finder), scene_(scene), bodies_(bodies), contacts_(contacts) {}
+           const std::vector<Contact>& contacts, std::vector<int> near)
+      : slot_(slot),
+        finder_(finder),
+        scene_(scene),
+        bodies_(bodies),
+        contacts_(contacts),
+        near_(std::move(near)) {}
 
   /// Pushes every capsule out of what it is in; returns the deepest penetration found.
   double push_out(const Hand& hand, bool by_entry_face, JointNet& net) const {
     double deepest = 0.0;
     for (int capsule = 0; capsule < kCapsules; ++capsule) {
       if (!hand.has(capsule)) continue;
-      for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-        const int body = static_cast<int>(b);
-        for (int shape = 0; shape < static_cast<int>(scene_.bodies[b].shapes.size()); ++shape) {
+      for (const int body : near_) {
+        for (int shape = 0; shape < shapes_of(body); ++shape) {
           const Push push = needed(net.capsule(capsule), capsule, body, shape, by_entry_face);
           deepest = std::max(deepest, push.depth);
           if (push.depth > kClear) net.push(capsule, push.s, push.depth * push.normal);
@@ -69,13 +75,17 @@ class Renderer {
  private:
   Push deepest(const Capsule& capsule, int index) const {
     Push deepest;
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-      for (int shape = 0; shape < static_cast<int>(scene_.bodies[b].shapes.size()); ++shape) {
-        const Push push = needed(capsule, index, static_cast<int>(b), shape, false);
+    for (const int body : near_) {
+      for (int shape = 0; shape < shapes_of(body); ++shape) {
+        const Push push = needed(capsule, index, body, shape, false);
         if (push.depth > deepest.depth) deepest = push;
       }
     }
     return deepest;
+  }
+
+  int shapes_of(int body) const {
+    return static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
   }
 
   Push needed(const Capsule& capsule, int index, int body, int shape, bool by_entry_face) const {
@@ -102,6 +112,7 @@ class Renderer {
   const Scene& scene_;
   const std::vector<BodyState>& bodies_;
   const std::vector<Contact>& contacts_;
+  const std::vector<int> near_;
 };
 
 }  // namespace
@@ -113,7 +124,8 @@ RenderedHand render_hand(const Hand& tracked, int slot, const ContactFinder& fin
   for (const Contact& contact : contacts) {
     if (contact.key.hand == slot && contact.touching()) rendered.touching[contact.key.capsule] = true;
   }
-  const Renderer renderer(slot, finder, scene, bodies, contacts);
+  const Renderer renderer(slot, finder, scene, bodies, contacts,
+                          near_bodies(tracked, scene, bodies, kFarthestPush));
   JointNet net(tracked);
   if (renderer.push_out(tracked, true, net) <= kClear) return rendered;
   for (int pass = 0; pass < kShapingPasses; ++pass) {
@@ -130,12 +142,14 @@ RenderedHand render_hand(const Hand& tracked, int slot, const ContactFinder& fin
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
                            const std::vector<BodyState>& bodies) {
   double deepest = 0.0;
+  const std::vector<int> near = near_bodies(hand, scene, bodies, 0.0);
   for (int capsule = 0; capsule < kCapsules; ++capsule) {
     if (!hand.has(capsule)) continue;
-    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (const int body : near) {
+      const auto b = static_cast<std::size_t>(body);
       for (int shape = 0; shape < static_cast<int>(scene.bodies[b].shapes.size()); ++shape) {
-        const auto features = finder.closest(hand.capsules[static_cast<std::size_t>(capsule)],
-                                             static_cast<int>(b), shape, bodies[b].pose, 0.0);
+        const auto features = finder.closest(hand.capsules[static_cast<std::size_t>(capsule)], body, shape,
+                                             bodies[b].pose, 0.0);
         if (features) deepest = std::max(deepest, -features->distance);
       }
     }

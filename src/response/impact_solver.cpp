@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
 constexpr int kMaxSweeps = 500;
 constexpr double kConverged = 1e-13;  // of the approach velocity
+constexpr double kTogether = 1e-12;   // blows nearer to each other in time than this are one [s]
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
 
@@ -61,6 +62,31 @@ double relax_tangential(Strike& strike) {
   return change.norm() / strike.mass;
 }
 
+/// Finds impulses that together give every strike its velocity; false if there are none.
+template <typename Strikes>
+bool solve(Strikes first, Strikes last, double most) {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    double error = 0.0, scale = 0.0, sum = 0.0;
+    for (auto strike = first; strike != last; ++strike) {
+      error = std::max({error, relax_normal(*strike), relax_tangential(*strike)});
+      scale = std::max(scale, strike->magnitude / strike->mass);
+      sum += strike->magnitude;
+    }
+    if (error <= kConverged * scale) return true;
+    if (sum > kPressed * most) return false;
+  }
+  return true;
+}
+
+template <typename Strikes>
+void undo(Strikes first, Strikes last) {
+  for (auto strike = first; strike != last; ++strike) {
+    const Vector3 impulse = strike->drag - strike->magnitude * strike->normal;
+    strike->a.push(impulse);
+    strike->b.push(-impulse);
+  }
+}
+
 }  // namespace
 
 Vector3 Strike::Partner::velocity() const {
@@ -95,19 +121,20 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (std::size_t first = 0; first < islands.size();) {
     collect(step, islands.next(first), friction);
     if (strikes_.empty()) continue;
-    if (solve()) {
-      report(step);
-    } else {
-      // Fingers that close from both sides press the body, they do not strike it: Newton's law has no
-      // solution, and the springs take over.
-      undo();
+    order_blows();
+    for (auto blow = strikes_.begin(); blow != strikes_.end();) {
+      const auto next = std::find_if(blow, strikes_.end(), [blow](const Strike& strike) {
+        return strike.blow > blow->blow + kTogether;
+      });
+      deal(step, blow, next);
+      blow = next;
     }
   }
 }
 
 void ImpactSolver::collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction) {
   strikes_.clear();
-  most_ = 0.0;
+  by_hand_ = false;
   for (const ContactIndex& entry : island) {
     const auto i = static_cast<std::size_t>(entry.index);
     if (entry.between_bodies) {
@@ -124,18 +151,18 @@ void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction frict
   const BodyState& state = step.bodies[contact.key.body];
   const double rate = contact.normal.dot(relative_velocity(contact, body, state));
   if (classify(rate) != Approach::colliding) return;
-  const double acceleration = -contact.normal.dot(step.gravity);
-  const double time = time_to_close(-contact.depth, rate, acceleration);
-  if (time >= step.step) return;
   Strike strike;
+  strike.acceleration = -contact.normal.dot(step.gravity);
+  strike.time = time_to_close(-contact.depth, rate, strike.acceleration);
+  if (strike.time >= step.step) return;
+  contact.time_of_impact = strike.time;
   strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
   strike.drive = contact.hand_velocity;
   strike.normal = contact.normal;
-  strike.time = contact.time_of_impact = time;
   strike.impulse = &contact.impulse;
-  contact.struck = true;
-  strike.target = rate;
-  add_strike(strike, rate + time * acceleration, body.material, friction);
+  strike.struck = &contact.struck;
+  by_hand_ = true;
+  add_strike(strike, body.material, friction);
 }
 
 void ImpactSolver::add(ContactStep& step, BodyContact& contact, ImpactFriction friction) {
@@ -146,25 +173,23 @@ void ImpactSolver::add(ContactStep& step, BodyContact& contact, ImpactFriction f
   strike.drive.setZero();
   strike.normal = contact.normal;
   const double rate = contact.normal.dot(strike.relative_velocity());
-  const double acceleration =
-      strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;  // free bodies fall together
-  if (classify(rate) != Approach::colliding && contact.first_touch < 0.0) return;
-  strike.time =
-      contact.first_touch >= 0.0 ? contact.first_touch : time_to_close(-contact.depth, rate, acceleration);
+  // Free bodies fall together.
+  strike.acceleration = strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
+  strike.time = contact.first_touch;
+  if (contact.first_touch < 0.0) {
+    if (classify(rate) != Approach::colliding) return;
+    strike.time = time_to_close(-contact.depth, rate, strike.acceleration);
+  }
   if (strike.time >= step.step) return;
   if (contact.first_touch < 0.0) meet(strike);
-  strike.target = contact.normal.dot(strike.relative_velocity());
-  const double speed = strike.target + strike.time * acceleration;
-  if (classify(speed) != Approach::colliding) return;
   strike.impulse = &contact.impulse;
-  contact.struck = true;
-  add_strike(strike, speed, contact.material, friction);
+  strike.struck = &contact.struck;
+  add_strike(strike, contact.material, friction);
 }
 
-/// `strike.target` has the rate at the step's start, `speed` (< 0) is the rate on impact.
-void ImpactSolver::add_strike(Strike strike, double speed, const Material& material,
-                              ImpactFriction friction) {
-  strike.target -= (1.0 + material.restitution) * speed;
+void ImpactSolver::add_strike(Strike strike, const Material& material, ImpactFriction friction) {
+  strike.order = strikes_.size();
+  strike.restitution = material.restitution;
   const Matrix3 k = strike.a.inverse_effective_mass() + strike.b.inverse_effective_mass();
   strike.mass = 1.0 / strike.normal.dot(k * strike.normal);
   if (friction == ImpactFriction::coulomb) {
@@ -173,44 +198,58 @@ void ImpactSolver::add_strike(Strike strike, double speed, const Material& mater
     strike.along.col(1) = strike.normal.cross(strike.along.col(0));
     strike.along_mass = (strike.along.transpose() * k * strike.along).inverse();
   }
-  most_ += -(1.0 + material.restitution) * speed / strike.b.inverse_mass;
   strikes_.push_back(strike);
 }
 
-/// Finds impulses that together give every strike its velocity; false if there are none.
-bool ImpactSolver::solve() {
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    double error = 0.0, scale = 0.0, sum = 0.0;
-    for (Strike& strike : strikes_) {
-      error = std::max({error, relax_normal(strike), relax_tangential(strike)});
-      scale = std::max(scale, strike.magnitude / strike.mass);
-      sum += strike.magnitude;
-    }
-    if (error <= kConverged * scale) return true;
-    if (sum > kPressed * most_) return false;
-  }
-  return true;
-}
-
-void ImpactSolver::undo() {
+void ImpactSolver::order_blows() {
+  if (by_hand_) return;  // all at once
   for (Strike& strike : strikes_) {
-    const Vector3 impulse = strike.drag - strike.magnitude * strike.normal;
-    strike.a.push(impulse);
-    strike.b.push(-impulse);
+    strike.blow = strike.time;
+    for (const Strike& other : strikes_) {
+      const bool same_pair = other.a.state == strike.a.state && other.b.state == strike.b.state;
+      if (same_pair) strike.blow = std::min(strike.blow, other.time);
+    }
+  }
+  std::sort(strikes_.begin(), strikes_.end(), [](const Strike& x, const Strike& y) {
+    return x.blow != y.blow ? x.blow < y.blow : x.order < y.order;
+  });
+}
+
+/// One blow, from the velocities that the blows before it have left.
+void ImpactSolver::deal(ContactStep& step, Strikes first, Strikes last) {
+  double most = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
+  for (auto strike = first; strike != last; ++strike) {
+    strike->target = strike->normal.dot(strike->relative_velocity());
+    const double speed = strike->target + strike->time * strike->acceleration;
+    const bool meets = classify(speed) == Approach::colliding;
+    if (meets) {
+      strike->target -= (1.0 + strike->restitution) * speed;
+      most += -(1.0 + strike->restitution) * speed / strike->b.inverse_mass;
+    }
+    *strike->struck = meets;
+  }
+  last = std::remove_if(first, last, [](const Strike& strike) { return !*strike.struck; });
+  if (first == last) return;
+  if (solve(first, last, most)) {
+    report(step, first, last);
+  } else {
+    // Fingers that close from both sides press the body, they do not strike it: Newton's law has no
+    // solution, and the springs take over.
+    undo(first, last);
   }
 }
 
-void ImpactSolver::report(ContactStep& step) {
+void ImpactSolver::report(ContactStep& step, Strikes first, Strikes last) {
   impacts_.clear();
   const auto note = [&](const Strike& strike, const Strike::Partner& partner, const Vector3& impulse) {
     if (partner.state == nullptr) return;
     const auto body = static_cast<int>(partner.state - step.bodies.data());
     impacts_.push_back({body, impulse, partner.arm, strike.time});
   };
-  for (const Strike& strike : strikes_) {
-    *strike.impulse = strike.drag - strike.magnitude * strike.normal;
-    note(strike, strike.a, -*strike.impulse);
-    note(strike, strike.b, *strike.impulse);
+  for (auto strike = first; strike != last; ++strike) {
+    *strike->impulse = strike->drag - strike->magnitude * strike->normal;
+    note(*strike, strike->a, -*strike->impulse);
+    note(*strike, strike->b, *strike->impulse);
   }
   step.changes.note_impacts(impacts_, step.bodies);
 }

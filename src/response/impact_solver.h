@@ -23,42 +23,49 @@ struct Strike {
     Matrix3 inverse_effective_mass() const;
   };
   Partner a, b;
-  Vector3 drive;                      // velocity of the hand's point, which has a's part then [m/s]
-  Vector3 normal;                     // from b to a
-  double target = 0.0;                // n.(c1' - c2') after the impact [m/s]
+  Vector3 drive;          // velocity of the hand's point, which has a's part then [m/s]
+  Vector3 normal;         // from b to a
+  std::size_t order = 0;  // among the island's strikes
+  double restitution = 0.0;
+  double acceleration = 0.0;          // of the rate n.(c1' - c2'), by gravity [m/s^2]
+  double time = 0.0;                  // of impact, from the step's start [s]
+  double blow = 0.0;                  // time of the first strike of its pair, which are one blow [s]
+  double target = 0.0;                // rate after the impact, as it would be at the step's start [m/s]
   double mass = 0.0;                  // effective along n [kg]
   double magnitude = 0.0;             // j so far [N s]
-  double time = 0.0;                  // of impact, from the step's start [s]
   double friction = 0.0;              // Coulomb's coefficient
   Eigen::Matrix<double, 3, 2> along;  // unit vectors across n
   Eigen::Matrix2d along_mass;         // effective across n [kg]
   Vector3 drag = Vector3::Zero();     // tangential impulse so far [N s]
   Vector3* impulse = nullptr;         // where the contact wants it told
+  bool* struck = nullptr;             // and that it has been struck
 
   Vector3 relative_velocity() const;
 };
 
-/// The impulse phase: Newton's impact law along the normal, once per approach, for all contacts that strike
-/// in this step together: each one's relative velocity becomes at least -restitution times what it was on
-/// impact, with impulses that only push. With ImpactFriction::coulomb, sliding at the point is stopped as far
-/// as static friction times the normal impulse goes.
+/// The impulse phase: Newton's impact law along the normal, once per approach. Strikes of one pair of bodies,
+/// and all on an island that a hand strikes, are one blow: each one's relative velocity becomes at least
+/// -restitution times what it was on impact, with impulses that only push. Blows between other pairs follow
+/// each other by their times. With ImpactFriction::coulomb, sliding at the point is stopped as far as static
+/// friction times the normal impulse goes.
 class ImpactSolver {
  public:
   ImpactSolver();
   void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction);
 
  private:
+  using Strikes = std::vector<Strike>::iterator;
   void collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction);
   void add(ContactStep& step, Contact& contact, ImpactFriction friction);
   void add(ContactStep& step, BodyContact& contact, ImpactFriction friction);
-  void add_strike(Strike strike, double speed, const Material& material, ImpactFriction friction);
-  bool solve();
-  void undo();
-  void report(ContactStep& step);
+  void add_strike(Strike strike, const Material& material, ImpactFriction friction);
+  void order_blows();
+  void deal(ContactStep& step, Strikes first, Strikes last);
+  void report(ContactStep& step, Strikes first, Strikes last);
 
   std::vector<Strike> strikes_;
   std::vector<BodyImpact> impacts_;
-  double most_ = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
+  bool by_hand_ = false;  // a hand takes part in this island's strikes
 };
 
 }  // namespace mrhi

@@ -43,7 +43,9 @@ class Newton {
   static constexpr int kMaxIterations = 40;
   static constexpr int kMaxHeldIterations = 60;
   static constexpr int kMaxLimits = 8;
-  static constexpr int kMaxHalvings = 12;
+  static constexpr int kMaxTrials = 20;
+  /// The least energy along a direction is found where the slope is this part of what it began with.
+  static constexpr double kFlat = 0.01;
   /// The first full steps need no check: they are exact while contacts neither open nor slip, and what is
   /// wrong with them shows in the next iterate.
   static constexpr int kUncheckedIterations = 2;
@@ -77,11 +79,27 @@ class Newton {
     problem_.find_direction();
     if (!checked || problem_.error() <= kFine * problem_.scale()) return problem_.move(1.0);
     const double before = problem_.energy(), descent = problem_.descent();
-    double part = 1.0;
-    problem_.move(part);
-    for (int i = 0; i < kMaxHalvings && problem_.energy() > before + 1e-4 * part * descent; ++i) {
-      part *= 0.5;
-      problem_.move(-part);
+    problem_.move(1.0);
+    if (problem_.energy() > before + 1e-4 * descent) go_back(descent);
+  }
+
+  /// From the end of a step that went too far to about the least energy along it, where the slope, which
+  /// grows along the line, passes zero. To halve the step until it will do is not enough: a light object
+  /// between stiff fingers goes to and fro across the rim of the friction cone then and hardly advances.
+  void go_back(double descent) {
+    double low = 0.0, high = 1.0, part = 1.0, low_slope = descent;
+    problem_.evaluate(false);
+    double high_slope = problem_.descent();
+    for (int i = 0; i < kMaxTrials && high_slope > 0.0; ++i) {
+      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
+      const double next = i % 3 == 2 ? 0.5 * (low + high) : secant;
+      problem_.move(next - part);
+      part = next;
+      problem_.evaluate(false);
+      const double slope = problem_.descent();
+      if (std::abs(slope) <= kFlat * -descent) return;
+      (slope > 0.0 ? high : low) = next;
+      (slope > 0.0 ? high_slope : low_slope) = slope;
     }
   }
 

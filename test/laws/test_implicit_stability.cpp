@@ -2,107 +2,67 @@
 
 #include <sstream>
 
-#include "support/grips.h"
+#include "support/stability_map.h"
 
 namespace mrhi {
 namespace {
 
-using testing::at;
-using testing::smooth;
+using testing::StabilityCell;
+using testing::StabilityGrid;
+using testing::StabilityOutcome;
+using testing::StabilityResult;
+using testing::StabilityRun;
 
-constexpr double kMasses[] = {0.001, 0.03, 1.0, 100.0};           // [kg]
-constexpr double kSteps[] = {0.00025, 0.001, 0.004, 1.0 / 60.0};  // [s]
-constexpr double kStiffnesses[] = {50.0, 2000.0, 1e5};            // [N/m]
-constexpr int kContacts[] = {1, 2, 5, 10, 20};                    // phalanges
-constexpr double kRestitutions[] = {0.0, 0.5, 1.0};
-constexpr double kDuration = 0.8;  // [s]
-constexpr double kHalf = 0.03;     // of the cube [m]
+const StabilityGrid kGrid{{0.001, 0.03, 1.0, 100.0},
+                          {0.00025, 0.001, 0.004, 1.0 / 60.0},
+                          {50.0, 2000.0, 1e5},
+                          {1, 2, 5, 10, 20},
+                          {0.0, 0.5, 1.0}};
 
-struct Cell {
-  double mass, step, stiffness;
-  int contacts;
-  double restitution;
-};
+/// A grip that friction alone would hold: 0.1 kg between ten fingertips of 2000 N/m. Explicit springs are
+/// stable at steps below 2 / sqrt(N gamma / m) = 4.47 ms.
+constexpr double kExplicitBound = 0.00447;  // [s]
 
-std::ostream& operator<<(std::ostream& out, const Cell& cell) {
-  return out << cell.mass << " kg, " << 1e3 * cell.step << " ms, " << cell.stiffness << " N/m, "
-             << cell.contacts << " contacts, restitution " << cell.restitution;
+StabilityOutcome ten_fingertips(ContactModelKind model, double step) {
+  return StabilityRun({model, 0.1, step, 2000.0, 10, 0.0}).play().outcome;
 }
 
-/// Fingertips in two grids on opposite sides of the cube, the odd ones on the left.
-Hand hand_of(int contacts, double gap, const Vector3& sway) {
-  Hand hand = testing::empty_hand();
-  for (int i = 0; i < contacts; ++i) {
-    const Vector3 outward(i % 2 == 0 ? 1.0 : -1.0, 0, 0);
-    const int place = i / 2, count = (contacts + 1 - i % 2) / 2;
-    const int columns = count > 4 ? 4 : count, rows = (count + columns - 1) / columns;
-    const Vector3 across(0, 0.012 * (place % columns - 0.5 * (columns - 1)),
-                         0.016 * (place / columns - 0.5 * (rows - 1)));
-    testing::add_fingertip(hand, i, (kHalf + gap) * outward + across + sway, outward, 0.3, Vector3::UnitY());
-  }
-  return hand;
-}
-
-Vector3 sway_at(double t) {
-  return smooth(t - 0.3, 0.1) * testing::swing(t - 0.3, 0.01, 3.0);
-}
-
-/// Largest speed of any of the cube's points against the hand [m/s]; infinite if anything is not a number.
-double largest_speed(const Cell& cell) {
-  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), cell.mass, cell.stiffness);
-  cube.material.restitution = cell.restitution;
-  Scene scene = testing::scene_of(cube);
-  scene.bounds = {Vector3::Constant(-100.0), Vector3::Constant(100.0)};
-  Configuration configuration = testing::implicit_configuration();
-  configuration.step = cell.step;
-  Simulation simulation(scene, configuration);
-  const double frame = std::max(1.0 / 120.0, cell.step);
-  double largest = 0.0;
-  Vector3 last = Vector3::Zero();
-  for (int i = 0; i * frame < kDuration; ++i) {
-    const double t = i * frame;
-    const double gap = 0.005 - 0.007 * smooth(t, 0.2);
-    simulation.advance({at(t), {hand_of(cell.contacts, gap, sway_at(t))}});
-    if (!testing::finite(simulation.state().bodies[0])) return std::numeric_limits<double>::infinity();
-    const Twist twist = testing::object_twist(simulation);
-    const Vector3 hand_velocity = (sway_at(t) - last) / frame;
-    last = sway_at(t);
-    largest = std::max(largest, (twist.linear - hand_velocity).norm() + twist.angular.norm() * kHalf);
-  }
-  return largest;
-}
-
-template <class F>
-void for_every_cell(F visit) {
-  for (const double mass : kMasses)
-    for (const double step : kSteps)
-      for (const double stiffness : kStiffnesses)
-        for (const int contacts : kContacts)
-          for (const double restitution : kRestitutions)
-            visit(Cell{mass, step, stiffness, contacts, restitution});
-}
-
-/// The fingers close at up to 0.066 m/s and sway at up to 0.19 m/s; an elastic blow doubles that, and a cube
-/// thrown to and fro between two closing fingers gains at each. Nothing else may drive it faster.
-constexpr double kEjected = 1.0;  // [m/s]
-
-TEST(ImplicitStability, no_mass_step_stiffness_number_of_contacts_or_restitution_diverges_or_ejects) {
+TEST(ImplicitStability, no_mass_step_stiffness_number_of_contacts_or_restitution_diverges_ejects_or_lets_go) {
   double fastest = 0.0;
   int cells = 0;
-  Cell worst{};
-  for_every_cell([&](const Cell& cell) {
-    const double speed = largest_speed(cell);
-    EXPECT_LE(speed, kEjected) << cell;
-    ++cells;
-    if (speed <= fastest) return;
-    fastest = speed;
-    worst = cell;
-  });
   std::ostringstream where;
-  where << worst;
+  kGrid.for_every_cell(ContactModelKind::implicit, [&](const StabilityCell& cell) {
+    const StabilityResult result = StabilityRun(cell).play();
+    EXPECT_EQ(result.outcome, StabilityOutcome::stable)
+        << cell << ": " << result.largest_speed << " m/s, slid " << 1e3 * result.slid << " mm";
+    ++cells;
+    if (result.largest_speed <= fastest) return;
+    fastest = result.largest_speed;
+    where.str("");
+    where << cell;
+  });
+  EXPECT_EQ(cells, 720);
   RecordProperty("cells", cells);
   RecordProperty("fastest_mm_per_s", std::to_string(1e3 * fastest));
   RecordProperty("fastest_cell", where.str());
+}
+
+TEST(ImplicitStability, judgement_finds_seed_stable_below_the_explicit_bound_and_ejecting_beyond_it) {
+  EXPECT_EQ(ten_fingertips(ContactModelKind::seed, 0.25 * kExplicitBound), StabilityOutcome::stable);
+  EXPECT_EQ(ten_fingertips(ContactModelKind::seed, 2.0 * kExplicitBound), StabilityOutcome::ejected);
+  EXPECT_EQ(ten_fingertips(ContactModelKind::implicit, 2.0 * kExplicitBound), StabilityOutcome::stable);
+}
+
+TEST(ImplicitStability, judgement_finds_seed_diverging_far_beyond_the_explicit_bound) {
+  // 20 fingertips of 1e5 N/m on 1 g: the bound is 0.045 ms.
+  StabilityCell cell{ContactModelKind::seed, 0.001, 0.001, 1e5, 20, 1.0};
+  EXPECT_EQ(StabilityRun(cell).play().outcome, StabilityOutcome::diverged);
+  cell.model = ContactModelKind::implicit;
+  EXPECT_EQ(StabilityRun(cell).play().outcome, StabilityOutcome::stable);
+}
+
+TEST(ImplicitStability, judgement_finds_that_impulses_alone_let_go) {
+  EXPECT_EQ(ten_fingertips(ContactModelKind::impulse, 0.001), StabilityOutcome::let_go);
 }
 
 }  // namespace

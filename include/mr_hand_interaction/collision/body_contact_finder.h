@@ -20,12 +20,18 @@ class BodyContactFinder {
             std::vector<BodyContact>& contacts);
 
  private:
-  void find_pair(int a, int b, const std::vector<BodyState>& bodies, double step,
+  struct Reach {
+    Vector3 centre, half;  // of a box [m]
+    double travel;         // in the step, and half the gap from which contacts are followed [m]
+  };
+  Reach reach_of(const Body& body, const BodyState& state, double step) const;
+  void find_pair(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double step,
                  const std::vector<BodyContact>& before);
 
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
+  std::vector<Reach> reaches_;  // by body, of those that have neighbours
   std::vector<BodyContact> found_;
 };
 

@@ -27,6 +27,8 @@ class Neighbours {
   /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
   /// free.
   const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+  /// Bodies that are in any of the pairs.
+  const std::vector<int>& paired() const { return paired_; }
 
  private:
   struct Room {
@@ -46,6 +48,7 @@ class Neighbours {
   std::vector<Reach> reaches_;
   std::vector<std::vector<int>> near_hand_;
   std::vector<std::pair<int, int>> pairs_;
+  std::vector<int> paired_;
 };
 
 }  // namespace mrhi

@@ -1,0 +1,145 @@
+// Plays a scene for callgrind to count the instructions of its settled steps: scripts/instruction_count.
+#include <cstring>
+#include <iostream>
+
+#include "support/grips.h"
+#include "support/pinch_scene.h"
+
+// Callgrind begins and ends to collect with these, by their names: none may call another or be inlined.
+extern "C" {
+[[gnu::noinline]] int counted_steps(mrhi::Simulation& simulation) {
+  int steps = 0;
+  while (simulation.step()) ++steps;
+  return steps;
+}
+
+[[gnu::noinline]] int counted_frame(mrhi::Simulation& simulation, const mrhi::HandFrame& frame) {
+  int steps = 0;
+  simulation.begin(frame);
+  while (simulation.step()) ++steps;
+  simulation.end();
+  return steps;
+}
+}  // extern "C"
+
+namespace mrhi::benchmark {
+namespace {
+
+using testing::at;
+using testing::PinchScene;
+
+constexpr double kCube = 0.05;  // edge [m]
+
+struct Plan {
+  const char* name;
+  Scene (*scene)();
+  std::vector<Hand> (*hands)(double t);
+  double frame_time;  // [s]
+  double settled;     // [s]
+  bool whole_frame;
+};
+
+Scene pinch() {
+  return PinchScene().scene();
+}
+
+Scene pinch_19_more() {
+  Scene scene = pinch();
+  for (int i = 0; i < 19; ++i) {
+    Body cube = scene.bodies.front();
+    cube.name += std::to_string(i);
+    cube.start.position = Vector3(0.2 * (i % 5), 0.2 * (i / 5), 1.0);
+    scene.bodies.push_back(cube);
+  }
+  return scene;
+}
+
+Scene stack() {
+  Body floor = testing::box_body(Vector3(2.0, 2.0, 0.1), 1.0);
+  floor.name = "floor";
+  floor.fixed = true;
+  floor.start.position.z() = -0.05;
+  Scene scene = testing::scene_of(floor);
+  scene.gravity = Vector3(0, 0, -9.81);
+  for (int i = 0; i < 3; ++i) {
+    Body cube = testing::box_body(Vector3::Constant(kCube), 0.1);
+    cube.name += std::to_string(i);
+    cube.start.position = Vector3(0.002 * i, -0.003 * i, kCube * (i + 0.5));
+    scene.bodies.push_back(cube);
+  }
+  return scene;
+}
+
+std::vector<Hand> swinging(double t) {
+  return {PinchScene().hand(t, testing::swing(std::max(t - 0.5, 0.0), 0.1, 0.5))};
+}
+
+std::vector<Hand> none(double) {
+  return {};
+}
+
+constexpr double kTrackerFrame = 1.0 / 120.0;  // [s]
+const Plan kPlans[] = {
+    {"pinch", pinch, swinging, 0.001, 0.6, false},
+    {"pinch_19_more", pinch_19_more, swinging, 0.001, 0.6, false},
+    {"stack", stack, none, 0.001, 1.0, false},
+    {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true},
+};
+
+/// The number of steps that were counted.
+int play(const Plan& plan) {
+  constexpr double kCounted = 1.0;  // [s]
+  Configuration configuration = testing::implicit_configuration();
+  configuration.step = 1.001 * plan.frame_time;  // one step a frame, though stamps are rounded
+  Simulation simulation(plan.scene(), configuration);
+  const long last = std::lround((plan.settled + kCounted) / plan.frame_time);
+  int steps = 0;
+  for (long i = 0; i <= last; ++i) {
+    const double t = static_cast<double>(i) * plan.frame_time;
+    const HandFrame frame{at(t), plan.hands(t)};
+    if (t < plan.settled) {
+      simulation.advance(frame);
+    } else if (plan.whole_frame) {
+      steps += counted_frame(simulation, frame);
+    } else {
+      simulation.begin(frame);
+      steps += counted_steps(simulation);
+      simulation.end();
+    }
+  }
+  return steps;
+}
+
+int list() {
+  for (const Plan& plan : kPlans) std::cout << plan.name << '\n';
+  return 0;
+}
+
+/// What the counts depend on besides our code.
+int print_compiler() {
+#ifdef __clang__
+  std::cout << "clang ";
+#else
+  std::cout << "gcc ";
+#endif
+  std::cout << __VERSION__ << ", Eigen " << EIGEN_WORLD_VERSION << '.' << EIGEN_MAJOR_VERSION << '.'
+            << EIGEN_MINOR_VERSION << ", " << 8 * sizeof(void*) << " bit\n";
+  return 0;
+}
+
+}  // namespace
+}  // namespace mrhi::benchmark
+
+int main(int argc, char** argv) {
+  using namespace mrhi::benchmark;
+  const char* name = argc == 2 ? argv[1] : "";
+  if (std::strcmp(name, "--list") == 0) return list();
+  if (std::strcmp(name, "--compiler") == 0) return print_compiler();
+  for (const Plan& plan : kPlans) {
+    if (std::strcmp(name, plan.name) != 0) continue;
+    std::cout << play(plan) << '\n';
+    return 0;
+  }
+  std::cerr << "usage: instruction_count --list | --compiler | SCENE\n";
+  return 2;
+}
