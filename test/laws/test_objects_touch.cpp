@@ -158,8 +158,8 @@ TEST(ObjectsTouch, a_stack_of_three_cubes_stands_for_a_minute) {
     const Pose& now = stack.state(b).pose;
     EXPECT_NEAR((now.position - settled[b].pose.position).norm(), 0.0, 1e-6) << b;
     EXPECT_NEAR(now.orientation.angularDistance(settled[b].pose.orientation), 0.0, 1e-5) << b;
-    // Two springs of 1e5 N/m carry at most 3 N each: the stack gives by less than 0.1 mm.
-    EXPECT_NEAR(now.position.z(), 0.025 + 0.05 * static_cast<double>(b - 1), 1e-4) << b;
+    // Springs of 1e7 N/m carry at most 3 N each: the stack gives by less than a micrometre.
+    EXPECT_NEAR(now.position.z(), 0.025 + 0.05 * static_cast<double>(b - 1), 1e-6) << b;
   }
 }
 

@@ -1,0 +1,89 @@
+// Where a step's time goes: the median of each stage of scene (a), alone and with far cubes. What the clock
+// itself takes is measured and taken off.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+#include "support/pinch_scene.h"
+
+namespace mrhi {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kSettle = 1000, kMeasured = 10000;
+
+double nanoseconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double, std::nano>(to - from).count();
+}
+
+double median(std::vector<double>& values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+/// What a stage of no length is measured as [ns].
+double clock_cost() {
+  std::vector<double> empty;
+  for (int i = 0; i < kMeasured; ++i) {
+    const Clock::time_point from = Clock::now();
+    empty.push_back(nanoseconds(from, Clock::now()));
+  }
+  return median(empty);
+}
+
+Scene scene_with_far_cubes(int far) {
+  Scene scene = testing::PinchScene().scene();
+  for (int i = 0; i < far; ++i) {
+    Body cube = testing::box_body(Vector3::Constant(0.05), 0.1);
+    cube.name = "far" + std::to_string(i);
+    cube.start.position = Vector3(0.6 + 0.2 * (i % 4), 0.2 * (i / 4), 0.5);
+    scene.bodies.push_back(cube);
+  }
+  return scene;
+}
+
+void measure(int far) {
+  const testing::PinchScene pinch;
+  Simulation simulation(scene_with_far_cubes(far), testing::unfiltered(ContactModelKind::implicit));
+  std::array<std::vector<double>, kStages> stages;
+  std::vector<double> steps;
+  Clock::time_point last;
+  bool measuring = false;
+  const double overhead = clock_cost();
+  const auto advance = [&](int frame) {
+    const double t = frame / 1000.0;
+    const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, 0.1, 0.5);
+    simulation.begin({testing::at(t), {pinch.hand(t, sway)}});
+    const Clock::time_point from = last = Clock::now();
+    while (simulation.step()) {
+    }
+    if (measuring) steps.push_back(nanoseconds(from, Clock::now()) - overhead);
+    simulation.end();
+  };
+  for (int frame = 0; frame < kSettle; ++frame) advance(frame);
+  measuring = true;
+  for (int frame = kSettle; frame < kSettle + kMeasured; ++frame) advance(frame);
+  std::vector<double> whole;
+  whole.swap(steps);
+  simulation.watch([&](Stage stage) {
+    const Clock::time_point now = Clock::now();
+    stages[static_cast<std::size_t>(stage)].push_back(nanoseconds(last, now) - overhead);
+    last = Clock::now();
+  });
+  for (int frame = kSettle + kMeasured; frame < kSettle + 2 * kMeasured; ++frame) advance(frame);
+  std::printf("scene (a) and %d far cubes: %.2f us a step\n", far, 1e-3 * median(whole));
+  for (int i = 0; i < kStages; ++i)
+    std::printf("  %-14s %7.0f ns\n", to_string(static_cast<Stage>(i)),
+                std::max(0.0, median(stages[static_cast<std::size_t>(i)])));
+}
+
+}  // namespace
+}  // namespace mrhi
+
+int main() {
+  mrhi::measure(0);
+  mrhi::measure(19);
+  return 0;
+}
