@@ -23,10 +23,6 @@ struct LocalClosest {
   std::optional<ClosestFeatures> operator()(const Mesh&) const { return mesh->closest(capsule, margin); }
 };
 
-Capsule to_local(const Capsule& capsule, const Pose& pose) {
-  return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
-}
-
 /// Half the size of an axis-aligned box about the capsule.
 Vector3 half_size(const Capsule& capsule) {
   return 0.5 * (capsule.end - capsule.start).cwiseAbs() + Vector3::Constant(capsule.radius);
@@ -85,11 +81,14 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
   const auto b = static_cast<std::size_t>(body), i = static_cast<std::size_t>(shape);
   const PlacedShape& placed = scene_.bodies[b].shapes[i];
   const Pose pose = body_pose * placed.pose;
-  std::optional<ClosestFeatures> features =
-      std::visit(LocalClosest{to_local(capsule, pose), geometry_.meshes[b][i].get(), margin}, placed.shape);
+  const Matrix3 rotation = pose.orientation.toRotationMatrix();
+  const Capsule local{rotation.transpose() * (capsule.start - pose.position),
+                      rotation.transpose() * (capsule.end - pose.position), capsule.radius};
+  if (std::visit(FarApart{local, margin}, placed.shape)) return std::nullopt;
+  auto features = std::visit(LocalClosest{local, geometry_.meshes[b][i].get(), margin}, placed.shape);
   if (!features || features->distance > margin) return std::nullopt;
-  features->normal = pose.orientation * features->normal;
-  features->point = pose * features->point;
+  features->normal = rotation * features->normal;
+  features->point = rotation * features->point + pose.position;
   return features;
 }
 
