@@ -70,6 +70,26 @@ ParameterEntry stiffness(const MaterialField& field) {
           }};
 }
 
+/// Refinements of contact, on or off.
+std::vector<ParameterEntry> refinements() {
+  using C = ContactConfiguration;
+  const std::vector<std::pair<std::string, bool C::*>> members{
+      {"anchors", &C::anchors},       {"damping", &C::damping},
+      {"entry_face", &C::entry_face}, {"impact_friction", &C::impact_friction},
+      {"sweep", &C::sweep},           {"swing_back", &C::swing_back},
+      {"torsion", &C::torsion},       {"two_points", &C::two_points}};
+  std::vector<ParameterEntry> entries;
+  for (const auto& refinement : members) {
+    const auto member = refinement.second;
+    entries.push_back(choice<bool>(
+        "contact/" + refinement.first,
+        {{"true", true}, {"false", false}}, [member](Configuration & c) -> auto& {
+          return c.contact.*member;
+        }));
+  }
+  return entries;
+}
+
 std::vector<ParameterEntry> make_table() {
   using C = Configuration;
   const double no_limit = std::numeric_limits<double>::infinity();
@@ -83,9 +103,6 @@ std::vector<ParameterEntry> make_table() {
            {"virtual_spring", ContactModelKind::virtual_spring},
            {"soft_pad", ContactModelKind::soft_pad}},
           [](C & c) -> auto& { return c.contact_model; }),
-      choice<bool>(
-          "contact/torsion", {{"true", true}, {"false", false}},
-          [](C & c) -> auto& { return c.contact.torsion; }),
       number(
           "contact/object_stiffness", " [N/m]", {0, no_limit, false},
           [](C & c) -> auto& { return c.contact.object_stiffness; }),
@@ -105,6 +122,7 @@ std::vector<ParameterEntry> make_table() {
           "tracking/max_speed", " [m/s]", {0, no_limit, false},
           [](C & c) -> auto& { return c.tracking.max_speed; }),
   };
+  for (ParameterEntry& entry : refinements()) table.push_back(std::move(entry));
   for (const MaterialField& field : material_fields()) {
     const auto member = field.value;
     if (member == &Material::stiffness) {

@@ -17,6 +17,9 @@ namespace {
 /// A step back in time of more than this may be a stream that begins anew; less is a frame out of order.
 constexpr Nanoseconds kRestart = 500'000'000;
 constexpr int kRestartFrames = 3;
+/// A step may be this much longer than asked for, so that a frame of one step does not become two by
+/// rounding.
+constexpr Nanoseconds kStepSlack = 1000;
 /// A longer silence is not simulated: bodies wait for the next frame.
 constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 
@@ -36,7 +39,7 @@ struct Simulation::Impl {
         model(make_contact_model(configuration)),
         geometry(scene),
         neighbours(scene),
-        finder(scene, geometry, gravity),
+        finder(scene, geometry, gravity, configuration.contact),
         body_finder(scene, geometry, gravity) {
     reset();
   }
@@ -111,7 +114,8 @@ Rejection Simulation::Impl::judge(Nanoseconds stamp) {
 void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
   frame_from = from;
   frame_to = to;
-  steps = static_cast<int>((to - from + step_length - 1) / step_length);
+  const auto whole = static_cast<int>((to - from - kStepSlack + step_length - 1) / step_length);
+  steps = to > from ? std::max(whole, 1) : 0;
   steps_done = 0;
   begin_hands(to_seconds(to - from));
 }

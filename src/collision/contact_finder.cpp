@@ -55,8 +55,9 @@ struct FarApart {
 
 }  // namespace
 
-ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity)
-    : scene_(scene), geometry_(geometry), gravity_(gravity) {
+ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity,
+                             const ContactConfiguration& refinements)
+    : scene_(scene), geometry_(geometry), gravity_(gravity), refinements_(refinements) {
   found_.reserve(64 * kMaxHands);
 }
 
@@ -114,9 +115,10 @@ void ContactFinder::find_pair(const MovingHand& hand, int body_index, const Body
                            moving->to_world(placed.pose.position)});
     }
     const double speed = std::max(hand.start_velocity[ci].norm(), hand.end_velocity[ci].norm()) + body_speed;
+    const double margin = refinements_.sweep ? kMargin + speed * step : kMargin;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
-      find_touch({hand, c, body_index, shape, *moving}, frames_[static_cast<std::size_t>(shape)], step,
-                 kMargin + speed * step, before);
+      find_touch({hand, c, body_index, shape, *moving, refinements_},
+                 frames_[static_cast<std::size_t>(shape)], step, margin, before);
     }
   }
 }

@@ -23,7 +23,7 @@ struct Plane {
 /// The plane of the face that the phalanx pushes on.
 Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
   const Vector3 local = pair.moving.rotation.transpose() * features.normal;
-  if (memory == nullptr || memory->entry_normal.dot(local) >= kSameFace)
+  if (memory == nullptr || !pair.refinements.entry_face || memory->entry_normal.dot(local) >= kSameFace)
     return {features.point, features.normal, local, false};
   return {pair.moving.to_world(memory->god_object), pair.moving.rotation * memory->entry_normal,
           memory->entry_normal, true};
@@ -106,15 +106,16 @@ void place(const TouchingPair& pair, const PhalanxMotion& motion, const Plane& p
   contact.hand_point = capsule.axis_point(s) + offset;
   contact.depth = plane.normal.dot(plane.point - contact.hand_point);
   // A god object that has not been pressed yet follows the finger: the stretch begins at the touch.
-  if (remembered && contact.depth > 0.0) {
+  const bool pressed = remembered && contact.depth > 0.0;
+  if (pressed && pair.refinements.anchors) {
     roll(pair, capsule, plane, s, contact);
   } else {
     contact.point = contact.hand_point + contact.depth * plane.normal;
     contact.friction = Friction::sticking;
     contact.twist = 0.0;
   }
-  swing_back(pair, plane, remembered && contact.depth > 0.0 && contact.friction == Friction::sticking,
-             contact);
+  if (pair.refinements.swing_back && pair.refinements.anchors)
+    swing_back(pair, plane, pressed && contact.friction == Friction::sticking, contact);
   contact.god_object = pair.moving.to_local(contact.point);
   contact.entry_normal = plane.local_normal;
   contact.axis_parameter = s;
@@ -154,8 +155,8 @@ void update_god_objects(const TouchingPair& pair, const ClosestFeatures& feature
                         const Contact* before, int count, std::vector<Contact>& contacts) {
   const Contact* nearest = nearest_memory(before, count, features.axis_parameter);
   const Plane plane = contact_plane(pair, features, nearest);
-  const bool lies_flat =
-      span.s1 > span.s0 && reaches_surface(pair, plane, span.s0) && reaches_surface(pair, plane, span.s1);
+  const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 &&
+                         reaches_surface(pair, plane, span.s0) && reaches_surface(pair, plane, span.s1);
   const PhalanxMotion motion(pair);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);

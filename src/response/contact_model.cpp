@@ -14,7 +14,7 @@ namespace {
 class WithObjects : public ContactModel {
  public:
   WithObjects(std::unique_ptr<ContactModel> hands, const Configuration& configuration)
-      : hands_(std::move(hands)), objects_(false, configuration.contact.object_stiffness) {}
+      : hands_(std::move(hands)), objects_(configuration.contact) {}
 
   void respond(ContactStep& step) override {
     ContactStep of_hands{step.scene, step.gravity, step.step,   step.contacts,
@@ -53,8 +53,7 @@ std::unique_ptr<ContactModel> make_contact_model(const Configuration& configurat
     case ContactModelKind::implicit:
       break;
   }
-  return std::make_unique<ImplicitModel>(configuration.contact.torsion,
-                                         configuration.contact.object_stiffness);
+  return std::make_unique<ImplicitModel>(configuration.contact);
 }
 
 }  // namespace mrhi

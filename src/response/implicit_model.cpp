@@ -6,7 +6,8 @@ namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
   islands_.build(step);
-  impacts_.resolve(step, islands_, ImpactFriction::coulomb);
+  impacts_.resolve(step, islands_,
+                   configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none);
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();
@@ -57,7 +58,7 @@ void ImplicitModel::gather(const ContactStep& step, const Islands::Island& islan
     if (entry.between_bodies) {
       const BodyContact& contact = step.body_contacts[i];
       contacts_.emplace_back();
-      make_spring(step, contact, object_stiffness_, contacts_.back());
+      make_spring(step, contact, configuration_, contacts_.back());
       if (!step.scene.bodies[contact.key.a].fixed) contacts_.back().a = place_of(contact.key.a);
       contacts_.back().b = place_of(contact.key.b);
     } else {
@@ -65,7 +66,7 @@ void ImplicitModel::gather(const ContactStep& step, const Islands::Island& islan
       const int place = place_of(contact.key.body);
       if (contact.ignored) continue;
       contacts_.emplace_back();
-      make_spring(step, contact, torsion_, contacts_.back());
+      make_spring(step, contact, configuration_, contacts_.back());
       contacts_.back().b = place;
     }
     entries_.push_back(entry);

@@ -12,9 +12,7 @@ namespace mrhi {
 /// as the step goes to zero it becomes the seed model. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
-  /// `object_stiffness`: of a touch between two bodies [N/m].
-  ImplicitModel(bool torsion, double object_stiffness)
-      : torsion_(torsion), object_stiffness_(object_stiffness) {}
+  explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
  private:
@@ -22,8 +20,7 @@ class ImplicitModel : public ContactModel {
   void gather(const ContactStep& step, const Islands::Island& island);
   int place_of(int body);
 
-  const bool torsion_;
-  const double object_stiffness_;
+  const ContactConfiguration configuration_;
   ImpactSolver impacts_;
   Islands islands_;
   BodyProblem one_;

@@ -15,8 +15,8 @@ constexpr double kTwistLever = 0.025;
 constexpr double kPatchTorque = 2.0 / 3.0;
 
 /// Nothing is damped before it touches.
-double look_ahead(double step, double depth) {
-  return step + (depth > 0.0 ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
+double look_ahead(double step, double depth, bool damping) {
+  return step + (damping && depth > 0.0 ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
 }
 
 double friction_of(const Material& material, Friction friction) {
@@ -25,7 +25,8 @@ double friction_of(const Material& material, Friction friction) {
 
 }  // namespace
 
-void make_spring(const ContactStep& step, const Contact& contact, bool torsion, IslandContact& result) {
+void make_spring(const ContactStep& step, const Contact& contact, const ContactConfiguration& configuration,
+                 IslandContact& result) {
   const Body& body = step.scene.bodies[contact.key.body];
   const Vector3& n = contact.normal;
   const Vector3 reach = contact.hand_point - contact.point + contact.lever;
@@ -34,9 +35,9 @@ void make_spring(const ContactStep& step, const Contact& contact, bool torsion, 
   spring.stretch = triple(reach - n.dot(reach) * n);
   spring.depth = contact.depth;
   spring.twist = contact.twist;
-  spring.ahead = look_ahead(step.step, contact.depth);
+  spring.ahead = look_ahead(step.step, contact.depth, configuration.damping);
   spring.stiffness = body.material.stiffness * contact.share;
-  spring.twist_stiffness = torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
+  spring.twist_stiffness = configuration.torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
   spring.friction = friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
   spring.slip_limit = spring.twist_limit = 0.0;
@@ -46,15 +47,15 @@ void make_spring(const ContactStep& step, const Contact& contact, bool torsion, 
   result.a = IslandContact::kAlone;
 }
 
-void make_spring(const ContactStep& step, const BodyContact& contact, double stiffness,
-                 IslandContact& result) {
+void make_spring(const ContactStep& step, const BodyContact& contact,
+                 const ContactConfiguration& configuration, IslandContact& result) {
   Spring<double>& spring = result.spring;
   spring.normal = triple(contact.normal);
   spring.stretch = triple(contact.stretch);
   spring.depth = contact.depth;
   spring.twist = 0.0;
-  spring.ahead = look_ahead(step.step, contact.depth);
-  spring.stiffness = stiffness * contact.share;
+  spring.ahead = look_ahead(step.step, contact.depth, configuration.damping);
+  spring.stiffness = configuration.object_stiffness * contact.share;
   spring.twist_stiffness = spring.patch_friction = 0.0;
   spring.friction = friction_of(contact.material, contact.friction);
   spring.slip_limit = spring.twist_limit = 0.0;

@@ -20,9 +20,10 @@ struct IslandContact {
 };
 
 /// Makes `result` the contact that an entry of an island stands for; bodies are numbered later.
-void make_spring(const ContactStep& step, const Contact& contact, bool torsion, IslandContact& result);
-void make_spring(const ContactStep& step, const BodyContact& contact, double stiffness,
+void make_spring(const ContactStep& step, const Contact& contact, const ContactConfiguration& configuration,
                  IslandContact& result);
+void make_spring(const ContactStep& step, const BodyContact& contact,
+                 const ContactConfiguration& configuration, IslandContact& result);
 
 /// Writes what the solution made of it back.
 void settle(const ContactStep& step, const IslandContact& solved, Contact& contact);

@@ -1,39 +1,23 @@
 #include <gtest/gtest.h>
 
-#include "support/fixtures.h"
+#include "support/slap.h"
 
 namespace mrhi {
 namespace {
 
-using testing::box_body;
-using testing::finger;
+using testing::blow;
+using testing::hitter;
 using testing::object_twist;
+using testing::plates_hit;
 using testing::play;
 using testing::scene_of;
-
-constexpr double kRadius = 0.008;
+using testing::slab;
 
 Configuration implicit(double step) {
   Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
   configuration.step = step;
   configuration.tracking.max_speed = 100.0;
   return configuration;
-}
-
-Body slab(const Vector3& size, double restitution) {
-  Body body = box_body(size, 0.05);
-  body.material.restitution = restitution;
-  body.material.stiffness = 2000.0;
-  return body;
-}
-
-/// A capsule across the face that goes along +x at `speed` for good and meets the face x = -half at t =
-/// `hit`.
-std::function<Hand(double)> hitter(double speed, double half, double hit, const Vector3& offset) {
-  return [=](double t) {
-    const Vector3 centre = offset + Vector3(speed * (t - hit) - half - kRadius, 0, 0);
-    return finger(centre - Vector3(0, 0.0125, 0), centre + Vector3(0, 0.0125, 0), kRadius);
-  };
 }
 
 // Scene (c): closed form (1 + e) u, no spin.
@@ -46,24 +30,6 @@ TEST(ImplicitSlap, through_the_middle_gives_the_closed_forms_speed_and_no_spin) 
     EXPECT_NEAR(twist.linear.x() / expected, 1.0, 1e-4) << restitution;
     EXPECT_LE(twist.angular.norm(), 0.005) << restitution;
   }
-}
-
-/// Velocity after a blow along +x at r: normal impulse by Newton's law, tangential by sticking or, if that
-/// asks for more than mu j, by sliding (two-dimensional, about y).
-Twist blow(const Body& body, double speed, double restitution, double half, double lever) {
-  const double inertia = body.inertia(1, 1), m = body.mass, mu = body.material.static_friction;
-  // Contact at (-half, 0, lever); K in (x, z).
-  const double kxx = 1.0 / m + lever * lever / inertia, kzz = 1.0 / m + half * half / inertia;
-  const double kxz = half * lever / inertia;
-  const double u = (1.0 + restitution) * speed;
-  // Sticking: K (jx, jz) = (u, 0).
-  double jx = u * kzz / (kxx * kzz - kxz * kxz), jz = -jx * kxz / kzz;
-  if (std::abs(jz) > mu * jx) {
-    const double sign = jz < 0.0 ? -1.0 : 1.0;
-    jx = u / (kxx + sign * mu * kxz);
-    jz = sign * mu * jx;
-  }
-  return {Vector3(jx, 0, jz) / m, Vector3(0, (lever * jx + half * jz) / inertia, 0)};
 }
 
 TEST(ImplicitSlap, off_centre_gives_the_closed_forms_velocity_and_spin) {
@@ -83,22 +49,10 @@ TEST(ImplicitSlap, off_centre_gives_the_closed_forms_velocity_and_spin) {
   }
 }
 
-int plates_hit(double speed, double rate) {
-  int hit = 0;
-  for (int phase = 0; phase < 25; ++phase) {
-    Simulation simulation(scene_of(slab(Vector3(0.005, 0.1, 0.1), 0.0)), implicit(0.05));
-    const double time = (5.0 + phase / 25.0) / rate;
-    play(simulation, 0.0, 12.0 / rate, rate, hitter(speed, 0.0025, time, Vector3::Zero()));
-    const double reached = object_twist(simulation).linear.x() / speed;
-    hit += std::abs(reached - 1.0) <= 0.1;
-  }
-  return hit;
-}
-
 // Scene (c) at one step per frame, restitution 0: the capsule moves by ten plates' thickness in a step.
 TEST(ImplicitPlate, is_hit_in_every_phase_at_one_step_per_frame) {
-  EXPECT_EQ(plates_hit(3.0, 120.0), 25);
-  EXPECT_EQ(plates_hit(10.0, 60.0), 25);
+  EXPECT_EQ(plates_hit(3.0, 120.0, implicit(0.05)), 25);
+  EXPECT_EQ(plates_hit(10.0, 60.0, implicit(0.05)), 25);
 }
 
 TEST(ImplicitPlate, is_not_pushed_before_it_is_met) {
@@ -112,7 +66,8 @@ TEST(ImplicitPlate, is_not_pushed_before_it_is_met) {
 
 TEST(ImplicitPlate, a_capsule_that_passes_by_does_not_touch_it) {
   Simulation simulation(scene_of(slab(Vector3(0.005, 0.1, 0.1), 0.0)), implicit(0.05));
-  play(simulation, 0.0, 0.2, 60.0, hitter(10.0, 0.0025, 0.1, Vector3(0, 0, 0.05 + kRadius + 0.001)));
+  play(simulation, 0.0, 0.2, 60.0,
+       hitter(10.0, 0.0025, 0.1, Vector3(0, 0, 0.05 + testing::kHitterRadius + 0.001)));
   EXPECT_EQ(object_twist(simulation).linear.norm(), 0.0);
 }
 

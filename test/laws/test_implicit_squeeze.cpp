@@ -1,55 +1,25 @@
 #include <gtest/gtest.h>
 
-#include "support/grips.h"
+#include "support/deep_squeeze.h"
 
 namespace mrhi {
 namespace {
 
-using testing::at;
+using testing::kCarried;
+using testing::kDeep;
 using testing::kDegrees;
-using testing::smooth;
+using testing::Squeeze;
 
-constexpr double kDeep = 0.015;  // [m] into each side
-constexpr double kMissed =
-    0.0001;  // by which the two fingertips are off each other's line, as any two are [m]
-
-struct Squeeze {
-  std::string name;
-  Vector3 size;  // of the object; squeezed along x
-  bool flat;     // fingers lie along the faces instead of standing on their tips
-};
-
-void PrintTo(const Squeeze& squeeze, std::ostream* out) {
-  *out << squeeze.name;
-}
-
-class ImplicitSqueeze : public ::testing::TestWithParam<Squeeze> {
- protected:
-  Hand hand(double t) const {
-    const Squeeze& squeeze = GetParam();
-    const double x = 0.5 * squeeze.size.x() + 0.01 - (0.01 + kDeep) * smooth(t, 0.5);
-    Hand hand = testing::empty_hand();
-    for (const int finger : {0, 1}) {
-      const Vector3 outward(finger == 0 ? -1.0 : 1.0, 0.0, 0.0);
-      const int capsule = capsule_index(finger, 3);
-      const Vector3 point = x * outward + 0.5 * kMissed * outward.x() * Vector3(0, 0.6, 0.8);
-      if (squeeze.flat) testing::add_flat_finger(hand, capsule, point, outward, Vector3::UnitY());
-      if (!squeeze.flat) testing::add_fingertip(hand, capsule, point, outward);
-    }
-    Pose way;
-    way.position = smooth(t - 1.0, 1.0) * Vector3(0.05, 0.1, 0.05);
-    return testing::moved(hand, way);
-  }
-};
+class ImplicitSqueeze : public ::testing::TestWithParam<Squeeze> {};
 
 /// Carried for a second after it has been squeezed, then held still: where it is then, the hand must have
 /// brought it. The bound is the god object's: a phalanx's own radius.
 TEST_P(ImplicitSqueeze, is_held_from_the_sides_that_the_fingertips_entered_without_flip_or_pop_through) {
-  Simulation simulation(testing::scene_of(testing::stiff_box(GetParam().size, 0.05)),
+  Simulation simulation(testing::scene_of(testing::stiff_box(GetParam().size, testing::kSqueezedMass)),
                         testing::implicit_configuration());
   double fastest = 0.0, turned = 0.0;
   testing::play(
-      simulation, 0.0, 4.0, 120.0, [this](double t) { return hand(t); },
+      simulation, 0.0, 4.0, 120.0, [](double t) { return GetParam().hand(t); },
       [&](const Simulation& s) {
         const Pose& pose = s.state().bodies[0].pose;
         turned = std::max(turned, pose.orientation.angularDistance(Quaternion::Identity()));
@@ -61,8 +31,8 @@ TEST_P(ImplicitSqueeze, is_held_from_the_sides_that_the_fingertips_entered_witho
       });
   const Pose& pose = simulation.state().bodies[0].pose;
   RecordProperty("turned_degrees", std::to_string(turned / kDegrees));
-  RecordProperty("off_mm", std::to_string(1e3 * (pose.position - Vector3(0.05, 0.1, 0.05)).norm()));
-  EXPECT_LE((pose.position - Vector3(0.05, 0.1, 0.05)).norm(), 0.001);
+  RecordProperty("off_mm", std::to_string(1e3 * (pose.position - kCarried).norm()));
+  EXPECT_LE((pose.position - kCarried).norm(), 0.001);
   EXPECT_LE(turned, 5.0 * kDegrees);
   EXPECT_LE(fastest, 0.3);  // the hand's largest is 0.23 m/s
   for (const int finger : {0, 1}) {

@@ -53,6 +53,15 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.hand_radius_scale, c.hand_radius_scale);
   EXPECT_EQ(d.tracking.hold_time, c.tracking.hold_time);
   EXPECT_EQ(d.tracking.max_speed, c.tracking.max_speed);
+  EXPECT_EQ(d.contact.anchors, c.contact.anchors);
+  EXPECT_EQ(d.contact.damping, c.contact.damping);
+  EXPECT_EQ(d.contact.entry_face, c.contact.entry_face);
+  EXPECT_EQ(d.contact.impact_friction, c.contact.impact_friction);
+  EXPECT_EQ(d.contact.object_stiffness, c.contact.object_stiffness);
+  EXPECT_EQ(d.contact.sweep, c.contact.sweep);
+  EXPECT_EQ(d.contact.swing_back, c.contact.swing_back);
+  EXPECT_EQ(d.contact.torsion, c.contact.torsion);
+  EXPECT_EQ(d.contact.two_points, c.contact.two_points);
 }
 
 /// Unlike the defaults in every parameter.
@@ -64,6 +73,7 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
+  c.contact = {false, false, false, false, false, false, false, false, 1};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -90,8 +100,15 @@ TEST(Parameters, DefaultFileHoldsTheDefaultOfEveryParameter) {
 }
 
 TEST(Parameters, NamesAreTheContracts) {
-  const std::vector<std::string> contract{"contact/object_stiffness",
+  const std::vector<std::string> contract{"contact/anchors",
+                                          "contact/damping",
+                                          "contact/entry_face",
+                                          "contact/impact_friction",
+                                          "contact/object_stiffness",
+                                          "contact/sweep",
+                                          "contact/swing_back",
                                           "contact/torsion",
+                                          "contact/two_points",
                                           "contact_model",
                                           "filter/type",
                                           "filter/window",
@@ -113,6 +130,15 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(ContactModelKind::seed, set("contact_model", "seed").contact_model);
   EXPECT_EQ(ContactModelKind::virtual_spring, set("contact_model", "virtual_spring").contact_model);
   EXPECT_EQ(ContactModelKind::soft_pad, set("contact_model", "soft_pad").contact_model);
+  EXPECT_FALSE(set("contact/anchors", "false").contact.anchors);
+  EXPECT_FALSE(set("contact/damping", "false").contact.damping);
+  EXPECT_FALSE(set("contact/entry_face", "false").contact.entry_face);
+  EXPECT_FALSE(set("contact/impact_friction", "false").contact.impact_friction);
+  EXPECT_EQ(3e4, set("contact/object_stiffness", "3e4").contact.object_stiffness);
+  EXPECT_FALSE(set("contact/sweep", "false").contact.sweep);
+  EXPECT_FALSE(set("contact/swing_back", "false").contact.swing_back);
+  EXPECT_FALSE(set("contact/torsion", "false").contact.torsion);
+  EXPECT_FALSE(set("contact/two_points", "false").contact.two_points);
   EXPECT_EQ(0.002, set("step", "2e-3").step);
   EXPECT_EQ(Vector3(0, 0, -9.81), set("gravity", "[0, 0, -9.81]").gravity.value());
   EXPECT_FALSE(set("gravity", "scene").gravity);
@@ -146,6 +172,7 @@ TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
       {{"step", "1 ms", "a number"}},
       {{"step", ".nan", "a number"}},
       {{"step", "", "a number"}},
+      {{"contact/sweep", "1", "true, false"}},
       {{"gravity", "-9.81", "three finite numbers"}},
       {{"gravity", "[0, 0]", "three finite numbers"}},
       {{"gravity", "[0, 0, .inf]", "three finite numbers"}},

@@ -176,7 +176,7 @@ TEST(ShippedScenes, SpannerIsAClosedHomogeneousSolidAboutItsCentreOfMass) {
 }
 
 TEST(ShippedScenes, NothingOverlapsAtTheStart) {
-  for (const char* name : {"cube", "flat_cuboid", "long_cuboid", "ball", "mixed", "rack"}) {
+  for (const char* name : {"cube", "flat_cuboid", "long_cuboid", "ball", "mixed", "rack", "cube_on_table"}) {
     const std::vector<Extent> all = extents(shipped(name));
     for (const Extent& a : all) {
       for (const Extent& b : all) {
@@ -190,7 +190,7 @@ TEST(ShippedScenes, NothingOverlapsAtTheStart) {
 
 TEST(ShippedScenes, FreeBodiesStartInReachOfTheHands) {
   const Vector3 min(-0.15, -0.1, 0.12), max(0.15, 0.15, 0.35);
-  for (const char* name : {"cube", "flat_cuboid", "long_cuboid", "ball", "mixed", "rack"}) {
+  for (const char* name : {"cube", "flat_cuboid", "long_cuboid", "ball", "mixed", "rack", "cube_on_table"}) {
     for (const Body& body : shipped(name).bodies) {
       if (body.fixed) continue;
       EXPECT_TRUE((body.start.position.array() >= min.array()).all() &&
@@ -221,7 +221,8 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
       find_scene_file(wrong, {"config/scenes"});
       ADD_FAILURE() << wrong;
     } catch (const SceneError& error) {
-      test::expect_words(error.what(), {wrong, "ball, cube, flat_cuboid, long_cuboid, mixed, rack"});
+      test::expect_words(error.what(),
+                         {wrong, "ball, cube, cube_on_table, flat_cuboid, long_cuboid, mixed, rack"});
     }
   }
 }

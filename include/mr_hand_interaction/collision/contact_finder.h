@@ -18,7 +18,8 @@ namespace mrhi {
 class ContactFinder {
  public:
   /// Keeps references.
-  ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
+  ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity,
+                const ContactConfiguration& refinements = {});
 
   /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory;
   /// see god_object.h.
@@ -48,6 +49,7 @@ class ContactFinder {
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
+  const ContactConfiguration refinements_;
   std::vector<PlacedFrame> frames_;  // of the body at hand
   std::vector<Contact> found_;
   std::size_t memory_ = 0;  // where the last pair had its contacts in the last step

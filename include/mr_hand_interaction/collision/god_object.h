@@ -6,19 +6,21 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/collision/moving_body.h"
 #include "mr_hand_interaction/collision/moving_hand.h"
+#include "mr_hand_interaction/configuration.h"
 
 namespace mrhi {
 
 /// Surfaces that have come apart by more than this forget each other [m].
 constexpr double kSeparation = 0.0005;
 
-/// One capsule of a hand near one shape of a body.
+/// One capsule of a hand near one shape of a body, and how their contact is modelled.
 struct TouchingPair {
   const MovingHand& hand;
   int capsule;
   int body_index;
   int shape_index;
   const MovingBody& moving;
+  const ContactConfiguration& refinements;
 };
 
 /// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now
