@@ -13,16 +13,16 @@ namespace mrhi {
 
 /// All that changes. A copy of it is a checkpoint: continuing from a copy gives the same bits.
 struct SimulationState {
-  bool started = false;                   ///< a frame has been taken
-  Nanoseconds time = 0;                   ///< stamp up to which bodies have been advanced
-  Nanoseconds last_frame = 0;             ///< stamp of the last frame taken
-  Nanoseconds restart_stamp = 0;          ///< newest of the frames that went back in time and were refused
-  int restart_frames = 0;                 ///< how many in a row followed on from each other
-  std::vector<BodyState> bodies;          ///< one per Scene::bodies, fixtures too
-  std::vector<HandTrack> hands;           ///< slots; see HandTrack::active
-  std::vector<Contact> contacts;          ///< of hands with bodies, sorted by key
-  std::vector<BodyContact> body_contacts; ///< of bodies with each other, sorted by key
-  std::vector<Interaction> interactions;  ///< one per body and hand slot: hand * bodies + body
+  bool started = false;                    ///< a frame has been taken
+  Nanoseconds time = 0;                    ///< stamp up to which bodies have been advanced
+  Nanoseconds last_frame = 0;              ///< stamp of the last frame taken
+  Nanoseconds restart_stamp = 0;           ///< newest of the frames that went back in time and were refused
+  int restart_frames = 0;                  ///< how many in a row followed on from each other
+  std::vector<BodyState> bodies;           ///< one per Scene::bodies, fixtures too
+  std::vector<HandTrack> hands;            ///< slots; see HandTrack::active
+  std::vector<Contact> contacts;           ///< of hands with bodies, sorted by key
+  std::vector<BodyContact> body_contacts;  ///< of bodies with each other, sorted by key
+  std::vector<Interaction> interactions;   ///< one per body and hand slot: hand * bodies + body
 };
 
 /// Takes all contacts of a body away.
