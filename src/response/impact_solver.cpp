@@ -94,10 +94,10 @@ Vector3 Strike::Partner::velocity() const {
   return inverse_mass * state->linear_momentum + (inverse_inertia * state->angular_momentum).cross(arm);
 }
 
-void Strike::Partner::push(const Vector3& impulse) {
+void Strike::Partner::push(const Vector3& by) {
   if (state == nullptr) return;
-  state->linear_momentum += impulse;
-  state->angular_momentum += arm.cross(impulse);
+  state->linear_momentum += by;
+  state->angular_momentum += arm.cross(by);
 }
 
 Matrix3 Strike::Partner::inverse_effective_mass() const {

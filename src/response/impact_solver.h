@@ -19,7 +19,7 @@ struct Strike {
     Vector3 arm;
 
     Vector3 velocity() const;
-    void push(const Vector3& impulse);
+    void push(const Vector3& by);  // an impulse [N s]
     Matrix3 inverse_effective_mass() const;
   };
   Partner a, b;
