@@ -38,6 +38,22 @@ class EngineMaker {
   virtual std::unique_ptr<Engine> make(const std::string& setting, const World& world, double step) const = 0;
 };
 
+/// Makes engines that can do every world, by a table of their settings.
+template <typename EngineType, const auto& kTable>
+class TableMaker final : public EngineMaker {
+ public:
+  std::vector<std::string> settings() const override {
+    std::vector<std::string> names;
+    for (const auto& setting : kTable) names.push_back(setting.name);
+    return names;
+  }
+  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    for (const auto& setting : kTable)
+      if (name == setting.name) return std::make_unique<EngineType>(setting, world, step);
+    return nullptr;
+  }
+};
+
 }  // namespace mrhi::benchmark
 
 /// The one symbol that an engine's module exports.

@@ -7,13 +7,9 @@
 
 namespace mrhi {
 
-Matrix3 collision_matrix(const Body& body, const Quaternion& orientation, const Vector3& r) {
+Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r) {
   const Matrix3 arm = cross_matrix(r);
-  return Matrix3::Identity() / body.mass - arm * world_inverse_inertia(body, orientation) * arm;
-}
-
-double newton_impulse(double normal_velocity, double restitution, const Matrix3& k, const Vector3& normal) {
-  return -(1.0 + restitution) * normal_velocity / normal.dot(k * normal);
+  return inverse_mass * Matrix3::Identity() - arm * world_inverse_inertia * arm;
 }
 
 void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& state) {

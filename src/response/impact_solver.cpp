@@ -102,8 +102,7 @@ void Strike::Partner::push(const Vector3& by) {
 
 Matrix3 Strike::Partner::inverse_effective_mass() const {
   if (state == nullptr) return Matrix3::Zero();
-  const Matrix3 cross = cross_matrix(arm);
-  return inverse_mass * Matrix3::Identity() - cross * inverse_inertia * cross;
+  return collision_matrix(inverse_mass, inverse_inertia, arm);
 }
 
 Vector3 Strike::relative_velocity() const {

@@ -135,7 +135,7 @@ TEST(CollisionMatrix, is_symmetric_positive_definite_and_gives_the_points_veloci
   BodyState state = start_state(body);
   state.pose.orientation = Quaternion(0.3, 0.5, -0.4, 0.2).normalized();
   const Vector3 r(0.01, -0.03, 0.05), impulse(0.02, -0.01, 0.03);
-  const Matrix3 k = collision_matrix(body, state.pose.orientation, r);
+  const Matrix3 k = collision_matrix(1.0 / body.mass, world_inverse_inertia(body, state.pose.orientation), r);
   EXPECT_LE((k - k.transpose()).norm(), 1e-12 * k.norm());
   EXPECT_GT(k.determinant(), 0.0);
   apply_impulse(impulse, state.pose.position + r, state);

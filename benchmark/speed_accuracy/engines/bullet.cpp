@@ -140,19 +140,7 @@ class BulletEngine final : public Engine {
   std::vector<btRigidBody*> bodies_, hand_;
 };
 
-class BulletMaker final : public EngineMaker {
- public:
-  std::vector<std::string> settings() const override {
-    std::vector<std::string> names;
-    for (const Setting& setting : kSettings) names.push_back(setting.name);
-    return names;
-  }
-  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
-    for (const Setting& setting : kSettings)
-      if (name == setting.name) return std::make_unique<BulletEngine>(setting, world, step);
-    return nullptr;
-  }
-};
+using BulletMaker = TableMaker<BulletEngine, kSettings>;
 
 }  // namespace
 }  // namespace mrhi::benchmark

@@ -119,19 +119,7 @@ class DartEngine final : public Engine {
   std::vector<dyn::FreeJoint*> hand_;
 };
 
-class DartMaker final : public EngineMaker {
- public:
-  std::vector<std::string> settings() const override {
-    std::vector<std::string> names;
-    for (const Setting& setting : kSettings) names.push_back(setting.name);
-    return names;
-  }
-  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
-    for (const Setting& setting : kSettings)
-      if (name == setting.name) return std::make_unique<DartEngine>(setting, world, step);
-    return nullptr;
-  }
-};
+using DartMaker = TableMaker<DartEngine, kSettings>;
 
 }  // namespace
 }  // namespace mrhi::benchmark

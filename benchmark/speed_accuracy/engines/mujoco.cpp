@@ -210,19 +210,7 @@ class MujocoEngine final : public Engine {
   std::vector<Twist> last_;
 };
 
-class MujocoMaker final : public EngineMaker {
- public:
-  std::vector<std::string> settings() const override {
-    std::vector<std::string> names;
-    for (const Setting& setting : kSettings) names.push_back(setting.name);
-    return names;
-  }
-  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
-    for (const Setting& setting : kSettings)
-      if (name == setting.name) return std::make_unique<MujocoEngine>(setting, world, step);
-    return nullptr;
-  }
-};
+using MujocoMaker = TableMaker<MujocoEngine, kSettings>;
 
 }  // namespace
 }  // namespace mrhi::benchmark

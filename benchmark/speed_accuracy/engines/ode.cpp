@@ -192,19 +192,7 @@ class OdeEngine final : public Engine {
   std::vector<dBodyID> bodies_, hand_;
 };
 
-class OdeMaker final : public EngineMaker {
- public:
-  std::vector<std::string> settings() const override {
-    std::vector<std::string> names;
-    for (const Setting& setting : kSettings) names.push_back(setting.name);
-    return names;
-  }
-  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
-    for (const Setting& setting : kSettings)
-      if (name == setting.name) return std::make_unique<OdeEngine>(setting, world, step);
-    return nullptr;
-  }
-};
+using OdeMaker = TableMaker<OdeEngine, kSettings>;
 
 }  // namespace
 }  // namespace mrhi::benchmark

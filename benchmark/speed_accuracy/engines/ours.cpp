@@ -131,19 +131,7 @@ class OurEngine final : public Engine {
   Simulation simulation_;
 };
 
-class OurMaker final : public EngineMaker {
- public:
-  std::vector<std::string> settings() const override {
-    std::vector<std::string> names;
-    for (const Setting& setting : kSettings) names.push_back(setting.name);
-    return names;
-  }
-  std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
-    for (const Setting& setting : kSettings)
-      if (name == setting.name) return std::make_unique<OurEngine>(setting, world, step);
-    return nullptr;
-  }
-};
+using OurMaker = TableMaker<OurEngine, kSettings>;
 
 }  // namespace
 }  // namespace mrhi::benchmark

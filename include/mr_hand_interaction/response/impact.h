@@ -7,11 +7,7 @@ namespace mrhi {
 
 /// Inverse effective mass of a free body at the point `r` from its centre (Eq. 12; the tracked hand is
 /// kinematic): K = I/m - [r]x I^-1 [r]x, symmetric positive definite [1/kg].
-Matrix3 collision_matrix(const Body& body, const Quaternion& orientation, const Vector3& r);
-
-/// Impulse along n that turns the approach velocity `normal_velocity` (< 0) into -restitution times it
-/// (Eqs. 9-14) [N s]; on the object it acts along -n.
-double newton_impulse(double normal_velocity, double restitution, const Matrix3& k, const Vector3& normal);
+Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r);
 
 /// Changes the momenta of a body by `impulse` [N s] at `point` (Eq. 15 with its angular part).
 void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& state);
