@@ -20,6 +20,8 @@ constexpr int kRestartFrames = 3;
 /// A step may be this much longer than asked for, so that a frame of one step does not become two by
 /// rounding.
 constexpr Nanoseconds kStepSlack = 1000;
+/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more.
+constexpr Nanoseconds kQuietFrame = 20'000'000;
 /// A longer silence is not simulated: bodies wait for the next frame.
 constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 
@@ -47,6 +49,7 @@ struct Simulation::Impl {
   void reset();
   Rejection judge(Nanoseconds stamp);
   void plan(Nanoseconds from, Nanoseconds to);
+  int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
   void advance_step(double fraction, double step);
   void silence(Nanoseconds until);
@@ -114,10 +117,18 @@ Rejection Simulation::Impl::judge(Nanoseconds stamp) {
 void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
   frame_from = from;
   frame_to = to;
-  const auto whole = static_cast<int>((to - from - kStepSlack + step_length - 1) / step_length);
-  steps = to > from ? std::max(whole, 1) : 0;
   steps_done = 0;
   begin_hands(to_seconds(to - from));
+  steps = steps_needed(to - from);
+}
+
+int Simulation::Impl::steps_needed(Nanoseconds frame) {
+  if (frame <= 0) return 0;
+  if (frame <= kQuietFrame) {
+    neighbours.begin_step(state.bodies, to_seconds(frame));
+    if (neighbours.quiet(state.bodies, to_seconds(frame))) return 1;
+  }
+  return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
 }
 
 void Simulation::Impl::begin_hands(double seconds) {

@@ -48,8 +48,8 @@ class Simulation {
 
   /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one.
   Rejection begin(const HandFrame& frame);
-  /// Advances by one step of at most Configuration::step; false, without a step, once the frame's stamp is
-  /// reached.
+  /// Advances by one step of at most Configuration::step, or over the whole of a short frame in which nothing
+  /// comes near anything; false, without a step, once the frame's stamp is reached.
   bool step();
   /// Renders hands, derives events. Call after step() has returned false.
   const FrameResult& end();

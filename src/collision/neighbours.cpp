@@ -51,6 +51,29 @@ void Neighbours::begin_step(const std::vector<BodyState>& bodies, double step) {
   list_near_hands();
 }
 
+double Neighbours::reach_of(std::size_t body, const BodyState& state, double seconds) const {
+  const Body& b = scene_.bodies[body];
+  const double way = b.fixed ? 0.0 : seconds * state.linear_momentum.norm() / b.mass;
+  return b.bounding_radius + way + kFollowed;
+}
+
+bool Neighbours::quiet(const std::vector<BodyState>& bodies, double seconds) const {
+  for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
+    for (const int body : near_hand_[slot]) {
+      const auto b = static_cast<std::size_t>(body);
+      const Vector3& centre = bodies[b].pose.position;
+      const Vector3 nearest = centre.cwiseMax(reaches_[slot].min).cwiseMin(reaches_[slot].max);
+      if ((centre - nearest).norm() <= reach_of(b, bodies[b], seconds)) return false;
+    }
+  }
+  for (const auto& [first, second] : pairs_) {
+    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+    const double apart = (bodies[a].pose.position - bodies[b].pose.position).norm();
+    if (apart <= reach_of(a, bodies[a], seconds) + reach_of(b, bodies[b], seconds)) return false;
+  }
+  return true;
+}
+
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {
   bool any = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {

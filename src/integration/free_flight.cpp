@@ -33,10 +33,15 @@ Vector3 angular_velocity(const Body& body, const Vector3& momentum, const Vector
   return body.inverse_inertia * (exponential(theta).conjugate() * momentum);
 }
 
+/// Below this turn the second-order step is exact to rounding [rad].
+constexpr double kSmallTurn = 1e-5;
+
 /// Rotation vector, body axes, that Euler's equations turn the body by within `step`.
 Vector3 rotation_over(const Body& body, const Vector3& momentum, double step) {
   const Vector3 k1 = step * (body.inverse_inertia * momentum);
   const Vector3 t2 = 0.5 * k1;
+  if (k1.squaredNorm() < kSmallTurn * kSmallTurn)
+    return k1 + step * (body.inverse_inertia * momentum.cross(t2));
   const Vector3 k2 = step * inverse_differential(t2, angular_velocity(body, momentum, t2));
   const Vector3 t3 = 0.5 * k2;
   const Vector3 k3 = step * inverse_differential(t3, angular_velocity(body, momentum, t3));
@@ -48,8 +53,8 @@ Vector3 rotation_over(const Body& body, const Vector3& momentum, double step) {
 constexpr double kLargestTurn = 0.3;  // [rad]
 
 void turn(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
-  const Vector3 first = body.inverse_inertia * (orientation.conjugate() * angular_momentum);
-  const int turns = 1 + static_cast<int>(std::min(first.norm() * step / kLargestTurn, 1000.0));
+  const Vector3 rate = body.inverse_inertia * (orientation.conjugate() * angular_momentum);
+  const int turns = 1 + static_cast<int>(std::min(rate.norm() * step / kLargestTurn, 1000.0));
   for (int i = 0; i < turns; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;
     orientation = (orientation * exponential(rotation_over(body, momentum, step / turns))).normalized();

@@ -65,6 +65,19 @@ TEST(FreeFlight, halving_the_step_divides_the_orientation_error_by_sixteen) {
               3.0);  // order four; higher orders of the coarse step move the ratio a little
 }
 
+// Ten seconds of turns just below and well above the one from which on the full method is used; 1e-11 is the
+// rounding of 10000 steps.
+TEST(FreeFlight, a_slow_turn_does_not_depend_on_the_step) {
+  Body body = asymmetric_body();
+  body.start_twist.angular = Vector3(5e-3, 5e-3, 5e-3);
+  const auto after_ten_seconds = [&](int steps) {
+    BodyState state = start_state(body);
+    for (int i = 0; i < steps; ++i) free_flight(body, Vector3::Zero(), 10.0 / steps, state);
+    return state.pose.orientation;
+  };
+  EXPECT_LE(after_ten_seconds(10000).angularDistance(after_ten_seconds(100)), 1e-11);
+}
+
 TEST(FreeFlight, momentum_does_not_change_by_a_bit_at_any_step) {
   const Body body = asymmetric_body();
   for (const double step : {0.00025, 0.001, 0.0167, 0.5}) {

@@ -22,6 +22,10 @@ class Neighbours {
   /// Every step, of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
+  /// True if no body can touch a hand or another body in this frame of `seconds`. Depends on what is where
+  /// alone, not on what is listed.
+  bool quiet(const std::vector<BodyState>& bodies, double seconds) const;
+
   /// Bodies near the hand in `slot`, ascending.
   const std::vector<int>& near_hand(int slot) const { return near_hand_[static_cast<std::size_t>(slot)]; }
   /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
@@ -38,6 +42,9 @@ class Neighbours {
   struct Reach {
     Vector3 min, max;  // of a hand in this frame; min > max without a hand
   };
+  /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
+  /// followed.
+  double reach_of(std::size_t body, const BodyState& state, double seconds) const;
   bool place_those_leaving(const std::vector<BodyState>& bodies, double step);
   void list_near_hands();
   void list_pairs();
