@@ -296,8 +296,14 @@ const Configuration& Simulation::configuration() const {
 const SimulationState& Simulation::state() const {
   return impl_->state;
 }
+Nanoseconds Simulation::time() const {
+  const Impl& s = *impl_;
+  if (s.steps_done == 0 || s.state.time >= s.frame_to) return s.state.time;
+  return s.frame_from + (s.frame_to - s.frame_from) * s.steps_done / s.steps;
+}
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
+  impl_->steps = impl_->steps_done = 0;
 }
 
 const char* to_string(Stage stage) {

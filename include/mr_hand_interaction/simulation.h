@@ -72,6 +72,8 @@ class Simulation {
   const Scene& scene() const;
   const Configuration& configuration() const;
   const SimulationState& state() const;
+  /// Stamp up to which bodies have been advanced, between the steps of a frame too.
+  Nanoseconds time() const;
   void set_state(const SimulationState& state);
 
  private:

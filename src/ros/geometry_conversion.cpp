@@ -10,6 +10,14 @@ geometry_msgs::Point to_message(const Vector3& point) {
   return message;
 }
 
+geometry_msgs::Vector3 vector_message(const Vector3& v) {
+  geometry_msgs::Vector3 message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
+  return message;
+}
+
 geometry_msgs::Pose to_message(const Pose& pose) {
   geometry_msgs::Pose message;
   message.position = to_message(pose.position);

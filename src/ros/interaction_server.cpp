@@ -38,7 +38,8 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
     : fixed_frame_(parameters.fixed_frame),
       simulation_(scene_of(parameters), parameters.configuration),
       markers_(simulation_.scene(), simulation_.configuration()),
-      diagnostics_(node, private_node, simulation_.scene().name) {
+      diagnostics_(node, private_node, simulation_.scene().name),
+      haptics_(node, parameters.haptics_rate) {
   rendered_hands_ = node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue);
   objects_ = node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue);
   contacts_ = node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue);
@@ -63,8 +64,7 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message) {
     return;
   }
   if (!begin(message)) return;
-  while (timed_step()) {
-  }
+  while (timed_step()) haptics_.note_step(simulation_, clock_.to_stamp(simulation_.time()));
   const FrameResult& result = simulation_.end();
   publish(result);
   const ros::Time now = ros::Time::now();
@@ -138,6 +138,7 @@ void InteractionServer::publish(const FrameResult& result) {
     when.stamp = to_ros_time(clock_.to_stamp(event.stamp));
     events_.publish(event_message(simulation_.scene(), event, when));
   }
+  haptics_.publish(simulation_, result, header);
   publish_scene(result, header.stamp);
 }
 

@@ -3,17 +3,6 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
-namespace {
-
-geometry_msgs::Vector3 vector_message(const Vector3& v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
-}
-
-}  // namespace
 
 const char* to_string(ContactModelKind kind) {
   switch (kind) {

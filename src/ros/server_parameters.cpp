@@ -22,8 +22,15 @@ std::string text_parameter(const std::string& name, const XmlRpc::XmlRpcValue& v
   return static_cast<std::string>(copy);
 }
 
+HapticsRate haptics_rate(const std::string& name, const XmlRpc::XmlRpcValue& value) {
+  const std::string rate = yaml_text(value);
+  if (rate == "frame") return HapticsRate::frame;
+  if (rate == "step") return HapticsRate::step;
+  throw ParameterError("parameter '" + name + "': " + rate + " is not allowed; allowed: frame, step");
+}
+
 void require_known(const std::string& name) {
-  std::string allowed = "scene, fixed_frame";
+  std::string allowed = "scene, fixed_frame, haptics/rate";
   for (const std::string& known : parameter_names()) {
     if (known == name) return;
     allowed += ", " + known;
@@ -56,6 +63,8 @@ void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParam
     parameters.scene = text_parameter(name, value);
   } else if (name == "fixed_frame") {
     parameters.fixed_frame = text_parameter(name, value);
+  } else if (name == "haptics/rate") {
+    parameters.haptics_rate = haptics_rate(name, value);
   } else if (name.compare(0, kTwists.size(), kTwists) == 0) {
     parameters.object_twists[name.substr(kTwists.size())] = twist_parameter(name, value);
   } else if (kOthers.count(name) == 0) {

@@ -13,33 +13,15 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from mr_hand_interaction.msg import (Contact, ContactArray, Hand, HandFrame, InteractionEvent, ObjectStateArray,
-                                     Phalanx)
+from mr_hand_interaction.msg import Contact, ContactArray, HandFrame, InteractionEvent, ObjectStateArray, Phalanx
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pointing_hand import FACE, HEIGHT, PERIOD, RADIUS, SPEED, frame, hand, push_tips  # noqa: E402
 from waiting import wait_until  # noqa: E402
 
-SPEED = 0.2  # m/s of the finger that pushes
-PERIOD = 0.01  # s between frames
 BREAK = 0.15  # s without a frame; shorter than the time for which the node waits for one
-FACE = -0.025  # x of the face that is pushed [m]
-RADIUS = 0.009  # of the fingertip [m]
-HEIGHT = 0.22  # of the cube's centre [m]
 RESTITUTION = 0.3  # the default
 Event = InteractionEvent
-
-
-def hand(tip, hand_id=7):
-    """A hand whose only phalanx is the index finger's distal one, pointing along +x with its end at x = tip."""
-    message = Hand(id=hand_id, side=Hand.RIGHT, confidence=1.0, palm_width=0.06)
-    message.palm.position.x, message.palm.position.z = tip - 0.15, HEIGHT
-    message.palm.orientation.w = 1.0
-    message.wrist.x, message.wrist.z = tip - 0.2, HEIGHT
-    phalanx = Phalanx(finger=Phalanx.INDEX, bone=Phalanx.DISTAL, radius=RADIUS)
-    phalanx.start.x, phalanx.end.x = tip - RADIUS - 0.03, tip - RADIUS
-    phalanx.start.z = phalanx.end.z = HEIGHT
-    message.phalanges = [phalanx]
-    return message
 
 
 class InteractionTest(unittest.TestCase):
@@ -107,9 +89,7 @@ class InteractionTest(unittest.TestCase):
     def send(self, *hands, frame_id="world", stamp=None):
         if stamp is None:
             stamp = self.next_stamp()
-        message = HandFrame(hands=list(hands))
-        message.header.stamp, message.header.frame_id = stamp, frame_id
-        self.hands.publish(message)
+        self.hands.publish(frame(stamp, *hands, frame_id=frame_id))
         return stamp
 
     @classmethod
@@ -131,8 +111,7 @@ class InteractionTest(unittest.TestCase):
 
     def push(self, begin=-0.10, end=0.02):
         """Stamps of the frames in which the finger pushes along +x, from `begin` to `end`."""
-        frames = int(round((end - begin) / (SPEED * PERIOD)))
-        return [self.answer(hand(begin + i * SPEED * PERIOD)) for i in range(frames + 1)]
+        return [self.answer(hand(tip)) for tip in push_tips(begin, end)]
 
     def settled_counts(self):
         """Counts come once a second: those of everything that has been sent so far."""

@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Transform.h>
+#include <geometry_msgs/Vector3.h>
 #include <mr_hand_interaction/HandFrame.h>
 #include <ros/time.h>
 
@@ -24,6 +25,7 @@ mr_hand_interaction::HandFrame to_message(const HandFrame& frame, const std::str
 HandFrame from_message(const mr_hand_interaction::HandFrame& message);
 
 geometry_msgs::Point to_message(const Vector3& point);
+geometry_msgs::Vector3 vector_message(const Vector3& v);
 geometry_msgs::Pose to_message(const Pose& pose);
 Vector3 from_message(const geometry_msgs::Point& point);
 Pose from_message(const geometry_msgs::Pose& pose);

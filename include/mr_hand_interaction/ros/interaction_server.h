@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "mr_hand_interaction/ros/haptics_publisher.h"
 #include "mr_hand_interaction/ros/interaction_diagnostics.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
@@ -41,6 +42,7 @@ class InteractionServer {
   StampClock clock_;
   Markers markers_;
   InteractionDiagnostics diagnostics_;
+  HapticsPublisher haptics_;
   ros::WallTime published_, markers_published_;
   ros::Time transforms_stamp_;
 

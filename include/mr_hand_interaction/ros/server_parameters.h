@@ -7,6 +7,7 @@
 
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/ros/haptics_publisher.h"
 
 namespace mrhi {
 
@@ -15,7 +16,8 @@ struct ServerParameters {
   std::string scene = "cube";                  ///< ~scene: name or URDF file
   std::string fixed_frame = "world";           ///< ~fixed_frame
   std::map<std::string, Twist> object_twists;  ///< ~object_twist/NAME: [vx, vy, vz, wx, wy, wz] at the start
-  Configuration configuration;                 ///< every name of parameters.h
+  HapticsRate haptics_rate = HapticsRate::frame;  ///< ~haptics/rate: frame, or step: one message each
+  Configuration configuration;                    ///< every name of parameters.h
 };
 
 /// Reads the private parameters of a node. Throws ParameterError naming one that is unknown or not allowed.

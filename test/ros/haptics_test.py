@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""haptics: what a glove is told about a finger that pushes the cube, by frame and by step."""
+import os
+import sys
+import unittest
+
+import rospy
+import rostest
+
+from mr_hand_interaction.msg import Hand, HandFrame, HapticsArray, Phalanx, PhalanxHaptics
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pointing_hand import PERIOD, SPEED, frame, hand, push_tips  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+STEP = 0.002  # s, of the node that tells by step
+MASS = 0.1  # kg, of the cube
+
+
+class HapticsTest(unittest.TestCase):
+    def test_a_glove_is_told_of_the_blow_by_frame_and_by_step(self):
+        rospy.init_node("haptics_test")
+        frames, steps, done = [], [], {}
+        by_frame = rospy.Subscriber("haptics", HapticsArray, frames.append)
+        by_step = rospy.Subscriber("by_step/haptics", HapticsArray, steps.append)
+        rendered = [rospy.Subscriber(topic, HandFrame, lambda m, topic=topic: done.update({topic: m.header.stamp}))
+                    for topic in ("rendered_hands", "by_step/rendered_hands")]
+        hands = rospy.Publisher("hand_frame", HandFrame, queue_size=10)
+        wait_until(lambda: hands.get_num_connections() == 2, "the two nodes")
+        wait_until(lambda: all(s.get_num_connections() > 0 for s in [by_frame, by_step] + rendered), "publishers")
+        begin = stamp = rospy.Time.now()
+        for tip in push_tips():
+            stamp += rospy.Duration(PERIOD)
+            hands.publish(frame(stamp, hand(tip)))
+            wait_until(lambda: set(done.values()) == {stamp} and len(done) == 2, "the frame taken")
+        wait_until(lambda: frames[-1].header.stamp >= stamp and steps[-1].header.stamp >= stamp, "haptics")
+        count = int(round((stamp - begin).to_sec() / PERIOD))
+        frames = [m for m in frames if m.hands and m.header.stamp <= stamp]
+        steps = [m for m in steps if m.hands and m.header.stamp <= stamp]
+
+        self.assertEqual(len(frames), count)
+        # The first frame has no steps of its own and is told as one.
+        self.assertEqual(len(steps), 1 + (count - 1) * round(PERIOD / STEP))
+        for earlier, later in zip(steps[1:], steps[2:]):
+            self.assertAlmostEqual((later.header.stamp - earlier.header.stamp).to_sec(), STEP, delta=1e-6)
+        for messages in (frames, steps):
+            self.check(messages)
+
+    def check(self, messages):
+        told = [phalanx for message in messages for phalanx in message.hands[0].phalanges]
+        self.assertEqual({(m.hands[0].id, m.hands[0].side) for m in messages}, {(7, Hand.RIGHT)})
+        self.assertFalse(messages[0].hands[0].phalanges, "the finger has not yet arrived")
+        self.assertTrue(told, "nothing is felt")
+        for phalanx in told:
+            self.assertEqual((phalanx.object, phalanx.finger, phalanx.bone), ("cube", Phalanx.INDEX, Phalanx.DISTAL))
+            self.assertIn(phalanx.slip, (PhalanxHaptics.STICKING, PhalanxHaptics.SLIPPING))
+            self.assertAlmostEqual(phalanx.normal.x, -1.0, delta=0.05)
+            self.assertGreaterEqual(phalanx.pressure, 0.0)
+        self.assertEqual({m.header.frame_id for m in messages}, {"world"})
+        self.assertGreater(sum(phalanx.impulse.x for phalanx in told), 0.5 * MASS * SPEED)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "haptics", HapticsTest)
