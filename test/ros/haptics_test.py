@@ -39,10 +39,12 @@ class HapticsTest(unittest.TestCase):
         steps = [m for m in steps if m.hands and m.header.stamp <= stamp]
 
         self.assertEqual(len(frames), count)
-        # The first frame has no steps of its own and is told as one.
-        self.assertEqual(len(steps), 1 + (count - 1) * round(PERIOD / STEP))
-        for earlier, later in zip(steps[1:], steps[2:]):
-            self.assertAlmostEqual((later.header.stamp - earlier.header.stamp).to_sec(), STEP, delta=1e-6)
+        lengths = [(later.header.stamp - earlier.header.stamp).to_sec() for earlier, later in zip(steps, steps[1:])]
+        self.assertAlmostEqual(sum(lengths), (stamp - begin).to_sec() - PERIOD, delta=1e-6)
+        for message, length in zip(steps[1:], lengths):
+            # A frame in which nothing is near is one step.
+            touching = message.hands[0].phalanges
+            self.assertAlmostEqual(length, STEP if touching or length < 0.5 * PERIOD else PERIOD, delta=1e-6)
         for messages in (frames, steps):
             self.check(messages)
 

@@ -15,9 +15,11 @@ Simulation quiet(double step) {
 
 TEST(Time, goes_on_by_equal_steps_from_one_frame_to_the_next) {
   Simulation simulation = quiet(0.002);
-  simulation.advance({at(0.0), {}});
+  const Hand near = testing::finger({-0.03, 0, 0.032}, {0.03, 0, 0.032}, 0.001);  // so that steps are needed
+  simulation.advance({at(-0.01), {near}});
+  simulation.advance({at(0.0), {near}});
   EXPECT_EQ(simulation.time(), at(0.0));
-  ASSERT_EQ(simulation.begin({at(0.01), {}}), Rejection::none);
+  ASSERT_EQ(simulation.begin({at(0.01), {near}}), Rejection::none);
   EXPECT_EQ(simulation.time(), at(0.0));
   for (int i = 1; i <= 5; ++i) {
     ASSERT_TRUE(simulation.step());
