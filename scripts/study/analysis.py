@@ -1,0 +1,209 @@
+"""The tables of a study, one row each: descriptions, analyses of variance, sphericity, comparisons."""
+
+import collections
+import itertools
+
+import numpy as np
+import pandas
+from scipy import stats
+
+from . import pairwise
+from .anova import mixed_anova
+from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, plain
+from .study_data import SIMULATED, measures_in, of_part, parts
+
+Results = collections.namedtuple('Results', 'bars comparison anova sphericity post_hoc ratings rating_tests notes')
+COLUMNS = {
+    'bars': 'source gravity_g condition group object measure unit n mean sd ci95',
+    'comparison': 'source gravity_g condition quantity unit n mean sd',
+    'anova': 'source gravity_g condition within measure effect n df df_error f epsilon correction p p_uncorrected '
+             'p_greenhouse_geisser p_huynh_feldt partial_eta_squared',
+    'sphericity': 'source gravity_g condition within measure n w chi_squared df p greenhouse_geisser huynh_feldt',
+    'post_hoc': 'source gravity_g condition measure at a b test n_a n_b centre_a centre_b difference statistic df p '
+                'comparisons p_bonferroni stars effect_name effect',
+    'ratings': 'source gravity_g condition question n mean sd median quartile_1 quartile_3',
+    'rating_tests': 'source gravity_g condition question a b test n_a n_b centre_a centre_b difference statistic p '
+                    'comparisons p_bonferroni stars effect_name effect',
+}
+EVERY = 'all'
+
+
+def analyse(data):
+    tables, notes = {name: [] for name in COLUMNS}, _Notes()
+    for part in parts(data):
+        head = dict(zip(('source', 'gravity_g'), part))
+        cells, ratings = of_part(data.cells, part), of_part(data.ratings, part)
+        for condition in in_order(cells['condition'], CONDITIONS):
+            _analyse_objects(tables, notes, dict(head, condition=condition),
+                             cells[cells['condition'] == condition])
+        _analyse_conditions(tables, notes, dict(head, condition=EVERY), cells)
+        _compare(tables['comparison'], head, of_part(data.trials, part), cells, ratings)
+        _analyse_ratings(tables, head, ratings)
+    frames = {name: pandas.DataFrame(rows, columns=COLUMNS[name].split()) for name, rows in tables.items()}
+    return Results(notes=notes.lines(), **frames)
+
+
+class _Notes:
+    """One line for the same thing left out of the analysis of several measures."""
+
+    def __init__(self):
+        self.measures = collections.OrderedDict()
+
+    def add(self, head, measure, what):
+        where = '%s%g g, %s conditions' if head['condition'] == EVERY else '%s%g g, %s'
+        simulated = 'simulated, ' if head['source'] == SIMULATED else ''
+        key = where % (simulated, head['gravity_g'], head['condition']), what
+        self.measures.setdefault(key, []).append(plain(measure))
+
+    def lines(self):
+        return ['%s: %s: %s' % (where, ', '.join(measures), what)
+                for (where, what), measures in self.measures.items()]
+
+
+def summary(values):
+    """n, mean, standard deviation and half the width of the mean's 95 % confidence interval; nan for want of data."""
+    values = np.asarray(values, float)
+    sd = values.std(ddof=1) if len(values) > 1 else np.nan
+    ci95 = stats.t.ppf(0.975, len(values) - 1) * sd / np.sqrt(len(values)) if len(values) > 1 else np.nan
+    return {'n': len(values), 'mean': values.mean() if len(values) else np.nan, 'sd': sd, 'ci95': ci95}
+
+
+def _analyse_objects(tables, notes, head, cells):
+    """Group and object, under one condition."""
+    for measure in measures_in(cells):
+        of_measure = cells[cells['measure'] == measure]
+        head_of = dict(head, measure=measure)
+        wide = of_measure.pivot_table(index=['group', 'participant'], columns='object', values='value')
+        wide = wide[in_order(wide.columns, OBJECTS)]
+        for group, name in itertools.product(in_order(of_measure['group'], GROUPS), wide.columns):
+            values = wide.loc[group][name].dropna()
+            tables['bars'].append(dict(head_of, group=group, object=name, unit=OF[measure].unit, **summary(values)))
+        _test(tables, notes, head_of, 'object', wide)
+        between = [('at ' + name, a, b, pairwise.independent(wide.loc[a][name].dropna(), wide.loc[b][name].dropna()))
+                   for name in wide.columns for a, b in _pairs(wide)]
+        _add_comparisons(tables['post_hoc'], head_of, between)
+        _add_comparisons(tables['post_hoc'], head_of, _paired_columns(wide, 'objects', pairwise.paired))
+
+
+def _analyse_conditions(tables, notes, head, cells):
+    """Group and condition, each participant's mean over the objects; only who did all objects counts."""
+    if cells['condition'].nunique() < 2:
+        return
+    for measure in measures_in(cells):
+        of_measure = cells[cells['measure'] == measure]
+        head_of = dict(head, measure=measure)
+        objects = [set(some['object']) for _, some in of_measure.groupby('condition')]
+        common = in_order(set.intersection(*objects), OBJECTS)
+        if len(common) < len(set.union(*objects)):
+            notes.add(head, measure, 'conditions are compared over the objects that all of them had: %s'
+                      % (', '.join(common) or 'none'))
+        if not common:
+            continue
+        wide = of_measure.pivot_table(index=['group', 'participant'], columns=['condition', 'object'], values='value')
+        means = pandas.DataFrame({condition: wide[condition][common].dropna().mean(axis=1) for condition in
+                                  in_order(of_measure['condition'], CONDITIONS)}, index=wide.index)
+        _test(tables, notes, head_of, 'condition', means)
+        _add_comparisons(tables['post_hoc'], head_of, _paired_columns(means, 'conditions', pairwise.paired))
+
+
+def _pairs(wide):
+    return itertools.combinations(in_order(wide.index.get_level_values('group'), GROUPS), 2)
+
+
+def _paired_columns(wide, at, test):
+    rows = []
+    for a, b in itertools.combinations(wide.columns, 2):
+        both = wide[[a, b]].dropna()
+        rows.append((at, a, b, test(both[a], both[b])))
+    return rows
+
+
+def _add_comparisons(table, head, family):
+    corrected = pairwise.bonferroni([result.p for _, _, _, result in family])
+    tested = int(np.isfinite(corrected).sum())
+    for (at, a, b, result), p in zip(family, corrected):
+        table.append(dict(head, at=at, a=a, b=b, comparisons=tested, p_bonferroni=p, stars=pairwise.stars(p),
+                          **result._asdict()))
+
+
+def _test(tables, notes, head, factor, wide):
+    """The analysis of variance of those who have a value at every level, in groups of two or more."""
+    values = wide.values[~np.isnan(wide.values)]
+    if len(values) > 1 and np.ptp(values) == 0:
+        notes.add(head, head['measure'], 'every value is %g: nothing to test' % values[0])
+        return
+    full = wide.dropna()
+    if len(full) < len(wide):
+        who = [participant for _, participant in wide.index.difference(full.index)]
+        notes.add(head, head['measure'], 'no value for every %s from %s: left out of the analysis of variance'
+                  % (factor, ', '.join(sorted(who))))
+    groups = full.index.get_level_values('group')
+    for group, size in groups.value_counts().items():
+        if size < 2:
+            notes.add(head, head['measure'], 'one participant in group %s: left out of the analysis of variance'
+                      % group)
+    full = full[groups.map(groups.value_counts()) > 1]
+    groups = full.index.get_level_values('group')
+    if len(full) == 0 or (groups.nunique() < 2 and full.shape[1] < 2):
+        notes.add(head, head['measure'], 'no analysis of variance: it needs two participants in a group, and two '
+                                         'groups or two %ss' % factor)
+        return
+    if groups.nunique() < 2:
+        notes.add(head, head['measure'], 'one group, %s: its effect cannot be tested' % groups[0])
+    if full.shape[1] < 2:
+        notes.add(head, head['measure'], 'one %s, %s: its effect cannot be tested' % (factor, full.columns[0]))
+    _add_anova(tables, notes, dict(head, within=factor), mixed_anova(full.values, list(groups)))
+
+
+def _add_anova(tables, notes, head, result):
+    names = {'group': 'group', 'within': head['within'], 'interaction': 'group x ' + head['within']}
+    for effect in result.effects:
+        if np.isnan(effect.f):
+            notes.add(head, head['measure'], 'participants do not differ: the effect of %s cannot be tested'
+                      % names[effect.name])
+            continue
+        row = dict(head, n=result.n, **effect._asdict())
+        row['effect'] = names[effect.name]
+        tables['anova'].append(row)
+    if result.sphericity is not None and result.sphericity.df > 0:
+        tables['sphericity'].append(dict(head, n=result.n, **result.sphericity._asdict()))
+
+
+def _compare(table, head, trials, cells, ratings):
+    """The paper's table 1: each condition's mean and standard deviation over participants, whatever their group."""
+    for condition in in_order(set(trials['condition']) | set(ratings['condition']), CONDITIONS):
+        head_of = dict(head, condition=condition)
+        for measure in [m for m in COMPARED if m in set(cells['measure'])]:
+            some = cells[(cells['condition'] == condition) & (cells['measure'] == measure)]
+            row = summary(some.groupby('participant')['value'].mean())
+            row.pop('ci95')
+            table.append(dict(head_of, quantity=measure, unit=OF[measure].unit, **row))
+        for question in QUESTIONS:
+            some = ratings[(ratings['condition'] == condition) & (ratings['question'] == question)]
+            if len(some):
+                row = summary(some['score'])
+                row.pop('ci95')
+                table.append(dict(head_of, quantity=question, unit='0 to 10', **row))
+
+
+def _analyse_ratings(tables, head, ratings):
+    for question in QUESTIONS:
+        some = ratings[ratings['question'] == question]
+        if some.empty:
+            continue
+        scores = some.assign(score=some['score'].astype(float)).pivot_table(
+            index=['group', 'participant'], columns='condition', values='score')
+        scores = scores[in_order(scores.columns, CONDITIONS)]
+        between = []
+        for condition in scores.columns:
+            values = scores[condition].dropna()
+            row = summary(values)
+            row.pop('ci95')
+            quartiles = dict(zip(('quartile_1', 'median', 'quartile_3'), np.percentile(values, [25, 50, 75])))
+            tables['ratings'].append(dict(head, condition=condition, question=question, **row, **quartiles))
+            between += [(condition, a, b, pairwise.rank_sum(values.loc[a], values.loc[b])) for a, b in _pairs(scores)
+                        if a in values.index.get_level_values(0) and b in values.index.get_level_values(0)]
+        for family in (between, _paired_columns(scores, EVERY, pairwise.signed_rank)):
+            rows = []
+            _add_comparisons(rows, dict(head, question=question), family)
+            tables['rating_tests'] += [dict(row, condition=row['at']) for row in rows]

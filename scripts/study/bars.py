@@ -1,0 +1,77 @@
+"""Bars of each object and group with stars, as the paper's figure 11."""
+
+import numpy as np
+
+from .measures import GROUPS, OBJECTS, OF, in_order, plain, with_unit
+from .style import DARK, GROUP_COLOURS, INK, PALE, finish, new_figure, save
+
+CAPTION = ('Bars: mean of the participants. Lines: 95 % confidence interval. Dots: participants. '
+           'Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
+BESIDE = (-0.34, 0.19, -0.19, 0.34)  # of a bar's width: dots keep clear of the line in the middle
+ROOM = 0.09  # of the axis, for each bracket above the bars
+
+
+def draw_bars(results, cells, measures, title, folder, name):
+    """A panel for each measure; `results` and `cells` are those of one condition."""
+    columns = min(4, len(measures))
+    rows = -(-len(measures) // columns)
+    figure, panels = new_figure(columns, max(4.2 * columns, 5.2), 3.7 * rows + 0.5, rows)
+    for axes in panels.flat[len(measures):]:
+        axes.set_visible(False)
+    for axes, measure in zip(panels.flat, measures):
+        _draw_panel(axes, measure, *[t[t['measure'] == measure] for t in (results.bars, results.post_hoc, cells)])
+    source = cells['source'].iloc[0]
+    finish(figure, title, CAPTION, source)
+    return save(figure, folder, name)
+
+
+def _draw_panel(axes, measure, bars, post_hoc, cells):
+    groups, objects = in_order(bars['group'], GROUPS), in_order(bars['object'], OBJECTS)
+    width = 0.8 / len(groups)
+    for row in bars[bars['n'] > 0].itertuples():
+        x = objects.index(row.object) + (groups.index(row.group) - (len(groups) - 1) / 2) * width
+        axes.bar(x, row.mean, 0.94 * width, color=GROUP_COLOURS[row.group], zorder=1)
+        values = np.sort(cells[(cells['group'] == row.group) & (cells['object'] == row.object)]['value'])
+        beside = x + width * np.resize(BESIDE, len(values))
+        axes.plot(beside, values, '.', color=DARK[row.group], markersize=3.5, alpha=0.75, zorder=2, clip_on=False)
+        axes.errorbar(x, row.mean, 0 if np.isnan(row.ci95) else row.ci95, color=INK, capsize=3, lw=1.2, zorder=3)
+        axes.text(x, -0.015, row.group, ha='center', va='top', fontsize=7.5, color=DARK[row.group],
+                  transform=axes.get_xaxis_transform())
+    axes.set_xticks(range(len(objects)))
+    axes.set_xticklabels([plain(name) for name in objects])
+    axes.tick_params(axis='x', length=0, pad=13)
+    axes.set_xlim(-0.55, len(objects) - 0.45)
+    axes.set_title(with_unit(OF[measure]), loc='left')
+    top = max(cells['value'].max(), (bars['mean'] + bars['ci95'].fillna(0)).max(), 1e-9)
+    _draw_brackets(axes, top, _brackets(post_hoc, groups, objects, width))
+    axes.grid(axis='y', color='0.92', zorder=0)
+    axes.set_axisbelow(True)
+
+
+def _brackets(post_hoc, groups, objects, width):
+    """(level, from, to, stars) of the significant pairs: groups in the first level, objects in further ones."""
+    found, level = [], 0
+    for row in post_hoc[post_hoc['stars'] != ''].itertuples():
+        if row.at != 'objects':
+            middle = objects.index(row.at[len('at '):])
+            ends = [middle + (groups.index(group) - (len(groups) - 1) / 2) * width for group in (row.a, row.b)]
+            found.append((0, *ends, row.stars))
+            level = 1
+    for row in post_hoc[(post_hoc['stars'] != '') & (post_hoc['at'] == 'objects')].itertuples():
+        found.append((level, objects.index(row.a) + 0.03, objects.index(row.b) - 0.03, row.stars))
+        level += 1
+    return found
+
+
+def _draw_brackets(axes, top, brackets):
+    levels = 1 + max([level for level, *_ in brackets], default=-1)
+    scale = top / (1 - ROOM * (levels + 0.3))
+    for level, start, end, stars in brackets:
+        height = top + (level + 0.45) * ROOM * scale
+        axes.plot([start, start, end, end], [height - 0.015 * scale, height, height, height - 0.015 * scale],
+                  color=INK, lw=0.9)
+        axes.text((start + end) / 2, height - 0.005 * scale, stars, ha='center', va='bottom', fontsize=9)
+    axes.set_ylim(0, max(scale, top * 1.03))
+    if top <= 1e-9:
+        axes.set_ylim(0, 1)
+        axes.text(0.5, 0.5, 'all 0', transform=axes.transAxes, ha='center', color=PALE)

@@ -1,0 +1,108 @@
+"""Comparisons of two samples with effect sizes, and Bonferroni's correction over a family of them."""
+
+import collections
+
+import numpy as np
+from scipy import stats
+
+# `effect` is of the kind `effect_name`; `difference` is a's mean (or median) less b's. nan: cannot be computed.
+Comparison = collections.namedtuple('Comparison', 'test n_a n_b centre_a centre_b difference statistic df p '
+                                                  'effect_name effect')
+
+
+def independent(a, b):
+    """Welch's t-test; Cohen's d with the pooled standard deviation."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    statistic = df = p = effect = np.nan
+    if len(a) > 1 and len(b) > 1:
+        of_a, of_b = a.var(ddof=1) / len(a), b.var(ddof=1) / len(b)
+        if of_a + of_b > 0:
+            statistic = (a.mean() - b.mean()) / np.sqrt(of_a + of_b)
+            df = (of_a + of_b) ** 2 / (of_a ** 2 / (len(a) - 1) + of_b ** 2 / (len(b) - 1))
+            p = 2 * stats.t.sf(abs(statistic), df)
+            effect = cohens_d(a, b)
+    return _of_means('Welch t', a, b, statistic, df, p, "Cohen's d", effect)
+
+
+def paired(a, b):
+    """Student's paired t-test; d_z, the mean difference over the differences' standard deviation."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    differences = a - b
+    statistic = p = effect = np.nan
+    spread = differences.std(ddof=1) if len(a) > 1 else 0.0
+    if spread > 0:
+        effect = differences.mean() / spread
+        statistic = effect * np.sqrt(len(a))
+        p = 2 * stats.t.sf(abs(statistic), len(a) - 1)
+    return _of_means('paired t', a, b, statistic, float(len(a) - 1), p, 'd_z', effect)
+
+
+def cohens_d(a, b):
+    pooled = ((len(a) - 1) * np.var(a, ddof=1) + (len(b) - 1) * np.var(b, ddof=1)) / (len(a) + len(b) - 2)
+    return (np.mean(a) - np.mean(b)) / np.sqrt(pooled)
+
+
+def signed_rank(a, b):
+    """Wilcoxon's signed-rank test for paired ranks or ratings; the effect is the matched rank-biserial correlation."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    differences = a - b
+    differences = differences[differences != 0]
+    statistic = p = effect = np.nan
+    if len(differences):
+        ranks = stats.rankdata(np.abs(differences))
+        effect = float(np.sum(np.sign(differences) * ranks) / np.sum(ranks))
+        statistic = float(min(np.sum(ranks[differences > 0]), np.sum(ranks[differences < 0])))
+        p = _signed_rank_p(ranks, statistic)
+    elif len(a):
+        p, effect = 1.0, 0.0
+    return _of_medians('signed rank', a, b, statistic, p, effect)
+
+
+def _signed_rank_p(ranks, smaller):
+    """Exact, ties included: the share of all sign patterns with a rank sum as small; every one has the same chance."""
+    doubled = np.rint(2 * ranks).astype(int)  # ranks of ties are halves
+    ways = np.zeros(doubled.sum() + 1)
+    ways[0] = 1.0
+    for rank in doubled:
+        ways[rank:] = (ways[rank:] + ways[:-rank]) / 2
+        ways[:rank] /= 2
+    return float(min(1.0, 2 * ways[:int(round(2 * smaller)) + 1].sum()))
+
+
+def rank_sum(a, b):
+    """Mann and Whitney's test for two groups; the effect is the rank-biserial correlation."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    statistic = p = effect = np.nan
+    if len(a) and len(b):
+        ranks = stats.rankdata(np.concatenate([a, b]))
+        statistic = float(np.sum(ranks[:len(a)]) - len(a) * (len(a) + 1) / 2)
+        effect = 2 * statistic / (len(a) * len(b)) - 1
+        same = np.ptp(ranks) == 0
+        p = 1.0 if same else float(stats.mannwhitneyu(a, b, alternative='two-sided').pvalue)
+    return _of_medians('rank sum', a, b, statistic, p, effect)
+
+
+def bonferroni(p_values):
+    """Each multiplied by how many there are, at most 1; those that could not be computed do not count."""
+    p_values = np.asarray(p_values, float)
+    return np.minimum(1.0, p_values * np.isfinite(p_values).sum())
+
+
+def stars(p):
+    """As in the paper's figures: * below 0.05, ** below 0.01, *** below 0.001."""
+    return '*' * sum(p < level for level in (0.05, 0.01, 0.001))
+
+
+def _of_means(test, a, b, *rest):
+    centres = [float(np.mean(x)) if len(x) else np.nan for x in (a, b)]
+    return Comparison(test, len(a), len(b), *centres, centres[0] - centres[1], *map(_plain, rest))
+
+
+def _of_medians(test, a, b, statistic, p, effect):
+    centres = [float(np.median(x)) if len(x) else np.nan for x in (a, b)]
+    return Comparison(test, len(a), len(b), *centres, centres[0] - centres[1], statistic, np.nan, p,
+                      'rank-biserial r', effect)
+
+
+def _plain(value):
+    return value if isinstance(value, str) else float(value)

@@ -1,0 +1,211 @@
+"""The report: one HTML file with the figures in it."""
+
+import base64
+import html
+
+import numpy as np
+
+from .measures import CONDITIONS, MAIN, OF, in_order, plain, with_unit
+from .study_data import SIMULATED, label_of
+
+STYLE = '''body{font:15px/1.5 sans-serif;color:#222;max-width:62rem;margin:2rem auto;padding:0 1rem}
+h1{font-size:1.6rem}h2{margin-top:2.4rem;border-bottom:2px solid #ccc}h3{margin-top:1.6rem}
+table{border-collapse:collapse;margin:.7rem 0;font-size:.87rem}caption{text-align:left;font-weight:bold}
+th,td{padding:.2rem .7rem;border-bottom:1px solid #ddd;text-align:right}
+th:first-child,td:first-child{text-align:left}img{max-width:100%}
+.simulated{background:#fff3cd;border:2px solid #b58900;padding:.6rem 1rem;font-weight:bold}
+.wide{overflow-x:auto}summary{cursor:pointer}li{margin:.15rem 0}'''
+PAGE = '''<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>{style}</style></head><body>
+<h1>{title}</h1>
+{body}
+</body></html>
+'''
+NO_PERSON = 'Simulated operators: no person took part. These figures describe a program that plays a person.'
+ANOVA_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Correction')
+METHODS = '''<p>Each participant's repetitions are averaged first. Groups (between participants) and objects, or
+conditions (within), are tested in a mixed analysis of variance with type III sums of squares; sphericity by Mauchly's
+test. Where it is violated (p &lt; 0.05, or too few participants to tell) the degrees of freedom are corrected: by
+Greenhouse and Geisser's &epsilon; if that is at most 0.75, else by Huynh and Feldt's. Pairs: Welch's t-test with
+Cohen's d between groups, paired t-test with d<sub>z</sub> within participants; ratings: Wilcoxon's and Mann and
+Whitney's tests with the rank-biserial correlation. p-values of pairs are Bonferroni-corrected within a measure and a
+family of comparisons (the groups at each object; the objects; the conditions). Completion time and attempts are the
+measures named in advance; the others are exploratory, and no correction is made for how many they are.</p>'''
+
+
+class Report:
+    def __init__(self, title):
+        self.title, self.body = title, []
+
+    def heading(self, text, level=2):
+        self.body.append('<h%d>%s</h%d>' % (level, html.escape(text), level))
+
+    def text(self, text, css=''):
+        self.body.append('<p%s>%s</p>' % (' class="%s"' % css if css else '', html.escape(text)))
+
+    def markup(self, text):
+        self.body.append(text)
+
+    def items(self, lines):
+        self.body.append('<ul>%s</ul>' % ''.join('<li>%s</li>' % html.escape(line) for line in lines))
+
+    def figure(self, path, description):
+        with open(path, 'rb') as file:
+            data = base64.b64encode(file.read()).decode()
+        self.body.append('<img alt="%s" src="data:image/svg+xml;base64,%s">' % (html.escape(description), data))
+
+    def table(self, caption, columns, rows):
+        cells = ['<th>%s</th>' % html.escape(column) for column in columns]
+        lines = ['<tr>%s</tr>' % ''.join(cells)]
+        lines += ['<tr>%s</tr>' % ''.join('<td>%s</td>' % html.escape(cell) for cell in row) for row in rows]
+        self.body.append('<div class="wide"><table><caption>%s</caption>%s</table></div>'
+                         % (html.escape(caption), ''.join(lines)))
+
+    def folded(self, summary):
+        return _Folded(self, summary)
+
+    def write(self, path):
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(PAGE.format(title=html.escape(self.title), style=STYLE, body='\n'.join(self.body)))
+
+
+class _Folded:
+    def __init__(self, report, summary):
+        self.report, self.summary = report, summary
+
+    def __enter__(self):
+        self.report.markup('<details><summary>%s</summary>' % html.escape(self.summary))
+
+    def __exit__(self, *_):
+        self.report.markup('</details>')
+
+
+def p_text(p):
+    return 'p < 0.001' if p < 0.001 else 'p = %.3f' % p
+
+
+def number(value, digits=3):
+    return '\u2013' if value is None or np.isnan(value) else '%.*g' % (digits, value)
+
+
+def write_report(path, results, sessions, figures, notes):
+    """`figures`: (part, condition or None, kind) to the path of an SVG; in the order in which they are shown."""
+    report = Report('Study: %d sessions, %d participants' % (
+        len(sessions), len({(s.participant, s.simulated) for s in sessions})))
+    if any(s.simulated for s in sessions):
+        some = '' if all(s.simulated for s in sessions) else 'Some of the sessions, analysed apart: '
+        report.text(some + NO_PERSON, 'simulated')
+    for part in sorted(set(map(tuple, results.comparison[['source', 'gravity_g']].values))) if results else ():
+        _part(report, part, results, figures)
+    for (part, name, kind), file in figures.items():
+        if kind == 'trajectory':
+            report.heading('Trajectories: ' + name)
+            report.figure(file, 'Trajectories, raw and filtered: ' + name)
+    report.heading('What was left out, and why')
+    report.items(notes or ['Nothing.'])
+    report.heading('Methods')
+    report.markup(METHODS)
+    report.heading('Who took part')
+    _participants(report, sessions)
+    report.write(path)
+
+
+def _rows(table, part, **equal):
+    table = table[(table['source'] == part[0]) & (table['gravity_g'] == part[1])]
+    for column, value in equal.items():
+        table = table[table[column] == value]
+    return table
+
+
+def _part(report, part, results, figures):
+    report.heading(label_of(part).capitalize())
+    if part[0] == SIMULATED:
+        report.text(NO_PERSON, 'simulated')
+    _comparison(report, _rows(results.comparison, part))
+    _figure_of(report, figures, part, None, 'conditions', 'Conditions side by side')
+    _tests(report, results, part, 'all', 'conditions')
+    for condition in in_order(_rows(results.bars, part)['condition'], CONDITIONS):
+        report.heading('Groups and objects: ' + plain(condition), 3)
+        _figure_of(report, figures, part, condition, 'bars', 'Attempts and completion time')
+        _tests(report, results, part, condition, 'objects and groups')
+        if (part, condition, 'further') in figures:
+            with report.folded('Further measures'):
+                _figure_of(report, figures, part, condition, 'further', 'Further measures')
+    _ratings(report, results, part, figures)
+
+
+def _figure_of(report, figures, part, condition, kind, description):
+    if (part, condition, kind) in figures:
+        report.figure(figures[part, condition, kind], description)
+
+
+def _comparison(report, rows):
+    quantities = list(dict.fromkeys(rows['quantity']))
+    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else q.capitalize() + ' [0 to 10]' for q in quantities]
+    table = []
+    for condition in dict.fromkeys(rows['condition']):
+        some = rows[rows['condition'] == condition]
+        cells = {row.quantity: '%s \u00b1 %s%s' % (number(row.mean), number(row.sd, 2),
+                                                 '' if row.n == some['n'].max() else ' (n = %d)' % row.n)
+                 for row in some.itertuples()}
+        table.append([plain(condition), str(some['n'].max())] + [cells.get(q, '\u2013') for q in quantities])
+    report.table('Mean \u00b1 standard deviation over participants', columns, table)
+
+
+def _tests(report, results, part, condition, what):
+    anova = _rows(results.anova, part, condition=condition)
+    pairs = _rows(results.post_hoc, part, condition=condition)
+    pairs = pairs[pairs['p'].notna()]
+    main = anova[anova['measure'].isin(MAIN)]
+    if len(main):
+        report.table('Analysis of variance', ANOVA_COLUMNS, _anova_rows(main))
+    rest = anova[~anova['measure'].isin(MAIN)]
+    if len(rest) or len(pairs):
+        with report.folded('Pairs, and the analysis of variance of further measures: ' + what):
+            if len(rest):
+                report.table('Analysis of variance, exploratory', ANOVA_COLUMNS, _anova_rows(rest))
+            _pairs(report, pairs, 'Pairs', lambda row: '%s, %s' % (OF[row.measure].label, plain(row.at)))
+
+
+def _anova_rows(anova):
+    return [['%s: %s' % (OF[row.measure].label, row.effect.replace(' x ', ' \u00d7 ')),
+             'F(%s, %s) = %.2f' % (number(row.df * row.epsilon, 4), number(row.df_error * row.epsilon, 4), row.f),
+             p_text(row.p), '%.3f' % row.partial_eta_squared,
+             row.correction if row.correction == 'none' else '%s, \u03b5 = %.3f' % (row.correction, row.epsilon)]
+            for row in anova.itertuples()]
+
+
+def _pairs(report, pairs, caption, where):
+    if len(pairs):
+        report.table(caption, ['Of', 'a', 'b', 'a', 'b', 'Test', 'p, Bonferroni', '', 'Effect'], [
+            [where(row), plain(row.a), plain(row.b), number(row.centre_a), number(row.centre_b),
+             '%s%s = %.2f' % (row.test, '(%s)' % number(row.df, 4) if 'df' in row._fields and row.df == row.df else '',
+                              row.statistic),
+             p_text(row.p_bonferroni), row.stars, '%s = %.2f' % (row.effect_name.replace('_', ''), row.effect)]
+            for row in pairs.itertuples()])
+
+
+def _ratings(report, results, part, figures):
+    ratings = _rows(results.ratings, part)
+    if ratings.empty:
+        return
+    report.heading('Ratings', 3)
+    _figure_of(report, figures, part, None, 'ratings', 'Distributions of the ratings')
+    report.table('Ratings, 0 to 10', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
+        [plain(row.condition), row.question, str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
+         '%s to %s' % (number(row.quartile_1), number(row.quartile_3))] for row in ratings.itertuples()])
+    pairs = _rows(results.rating_tests, part)
+    _pairs(report, pairs[pairs['p'].notna()], 'Pairs: medians',
+           lambda row: '%s, %s' % (row.question, plain(row.condition)))
+
+
+def _participants(report, sessions):
+    people = {(s.participant, s.simulated): s for s in sessions}
+    rows = []
+    for simulated in (False, True):
+        for group in in_order({s.group for s in people.values()}, ()):
+            some = [s for s in people.values() if s.simulated == simulated and s.group == group]
+            if some:
+                rows.append([group + (' (simulated)' if simulated else ''), str(len(some)),
+                             str(sum(s.handedness == 'left' for s in some))])
+    report.table('Groups', ['Group', 'Participants', 'Left-handed'], rows)

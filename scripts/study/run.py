@@ -1,0 +1,89 @@
+"""From session folders to tables, figures and the report."""
+
+import collections
+import os
+
+from . import bars, distributions, trajectories
+from .analysis import analyse
+from .measures import COMPARED, CONDITIONS, MAIN, in_order, plain
+from .report import write_report
+from .session_folder import find_sessions, read_session
+from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
+
+
+def run(folders, output, pairs):
+    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn."""
+    sessions = [read_session(folder) for folder in find_sessions(folders)]
+    paths, notes = _read_paths(sessions, pairs)
+    data = gather(sessions) if sessions else None
+    results = analyse(data) if data else None
+    os.makedirs(output, exist_ok=True)
+    figures, pictures = collections.OrderedDict(), os.path.join(output, 'figures')
+    if data:
+        notes = data.notes + results.notes + notes
+        _write_tables(output, data, results, notes)
+        for part in parts(data):
+            _draw_part(figures, pictures, part, data, results)
+    for label, source, raw, filtered in paths:
+        file = 'trajectory_' + label.replace(os.sep, '_').replace(' ', '_')
+        figures[None, label, 'trajectory'] = trajectories.draw_trajectories(
+            raw, filtered, 'Trajectories: ' + label, source, pictures, file)
+    write_report(os.path.join(output, 'report.html'), results, sessions, figures, notes)
+    return notes
+
+
+def _read_paths(sessions, pairs):
+    """(label, source, raw, filtered) of the given pairs and of sessions that have both files; and notes."""
+    found, notes = [], []
+    for i, (raw, filtered) in enumerate(pairs):
+        found.append(('given' if len(pairs) == 1 else 'given %d' % (i + 1), PEOPLE, raw, filtered))
+    for session in sessions:
+        raw, filtered = (os.path.join(session.folder, name) for name in ('hands_raw.csv', 'hands.csv'))
+        if os.path.exists(raw) and os.path.exists(filtered):
+            found.append(('%s %s %g g' % (session.participant, session.condition, session.gravity),
+                          SIMULATED if session.simulated else PEOPLE, raw, filtered))
+        elif os.path.exists(raw) or os.path.exists(filtered):
+            notes.append('%s: no trajectory drawn: it needs both hands_raw.csv and hands.csv' % session.folder)
+    read = trajectories.read_path
+    return [(label, source, read(raw), read(filtered)) for label, source, raw, filtered in found], notes
+
+
+def _write_tables(output, data, results, notes):
+    tables = dict(results._asdict(), trials=data.trials)
+    tables.pop('notes')
+    keys = HEAD + ['object']
+    wide = data.cells.pivot_table(index=keys, columns='measure', values='value')
+    tables['participants'] = wide[measures_in(data.cells)].reset_index()
+    for name, table in tables.items():
+        table.to_csv(os.path.join(output, name + '.csv'), index=False, float_format='%.10g')
+    with open(os.path.join(output, 'left_out.txt'), 'w', encoding='utf-8') as file:
+        file.writelines(note + '\n' for note in notes)
+
+
+def _draw_part(figures, folder, part, data, results):
+    label, file = label_of(part), file_label(part)
+    cells, ratings = of_part(data.cells, part), of_part(data.ratings, part)
+    compared = [name for name in COMPARED if name in set(cells['measure'])]
+    if cells['condition'].nunique() > 1:
+        figures[part, None, 'conditions'] = distributions.draw_conditions(
+            cells, compared, 'Conditions: ' + label, folder, 'conditions_' + file)
+    for condition in in_order(cells['condition'], CONDITIONS):
+        some = cells[cells['condition'] == condition]
+        of_condition = results._replace(**{name: _of(getattr(results, name), part, condition)
+                                           for name in ('bars', 'post_hoc')})
+        further = [name for name in measures_in(some) if name not in MAIN]
+        main = [name for name in MAIN if name in set(some['measure'])]
+        for kind, measures, title in (('bars', main, 'Attempts and completion time'),
+                                      ('further', further, 'Further measures')):
+            if measures:
+                figures[part, condition, kind] = bars.draw_bars(
+                    of_condition, some, measures, '%s: %s, %s' % (title, plain(condition), label), folder,
+                    '_'.join((kind, condition, file)))
+    if len(ratings):
+        figures[part, None, 'ratings'] = distributions.draw_ratings(ratings, 'Ratings: ' + label, folder,
+                                                                    'ratings_' + file)
+
+
+def _of(table, part, condition):
+    table = of_part(table, part)
+    return table[table['condition'] == condition]

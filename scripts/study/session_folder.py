@@ -1,0 +1,229 @@
+"""Reads session folders; docs/study.md has their format. What is wrong is said in one line with file and line."""
+
+import collections
+import csv
+import io
+import math
+import os
+
+import yaml
+
+from .measures import GROUPS, QUESTIONS
+
+GRAVITY = 9.80665  # m/s^2
+VERSION = 1
+RESULTS = ('completed', 'skipped', 'timed_out', 'aborted')
+RATING_COLUMNS = ('condition', 'question', 'score')
+HIGHEST_SCORE = 10
+
+# `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` tells what was passed over.
+Session = collections.namedtuple('Session', 'folder participant group handedness condition gravity simulated '
+                                            'trials ratings notes')
+
+
+class StudyError(Exception):
+    """One line that names the file, the line in it, and what is allowed."""
+
+
+def name(text):
+    if not text.strip():
+        raise ValueError('is empty')
+    return text.strip()
+
+
+def one_of(*allowed):
+    def parse(text):
+        if text not in allowed:
+            raise ValueError("'%s' is not %s" % (text, ' or '.join(allowed)))
+        return text
+    return parse
+
+
+def amount(text):
+    """None where nothing was measured."""
+    if not text.strip():
+        return None
+    value = _number(float, text, 'a number')
+    if not math.isfinite(value) or value < 0:
+        raise ValueError("'%s' is not a finite number of at least 0" % text)
+    return value
+
+
+def count(text):
+    if not text.strip():
+        return None
+    value = _number(int, text, 'a whole number')
+    if value < 0:
+        raise ValueError("'%s' is less than 0" % text)
+    return value
+
+
+def number(text):
+    value = count(text)
+    if value is None:
+        raise ValueError('is empty')
+    return value
+
+
+def score(text):
+    value = _number(int, text, 'a whole number from 0 to %d' % HIGHEST_SCORE)
+    if not 0 <= value <= HIGHEST_SCORE:
+        raise ValueError("'%s' is not a whole number from 0 to %d" % (text, HIGHEST_SCORE))
+    return value
+
+
+def _number(kind, text, what):
+    try:
+        return kind(text)
+    except ValueError:
+        raise ValueError("'%s' is not %s" % (text, what)) from None
+
+
+TRIALS = collections.OrderedDict(
+    [('trial', number), ('object', name), ('condition', name), ('repetition', number), ('result', one_of(*RESULTS)),
+     ('start', amount)] +
+    [(column, amount) for column in ('completion_time', 'manipulation_time', 'maintenance_time', 'release_time')] +
+    [('attempts', count), ('drops', count)] +
+    [(column, amount) for column in ('path_length', 'grip_force_mean', 'grip_force_max', 'release_drift',
+                                     'release_speed')] +
+    [('tracking_losses', count)])
+RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, one_of(*QUESTIONS), score)))
+
+
+def read_table(path, columns, notes):
+    """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash."""
+    try:
+        with open(path, encoding='utf-8-sig', newline='') as file:
+            text = file.read()
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError('%s: cannot be read: %s' % (path, getattr(error, 'strerror', None) or error)) from None
+    reader = csv.reader(io.StringIO(text, newline=''))
+    header = [cell.strip() for cell in next(reader, [])]
+    missing = [column for column in columns if column not in header]
+    if missing:
+        raise StudyError("%s: line 1: no column '%s'" % (path, missing[0]))
+    places, rows = [(column, header.index(column), parse) for column, parse in columns.items()], []
+    whole = text.endswith(('\n', '\r'))
+    lines = list(_lines(reader, path))
+    for i, (line, cells) in enumerate(lines):
+        if len(cells) < len(header) and not whole and i == len(lines) - 1:
+            notes.append('%s: line %d was cut off while it was written: left out' % (path, line))
+        elif cells:
+            rows.append(_parse_row(path, line, cells, header, places))
+    return rows
+
+
+def _lines(reader, path):
+    try:
+        for cells in reader:
+            yield reader.line_num, cells
+    except csv.Error as error:
+        raise StudyError('%s: line %d: %s' % (path, reader.line_num, error)) from None
+
+
+def _parse_row(path, line, cells, header, places):
+    if len(cells) != len(header):
+        raise StudyError('%s: line %d: %d fields where the header has %d' % (path, line, len(cells), len(header)))
+    row = {}
+    for column, place, parse in places:
+        try:
+            row[column] = parse(cells[place])
+        except ValueError as error:
+            raise StudyError('%s: line %d: %s: %s' % (path, line, column, error)) from None
+    return row
+
+
+def read_header(folder):
+    """What session.yaml says, checked, as a dict."""
+    path = os.path.join(folder, 'session.yaml')
+    try:
+        with open(path, encoding='utf-8') as file:
+            said = yaml.safe_load(file)
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError('%s: cannot be read: %s' % (path, getattr(error, 'strerror', None) or error)) from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, 'problem_mark', None)
+        raise StudyError('%s: line %d: is not YAML: %s' % (path, mark.line + 1 if mark else 1,
+                                                            getattr(error, 'problem', None))) from None
+    if not isinstance(said, dict):
+        raise StudyError('%s: is not a list of keys with values' % path)
+    return {key: _checked(path, said, key, default, parse) for key, default, parse in HEADER}
+
+
+def _checked(path, said, key, default, parse):
+    if said.get(key) is None:
+        if default is None:
+            raise StudyError("%s: no '%s'" % (path, key))
+        return default
+    try:
+        return parse(said[key])
+    except ValueError as error:
+        raise StudyError('%s: %s: %s' % (path, key, error)) from None
+
+
+def _version(value):
+    if value != VERSION:
+        raise ValueError("'%s' is not %d, the version that this program knows" % (value, VERSION))
+    return value
+
+
+def _strength(vector):
+    if not isinstance(vector, list) or len(vector) != 3 or not all(type(x) in (int, float) for x in vector):
+        raise ValueError("'%s' is not three numbers [m/s^2]" % (vector,))
+    return round(math.sqrt(sum(x * x for x in vector)) / GRAVITY, 3)
+
+
+def _flag(value):
+    if not isinstance(value, bool):
+        raise ValueError("'%s' is not true or false" % (value,))
+    return value
+
+
+def _text(parse):
+    return lambda value: parse(str(value))
+
+
+HEADER = (('version', None, _version), ('participant', None, _text(name)), ('group', None, _text(one_of(*GROUPS))),
+          ('handedness', 'unknown', _text(one_of('left', 'right'))), ('condition', None, _text(name)),
+          ('gravity', None, _strength), ('simulated', False, _flag))
+
+
+def read_session(folder):
+    header, notes = read_header(folder), []
+    tables = []
+    for file, columns in (('trials.csv', TRIALS), ('ratings.csv', RATINGS)):
+        path = os.path.join(folder, file)
+        tables.append(read_table(path, columns, notes) if os.path.exists(path) else [])
+    trials, ratings = tables
+    _check_trial_numbers(os.path.join(folder, 'trials.csv'), trials)
+    header.pop('version')
+    return Session(folder=folder, trials=trials, ratings=_last_answers(ratings, folder, notes), notes=notes, **header)
+
+
+def _check_trial_numbers(path, trials):
+    seen = set()
+    for row in trials:
+        if row['trial'] in seen:
+            raise StudyError('%s: trial %d is there twice' % (path, row['trial']))
+        seen.add(row['trial'])
+
+
+def _last_answers(ratings, folder, notes):
+    """Whoever answers a question anew means the later answer."""
+    last = collections.OrderedDict(((row['condition'], row['question']), row) for row in ratings)
+    if len(last) < len(ratings):
+        notes.append('%s: %d answers replaced by later ones: left out'
+                     % (os.path.join(folder, 'ratings.csv'), len(ratings) - len(last)))
+    return list(last.values())
+
+
+def find_sessions(paths):
+    """Folders with a session.yaml, at or below the paths, each once, sorted."""
+    found = {}
+    for path in paths:
+        below = [where for where, _, files in os.walk(path) if 'session.yaml' in files]
+        if not below:
+            raise StudyError('%s: no session.yaml in it or below' % path if os.path.isdir(path) else
+                             '%s: no such folder' % path)
+        found.update((os.path.realpath(folder), folder) for folder in below)
+    return [folder for _, folder in sorted(found.items())]

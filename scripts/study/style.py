@@ -1,0 +1,46 @@
+"""What all figures share: colours that the colour-blind tell apart (Okabe and Ito), sizes, how they are written."""
+
+import os
+
+import matplotlib
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt  # noqa: E402
+
+from .study_data import SIMULATED  # noqa: E402
+
+GROUP_COLOURS = {'beginner': '#E69F00', 'veteran': '#56B4E9'}
+DARK = {'beginner': '#8A5A00', 'veteran': '#00527A'}  # the same hues, dark enough for dots and text
+INK, PALE = '#222222', '#BBBBBB'
+RAW, FILTERED = '#D55E00', '#0072B2'
+
+# Sizes in points; texts stay texts in SVG; nothing in a file depends on when it was written.
+plt.rcParams.update({
+    'font.size': 9, 'axes.titlesize': 10, 'axes.labelsize': 9, 'xtick.labelsize': 9, 'ytick.labelsize': 8,
+    'axes.spines.top': False, 'axes.spines.right': False, 'axes.edgecolor': INK, 'text.color': INK,
+    'axes.labelcolor': INK, 'xtick.color': INK, 'ytick.color': INK, 'svg.fonttype': 'none',
+    'svg.hashsalt': 'mr_hand_interaction', 'savefig.dpi': 150, 'figure.facecolor': 'white',
+})
+
+
+def new_figure(columns, width, height, rows=1, **arguments):
+    return plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **arguments)
+
+
+def finish(figure, title, caption, source):
+    """Title above, caption below; figures of simulated data say so in both."""
+    height, lines = figure.get_figheight(), 1
+    if source == SIMULATED:
+        caption, lines = 'SIMULATED OPERATORS: no person took part.\n' + caption, 2
+    figure.text(0.01, 1 - 0.06 / height, title, ha='left', va='top', fontsize=11, fontweight='bold')
+    figure.text(0.01, 0.06 / height, caption, ha='left', va='bottom', fontsize=7.5, color='#555555')
+    figure.tight_layout(rect=(0, (0.1 + 0.14 * lines) / height, 1, 1 - 0.28 / height))
+
+
+def save(figure, folder, name):
+    """Writes name.png and name.svg and gives the path of the SVG."""
+    os.makedirs(folder, exist_ok=True)
+    path = os.path.join(folder, name)
+    figure.savefig(path + '.png', metadata={'Software': None})
+    figure.savefig(path + '.svg', metadata={'Date': None})
+    plt.close(figure)
+    return path + '.svg'

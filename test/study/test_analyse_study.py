@@ -1,0 +1,119 @@
+"""The program as a user runs it: tables, figures and a report of one file."""
+
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import paths
+import made_up_study
+from study import trajectories
+
+TABLES = {'anova.csv', 'bars.csv', 'comparison.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
+          'rating_tests.csv', 'report.html', 'sphericity.csv', 'trials.csv', 'figures'}
+SOME = ('attempts', 'completion_time', 'drops')
+NO_PERSON = 'no person took part'
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.root = holder.name
+        self.output = os.path.join(self.root, 'results')
+
+    def run_program(self, *arguments):
+        return subprocess.run([paths.script('analyse_study'), *arguments, '--output', self.output],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+
+    def read(self, *name):
+        with open(os.path.join(self.output, *name), encoding='utf-8') as file:
+            return file.read()
+
+    def figures(self):
+        return sorted(os.listdir(os.path.join(self.output, 'figures')))
+
+    def write_hands(self, name, shake):
+        path = os.path.join(self.root, name)
+        columns = 'time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching'.split(',')
+        made_up_study.write_table(path, columns, [
+            dict(dict.fromkeys(columns, 0), time=i / 100, hand_id=7, finger=1, bone=3, ex=0.002 * i + shake * (i % 2),
+                 ey=0.1, ez=shake * (i % 3)) for i in range(300)])
+        return path
+
+    def test_a_study_of_people_and_simulated_operators(self):
+        made_up_study.write_study(os.path.join(self.root, 'a'), 6, conditions=('implicit', 'soft_pad'),
+                                  object_effect=2, measures=SOME)
+        made_up_study.write_study(os.path.join(self.root, 'b'), 4, simulated=True, measures=SOME)
+        hands = [self.write_hands('raw.csv', 0.004), self.write_hands('filtered.csv', 0.001)]
+        done = self.run_program(self.root, '--trajectory', *hands)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, os.path.join(self.output, 'report.html') + '\n')
+        self.assertEqual(set(os.listdir(self.output)), TABLES)
+        names = [name[:-4] for name in self.figures() if name.endswith('.svg')]
+        self.assertEqual(names, ['bars_implicit_0g', 'bars_implicit_simulated_0g', 'bars_soft_pad_0g', 'conditions_0g',
+                                 'further_implicit_0g', 'further_implicit_simulated_0g', 'further_soft_pad_0g',
+                                 'ratings_0g', 'ratings_simulated_0g', 'trajectory_given'])
+        self.assertEqual([name[:-4] for name in self.figures() if name.endswith('.png')], names)
+        for name in names:
+            drawn = self.read('figures', name + '.svg')
+            ElementTree.fromstring(drawn)
+            self.assertEqual(NO_PERSON in drawn, 'simulated' in name, name)
+        report = self.read('report.html')
+        self.assertEqual(report.count('<img '), len(names))
+        self.assertEqual(re.findall(r'(?:src|href)="(?!data:)', report), [])  # nothing from outside the file
+        self.assertTrue(NO_PERSON in report)
+        for table in ('anova.csv', 'bars.csv', 'comparison.csv', 'post_hoc.csv', 'ratings.csv', 'participants.csv'):
+            self.assertTrue(NO_PERSON in self.read(table), table)
+        drawn = self.read('figures', 'trajectory_given.svg')
+        for name, path in zip(('raw', 'filtered'), map(trajectories.read_path, hands)):
+            self.assertTrue('%s: %.2f m long' % (name, path.length) in drawn)
+
+    def test_the_same_sessions_give_the_same_files(self):
+        made_up_study.write_study(os.path.join(self.root, 'a'), 4, objects=('cube',), measures=SOME)
+        kept = []
+        for _ in range(2):
+            self.assertEqual(self.run_program(os.path.join(self.root, 'a')).returncode, 0)
+            kept.append([self.read('report.html'), self.read('anova.csv'), self.read('left_out.txt')])
+        self.assertTrue(kept[0] == kept[1])
+
+    def test_one_participant_with_one_trial(self):
+        made_up_study.write_study(os.path.join(self.root, 'a'), 1, objects=('cube',), repetitions=1,
+                                  measures=SOME)
+        done = self.run_program(self.root)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('no analysis of variance', done.stderr)
+        self.assertNotIn('Warning', done.stderr)
+
+    def test_a_bad_file_is_named_in_one_line_and_nothing_is_written(self):
+        made_up_study.write_session(os.path.join(self.root, 'one'), trials=[{'completion_time': 'soon'}])
+        done = self.run_program(self.root)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "^analyse_study: .*one/trials.csv: line 2: completion_time: 'soon' is not a "
+                                      'number\n$')
+        self.assertFalse(os.path.exists(self.output))
+
+    def test_trajectories_alone(self):
+        hands = [self.write_hands('raw.csv', 0.004), self.write_hands('filtered.csv', 0.001)]
+        self.assertEqual(self.run_program('--trajectory', *hands).returncode, 0)
+        self.assertEqual(self.figures(), ['trajectory_given.png', 'trajectory_given.svg'])
+        made_up_study.write_table(hands[1], ['time', 'hand_id'], [])
+        self.assertIn("filtered.csv: line 1: no column 'finger'", self.run_program('--trajectory', *hands).stderr)
+
+    def test_a_path_across_a_tracking_loss_has_no_length_there(self):
+        path = os.path.join(self.root, 'hands.csv')
+        made_up_study.write_table(path, list(trajectories.COLUMNS), [
+            dict(zip(trajectories.COLUMNS, (t, 3, 1, 3, 0, x, 0, 0)))
+            for t, x in ((0.0, 0), (0.01, 0.1), (0.02, 0.3), (2.0, 7.0), (2.01, 7.4))])
+        self.assertAlmostEqual(trajectories.read_path(path).length, 0.1 + 0.2 + 0.4)
+
+    def test_no_folder_is_a_mistake_of_usage(self):
+        done = self.run_program()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('a session folder or --trajectory is needed', done.stderr)
+
+
+if __name__ == '__main__':
+    unittest.main()
