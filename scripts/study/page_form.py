@@ -1,0 +1,153 @@
+"""The questions on a page that this machine serves to itself."""
+
+import collections
+import html
+import http.server
+import secrets
+import socketserver
+import threading
+import urllib.parse
+
+from .answers import TEXTS
+from .session_folder import HIGHEST_SCORE, StudyError, score
+
+LOCALHOST = '127.0.0.1'
+LONGEST = 4096  # bytes of a form
+STYLE = '''body{font:18px/1.5 sans-serif;color:#222;background:#fff;max-width:46rem;margin:2rem auto;padding:0 1rem}
+fieldset{border:1px solid #bbb;border-radius:.5rem;margin:0 0 1.5rem;padding:1rem}
+legend{font-weight:bold;padding:0 .4rem}.scale{display:flex;justify-content:space-between}
+.scale label{flex:1;text-align:center;padding:.6rem 0;cursor:pointer;border-radius:.3rem}
+.scale label:hover{background:#e8f1f8}.scale input{display:block;width:1.4rem;height:1.4rem;margin:0 auto .3rem}
+.ends{display:flex;justify-content:space-between;color:#555;font-size:.85rem}
+button{font:inherit;padding:.6rem 2rem;background:#00527a;color:#fff;border:0;border-radius:.4rem;cursor:pointer}
+.wrong{color:#a00000;font-weight:bold}'''
+PAGE = '''<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{title}</title><style>{style}</style></head><body>
+<h1>{title}</h1>
+{body}
+</body></html>
+'''
+
+
+class Form(socketserver.ThreadingMixIn, http.server.HTTPServer):
+    """Serves the form until it is answered. `questions` are those to be asked."""
+    daemon_threads = True
+
+    def __init__(self, answers, questions):
+        super().__init__((LOCALHOST, 0), _Handler)
+        self.answers, self.questions = answers, questions
+        self.token = secrets.token_urlsafe(16)  # a page from elsewhere cannot know it
+        self.lock, self.saved, self.error = threading.Lock(), False, None
+
+    @property
+    def url(self):
+        return 'http://%s:%d/' % (LOCALHOST, self.server_port)
+
+    def submit(self, fields):
+        """(status, page) for a form that was sent. A form sent twice is saved once."""
+        chosen, wrong = _checked(self.questions, fields)
+        with self.lock:
+            if not secrets.compare_digest(fields.get('token', '').encode(), self.token.encode()):
+                return 403, page('Not saved', '<p class="wrong">This form is not the one that was asked for. '
+                                              '<a href="/">Open it anew.</a></p>')
+            if wrong:
+                return 400, self.form(chosen, wrong)
+            if not self.saved:
+                try:
+                    self.answers.add(chosen)
+                except (OSError, StudyError) as error:
+                    self.error = error
+                    return 500, self.form(chosen, 'The answers could not be saved: %s' % error)
+                self.saved, self.error = True, None
+        return 200, page('Thank you', '<p>Your answers are saved. You can close this page.</p>')
+
+    def form(self, chosen, wrong=''):
+        fields = ''.join(_fieldset(question, chosen.get(question)) for question in self.questions)
+        problem = '<p class="wrong" role="alert">%s</p>' % html.escape(wrong) if wrong else ''
+        return page('Two questions' if len(self.questions) == 2 else 'A question',
+                    '<form method="post" action="/">%s<input type="hidden" name="token" value="%s">%s'
+                    '<button type="submit">Save</button></form>' % (problem, self.token, fields))
+
+
+def serve(form):
+    """Returns when the answers are saved; KeyboardInterrupt ends it before."""
+    try:
+        form.serve_forever(poll_interval=0.05)
+    finally:
+        form.server_close()
+
+
+def page(title, body):
+    return PAGE.format(title=title, style=STYLE, body=body)
+
+
+def _checked(questions, fields):
+    """The valid scores, and what is wrong with the rest in a sentence."""
+    chosen, wrong = collections.OrderedDict(), ''
+    for question in questions:
+        try:
+            chosen[question] = score(fields.get(question, ''))
+        except ValueError as error:
+            said = str(error) if fields.get(question) else 'please choose a number from 0 to %d' % HIGHEST_SCORE
+            wrong = wrong or '%s: %s.' % (question.capitalize(), said)
+    return chosen, wrong
+
+
+def _fieldset(question, chosen):
+    text, low, high = TEXTS[question]
+    choices = ''.join(
+        '<label><input type="radio" name="%s" id="%s_%d" value="%d" required%s>%d</label>'
+        % (question, question, value, value, ' checked' if value == chosen else '', value)
+        for value in range(HIGHEST_SCORE + 1))
+    return ('<fieldset><legend>%s</legend><div class="scale">%s</div><div class="ends"><span>0: %s</span>'
+            '<span>%d: %s</span></div></fieldset>' % (text, choices, low, HIGHEST_SCORE, high))
+
+
+class _Handler(http.server.BaseHTTPRequestHandler):
+    timeout = 10  # [s] for a request that does not come
+
+    def do_GET(self):
+        if self.path != '/':
+            self._reply(404, page('Not here', '<p><a href="/">The questions are here.</a></p>'))
+        elif self._is_ours():
+            self._reply(200, self.server.form({}))
+
+    def do_POST(self):
+        if not self._is_ours():
+            return
+        try:
+            length = int(self.headers.get('Content-Length', ''))
+        except ValueError:
+            length = -1
+        if not 0 <= length <= LONGEST:
+            self._reply(413, page('Not saved', '<p>That is no answer to the questions.</p>'))
+            return
+        text = self.rfile.read(length).decode('utf-8', 'replace')
+        fields = {name: values[-1] for name, values in urllib.parse.parse_qs(text).items()}
+        self._reply(*self.server.submit(fields))
+        if self.server.saved:
+            threading.Thread(target=self.server.shutdown).start()
+
+    def _is_ours(self):
+        """A name of another's that leads to this machine is turned away."""
+        ours = self.headers.get('Host') in ('%s:%d' % (name, self.server.server_port) for name in
+                                            (LOCALHOST, 'localhost'))
+        if not ours:
+            self._reply(403, page('Not here', '<p>Open %s</p>' % self.server.url))
+        return ours
+
+    def _reply(self, status, text):
+        data = text.encode('utf-8')
+        self.send_response(status)
+        for name, value in (('Content-Type', 'text/html; charset=utf-8'), ('Content-Length', str(len(data))),
+                            ('Cache-Control', 'no-store'), ('Connection', 'close'),
+                            ('Content-Security-Policy', "default-src 'none'; style-src 'unsafe-inline'; "
+                                                        "form-action 'self'; frame-ancestors 'none'")):
+            self.send_header(name, value)
+        self.end_headers()
+        self.close_connection = True
+        self.wfile.write(data)
+
+    def log_message(self, *_):
+        pass

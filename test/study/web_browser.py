@@ -1,0 +1,75 @@
+"""A headless Chromium, driven by chromedriver over the WebDriver protocol (W3C)."""
+
+import json
+import shutil
+import subprocess
+import time
+import urllib.request
+
+ELEMENT = 'element-6066-11e4-a52e-4f735466cecf'  # the key of an element's id in the protocol
+LIMIT = 60  # [s], far beyond what a reply needs
+
+
+def missing():
+    """What is not installed, or nothing."""
+    if not shutil.which('chromedriver'):
+        return 'chromedriver is not installed (Debian: chromium-driver)'
+    return ''
+
+
+class Browser:
+    def __init__(self):
+        self.driver = subprocess.Popen(['chromedriver', '--port=0'], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                       universal_newlines=True)
+        try:
+            self.address = 'http://127.0.0.1:%d' % self._port()
+            options = {'args': ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage']}
+            wanted = {'capabilities': {'alwaysMatch': {'goog:chromeOptions': options}}}
+            self.session = '/session/' + self._send('POST', '/session', wanted)['sessionId']
+        except Exception:
+            self.close()
+            raise
+
+    def _port(self):
+        for line in self.driver.stdout:
+            if 'started successfully on port' in line:
+                return int(line.rstrip().rstrip('.').split()[-1])
+        raise RuntimeError('chromedriver did not start')
+
+    def _send(self, method, path, body=None):
+        data = json.dumps(body or {}).encode() if method == 'POST' else None
+        kind = {'Content-Type': 'application/json'}
+        request = urllib.request.Request(self.address + path, data, kind, method=method)
+        with urllib.request.urlopen(request, timeout=LIMIT) as reply:
+            return json.load(reply)['value']
+
+    def open(self, url):
+        self._send('POST', self.session + '/url', {'url': url})
+
+    def find(self, css):
+        found = self._send('POST', self.session + '/element', {'using': 'css selector', 'value': css})
+        return self.session + '/element/' + found[ELEMENT]
+
+    def click(self, css):
+        self._send('POST', self.find(css) + '/click')
+
+    def text(self, css):
+        return self._send('GET', self.find(css) + '/text')
+
+    def wait_for_text(self, css, wanted):
+        end = time.monotonic() + LIMIT
+        while self.text(css) != wanted:
+            if time.monotonic() > end:
+                raise AssertionError('%s has not become %s' % (css, wanted))
+
+    def run(self, script):
+        return self._send('POST', self.session + '/execute/sync', {'script': script, 'args': []})
+
+    def close(self):
+        try:
+            if hasattr(self, 'session'):
+                self._send('DELETE', self.session)
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+            self.driver.stdout.close()
