@@ -29,6 +29,7 @@ using testing::at;
 using testing::PinchScene;
 
 constexpr double kCube = 0.05;  // edge [m]
+const Vector3 kSecondPinch(1.0, 0.0, 0.0);
 
 struct Plan {
   const char* name;
@@ -37,6 +38,7 @@ struct Plan {
   double frame_time;  // [s]
   double settled;     // [s]
   bool whole_frame;
+  bool sleep;
 };
 
 Scene pinch() {
@@ -70,8 +72,27 @@ Scene stack() {
   return scene;
 }
 
+/// Two pinches a metre apart, and four more cubes within reach of neither.
+Scene two_pinches() {
+  Scene scene = pinch();
+  for (int i = 0; i < 5; ++i) {
+    Body cube = scene.bodies.front();
+    cube.name += std::to_string(i);
+    cube.start.position = i == 0 ? kSecondPinch : Vector3(0.2 * i, 0.5, 0.5);
+    scene.bodies.push_back(cube);
+  }
+  return scene;
+}
+
 std::vector<Hand> swinging(double t) {
   return {PinchScene().hand(t, testing::swing(std::max(t - 0.5, 0.0), 0.1, 0.5))};
+}
+
+std::vector<Hand> two_swinging(double t) {
+  const Vector3 sway = testing::swing(std::max(t - 0.5, 0.0), 0.1, 0.5);
+  Hand second = PinchScene().hand(t, kSecondPinch + sway);
+  second.id += 1;
+  return {PinchScene().hand(t, sway), second};
 }
 
 std::vector<Hand> none(double) {
@@ -80,16 +101,19 @@ std::vector<Hand> none(double) {
 
 constexpr double kTrackerFrame = 1.0 / 120.0;  // [s]
 const Plan kPlans[] = {
-    {"pinch", pinch, swinging, 0.001, 0.6, false},
-    {"pinch_19_more", pinch_19_more, swinging, 0.001, 0.6, false},
-    {"stack", stack, none, 0.001, 1.0, false},
-    {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true},
+    {"pinch", pinch, swinging, 0.001, 0.6, false, true},
+    {"pinch_19_more", pinch_19_more, swinging, 0.001, 0.6, false, true},
+    {"stack", stack, none, 0.001, 1.0, false, false},
+    {"stack_asleep", stack, none, 0.001, 1.0, false, true},
+    {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true, true},
+    {"two_hands_six_objects_120_hz_frame", two_pinches, two_swinging, kTrackerFrame, 0.6, true, true},
 };
 
 /// The number of steps that were counted.
 int play(const Plan& plan) {
   constexpr double kCounted = 1.0;  // [s]
   Configuration configuration = testing::implicit_configuration();
+  configuration.contact.sleep = plan.sleep;
   configuration.step = 1.001 * plan.frame_time;  // one step a frame, though stamps are rounded
   Simulation simulation(plan.scene(), configuration);
   const long last = std::lround((plan.settled + kCounted) / plan.frame_time);

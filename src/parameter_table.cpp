@@ -76,8 +76,9 @@ std::vector<ParameterEntry> refinements() {
   const std::vector<std::pair<std::string, bool C::*>> members{
       {"anchors", &C::anchors},       {"damping", &C::damping},
       {"entry_face", &C::entry_face}, {"impact_friction", &C::impact_friction},
-      {"sweep", &C::sweep},           {"swing_back", &C::swing_back},
-      {"torsion", &C::torsion},       {"two_points", &C::two_points}};
+      {"sleep", &C::sleep},           {"sweep", &C::sweep},
+      {"swing_back", &C::swing_back}, {"torsion", &C::torsion},
+      {"two_points", &C::two_points}};
   std::vector<ParameterEntry> entries;
   for (const auto& refinement : members) {
     const auto member = refinement.second;

@@ -10,6 +10,7 @@
 #include "mr_hand_interaction/integration/free_flight.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/tracking/tracker.h"
+#include "sleeping.h"
 
 namespace mrhi {
 namespace {
@@ -42,7 +43,8 @@ struct Simulation::Impl {
         geometry(scene),
         neighbours(scene),
         finder(scene, geometry, gravity, configuration.contact),
-        body_finder(scene, geometry, gravity) {
+        body_finder(scene, geometry, gravity),
+        sleeping(scene, configuration.contact.sleep) {
     reset();
   }
 
@@ -50,6 +52,7 @@ struct Simulation::Impl {
   Rejection judge(Nanoseconds stamp);
   void plan(Nanoseconds from, Nanoseconds to);
   int steps_needed(Nanoseconds frame);
+  bool quiet(double seconds) const;
   void begin_hands(double seconds);
   void advance_step(double fraction, double step);
   void silence(Nanoseconds until);
@@ -67,6 +70,7 @@ struct Simulation::Impl {
   Neighbours neighbours;
   ContactFinder finder;
   BodyContactFinder body_finder;
+  Sleeping sleeping;
 
   SimulationState state;
   FrameResult result;
@@ -87,9 +91,12 @@ struct Simulation::Impl {
 void Simulation::Impl::reset() {
   state = SimulationState();
   for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
+  state.asleep.assign(scene.bodies.size(), 0);
   state.hands.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
   state.contacts.reserve(64 * kMaxHands);
+  state.body_contacts.reserve(16 * scene.bodies.size());
+  state.sleeping_contacts.reserve(16 * scene.bodies.size());
   hands.reserve(kMaxHands);
   strikes.clear();
   strikes.reserve(64 * kMaxHands);
@@ -126,9 +133,25 @@ int Simulation::Impl::steps_needed(Nanoseconds frame) {
   if (frame <= 0) return 0;
   if (frame <= kQuietFrame) {
     neighbours.begin_step(state.bodies, to_seconds(frame));
-    if (neighbours.quiet(state.bodies, to_seconds(frame))) return 1;
+    if (quiet(to_seconds(frame))) return 1;
   }
   return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
+}
+
+/// True if nothing that is awake may come near a hand or a body within `seconds`.
+bool Simulation::Impl::quiet(double seconds) const {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    for (const int body : neighbours.near_hand(static_cast<int>(slot))) {
+      const auto b = static_cast<std::size_t>(body);
+      if (neighbours.may_meet_hand(b, state.bodies[b], seconds)) return false;
+    }
+  }
+  for (const auto& [first, second] : neighbours.pairs()) {
+    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+    const bool asleep = state.asleep[b] && (state.asleep[a] || scene.bodies[a].fixed);
+    if (!asleep && neighbours.may_meet(a, b, state.bodies, seconds)) return false;
+  }
+  return true;
 }
 
 void Simulation::Impl::begin_hands(double seconds) {
@@ -144,10 +167,11 @@ void Simulation::Impl::begin_hands(double seconds) {
 void Simulation::Impl::advance_step(double fraction, double step) {
   for (HandMotion& hand : hands) hand.move_to(fraction);
   neighbours.begin_step(state.bodies, step);
+  sleeping.wake(neighbours, step, state);
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
   end_stage(Stage::hand_contacts);
-  body_finder.find(neighbours, state.bodies, step, state.body_contacts);
+  body_finder.find(neighbours, state.bodies, state.asleep, step, state.body_contacts);
   end_stage(Stage::body_contacts);
   changes.reset(scene.bodies.size());
   ContactStep contact_step{scene, gravity, step, state.contacts, state.body_contacts, state.bodies, changes};
@@ -155,9 +179,11 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   note_strikes(state.contacts, strikes);
   end_stage(Stage::response);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    if (state.asleep[b]) continue;
     free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
+  sleeping.settle(neighbours, step, state);
   keep_in_bounds();
   end_stage(Stage::flight);
 }

@@ -78,11 +78,13 @@ void add_contact(const BodyContact& contact, Fnv1a& hash) {
   hash.add(contact.depth);
   hash.add(contact.friction);
   hash.add(contact.struck);
+  hash.add(contact.still);
 }
 
 }  // namespace
 
 void forget_contacts(std::size_t body, SimulationState& state) {
+  wake_all(state);
   const auto forget = [](auto& contacts, auto concerns) {
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(), concerns), contacts.end());
   };
@@ -102,6 +104,7 @@ std::uint64_t hash(const SimulationState& state) {
   for (const HandTrack& track : state.hands) add_track(track, state.time, hash);
   for (const Contact& contact : state.contacts) add_contact(contact, hash);
   for (const BodyContact& contact : state.body_contacts) add_contact(contact, hash);
+  for (const BodyContact& contact : state.sleeping_contacts) add_contact(contact, hash);
   for (const Interaction& interaction : state.interactions) hash.add(interaction.level);
   return hash.value();
 }

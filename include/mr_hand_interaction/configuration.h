@@ -32,6 +32,7 @@ struct ContactConfiguration {
   bool impact_friction = true;    ///< a blow may also stop the sliding (`implicit`)
   bool damping = true;            ///< a pressed spring has a dashpot beside it (`implicit`)
   bool torsion = true;            ///< a fingertip resists twisting about its contact normal (`implicit`)
+  bool sleep = true;              ///< bodies that lie still on others cost nothing until something comes near
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
 };
 

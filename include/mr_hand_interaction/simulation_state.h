@@ -19,13 +19,18 @@ struct SimulationState {
   Nanoseconds restart_stamp = 0;           ///< newest of the frames that went back in time and were refused
   int restart_frames = 0;                  ///< how many in a row followed on from each other
   std::vector<BodyState> bodies;           ///< one per Scene::bodies, fixtures too
+  std::vector<char> asleep;                ///< likewise: lies still, and is not looked at until disturbed
   std::vector<HandTrack> hands;            ///< slots; see HandTrack::active
   std::vector<Contact> contacts;           ///< of hands with bodies, sorted by key
   std::vector<BodyContact> body_contacts;  ///< of bodies with each other, sorted by key
-  std::vector<Interaction> interactions;   ///< one per body and hand slot: hand * bodies + body
+  std::vector<BodyContact> sleeping_contacts;  ///< likewise, of bodies that are asleep
+  std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };
 
-/// Takes all contacts of a body away.
+/// Every body awake.
+void wake_all(SimulationState& state);
+
+/// Takes all contacts of a body away. Wakes all bodies.
 void forget_contacts(std::size_t body, SimulationState& state);
 
 /// FNV-1a over the bits of everything that matters to the future. Stamps count relative to `time`: the same

@@ -131,7 +131,8 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
   found_.reserve(16 * scene.bodies.size());
 }
 
-void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies, double step,
+void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
+                             const std::vector<char>& asleep, double step,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
   reaches_.resize(bodies.size());
@@ -141,6 +142,7 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   }
   for (const auto& [a, b] : neighbours.pairs()) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+    if (asleep[ib] && (asleep[ia] || scene_.bodies[ia].fixed)) continue;
     const Reach &of_a = reaches_[ia], &of_b = reaches_[ib];
     const Vector3 apart = (of_a.centre - of_b.centre).cwiseAbs() - of_a.half - of_b.half;
     if (apart.maxCoeff() <= 0.0) find_pair(ia, ib, bodies, step, contacts);

@@ -57,21 +57,19 @@ double Neighbours::reach_of(std::size_t body, const BodyState& state, double sec
   return b.bounding_radius + way + kFollowed;
 }
 
-bool Neighbours::quiet(const std::vector<BodyState>& bodies, double seconds) const {
-  for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
-    for (const int body : near_hand_[slot]) {
-      const auto b = static_cast<std::size_t>(body);
-      const Vector3& centre = bodies[b].pose.position;
-      const Vector3 nearest = centre.cwiseMax(reaches_[slot].min).cwiseMin(reaches_[slot].max);
-      if ((centre - nearest).norm() <= reach_of(b, bodies[b], seconds)) return false;
-    }
-  }
-  for (const auto& [first, second] : pairs_) {
-    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-    const double apart = (bodies[a].pose.position - bodies[b].pose.position).norm();
-    if (apart <= reach_of(a, bodies[a], seconds) + reach_of(b, bodies[b], seconds)) return false;
-  }
-  return true;
+bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double seconds) const {
+  const Vector3& centre = state.pose.position;
+  const double radius = reach_of(body, state, seconds);
+  return std::any_of(reaches_.begin(), reaches_.end(), [&](const Reach& hand) {
+    if (hand.min.x() > hand.max.x()) return false;
+    return (centre - centre.cwiseMax(hand.min).cwiseMin(hand.max)).norm() <= radius;
+  });
+}
+
+bool Neighbours::may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies,
+                          double seconds) const {
+  const double apart = (bodies[a].pose.position - bodies[b].pose.position).norm();
+  return apart <= reach_of(a, bodies[a], seconds) + reach_of(b, bodies[b], seconds);
 }
 
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {

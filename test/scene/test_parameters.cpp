@@ -58,6 +58,7 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.contact.entry_face, c.contact.entry_face);
   EXPECT_EQ(d.contact.impact_friction, c.contact.impact_friction);
   EXPECT_EQ(d.contact.object_stiffness, c.contact.object_stiffness);
+  EXPECT_EQ(d.contact.sleep, c.contact.sleep);
   EXPECT_EQ(d.contact.sweep, c.contact.sweep);
   EXPECT_EQ(d.contact.swing_back, c.contact.swing_back);
   EXPECT_EQ(d.contact.torsion, c.contact.torsion);
@@ -73,7 +74,7 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
-  c.contact = {false, false, false, false, false, false, false, false, 1};
+  c.contact = {false, false, false, false, false, false, false, false, false, 1};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -105,6 +106,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "contact/entry_face",
                                           "contact/impact_friction",
                                           "contact/object_stiffness",
+                                          "contact/sleep",
                                           "contact/sweep",
                                           "contact/swing_back",
                                           "contact/torsion",
@@ -135,6 +137,7 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_FALSE(set("contact/entry_face", "false").contact.entry_face);
   EXPECT_FALSE(set("contact/impact_friction", "false").contact.impact_friction);
   EXPECT_EQ(3e4, set("contact/object_stiffness", "3e4").contact.object_stiffness);
+  EXPECT_FALSE(set("contact/sleep", "false").contact.sleep);
   EXPECT_FALSE(set("contact/sweep", "false").contact.sweep);
   EXPECT_FALSE(set("contact/swing_back", "false").contact.swing_back);
   EXPECT_FALSE(set("contact/torsion", "false").contact.torsion);

@@ -33,6 +33,7 @@ struct BodyContact {
   Vector3 anchor_b = Vector3::Zero();  ///< this point of b, body frame
   Friction friction = Friction::sticking;
   bool struck = false;  ///< the impulse of this approach has been given
+  double still = 0.0;   ///< for how long both bodies have been as good as at rest [s]
 
   // This step.
   Vector3 point = Vector3::Zero();    ///< midway between the surfaces, where they touch or will touch

@@ -15,9 +15,10 @@ class BodyContactFinder {
   /// Keeps references.
   BodyContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
 
-  /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory.
-  void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies, double step,
-            std::vector<BodyContact>& contacts);
+  /// Every step: replaces `contacts` (sorted by key) by those of now, but for bodies that are `asleep`.
+  /// Contacts that last keep their memory.
+  void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
+            const std::vector<char>& asleep, double step, std::vector<BodyContact>& contacts);
 
  private:
   struct Reach {

@@ -22,9 +22,10 @@ class Neighbours {
   /// Every step, of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
-  /// True if no body can touch a hand or another body in this frame of `seconds`. Depends on what is where
-  /// alone, not on what is listed.
-  bool quiet(const std::vector<BodyState>& bodies, double seconds) const;
+  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`. By
+  /// what is where alone, not by what is listed.
+  bool may_meet_hand(std::size_t body, const BodyState& state, double seconds) const;
+  bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
 
   /// Bodies near the hand in `slot`, ascending.
   const std::vector<int>& near_hand(int slot) const { return near_hand_[static_cast<std::size_t>(slot)]; }

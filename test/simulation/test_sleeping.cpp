@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+using testing::box_body;
+using testing::finger;
+
+constexpr double kCube = 0.05;   // edge [m]
+constexpr double kRate = 100.0;  // [1/s]
+
+Body block(const char* name, const Vector3& position) {
+  Body body = box_body(Vector3::Constant(kCube), 0.1);
+  body.name = name;
+  body.start.position = position;
+  return body;
+}
+
+/// A table, two cubes one on the other, and a ball high above them.
+Scene standing_cubes() {
+  Body table = box_body(Vector3(1.0, 1.0, 0.1), 1.0);
+  table.name = "table";
+  table.fixed = true;
+  table.start.position.z() = -0.05;
+  Scene scene = testing::scene_of(table);
+  scene.gravity = Vector3(0, 0, -9.81);
+  scene.bodies.push_back(block("lower", Vector3(0, 0, 0.5 * kCube)));
+  scene.bodies.push_back(block("upper", Vector3(0.003, 0, 1.5 * kCube)));
+  return scene;
+}
+
+struct Played {
+  Played(Scene scene, bool sleep) : simulation(std::move(scene), configuration(sleep)) {}
+  static Configuration configuration(bool sleep) {
+    Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+    configuration.contact.sleep = sleep;
+    return configuration;
+  }
+  void run(double until, const std::function<std::vector<Hand>(double)>& hands = nullptr) {
+    for (; frame <= std::lround(until * kRate); ++frame) {
+      const double t = static_cast<double>(frame) / kRate;
+      simulation.advance({at(t), hands ? hands(t) : std::vector<Hand>()});
+    }
+  }
+  bool asleep(std::size_t body) const { return simulation.state().asleep[body] != 0; }
+  Vector3 place(std::size_t body) const { return simulation.state().bodies[body].pose.position; }
+
+  Simulation simulation;
+  long frame = 0;
+};
+
+/// A fingertip that pushes the upper cube off from 2 s on.
+std::vector<Hand> pushing(double t) {
+  const Vector3 tip(-0.3 + 0.15 * std::max(t - 2.0, 0.0), 0.0, 1.5 * kCube);
+  return {finger(tip - Vector3(0, 0.01, 0), tip + Vector3(0, 0.01, 0), 0.008)};
+}
+
+TEST(Sleeping, cubes_that_stand_still_sleep_where_they_stand) {
+  Played sleeping(standing_cubes(), true), awake(standing_cubes(), false);
+  sleeping.run(5.0);
+  awake.run(5.0);
+  for (const std::size_t cube : {1u, 2u}) {
+    EXPECT_TRUE(sleeping.asleep(cube));
+    EXPECT_FALSE(awake.asleep(cube));
+    // Half a second at less than a micrometre per second.
+    EXPECT_LT((sleeping.place(cube) - awake.place(cube)).norm(), 1e-6);
+  }
+  EXPECT_TRUE(sleeping.simulation.state().body_contacts.empty());
+  EXPECT_FALSE(sleeping.simulation.state().sleeping_contacts.empty());
+}
+
+TEST(Sleeping, a_hand_that_comes_finds_them_awake_and_moves_them_as_if_they_had_not_slept) {
+  Played sleeping(standing_cubes(), true), awake(standing_cubes(), false);
+  sleeping.run(2.5, pushing);
+  EXPECT_TRUE(sleeping.asleep(2));
+  sleeping.run(4.5, pushing);
+  awake.run(4.5, pushing);
+  EXPECT_GT(awake.place(2).x(), 0.05);
+  for (const std::size_t cube : {1u, 2u})
+    EXPECT_LT((sleeping.place(cube) - awake.place(cube)).norm(), 1e-5) << cube;  // of 9 cm of sliding
+}
+
+TEST(Sleeping, what_falls_on_a_sleeper_wakes_the_whole_pile) {
+  const auto with_ball = [] {
+    Scene scene = standing_cubes();
+    Body ball = testing::ball_body(0.02, 0.2);
+    ball.name = "ball";
+    ball.start.position = Vector3(0.015, 0.0, 7.0);
+    scene.bodies.push_back(ball);
+    scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};
+    return scene;
+  };
+  Played sleeping(with_ball(), true), awake(with_ball(), false);
+  sleeping.run(1.0);
+  EXPECT_TRUE(sleeping.asleep(1) && sleeping.asleep(2));
+  EXPECT_FALSE(sleeping.asleep(3));
+  sleeping.run(1.3);
+  awake.run(1.3);
+  EXPECT_FALSE(sleeping.asleep(1) || sleeping.asleep(2));
+  for (const std::size_t body : {1u, 2u, 3u})
+    EXPECT_LT((sleeping.place(body) - awake.place(body)).norm(), 1e-4) << body;
+}
+
+TEST(Sleeping, slow_drift_is_never_put_to_rest) {
+  Scene scene = standing_cubes();
+  scene.gravity.setZero();
+  scene.bodies[1].start.position.z() += 0.001;  // does not touch the table
+  scene.bodies[1].start_twist.linear = Vector3(1e-7, 0, 0);
+  scene.bodies[2].start.position.z() += 0.01;
+  Played played(scene, true);
+  played.run(10.0);
+  EXPECT_FALSE(played.asleep(1));
+  EXPECT_EQ(played.simulation.state().bodies[1].linear_momentum, Vector3(1e-8, 0, 0));
+}
+
+TEST(Sleeping, a_copied_sleeper_wakes_with_the_same_bits) {
+  Played first(standing_cubes(), true), second(standing_cubes(), true);
+  first.run(2.5, pushing);
+  second.simulation.set_state(first.simulation.state());
+  second.frame = first.frame;
+  first.run(4.0, pushing);
+  second.run(4.0, pushing);
+  EXPECT_EQ(hash(first.simulation.state()), hash(second.simulation.state()));
+}
+
+}  // namespace
+}  // namespace mrhi
