@@ -329,6 +329,7 @@ Nanoseconds Simulation::time() const {
 }
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
+  impl_->state.asleep.resize(impl_->scene.bodies.size(), 0);
   impl_->steps = impl_->steps_done = 0;
 }
 
