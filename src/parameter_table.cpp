@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "mr_hand_interaction/tracking/filter_memory.h"
 #include "scene/material_fields.h"
 #include "scene/text.h"
 #include "scene/yaml_values.h"
 
 namespace mrhi {
 namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 template <class T>
 using Member = std::function<T&(Configuration&)>;
@@ -91,9 +94,36 @@ std::vector<ParameterEntry> refinements() {
   return entries;
 }
 
+std::vector<ParameterEntry> filter_parameters() {
+  using C = Configuration;
+  return {choice<FilterKind>(
+              "filter/type",
+              {{"none", FilterKind::none},
+               {"window", FilterKind::window},
+               {"one_euro", FilterKind::one_euro},
+               {"constant_velocity", FilterKind::constant_velocity}},
+              [](C & c) -> auto& { return c.filter.type; }),
+          integer(
+              "filter/window", 1, kMaxFilterWindow, [](C & c) -> auto& { return c.filter.window; }),
+          number(
+              "filter/min_cutoff", " [Hz]", {0, kNoLimit, false},
+              [](C & c) -> auto& { return c.filter.min_cutoff; }),
+          number(
+              "filter/beta", " [Hz per m/s]", {0}, [](C & c) -> auto& { return c.filter.beta; }),
+          number(
+              "filter/derivative_cutoff", " [Hz]", {0, kNoLimit, false},
+              [](C & c) -> auto& { return c.filter.derivative_cutoff; }),
+          number(
+              "filter/noise", " [m]", {0, kNoLimit, false}, [](C & c) -> auto& { return c.filter.noise; }),
+          number(
+              "filter/acceleration", " [m/s^2]", {0, kNoLimit, false},
+              [](C & c) -> auto& { return c.filter.acceleration; }),
+          number(
+              "filter/agility", " [1/s]", {0}, [](C & c) -> auto& { return c.filter.agility; })};
+}
+
 std::vector<ParameterEntry> make_table() {
   using C = Configuration;
-  const double no_limit = std::numeric_limits<double>::infinity();
   std::vector<ParameterEntry> table{
       choice<ContactModelKind>(
           "contact_model",
@@ -105,24 +135,20 @@ std::vector<ParameterEntry> make_table() {
            {"soft_pad", ContactModelKind::soft_pad}},
           [](C & c) -> auto& { return c.contact_model; }),
       number(
-          "contact/object_stiffness", " [N/m]", {0, no_limit, false},
+          "contact/object_stiffness", " [N/m]", {0, kNoLimit, false},
           [](C & c) -> auto& { return c.contact.object_stiffness; }),
       number(
           "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
       {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity},
-      choice<FilterKind>(
-          "filter/type", {{"none", FilterKind::none}, {"window", FilterKind::window}},
-          [](C & c) -> auto& { return c.filter.type; }),
-      integer(
-          "filter/window", 1, 16, [](C & c) -> auto& { return c.filter.window; }),
       number(
           "hand/radius_scale", "", {0.1, 10}, [](C & c) -> auto& { return c.hand_radius_scale; }),
       number(
           "tracking/hold_time", " [s]", {0, 10}, [](C & c) -> auto& { return c.tracking.hold_time; }),
       number(
-          "tracking/max_speed", " [m/s]", {0, no_limit, false},
+          "tracking/max_speed", " [m/s]", {0, kNoLimit, false},
           [](C & c) -> auto& { return c.tracking.max_speed; }),
   };
+  for (ParameterEntry& entry : filter_parameters()) table.push_back(std::move(entry));
   for (ParameterEntry& entry : refinements()) table.push_back(std::move(entry));
   for (const MaterialField& field : material_fields()) {
     const auto member = field.value;

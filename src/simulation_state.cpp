@@ -40,6 +40,17 @@ void add_hand(const Hand& hand, Fnv1a& hash) {
   }
 }
 
+void add_filter(const FilterMemory& memory, Fnv1a& hash) {
+  for (int i = 0; i < memory.history.size; ++i)
+    add_hand(memory.history.samples[static_cast<std::size_t>(i)], hash);
+  add_hand(memory.filtered, hash);
+  for (const Vector3& velocity : memory.velocity.points) hash.add(velocity);
+  hash.add(memory.velocity.turn);
+  hash.add(memory.variance.position);
+  hash.add(memory.variance.mixed);
+  hash.add(memory.variance.speed);
+}
+
 void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   hash.add(track.active);
   if (!track.active) return;
@@ -49,8 +60,7 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   hash.add(now - track.last_seen);
   add_hand(track.previous, hash);
   add_hand(track.current, hash);
-  for (int i = 0; i < track.history.size; ++i)
-    add_hand(track.history.samples[static_cast<std::size_t>(i)], hash);
+  add_filter(track.filter, hash);
   hash.add(track.rejoin.duration);
   if (track.rejoin.duration > 0) {
     hash.add(now - track.rejoin.begin);

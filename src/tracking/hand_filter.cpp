@@ -1,67 +1,61 @@
 #include "mr_hand_interaction/tracking/hand_filter.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+
+#include "filters.h"
 
 namespace mrhi {
 namespace {
 
-Quaternion mean_orientation(const SampleHistory& history, int count) {
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector4d q = history.samples[static_cast<std::size_t>(i)].palm.orientation.coeffs();
-    sum += q * q.transpose();
+int samples_needed(const FilterConfiguration& filter) {
+  switch (filter.type) {
+    case FilterKind::window:
+      return std::min(filter.window, kMaxFilterWindow);
+    case FilterKind::one_euro:
+      return 2;
+    case FilterKind::none:
+    case FilterKind::constant_velocity:
+      break;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
-  Quaternion mean(Eigen::Vector4d(solver.eigenvectors().col(3)));
-  // q and -q are one rotation: keep the newest sample's sign, so that the result does not depend on the
-  // solver's.
-  if (mean.dot(history.samples[0].palm.orientation) < 0.0) mean.coeffs() = -mean.coeffs();
-  return mean.normalized();
+  return 1;
 }
 
-Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
-  Capsule sum;
-  int present = 0;
-  while (present < count &&
-         history.samples[static_cast<std::size_t>(present)].capsules[capsule].radius > 0.0) {
-    const Capsule& sample = history.samples[static_cast<std::size_t>(present)].capsules[capsule];
-    sum.start += sample.start;
-    sum.end += sample.end;
-    sum.radius += sample.radius;
-    ++present;
+Hand pass(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
+  switch (filter.type) {
+    case FilterKind::window:
+      return window_mean(filter, memory);
+    case FilterKind::one_euro:
+      return one_euro(elapsed, filter, memory);
+    case FilterKind::constant_velocity:
+      return constant_velocity(elapsed, filter, memory);
+    case FilterKind::none:
+      break;
   }
-  if (present == 0) return {};
-  return {sum.start / present, sum.end / present, sum.radius / present};
-}
-
-Hand window_mean(const SampleHistory& history, int window) {
-  const int count = std::min(window, history.size);
-  Hand mean = history.samples[0];
-  if (count == 1) return mean;
-  for (int i = 1; i < count; ++i) {
-    const Hand& sample = history.samples[static_cast<std::size_t>(i)];
-    mean.palm.position += sample.palm.position;
-    mean.wrist += sample.wrist;
-    mean.palm_width += sample.palm_width;
-  }
-  mean.palm.position /= count;
-  mean.wrist /= count;
-  mean.palm_width /= count;
-  mean.palm.orientation = mean_orientation(history, count);
-  for (std::size_t c = 0; c < kCapsules; ++c) mean.capsules[c] = mean_capsule(history, count, c);
-  return mean;
+  return memory.history.samples[0];
 }
 
 }  // namespace
 
-int history_length(const FilterConfiguration& filter) {
-  return filter.type == FilterKind::window ? std::min(filter.window, kMaxFilterWindow) : 1;
+Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
+  if (memory.empty()) {
+    memory.restart(sample);
+    return sample;
+  }
+  memory.history.push(sample, samples_needed(filter));
+  memory.filtered = pass(elapsed, filter, memory);
+  return memory.filtered;
 }
 
-Hand filtered(const SampleHistory& history, const FilterConfiguration& filter) {
-  if (filter.type == FilterKind::none) return history.samples[0];
-  return window_mean(history, filter.window);
+double rms_speed(const HandVelocity& velocity, const Hand& hand) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t point = 2; point < kHandPoints; ++point) {
+    if (!has_point(hand, point)) continue;
+    sum += velocity.points[point].squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
 }  // namespace mrhi

@@ -5,14 +5,6 @@
 
 namespace mrhi {
 
-void SampleHistory::push(const Hand& sample, int keep) {
-  size = std::min(size + 1, keep);
-  for (int i = size - 1; i > 0; --i) {
-    samples[static_cast<std::size_t>(i)] = samples[static_cast<std::size_t>(i - 1)];
-  }
-  samples[0] = sample;
-}
-
 // With s(u) the share of the way at the share u of the duration T, the hand is at s (way + speed u T) beyond
 // where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + way/T^2 max|s''|.
 Nanoseconds rejoin_duration(double way, double away) {

@@ -71,8 +71,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.held = false;
   track.appeared = true;
   track.emerged = false;
-  track.history.clear();
-  track.history.push(hand, 1);
+  track.filter.restart(hand);
   track.previous = track.current = hand;
   track.last_seen = stamp;
   track.rejoin.duration = 0;
@@ -80,19 +79,18 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
 
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
-  if (farthest_joint(track.history.samples[0], hand) > configuration.tracking.max_speed * away) {
+  if (farthest_joint(track.filter.history.samples[0], hand) > configuration.tracking.max_speed * away) {
     appear(hand, stamp, track);
     return;
   }
   if (track.held) {
-    track.history.clear();
+    track.filter.clear();
     track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), away)};
   }
   track.emerged = track.appeared;
   track.appeared = track.held = false;
-  track.history.push(hand, history_length(configuration.filter));
   track.previous = track.current;
-  track.current = filtered(track.history, configuration.filter);
+  track.current = filtered(hand, away, configuration.filter, track.filter);
   track.last_seen = stamp;
   if (track.rejoin.duration == 0) return;
   track.current = catching_up(track.rejoin, track.current, stamp);
@@ -133,7 +131,7 @@ void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>
   for (HandTrack& track : hands) {
     if (!track.active || to_seconds(now - track.last_seen) <= hold_time) continue;
     track.active = false;
-    track.history.clear();
+    track.filter.clear();
     events.push_back({now, EventKind::hand_lost, -1, track.current.id});
   }
 }

@@ -46,6 +46,12 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.gravity.has_value(), c.gravity.has_value());
   EXPECT_EQ(d.filter.type, c.filter.type);
   EXPECT_EQ(d.filter.window, c.filter.window);
+  EXPECT_EQ(d.filter.min_cutoff, c.filter.min_cutoff);
+  EXPECT_EQ(d.filter.beta, c.filter.beta);
+  EXPECT_EQ(d.filter.derivative_cutoff, c.filter.derivative_cutoff);
+  EXPECT_EQ(d.filter.noise, c.filter.noise);
+  EXPECT_EQ(d.filter.acceleration, c.filter.acceleration);
+  EXPECT_EQ(d.filter.agility, c.filter.agility);
   EXPECT_EQ(d.material.restitution, c.material.restitution);
   EXPECT_EQ(d.material.static_friction, c.material.static_friction);
   EXPECT_EQ(d.material.dynamic_friction, c.material.dynamic_friction);
@@ -71,7 +77,7 @@ Configuration unlike_defaults() {
   c.contact_model = ContactModelKind::impulse;
   c.step = 0.004;
   c.gravity = Vector3(1, 2, 3);
-  c.filter = {FilterKind::none, 7};
+  c.filter = {FilterKind::none, 7, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
   c.contact = {false, false, false, false, false, false, false, false, false, 1};
@@ -112,6 +118,12 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "contact/torsion",
                                           "contact/two_points",
                                           "contact_model",
+                                          "filter/acceleration",
+                                          "filter/agility",
+                                          "filter/beta",
+                                          "filter/derivative_cutoff",
+                                          "filter/min_cutoff",
+                                          "filter/noise",
                                           "filter/type",
                                           "filter/window",
                                           "gravity",
@@ -147,7 +159,15 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_FALSE(set("gravity", "scene").gravity);
   EXPECT_EQ(FilterKind::none, set("filter/type", "none").filter.type);
   EXPECT_EQ(FilterKind::window, set("filter/type", "window").filter.type);
+  EXPECT_EQ(FilterKind::one_euro, set("filter/type", "one_euro").filter.type);
+  EXPECT_EQ(FilterKind::constant_velocity, set("filter/type", "constant_velocity").filter.type);
   EXPECT_EQ(16, set("filter/window", "16").filter.window);
+  EXPECT_EQ(1.5, set("filter/min_cutoff", "1.5").filter.min_cutoff);
+  EXPECT_EQ(0, set("filter/beta", "0").filter.beta);
+  EXPECT_EQ(5, set("filter/derivative_cutoff", "5").filter.derivative_cutoff);
+  EXPECT_EQ(1e-3, set("filter/noise", "1e-3").filter.noise);
+  EXPECT_EQ(2, set("filter/acceleration", "2").filter.acceleration);
+  EXPECT_EQ(0, set("filter/agility", "0").filter.agility);
   EXPECT_EQ(1, set("material/restitution", "1").material.restitution);
   EXPECT_EQ(0.7, set("material/static_friction", "0.7").material.static_friction);
   EXPECT_EQ(0, set("material/dynamic_friction", "0").material.dynamic_friction);
@@ -180,7 +200,13 @@ TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
       {{"gravity", "[0, 0]", "three finite numbers"}},
       {{"gravity", "[0, 0, .inf]", "three finite numbers"}},
       {{"gravity", "moon", "'scene'"}},
-      {{"filter/type", "kalman", "none, window"}},
+      {{"filter/type", "kalman", "none, window, one_euro, constant_velocity"}},
+      {{"filter/min_cutoff", "0", "above 0 [Hz]"}},
+      {{"filter/beta", "-1", "at least 0 [Hz per m/s]"}},
+      {{"filter/derivative_cutoff", "0", "above 0 [Hz]"}},
+      {{"filter/noise", "0", "above 0 [m]"}},
+      {{"filter/acceleration", "0", "above 0 [m/s^2]"}},
+      {{"filter/agility", "-1", "at least 0 [1/s]"}},
       {{"filter/window", "0", "from 1 to 16"}},
       {{"filter/window", "17", "from 1 to 16"}},
       {{"filter/window", "2.5", "whole number"}},

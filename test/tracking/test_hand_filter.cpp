@@ -1,77 +1,208 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mr_hand_interaction/tracking/hand_filter.h"
 #include "support/fixtures.h"
 
 namespace mrhi {
 namespace {
 
+constexpr double kFrame = 1.0 / 120.0;  // [s]
+constexpr std::size_t kTip = capsule_index(1, 3), kMiddle = capsule_index(1, 2);
+
 Hand hand_at(double x) {
   return testing::finger(Vector3(x, 0, 0), Vector3(x, 0, 0.02), 0.008);
 }
 
-SampleHistory history_of(const std::vector<double>& oldest_first, int keep) {
-  SampleHistory history;
-  for (const double x : oldest_first) history.push(hand_at(x), keep);
-  return history;
+FilterConfiguration filter_of(FilterKind kind) {
+  FilterConfiguration filter;
+  filter.type = kind;
+  return filter;
 }
 
-constexpr std::size_t kTip = capsule_index(1, 3);
+Hand last_of(const std::vector<Hand>& oldest_first, const FilterConfiguration& filter) {
+  FilterMemory memory;
+  Hand last;
+  for (const Hand& hand : oldest_first) last = filtered(hand, kFrame, filter, memory);
+  return last;
+}
+
+double x_after(const std::vector<double>& oldest_first, const FilterConfiguration& filter) {
+  std::vector<Hand> hands;
+  for (const double x : oldest_first) hands.push_back(hand_at(x));
+  return last_of(hands, filter).capsules[kTip].start.x();
+}
+
+const FilterConfiguration kWindow = filter_of(FilterKind::window);
+const FilterConfiguration kOneEuro = filter_of(FilterKind::one_euro);
+const FilterConfiguration kConstantVelocity = filter_of(FilterKind::constant_velocity);
 
 TEST(WindowFilter, is_the_mean_of_the_last_F_frames_with_gain_one) {
-  const FilterConfiguration filter;  // F = 3
-  const SampleHistory history = history_of({9.0, 1.0, 2.0, 6.0}, history_length(filter));
-  EXPECT_NEAR(filtered(history, filter).capsules[kTip].start.x(), 3.0, 1e-15);
-  const SampleHistory still = history_of({0.25, 0.25, 0.25, 0.25}, history_length(filter));
-  EXPECT_DOUBLE_EQ(filtered(still, filter).capsules[kTip].start.x(),
-                   0.25);  // Eq. 1 as printed would give 1/3
+  EXPECT_NEAR(x_after({9.0, 1.0, 2.0, 6.0}, kWindow), 3.0, 1e-15);  // F = 3
+  // Eq. 1 as printed would give 1/3.
+  EXPECT_DOUBLE_EQ(x_after({0.25, 0.25, 0.25, 0.25}, kWindow), 0.25);
 }
 
 TEST(WindowFilter, takes_fewer_frames_at_the_start) {
-  const FilterConfiguration filter;
-  EXPECT_DOUBLE_EQ(filtered(history_of({1.0}, 3), filter).capsules[kTip].start.x(), 1.0);
-  EXPECT_DOUBLE_EQ(filtered(history_of({1.0, 2.0}, 3), filter).capsules[kTip].start.x(), 1.5);
+  EXPECT_DOUBLE_EQ(x_after({1.0}, kWindow), 1.0);
+  EXPECT_DOUBLE_EQ(x_after({1.0, 2.0}, kWindow), 1.5);
 }
 
 TEST(WindowFilter, none_gives_the_newest_sample) {
-  FilterConfiguration filter;
-  filter.type = FilterKind::none;
-  EXPECT_DOUBLE_EQ(filtered(history_of({1.0, 2.0}, history_length(filter)), filter).capsules[kTip].start.x(),
-                   2.0);
+  EXPECT_DOUBLE_EQ(x_after({1.0, 2.0}, filter_of(FilterKind::none)), 2.0);
 }
 
 TEST(WindowFilter, orientation_mean_lies_halfway_and_ignores_the_quaternions_sign) {
-  FilterConfiguration filter;
+  FilterConfiguration filter = kWindow;
   filter.window = 2;
   Hand a = hand_at(0), b = hand_at(0);
   a.palm.orientation = Eigen::AngleAxisd(0.2, Vector3::UnitY());
   b.palm.orientation = Eigen::AngleAxisd(1.0, Vector3::UnitY());
   b.palm.orientation.coeffs() = -b.palm.orientation.coeffs();
-  SampleHistory history;
-  history.push(a, 2);
-  history.push(b, 2);
   const Quaternion expected(Eigen::AngleAxisd(0.6, Vector3::UnitY()));
-  EXPECT_LE(filtered(history, filter).palm.orientation.angularDistance(expected), 1e-7);
+  EXPECT_LE(last_of({a, b}, filter).palm.orientation.angularDistance(expected), 1e-7);
 }
 
 TEST(WindowFilter, a_finger_that_was_missing_is_averaged_from_when_it_is_back) {
-  const FilterConfiguration filter;
   Hand without = hand_at(5.0);
   without.capsules[kTip].radius = 0.0;
-  SampleHistory history;
-  history.push(hand_at(100.0), 3);
-  history.push(without, 3);
-  history.push(hand_at(1.0), 3);
-  EXPECT_DOUBLE_EQ(filtered(history, filter).capsules[kTip].start.x(), 1.0);
-  history.push(without, 3);
-  EXPECT_FALSE(filtered(history, filter).has(kTip));
+  EXPECT_DOUBLE_EQ(last_of({hand_at(100.0), without, hand_at(1.0)}, kWindow).capsules[kTip].start.x(), 1.0);
+  EXPECT_FALSE(last_of({hand_at(100.0), without, hand_at(1.0), without}, kWindow).has(kTip));
 }
 
 TEST(WindowFilter, delays_a_steady_motion_by_half_the_window_less_one) {
-  const FilterConfiguration filter;
-  const SampleHistory history = history_of({0.0, 0.01, 0.02, 0.03}, 3);
-  EXPECT_NEAR(filtered(history, filter).capsules[kTip].start.x(), 0.02, 1e-15);  // one frame behind at F = 3
+  // One frame behind at F = 3.
+  EXPECT_NEAR(x_after({0.0, 0.01, 0.02, 0.03}, kWindow), 0.02, 1e-15);
 }
+
+// First-order low-pass: the share x/(1 + x) of a step is taken at once, x = 2 pi cutoff elapsed.
+TEST(OneEuroFilter, of_a_hand_at_rest_is_a_low_pass_at_min_cutoff) {
+  FilterConfiguration filter = kOneEuro;
+  filter.beta = 0.0;
+  const double x = 2.0 * M_PI * filter.min_cutoff * kFrame;
+  EXPECT_NEAR(x_after({0.0, 1.0}, filter), x / (1.0 + x), 1e-12);
+}
+
+// A first-order low-pass stays 1/(2 pi cutoff) behind a steady motion.
+TEST(OneEuroFilter, lags_the_less_the_faster_the_hand_moves) {
+  for (const double speed : {0.01, 0.1, 1.0}) {
+    std::vector<double> way;
+    for (int i = 0; i < 240; ++i) way.push_back(i * kFrame * speed);
+    const double lag = (way.back() - x_after(way, kOneEuro)) / speed;  // [s]
+    EXPECT_NEAR(lag, 1.0 / (2.0 * M_PI * (kOneEuro.min_cutoff + kOneEuro.beta * speed)), 1e-6) << speed;
+  }
+}
+
+TEST(ConstantVelocityFilter, does_not_lag_behind_a_steady_motion) {
+  std::vector<double> way;
+  for (int i = 0; i < 240; ++i) way.push_back(0.3 * i * kFrame);
+  EXPECT_NEAR(x_after(way, kConstantVelocity), way.back(), 1e-9);
+}
+
+// Two samples fix a line, so the second is taken nearly as it is; from there on the gain falls to what it is
+// in the long run, which for white acceleration is Kalata's (1984) with the tracking index a T^2 / noise.
+TEST(ConstantVelocityFilter, gain_settles_at_that_of_the_tracking_index) {
+  FilterConfiguration filter = kConstantVelocity;
+  filter.agility = 0.0;
+  FilterMemory memory;
+  for (int i = 0; i < 2000; ++i) filtered(hand_at(0.0), kFrame, filter, memory);
+  const double index = filter.acceleration * kFrame * kFrame / filter.noise;
+  const double root = 0.25 * (4.0 + index - std::sqrt(8.0 * index + index * index));
+  EXPECT_NEAR(filtered(hand_at(1.0), kFrame, filter, memory).capsules[kTip].start.x(), 1.0 - root * root,
+              1e-6);
+}
+
+TEST(ConstantVelocityFilter, a_turning_palm_is_followed_without_lag_through_a_full_turn) {
+  FilterMemory memory;
+  const auto turned = [](int frame) {
+    Hand hand = hand_at(0.0);
+    hand.palm.orientation = Eigen::AngleAxisd(3.0 * frame * kFrame, Vector3(0.6, 0.0, 0.8));
+    return hand;
+  };
+  Hand last;
+  for (int i = 0; i < 480; ++i) {
+    last = filtered(turned(i), kFrame, kConstantVelocity, memory);
+    EXPECT_NEAR(last.palm.orientation.norm(), 1.0, 1e-12);
+  }
+  EXPECT_LE(last.palm.orientation.angularDistance(turned(479).palm.orientation), 1e-7);
+}
+
+class EveryFilter : public ::testing::TestWithParam<FilterKind> {
+ protected:
+  const FilterConfiguration filter_ = filter_of(GetParam());
+};
+
+TEST_P(EveryFilter, leaves_a_still_hand_where_it_is) {
+  EXPECT_NEAR(x_after(std::vector<double>(50, 0.25), filter_), 0.25, 1e-15);
+}
+
+TEST_P(EveryFilter, gives_the_first_sample_as_it_is) {
+  EXPECT_EQ(x_after({0.7}, filter_), 0.7);
+}
+
+TEST_P(EveryFilter, keeps_the_joint_that_two_bones_share_one_point) {
+  FilterMemory memory;
+  for (int i = 0; i < 40; ++i) {
+    const double x = 0.1 * std::sin(0.3 * i);
+    Hand hand = hand_at(x);
+    hand.capsules[kMiddle] = {Vector3(x - 0.03, 0.02 * x, 0), hand.capsules[kTip].start, 0.008};
+    const Hand smooth = filtered(hand, i % 3 == 0 ? 0.7 * kFrame : kFrame, filter_, memory);
+    EXPECT_EQ(smooth.capsules[kMiddle].end, smooth.capsules[kTip].start);
+  }
+}
+
+TEST_P(EveryFilter, takes_up_a_finger_that_was_missing_where_it_is) {
+  Hand without = hand_at(0.0);
+  without.capsules[kTip].radius = 0.0;
+  EXPECT_FALSE(last_of({hand_at(0.0), without}, filter_).has(kTip));
+  EXPECT_DOUBLE_EQ(last_of({hand_at(5.0), without, hand_at(1.0)}, filter_).capsules[kTip].start.x(), 1.0);
+}
+
+TEST_P(EveryFilter, a_copy_of_its_memory_goes_on_with_the_same_bits) {
+  FilterMemory memory;
+  for (int i = 0; i < 20; ++i) filtered(hand_at(0.01 * i * i), kFrame, filter_, memory);
+  FilterMemory copy = memory;
+  for (int i = 0; i < 20; ++i) {
+    const Hand a = filtered(hand_at(0.02 * i), kFrame, filter_, memory);
+    const Hand b = filtered(hand_at(0.02 * i), kFrame, filter_, copy);
+    EXPECT_EQ(a.capsules[kTip].start, b.capsules[kTip].start);
+    EXPECT_EQ(a.palm.orientation.coeffs(), b.palm.orientation.coeffs());
+  }
+}
+
+TEST_P(EveryFilter, keeps_its_gain_of_one_at_uneven_intervals) {
+  FilterMemory memory;
+  double t = 0.0;
+  Hand last;
+  for (int i = 0; i < 300; ++i) {
+    const double elapsed = kFrame * (i % 2 == 0 ? 0.5 : 1.5);
+    t += elapsed;
+    last = filtered(hand_at(0.2 * t), elapsed, filter_, memory);
+  }
+  EXPECT_NEAR(last.capsules[kTip].start.x(), 0.2 * t, 0.2 * 2.0 * kFrame);
+  for (int i = 0; i < 300; ++i) last = filtered(hand_at(0.2 * t), kFrame, filter_, memory);
+  EXPECT_NEAR(last.capsules[kTip].start.x(), 0.2 * t, 1e-9);
+}
+
+std::string name_of(const ::testing::TestParamInfo<FilterKind>& tested) {
+  switch (tested.param) {
+    case FilterKind::window:
+      return "window";
+    case FilterKind::one_euro:
+      return "one_euro";
+    case FilterKind::constant_velocity:
+      return "constant_velocity";
+    case FilterKind::none:
+      break;
+  }
+  return "none";
+}
+
+INSTANTIATE_TEST_SUITE_P(kinds, EveryFilter,
+                         ::testing::Values(FilterKind::none, FilterKind::window, FilterKind::one_euro,
+                                           FilterKind::constant_velocity),
+                         name_of);
 
 }  // namespace
 }  // namespace mrhi

@@ -112,7 +112,7 @@ TEST_F(Tracker, filter_starts_afresh_after_a_loss) {
   frame(0.01, {hand_at(0.0)});
   frame(0.02, {});
   frame(0.03, {hand_at(0.09)});
-  EXPECT_EQ(hands_[0].history.size, 1);
+  EXPECT_EQ(hands_[0].filter.history.size, 1);
 }
 
 TEST_F(Tracker, a_joint_faster_than_max_speed_has_jumped) {

@@ -1,16 +1,13 @@
 #pragma once
 
 #include "mr_hand_interaction/configuration.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
+#include "mr_hand_interaction/tracking/filter_memory.h"
 
 namespace mrhi {
 
-/// Samples that the filter wants kept.
-int history_length(const FilterConfiguration& filter);
-
-/// The filtered hand for the newest sample of a history that has at least one. `window`: Eq. 1 read as the
-/// mean of the last F frames, fewer at the start; the palm's orientation is the chordal mean (Markley et al.
-/// 2007); a phalanx is averaged over the newest unbroken run of samples that have it.
-Hand filtered(const SampleHistory& history, const FilterConfiguration& filter);
+/// The filtered hand for `sample`, taken `elapsed` seconds (above 0) after the one before. A memory that is
+/// empty starts with `sample` as it is. All points of a hand are filtered alike: a joint that two bones share
+/// stays one joint. docs/filters.md compares the filters.
+Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
 
 }  // namespace mrhi

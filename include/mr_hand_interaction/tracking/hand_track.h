@@ -1,24 +1,10 @@
 #pragma once
 
-#include <array>
-#include <vector>
-
-#include "mr_hand_interaction/tracking/hand.h"
+#include "mr_hand_interaction/tracking/filter_memory.h"
 
 namespace mrhi {
 
-constexpr int kMaxFilterWindow = 16;  ///< frames
-constexpr int kMaxHands = 4;          ///< followed at once
-
-/// The last raw samples of one hand, newest first.
-struct SampleHistory {
-  std::array<Hand, kMaxFilterWindow> samples;
-  int size = 0;
-
-  /// Puts `sample` in front and forgets all but the newest `keep`.
-  void push(const Hand& sample, int keep);
-  void clear() { size = 0; }
-};
+constexpr int kMaxHands = 4;  ///< followed at once
 
 /// After a short loss the hand does not snap from where it was held to where it is: it catches up, continuous
 /// in velocity and never ahead of the tracked hand.
@@ -37,7 +23,7 @@ struct HandTrack {
   Hand previous;          ///< filtered pose at the frame before
   Hand current;           ///< filtered pose at the last frame
   Nanoseconds last_seen = 0;
-  SampleHistory history;
+  FilterMemory filter;
   Rejoin rejoin;
 };
 

@@ -1,0 +1,68 @@
+#include <cmath>
+
+#include "filters.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kFirstSpeed = 0.5;  // rms of a hand that has just appeared [m/s]
+
+/// How much of the difference between sample and prediction goes into position, and into velocity [1/s].
+struct Gain {
+  double position, velocity;
+};
+
+/// The Kalman filter's, for an acceleration that is white from frame to frame (Bar-Shalom, Li & Kirubarajan
+/// 2001, 6.3.2).
+Gain update(double acceleration, double noise, double elapsed, MotionVariance& variance) {
+  if (variance.speed == 0.0) variance = {noise * noise, 0.0, kFirstSpeed * kFirstSpeed};
+  const double q = acceleration * acceleration * elapsed * elapsed;
+  const double position = variance.position + elapsed * (2.0 * variance.mixed + elapsed * variance.speed) +
+                          0.25 * q * elapsed * elapsed;
+  const double mixed = variance.mixed + elapsed * variance.speed + 0.5 * q * elapsed;
+  const double speed = variance.speed + q;
+  const double total = position + noise * noise;
+  const Gain gain{position / total, mixed / total};
+  variance = {(1.0 - gain.position) * position, (1.0 - gain.position) * mixed, speed - gain.velocity * mixed};
+  return gain;
+}
+
+Quaternion rotation(const Vector3& turned) {
+  const double angle = turned.norm();
+  if (angle == 0.0) return Quaternion::Identity();
+  return Quaternion(Eigen::AngleAxisd(angle, turned / angle));
+}
+
+void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Quaternion& orientation,
+                 Vector3& turn) {
+  const Quaternion predicted = rotation(elapsed * turn) * before;
+  const Eigen::AngleAxisd off(orientation * predicted.conjugate());
+  const Vector3 innovation = off.angle() * off.axis();
+  orientation = (rotation(gain.position * innovation) * predicted).normalized();
+  turn += gain.velocity * innovation;
+}
+
+}  // namespace
+
+Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
+  Hand hand = memory.history.samples[0];
+  const double speed = rms_speed(memory.velocity, memory.filtered);
+  const Gain gain =
+      update(filter.acceleration + filter.agility * speed, filter.noise, elapsed, memory.variance);
+  for (std::size_t point = 0; point < kHandPoints; ++point) {
+    Vector3& velocity = memory.velocity.points[point];
+    if (!has_point(hand, point) || !has_point(memory.filtered, point)) {
+      velocity.setZero();
+      continue;
+    }
+    Vector3& position = hand_point(hand, point);
+    const Vector3 predicted = hand_point(memory.filtered, point) + elapsed * velocity;
+    const Vector3 innovation = position - predicted;
+    position = predicted + gain.position * innovation;
+    velocity += gain.velocity * innovation;
+  }
+  follow_turn(gain, elapsed, memory.filtered.palm.orientation, hand.palm.orientation, memory.velocity.turn);
+  return hand;
+}
+
+}  // namespace mrhi

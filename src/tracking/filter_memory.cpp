@@ -1,0 +1,45 @@
+#include "mr_hand_interaction/tracking/filter_memory.h"
+
+#include <algorithm>
+
+namespace mrhi {
+namespace {
+
+template <typename AnyHand>
+auto& point_of(AnyHand& hand, std::size_t point) {
+  if (point == 0) return hand.palm.position;
+  if (point == 1) return hand.wrist;
+  auto& capsule = hand.capsules[(point - 2) / 2];
+  return point % 2 == 0 ? capsule.start : capsule.end;
+}
+
+}  // namespace
+
+void SampleHistory::push(const Hand& sample, int keep) {
+  size = std::min(size + 1, keep);
+  for (int i = size - 1; i > 0; --i) {
+    samples[static_cast<std::size_t>(i)] = samples[static_cast<std::size_t>(i - 1)];
+  }
+  samples[0] = sample;
+}
+
+const Vector3& hand_point(const Hand& hand, std::size_t point) {
+  return point_of(hand, point);
+}
+Vector3& hand_point(Hand& hand, std::size_t point) {
+  return point_of(hand, point);
+}
+
+bool has_point(const Hand& hand, std::size_t point) {
+  return point < 2 || hand.capsules[(point - 2) / 2].radius > 0.0;
+}
+
+void FilterMemory::restart(const Hand& sample) {
+  history.size = 0;
+  history.push(sample, 1);
+  filtered = sample;
+  velocity = HandVelocity();
+  variance = MotionVariance();
+}
+
+}  // namespace mrhi

@@ -1,0 +1,36 @@
+#include <cmath>
+
+#include "filters.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
+
+namespace mrhi {
+namespace {
+
+/// Weight of the newest sample in a low-pass of first order that halves the power at `cutoff` [Hz].
+double weight(double cutoff, double elapsed) {
+  const double turn = 2.0 * M_PI * cutoff * elapsed;
+  return turn / (1.0 + turn);
+}
+
+void follow_velocity(const Hand& from, const Hand& to, double elapsed, double share, HandVelocity& velocity) {
+  for (std::size_t point = 0; point < kHandPoints; ++point) {
+    Vector3& v = velocity.points[point];
+    if (has_point(from, point) && has_point(to, point)) {
+      v += share * ((hand_point(to, point) - hand_point(from, point)) / elapsed - v);
+    } else {
+      v.setZero();
+    }
+  }
+}
+
+}  // namespace
+
+Hand one_euro(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
+  const Hand& sample = memory.history.samples[0];
+  follow_velocity(memory.history.samples[1], sample, elapsed, weight(filter.derivative_cutoff, elapsed),
+                  memory.velocity);
+  const double cutoff = filter.min_cutoff + filter.beta * rms_speed(memory.velocity, sample);
+  return blend(memory.filtered, sample, weight(cutoff, elapsed));
+}
+
+}  // namespace mrhi

@@ -1,0 +1,59 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "filters.h"
+
+namespace mrhi {
+namespace {
+
+Quaternion mean_orientation(const SampleHistory& history, int count) {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector4d q = history.samples[static_cast<std::size_t>(i)].palm.orientation.coeffs();
+    sum += q * q.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+  Quaternion mean(Eigen::Vector4d(solver.eigenvectors().col(3)));
+  // q and -q are one rotation: keep the newest sample's sign, so that the result does not depend on the
+  // solver's.
+  if (mean.dot(history.samples[0].palm.orientation) < 0.0) mean.coeffs() = -mean.coeffs();
+  return mean.normalized();
+}
+
+Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
+  Capsule sum;
+  int present = 0;
+  while (present < count &&
+         history.samples[static_cast<std::size_t>(present)].capsules[capsule].radius > 0.0) {
+    const Capsule& sample = history.samples[static_cast<std::size_t>(present)].capsules[capsule];
+    sum.start += sample.start;
+    sum.end += sample.end;
+    sum.radius += sample.radius;
+    ++present;
+  }
+  if (present == 0) return {};
+  return {sum.start / present, sum.end / present, sum.radius / present};
+}
+
+}  // namespace
+
+Hand window_mean(const FilterConfiguration& filter, const FilterMemory& memory) {
+  const SampleHistory& history = memory.history;
+  const int count = std::min(filter.window, history.size);
+  Hand mean = history.samples[0];
+  if (count == 1) return mean;
+  for (int i = 1; i < count; ++i) {
+    const Hand& sample = history.samples[static_cast<std::size_t>(i)];
+    mean.palm.position += sample.palm.position;
+    mean.wrist += sample.wrist;
+    mean.palm_width += sample.palm_width;
+  }
+  mean.palm.position /= count;
+  mean.wrist /= count;
+  mean.palm_width /= count;
+  mean.palm.orientation = mean_orientation(history, count);
+  for (std::size_t c = 0; c < kCapsules; ++c) mean.capsules[c] = mean_capsule(history, count, c);
+  return mean;
+}
+
+}  // namespace mrhi
