@@ -1,0 +1,83 @@
+// Jitter against lag of every filter and setting, over real recordings, as they are and with noise added. See
+// docs/filters.md.
+
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "mr_hand_interaction/replay/recording_csv.h"
+#include "scores.h"
+#include "settings.h"
+#include "support/recordings.h"
+
+namespace mrhi::filter_benchmark {
+namespace {
+
+constexpr double kBetweenRates = 80.0;  // frames a second; the recordings have 38 to 60, or 99 to 116
+
+/// Takes of one rate, recorded or with noise added.
+struct Group {
+  std::string input, rate;
+  std::vector<Take> takes;
+};
+
+std::vector<Group> load_groups(const std::vector<std::string>& files) {
+  std::vector<Group> groups;
+  for (const bool with_noise : {false, true}) {
+    const std::string input = with_noise ? "noise added" : "as recorded";
+    Group fast{input, "99 to 116", {}}, slow{input, "38 to 60", {}};
+    for (Take& take : load_takes(files, with_noise))
+      (take.frame_rate() > kBetweenRates ? fast : slow).takes.push_back(std::move(take));
+    groups.push_back(std::move(fast));
+    groups.push_back(std::move(slow));
+  }
+  return groups;
+}
+
+void write_row(const Group& group, const Setting& setting, std::ostream& csv) {
+  constexpr double kMilli = 1e3;
+  const Scores scores = score(group.takes, setting.configuration);
+  csv << group.input << ',' << group.rate << ',' << setting.filter << ',' << setting.series << ','
+      << setting.setting << ',' << setting.is_default;
+  for (const double value : {scores.jitter, scores.lag, scores.lag_p90, scores.moving_error,
+                             scores.still_error, scores.moving_jitter, scores.bone_error})
+    csv << ',' << kMilli * value;
+  csv << ',' << scores.moves << '\n';
+}
+
+int run(const std::string& folder) {
+  const std::vector<std::string> files = testing::recordings();
+  if (files.empty()) {
+    std::cerr << "filters: no recordings in " << testing::recordings_folder()
+              << "; set MR_HAND_RECORDINGS to their folder\n";
+    return 1;
+  }
+  const std::string path = folder + "/filters.csv";
+  std::ofstream csv(path);
+  csv.precision(6);
+  csv << "input,frames_per_s,filter,series,setting,default,jitter_mm,lag_ms,lag_p90_ms,moving_error_mm,"
+         "still_error_mm,moving_jitter_mm,bone_error_mm,moves\n";
+  const std::vector<Group> groups = load_groups(files);
+  for (const Group& group : groups)
+    for (const Setting& setting : settings()) write_row(group, setting, csv);
+  csv.close();
+  if (csv) return 0;
+  std::cerr << "filters: cannot write " << path << '\n';
+  return 1;
+}
+
+}  // namespace
+}  // namespace mrhi::filter_benchmark
+
+int main(int argc, char** argv) {
+  if (argc != 3 || std::string(argv[1]) != "--output") {
+    std::cerr << "usage: filters --output DIR\n";
+    return 2;
+  }
+  try {
+    return mrhi::filter_benchmark::run(argv[2]);
+  } catch (const mrhi::RecordingError& error) {
+    std::cerr << "filters: " << error.what() << '\n';
+    return 1;
+  }
+}
