@@ -86,7 +86,8 @@ def _analyse_objects(tables, notes, head, cells):
 
 
 def _analyse_conditions(tables, notes, head, cells):
-    """Group and condition, each participant's mean over the objects; only who did all objects counts."""
+    """Group and condition, each participant's mean over the objects, for who has a value of each; and pairs of
+    conditions, each participant's mean over the objects with a value under both."""
     if cells['condition'].nunique() < 2:
         return
     for measure in measures_in(cells):
@@ -95,15 +96,23 @@ def _analyse_conditions(tables, notes, head, cells):
         objects = [set(some['object']) for _, some in of_measure.groupby('condition')]
         common = in_order(set.intersection(*objects), OBJECTS)
         if len(common) < len(set.union(*objects)):
-            notes.add(head, measure, 'conditions are compared over the objects that all of them had: %s'
+            notes.add(head, measure, 'analysis of variance over the objects that all conditions had: %s'
                       % (', '.join(common) or 'none'))
-        if not common:
-            continue
         wide = of_measure.pivot_table(index=['group', 'participant'], columns=['condition', 'object'], values='value')
-        means = pandas.DataFrame({condition: wide[condition][common].dropna().mean(axis=1) for condition in
-                                  in_order(of_measure['condition'], CONDITIONS)}, index=wide.index)
-        _test(tables, notes, head_of, 'condition', means)
-        _add_comparisons(tables['post_hoc'], head_of, _paired_columns(means, 'conditions', pairwise.paired))
+        conditions = in_order(of_measure['condition'], CONDITIONS)
+        if common:
+            means = pandas.DataFrame({condition: wide[condition][common].dropna().mean(axis=1)
+                                      for condition in conditions}, index=wide.index)
+            _test(tables, notes, head_of, 'condition', means)
+        _add_comparisons(tables['post_hoc'], head_of, [
+            ('conditions', a, b, pairwise.paired(*_means_over_shared(wide[a], wide[b])))
+            for a, b in itertools.combinations(conditions, 2)])
+
+
+def _means_over_shared(a, b):
+    """Each participant's means over the objects with a value in both tables."""
+    shared = a.notna() & b.reindex(columns=a.columns).notna()
+    return [table.reindex(columns=a.columns).where(shared).mean(axis=1).dropna() for table in (a, b)]
 
 
 def _pairs(wide):

@@ -7,7 +7,6 @@ from .style import DARK, GROUP_COLOURS, INK, PALE, finish, new_figure, save
 
 CAPTION = ('Bars: mean of the participants. Lines: 95 % confidence interval. Dots: participants. '
            'Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
-BESIDE = (-0.34, 0.19, -0.19, 0.34)  # of a bar's width: dots keep clear of the line in the middle
 ROOM = 0.09  # of the axis, for each bracket above the bars
 
 
@@ -32,20 +31,29 @@ def _draw_panel(axes, measure, bars, post_hoc, cells):
         x = objects.index(row.object) + (groups.index(row.group) - (len(groups) - 1) / 2) * width
         axes.bar(x, row.mean, 0.94 * width, color=GROUP_COLOURS[row.group], zorder=1)
         values = np.sort(cells[(cells['group'] == row.group) & (cells['object'] == row.object)]['value'])
-        beside = x + width * np.resize(BESIDE, len(values))
+        beside = x + width * _aside(values, cells['value'].max())
         axes.plot(beside, values, '.', color=DARK[row.group], markersize=3.5, alpha=0.75, zorder=2, clip_on=False)
         axes.errorbar(x, row.mean, 0 if np.isnan(row.ci95) else row.ci95, color=INK, capsize=3, lw=1.2, zorder=3)
-        axes.text(x, -0.015, row.group, ha='center', va='top', fontsize=7.5, color=DARK[row.group],
-                  transform=axes.get_xaxis_transform())
+        axes.text(x, -0.015, '%s\nn = %d' % (row.group, row.n), ha='center', va='top', fontsize=7.5,
+                  color=DARK[row.group], transform=axes.get_xaxis_transform())
     axes.set_xticks(range(len(objects)))
     axes.set_xticklabels([plain(name) for name in objects])
-    axes.tick_params(axis='x', length=0, pad=13)
+    axes.tick_params(axis='x', length=0, pad=25)
     axes.set_xlim(-0.55, len(objects) - 0.45)
     axes.set_title(with_unit(OF[measure]), loc='left')
     top = max(cells['value'].max(), (bars['mean'] + bars['ci95'].fillna(0)).max(), 1e-9)
     _draw_brackets(axes, top, _brackets(post_hoc, groups, objects, width))
     axes.grid(axis='y', color='0.92', zorder=0)
     axes.set_axisbelow(True)
+
+
+def _aside(values, top):
+    """How far dots stand to the left or right of a bar's middle, in its widths: clear of the line there, and of dots
+    at almost the same height."""
+    _, level, sizes = np.unique(np.round(40 * values / max(top, 1e-9)), return_inverse=True, return_counts=True)
+    rank = np.arange(len(values)) - np.searchsorted(level, level)  # among the dots of a level; values are sorted
+    step = np.minimum(0.1, 0.33 / np.ceil(sizes[level] / 2))
+    return np.where(rank % 2, 1, -1) * (0.12 + step * (rank // 2))
 
 
 def _brackets(post_hoc, groups, objects, width):

@@ -74,7 +74,9 @@ def _draw_group(axes, cells, conditions, group, shift, named):
         if means.empty:
             continue
         of = summary(means)
-        axes.errorbar(of['mean'], row + shift, xerr=0 if np.isnan(of['ci95']) else of['ci95'], fmt='o', markersize=6,
+        ends = of['mean'] + np.nan_to_num(of['ci95']) * np.array([-1, 1])
+        ends = np.clip(ends, 0, 1 if cells['measure'].iloc[0] == 'completed' else None)
+        axes.errorbar(of['mean'], row + shift, xerr=np.abs(ends - of['mean'])[:, None], fmt='o', markersize=6,
                       color=DARK[group], markerfacecolor=GROUP_COLOURS[group], capsize=2.5, lw=1.2, clip_on=False)
         if named and row == len(conditions) - 1:
             axes.annotate(group, (of['mean'], row + shift), xytext=(0, 6 if shift >= 0 else -6),

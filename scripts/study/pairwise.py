@@ -34,7 +34,8 @@ def paired(a, b):
         effect = differences.mean() / spread
         statistic = effect * np.sqrt(len(a))
         p = 2 * stats.t.sf(abs(statistic), len(a) - 1)
-    return _of_means('paired t', a, b, statistic, float(len(a) - 1), p, 'd_z', effect)
+    df = len(a) - 1 if spread > 0 else np.nan
+    return _of_means('paired t', a, b, statistic, df, p, 'd_z', effect)
 
 
 def cohens_d(a, b):

@@ -12,7 +12,7 @@ STYLE = '''body{font:15px/1.5 sans-serif;color:#222;max-width:62rem;margin:2rem 
 h1{font-size:1.6rem}h2{margin-top:2.4rem;border-bottom:2px solid #ccc}h3{margin-top:1.6rem}
 table{border-collapse:collapse;margin:.7rem 0;font-size:.87rem}caption{text-align:left;font-weight:bold}
 th,td{padding:.2rem .7rem;border-bottom:1px solid #ddd;text-align:right}
-th:first-child,td:first-child{text-align:left}img{max-width:100%}
+td{white-space:nowrap}th:first-child,td:first-child{text-align:left}img{max-width:100%}
 .simulated{background:#fff3cd;border:2px solid #b58900;padding:.6rem 1rem;font-weight:bold}
 .wide{overflow-x:auto}summary{cursor:pointer}li{margin:.15rem 0}'''
 PAGE = '''<!DOCTYPE html>

@@ -5,7 +5,7 @@ import os
 
 from . import bars, distributions, trajectories
 from .analysis import analyse
-from .measures import COMPARED, CONDITIONS, MAIN, in_order, plain
+from .measures import COMPARED, CONDITIONS, MAIN, OF, in_order, plain
 from .report import write_report
 from .session_folder import find_sessions, read_session
 from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
@@ -73,8 +73,8 @@ def _draw_part(figures, folder, part, data, results):
                                            for name in ('bars', 'post_hoc')})
         further = [name for name in measures_in(some) if name not in MAIN]
         main = [name for name in MAIN if name in set(some['measure'])]
-        for kind, measures, title in (('bars', main, 'Attempts and completion time'),
-                                      ('further', further, 'Further measures')):
+        named = ' and '.join(OF[name].label for name in main).capitalize()
+        for kind, measures, title in (('bars', main, named), ('further', further, 'Further measures')):
             if measures:
                 figures[part, condition, kind] = bars.draw_bars(
                     of_condition, some, measures, '%s: %s, %s' % (title, plain(condition), label), folder,

@@ -1,6 +1,7 @@
 """What all figures share: colours that the colour-blind tell apart (Okabe and Ito), sizes, how they are written."""
 
 import os
+import textwrap
 
 import matplotlib
 matplotlib.use('Agg')
@@ -10,6 +11,7 @@ from .study_data import SIMULATED  # noqa: E402
 
 GROUP_COLOURS = {'beginner': '#E69F00', 'veteran': '#56B4E9'}
 DARK = {'beginner': '#8A5A00', 'veteran': '#00527A'}  # the same hues, dark enough for dots and text
+LETTERS = 15  # of a caption, to the inch
 INK, PALE = '#222222', '#BBBBBB'
 RAW, FILTERED = '#D55E00', '#0072B2'
 
@@ -28,12 +30,13 @@ def new_figure(columns, width, height, rows=1, **arguments):
 
 def finish(figure, title, caption, source):
     """Title above, caption below; figures of simulated data say so in both."""
-    height, lines = figure.get_figheight(), 1
+    height = figure.get_figheight()
+    lines = textwrap.wrap(caption, int(LETTERS * figure.get_figwidth()))
     if source == SIMULATED:
-        caption, lines = 'SIMULATED OPERATORS: no person took part.\n' + caption, 2
+        lines.insert(0, 'SIMULATED OPERATORS: no person took part.')
     figure.text(0.01, 1 - 0.06 / height, title, ha='left', va='top', fontsize=11, fontweight='bold')
-    figure.text(0.01, 0.06 / height, caption, ha='left', va='bottom', fontsize=7.5, color='#555555')
-    figure.tight_layout(rect=(0, (0.1 + 0.14 * lines) / height, 1, 1 - 0.28 / height))
+    figure.text(0.01, 0.06 / height, '\n'.join(lines), ha='left', va='bottom', fontsize=7.5, color='#555555')
+    figure.tight_layout(rect=(0, (0.1 + 0.14 * len(lines)) / height, 1, 1 - 0.28 / height))
 
 
 def save(figure, folder, name):

@@ -167,7 +167,7 @@ class LeftOut(Studies):
         for i in range(4):
             self.rewrite('P%02d' % (i + 1), lambda rows: [r for r in rows if r['object'] != 'long_cuboid'], 'seed')
         results = self.analyse()
-        self.assert_noted(results, 'over the objects that all of them had: cube, flat_cuboid')
+        self.assert_noted(results, 'over the objects that all conditions had: cube, flat_cuboid')
         cells = self.select(self.data.cells, measure='completion_time', participant='P01', condition='implicit')
         kept = cells[cells['object'] != 'long_cuboid']['value'].mean()
         pair = self.select(results.post_hoc, condition='all', measure='completion_time').iloc[0]
@@ -175,6 +175,16 @@ class LeftOut(Studies):
         others = others[others['object'] != 'long_cuboid'].groupby('participant')['value'].mean()
         self.assertAlmostEqual(others['P01'], kept)
         self.assertAlmostEqual(pair.centre_a, others.mean())
+
+    def test_object_without_a_value_leaves_the_participants_others_to_the_pair_of_conditions(self):
+        for condition, times in (('implicit', (10, 20, '')), ('seed', (13, 25, 90))):
+            for i in range(2):
+                made_up_study.write_session(
+                    os.path.join(self.root, condition + str(i)), str(i), condition=condition,
+                    trials=[{'object': name, 'completion_time': time and time + i * (1 if time == 13 else 0)}
+                            for name, time in zip('abc', times)])
+        pair = self.select(self.analyse().post_hoc, condition='all', measure='completion_time').iloc[0]
+        self.assertEqual((pair.n_a, pair.centre_a, pair.centre_b), (2, 15.0, (13 + 25 + 14 + 25) / 4))
 
     def test_ratings_alone(self):
         for i, score in enumerate((3, 5, 9)):
