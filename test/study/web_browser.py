@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import time
+import urllib.error
 import urllib.request
 
 ELEMENT = 'element-6066-11e4-a52e-4f735466cecf'  # the key of an element's id in the protocol
@@ -24,7 +25,8 @@ class Browser:
         try:
             self.address = 'http://127.0.0.1:%d' % self._port()
             options = {'args': ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage']}
-            wanted = {'capabilities': {'alwaysMatch': {'goog:chromeOptions': options}}}
+            wanted = {'goog:chromeOptions': options, 'timeouts': {'implicit': 1000 * LIMIT // 2}}  # [ms] to be found
+            wanted = {'capabilities': {'alwaysMatch': wanted}}
             self.session = '/session/' + self._send('POST', '/session', wanted)['sessionId']
         except Exception:
             self.close()
@@ -57,10 +59,15 @@ class Browser:
         return self._send('GET', self.find(css) + '/text')
 
     def wait_for_text(self, css, wanted):
-        end = time.monotonic() + LIMIT
-        while self.text(css) != wanted:
+        end, seen = time.monotonic() + LIMIT, None
+        while seen != wanted:
             if time.monotonic() > end:
-                raise AssertionError('%s has not become %s' % (css, wanted))
+                raise AssertionError('%s is %r and not %r' % (css, seen, wanted))
+            try:
+                seen = self.text(css)
+            except urllib.error.HTTPError as error:  # of a page that is just being replaced
+                with error:
+                    seen = error.reason
 
     def run(self, script):
         return self._send('POST', self.session + '/execute/sync', {'script': script, 'args': []})
