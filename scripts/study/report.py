@@ -91,7 +91,7 @@ def number(value, digits=3):
 def write_report(path, results, sessions, figures, notes):
     """`figures`: (part, condition or None, kind) to the path of an SVG; in the order in which they are shown."""
     report = Report('Study: %d sessions, %d participants' % (
-        len(sessions), len({(s.participant, s.simulated) for s in sessions})))
+        len(sessions), len({(s.participant, s.simulated) for s in sessions})) if sessions else 'Trajectories')
     if any(s.simulated for s in sessions):
         some = '' if all(s.simulated for s in sessions) else 'Some of the sessions, analysed apart: '
         report.text(some + NO_PERSON, 'simulated')
@@ -101,13 +101,18 @@ def write_report(path, results, sessions, figures, notes):
         if kind == 'trajectory':
             report.heading('Trajectories: ' + name)
             report.figure(file, 'Trajectories, raw and filtered: ' + name)
+    if sessions:
+        _account(report, sessions, notes)
+    report.write(path)
+
+
+def _account(report, sessions, notes):
     report.heading('What was left out, and why')
     report.items(notes or ['Nothing.'])
     report.heading('Methods')
     report.markup(METHODS)
     report.heading('Who took part')
     _participants(report, sessions)
-    report.write(path)
 
 
 def _rows(table, part, **equal):

@@ -43,7 +43,7 @@ def save(figure, folder, name):
     """Writes name.png and name.svg and gives the path of the SVG."""
     os.makedirs(folder, exist_ok=True)
     path = os.path.join(folder, name)
-    figure.savefig(path + '.png', metadata={'Software': None})
+    figure.savefig(path + '.png', metadata={'Software': 'matplotlib'})
     figure.savefig(path + '.svg', metadata={'Date': None})
     plt.close(figure)
     return path + '.svg'

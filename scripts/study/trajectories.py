@@ -4,14 +4,15 @@ import collections
 import itertools
 
 import numpy as np
+import pandas
 
-from .session_folder import StudyError, count, name, read_table
+from .session_folder import StudyError
 from .style import FILTERED, INK, RAW, finish, new_figure, save
 
 INDEX, DISTAL, TRACKED = 1, 3, 0
 COLUMNS = ('time', 'hand_id', 'finger', 'bone', 'rendered', 'ex', 'ey', 'ez')
 GAP = 5  # median intervals without a frame interrupt the line
-CLOSE_UP = 2.0  # [s] are shown against time
+CLOSE_UP = 1.0  # [s] are shown against time
 LONGEST = 20.0  # [s] of a path are drawn
 AXES = 'xyz'
 
@@ -20,22 +21,33 @@ Path = collections.namedtuple('Path', 'time position length')
 
 def read_path(file):
     """The tip of the index finger [m] of the hand that is seen longest, of a hands.csv as replay writes it."""
-    def real(text):
-        value = float(text)
-        if not np.isfinite(value):
-            raise ValueError("'%s' is not a finite number" % text)
-        return value
-
-    parsers = collections.OrderedDict((column, real) for column in COLUMNS)
-    parsers.update(hand_id=name, finger=count, bone=count, rendered=count)
-    rows = [row for row in read_table(file, parsers, [])
-            if (row['finger'], row['bone'], row['rendered']) == (INDEX, DISTAL, TRACKED)]
-    if len(rows) < 2:
+    table = _read_numbers(file)
+    wanted = (table['finger'] == INDEX) & (table['bone'] == DISTAL) & (table['rendered'] == TRACKED)
+    table = table[wanted]
+    if len(table) < 2:
         raise StudyError('%s: fewer than two positions of the index fingertip (finger 1, bone 3, rendered 0)' % file)
-    hand = collections.Counter(row['hand_id'] for row in rows).most_common(1)[0][0]
-    table = np.array([[row[c] for c in ('time', 'ex', 'ey', 'ez')] for row in rows if row['hand_id'] == hand])
-    table = table[np.argsort(table[:, 0], kind='stable')]
-    return _path(table[:, 0], table[:, 1:])
+    table = table[table['hand_id'] == table['hand_id'].value_counts().idxmax()].sort_values('time', kind='mergesort')
+    return _path(table['time'].values, table[['ex', 'ey', 'ez']].values)
+
+
+def _read_numbers(file):
+    """The columns that matter; these files have millions of lines."""
+    try:
+        table = pandas.read_csv(file, skipinitialspace=True, index_col=False)
+    except OSError as error:
+        raise StudyError('%s: cannot be read: %s' % (file, error.strerror or error)) from None
+    except (ValueError, UnicodeDecodeError) as error:  # pandas names the line
+        raise StudyError('%s: is not a table: %s' % (file, str(error).strip())) from None
+    for column in COLUMNS:
+        if column not in table.columns:
+            raise StudyError("%s: line 1: no column '%s'" % (file, column))
+        numbers = pandas.to_numeric(table[column], errors='coerce').astype(float)
+        bad = np.flatnonzero(~np.isfinite(numbers.values))
+        if len(bad):
+            raise StudyError("%s: line %d: %s: '%s' is not a finite number"
+                             % (file, bad[0] + 2, column, table[column].iloc[bad[0]]))
+        table[column] = numbers
+    return table
 
 
 def _path(time, position):
@@ -70,11 +82,12 @@ def draw_trajectories(raw, filtered, title, source, folder, file_name):
         axes.set_title('%s: %.2f m long' % (label, path.length), loc='left')
         axes.set_xlabel('%s [m]' % AXES[plane[0]])
         axes.set_aspect('equal', adjustable='datalim')
+        axes.locator_params(nbins=6)
     panels[0, 0].set_ylabel('%s [m]' % AXES[plane[1]])
     _same_limits(panels[0], raw.position[:, plane])
     _draw_close_up(panels[1], [_excerpt(path, start, CLOSE_UP) for path in (raw, filtered)], plane)
-    finish(figure, title, 'Tip of the index finger in the world frame, at most %g s. Below: the %g s in which the two '
-           'differ most.' % (LONGEST, CLOSE_UP), source)
+    finish(figure, title, 'Tip of the index finger in the world frame, at most %g s. Below: where the raw path is '
+           'shakiest.' % LONGEST, source)
     return save(figure, folder, file_name)
 
 
@@ -104,9 +117,11 @@ def _draw_close_up(panels, paths, plane):
 
 
 def _shakiest(raw, filtered):
-    """Start of the CLOSE_UP seconds with the greatest mean square of raw less filtered."""
+    """Start of the CLOSE_UP seconds in which raw less filtered turns most: second differences leave out the lag."""
     smooth = np.column_stack([np.interp(raw.time, filtered.time, column) for column in filtered.position.T])
-    square = np.sum((raw.position - smooth) ** 2, axis=1)
+    steps = np.diff(raw.position - smooth, axis=0)
+    steps[_gaps(raw.time)] = 0.0
+    square = np.concatenate([[0.0], np.sum(np.diff(steps, axis=0) ** 2, axis=1), [0.0]])
     ends = np.searchsorted(raw.time, raw.time + CLOSE_UP)
     total = np.concatenate([[0.0], np.cumsum(square)])
     full = raw.time + CLOSE_UP <= max(raw.time[-1], raw.time[0] + CLOSE_UP)

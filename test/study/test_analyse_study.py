@@ -99,8 +99,24 @@ class Program(unittest.TestCase):
         hands = [self.write_hands('raw.csv', 0.004), self.write_hands('filtered.csv', 0.001)]
         self.assertEqual(self.run_program('--trajectory', *hands).returncode, 0)
         self.assertEqual(self.figures(), ['trajectory_given.png', 'trajectory_given.svg'])
+        with open(hands[1], 'a') as file:
+            file.write('3.0,7,0,1,3,0,0,0,0,there,0,0,0,0\n')
+        self.assertEqual(self.run_program('--trajectory', *hands).stderr,
+                         "analyse_study: %s: line 302: ex: 'there' is not a finite number\n" % hands[1])
         made_up_study.write_table(hands[1], ['time', 'hand_id'], [])
         self.assertIn("filtered.csv: line 1: no column 'finger'", self.run_program('--trajectory', *hands).stderr)
+
+    def test_trajectories_of_a_session_that_has_both_files(self):
+        for name, files in (('one', ('hands_raw.csv', 'hands.csv')), ('two', ('hands.csv',))):
+            made_up_study.write_session(os.path.join(self.root, name), name, simulated=True,
+                                        ratings=[('efficiency', 5)])
+            for file in files:
+                self.write_hands(os.path.join(name, file), 0.004 if 'raw' in file else 0.001)
+        done = self.run_program(self.root)
+        self.assertEqual([name for name in self.figures() if name.startswith('trajectory') and name.endswith('.svg')],
+                         ['trajectory_one_implicit_0_g.svg'])
+        self.assertTrue(NO_PERSON in self.read('figures', 'trajectory_one_implicit_0_g.svg'))
+        self.assertIn('two: no trajectory drawn: it needs both hands_raw.csv and hands.csv', done.stderr)
 
     def test_a_path_across_a_tracking_loss_has_no_length_there(self):
         path = os.path.join(self.root, 'hands.csv')
