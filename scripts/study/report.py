@@ -23,6 +23,7 @@ PAGE = '''<!DOCTYPE html>
 '''
 NO_PERSON = 'Simulated operators: no person took part. These figures describe a program that plays a person.'
 ANOVA_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Correction')
+SPHERICITY_COLUMNS = ('Measure', 'W', 'Test', 'p', 'Greenhouse-Geisser \u03b5', 'Huynh-Feldt \u03b5')
 METHODS = '''<p>Each participant's repetitions are averaged first. Groups (between participants) and objects, or
 conditions (within), are tested in a mixed analysis of variance with type III sums of squares; sphericity by Mauchly's
 test. Where it is violated (p &lt; 0.05, or too few participants to tell) the degrees of freedom are corrected: by
@@ -81,7 +82,7 @@ class _Folded:
 
 
 def p_text(p):
-    return 'p < 0.001' if p < 0.001 else 'p = %.3f' % p
+    return '\u2013' if np.isnan(p) else 'p < 0.001' if p < 0.001 else 'p = %.3f' % p
 
 
 def number(value, digits=3):
@@ -164,6 +165,13 @@ def _tests(report, results, part, condition, what):
     main = anova[anova['measure'].isin(MAIN)]
     if len(main):
         report.table('Analysis of variance', ANOVA_COLUMNS, _anova_rows(main))
+    sphericity = _rows(results.sphericity, part, condition=condition)
+    sphericity = sphericity[sphericity['measure'].isin(MAIN)]
+    if len(sphericity):
+        report.table("Sphericity (Mauchly's test)", SPHERICITY_COLUMNS, [
+            [OF[row.measure].label, number(row.w), '\u03c7\u00b2(%d) = %s' % (row.df, number(row.chi_squared)),
+             p_text(row.p), number(row.greenhouse_geisser), number(row.huynh_feldt)]
+            for row in sphericity.itertuples()])
     rest = anova[~anova['measure'].isin(MAIN)]
     if len(rest) or len(pairs):
         with report.folded('Pairs, and the analysis of variance of further measures: ' + what):
