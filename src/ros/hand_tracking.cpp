@@ -74,21 +74,11 @@ void HandTracking::welcome_other_versions() {
   subscribe_leap();
 }
 
-const LeapHumanDecoder& HandTracking::decoder(const topic_tools::ShapeShifter& message) {
-  auto& decoder = decoders_[message.getMD5Sum()];
-  if (!decoder) decoder = std::make_unique<const LeapHumanDecoder>(message.getMessageDefinition());
-  return *decoder;
-}
-
 void HandTracking::take_leap(const LeapEvent& event) {
   const topic_tools::ShapeShifter& message = *event.getConstMessage();
   leap_seen_ = true;
   try {
-    const LeapHumanDecoder& known = decoder(message);
-    std::vector<std::uint8_t> bytes(message.size());
-    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    message.write(stream);
-    LeapHumanDecoder::Frame frame = known.decode(bytes.data(), bytes.size());
+    LeapHumanDecoder::Frame frame = leap_reader_.read(message);
     take(std::move(frame.joints), frame.frame_id, event.getReceiptTime());
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), message.getDataType() + ": " + error.what());

@@ -64,11 +64,11 @@ def classes(version):
     return genpy.dynamic.generate_dynamic("leap_motion/Human", definition(version))
 
 
-def open_hand(side):
+def open_hand(side, offset=(0.0, 0.0, 0.0)):
     """Palm centre, wrist and five joint chains of a flat hand, palm down, in the device's frame (y up, z to the
     user)."""
     thumb_side = -1.0 if side == "right" else 1.0
-    palm = (0.01, 0.2, 0.02)
+    palm = (0.01 + offset[0], 0.2 + offset[1], 0.02 + offset[2])
 
     def place(forward, to_thumb, up):
         return (palm[0] + thumb_side * to_thumb, palm[1] + up, palm[2] - forward)
@@ -89,8 +89,8 @@ def set_point(target, values):
     target.x, target.y, target.z = values
 
 
-def fill_hand(types, hand, side):
-    palm, wrist, chains = open_hand(side)
+def fill_hand(types, hand, side, offset):
+    palm, wrist, chains = open_hand(side, offset)
     hand.lmc_hand_id = 21 if side == "right" else 22
     hand.is_present = True
     hand.confidence, hand.palm_width = 0.75, 0.084
@@ -109,12 +109,12 @@ def fill_hand(types, hand, side):
         hand.finger_list.append(finger)
 
 
-def human(types, stamp, sides=("right",), frame_id="leap_hands"):
+def human(types, stamp, sides=("right",), frame_id="leap_hands", offset=(0.0, 0.0, 0.0)):
     message = types["leap_motion/Human"]()
     message.header.stamp = genpy.Time.from_sec(stamp)
     message.header.frame_id = frame_id
     for side in sides:
-        fill_hand(types, message.right_hand if side == "right" else message.left_hand, side)
+        fill_hand(types, message.right_hand if side == "right" else message.left_hand, side, offset)
     return message
 
 

@@ -7,12 +7,10 @@
 #include <tf2_ros/transform_listener.h>
 #include <topic_tools/shape_shifter.h>
 
-#include <map>
-#include <memory>
 #include <string>
 
 #include "mr_hand_interaction/ros/input_statistics.h"
-#include "mr_hand_interaction/ros/leap_human.h"
+#include "mr_hand_interaction/ros/leap_reader.h"
 
 namespace mrhi {
 
@@ -34,7 +32,6 @@ class HandTracking {
   void take_pose_array(const ros::MessageEvent<const geometry_msgs::PoseArray>& event);
   void take(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
 
-  const LeapHumanDecoder& decoder(const topic_tools::ShapeShifter& message);
   bool accept_stamp(Nanoseconds stamp);
   /// Pose of a tracker's frame in the fixed frame: at the stamp, else the latest. Throws
   /// tf2::TransformException.
@@ -44,7 +41,7 @@ class HandTracking {
   Side pose_array_side_ = Side::right;
   Nanoseconds last_stamp_ = -1;
   bool leap_seen_ = false;  ///< a driver, by the present subscription
-  std::map<std::string, std::unique_ptr<const LeapHumanDecoder>> decoders_;  ///< by md5
+  LeapReader leap_reader_;
   InputStatistics statistics_;
 
   ros::NodeHandle node_;
