@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""mr_view.launch: an object stands in the camera's picture where a pinhole camera would see it. The picture has the
+silhouette of the cube painted into it by room_picture.py, which knows nothing of rviz; rviz must cover that."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy
+import rospkg
+import rostest
+
+PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
+sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
+import room_picture  # noqa: E402
+
+TIMEOUT = 120.0  # s; far beyond what rviz needs to start, so that only a real failure meets it
+SCREEN = (1280, 800)
+CAMERA = os.path.join(PACKAGE, "config/mixed_reality/camera.yaml")
+# Not the launch file's own, and off the beaten axes.
+POSE = (-0.30, -0.50, 0.40, -0.7779, 0.2355, -0.1437, 0.5646)
+CUBE = ((0.0, 0.0, 0.22), (0.05, 0.05, 0.05))  # where its scene has it, and its sides [m]
+# Screen pixels, of which 1.5 make one of the picture: half a picture's pixel by which rviz and OpenCV differ about
+# where a picture's origin is, and the blurred rim of what is painted at either resolution.
+TOLERANCE = 3
+TOOLS = ("Xvfb", "import", "rviz", "roslaunch")
+
+
+def missing():
+    gone = [tool for tool in TOOLS if not shutil.which(tool)]
+    try:
+        rospkg.RosPack().get_path("image_publisher")
+    except rospkg.ResourceNotFound:
+        gone.append("image_publisher")
+    return gone
+
+
+def mark(picture):
+    return (picture[..., 0] < 60) & (picture[..., 1] > 200) & (picture[..., 2] > 200)
+
+
+def corner_squares(picture):
+    return (picture[..., 0] > 240) & (picture[..., 1] < 15) & (picture[..., 2] > 240)
+
+
+def cube_coloured(picture):
+    """The cube is orange in any light or black without: there is no blue in it, as there is in all of the room."""
+    return picture[..., 2] < 25
+
+
+def grown(mask, by):
+    """With all pixels that are within `by` columns and rows of one of the mask's."""
+    for axis in (0, 1):
+        mask = numpy.any([numpy.roll(mask, shift, axis) for shift in range(-by, by + 1)], axis=0)
+    return mask
+
+
+def extent(mask):
+    rows, columns = numpy.nonzero(mask)
+    return columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
+
+
+class ShownCamera(room_picture.Camera):
+    """The camera with the pixels of the screen in which its picture fills a rectangle."""
+
+    def __init__(self, rectangle):
+        super().__init__(CAMERA, POSE)
+        left, top, right, bottom = rectangle
+        x, y = (right - left) / self.width, (bottom - top) / self.height
+        shown = [[x, 0, left + 0.5 * x - 0.5], [0, y, top + 0.5 * y - 0.5], [0, 0, 1]]
+        self.matrix = numpy.array(shown) @ self.matrix
+        self.width, self.height = SCREEN
+
+
+@unittest.skipIf(missing(), "not installed: " + ", ".join(missing()))
+class MrViewTest(unittest.TestCase):
+    def show_marked_cube(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.start_screen()
+        still = os.path.join(self.folder, "marked.png")
+        pose = " ".join(str(number) for number in POSE)
+        subprocess.run([sys.executable, room_picture.__file__, "--camera", CAMERA, "--pose", pose, "--mark",
+                        " ".join(str(number) for number in CUBE[0] + CUBE[1]), "--output", still], check=True)
+        self.start(["roslaunch", "mr_hand_interaction", "mr_view.launch", "hands:=none", "still:=" + still,
+                    "camera_pose:=" + pose])
+
+    def start(self, command, **options):
+        process = subprocess.Popen(command, start_new_session=True, **options)
+        self.addCleanup(self.stop, process)
+        return process
+
+    @staticmethod
+    def stop(process):
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(30)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def start_screen(self):
+        # Without -noreset it is deaf for a moment whenever its last client leaves.
+        server = self.start(["Xvfb", "-displayfd", "1", "-noreset", "-nolisten", "tcp", "-screen", "0",
+                             "%dx%dx24" % SCREEN], stdout=subprocess.PIPE)
+        os.environ.update(DISPLAY=":" + server.stdout.readline().decode().strip(), LIBGL_ALWAYS_SOFTWARE="1",
+                          QT_X11_NO_MITSHM="1")
+        os.environ.pop("WAYLAND_DISPLAY", None)
+        server.stdout.close()
+
+    @staticmethod
+    def screen():
+        raw = subprocess.run(["import", "-silent", "-window", "root", "-depth", "8", "rgb:-"], check=True,
+                             stdout=subprocess.PIPE).stdout
+        return numpy.frombuffer(raw, numpy.uint8).reshape(SCREEN[1], SCREEN[0], 3)
+
+    def picture_with_cube(self):
+        """The screen once the still and, within it, the cube are drawn; and the still's rectangle."""
+        end = time.monotonic() + TIMEOUT
+        while time.monotonic() < end:
+            screen = self.screen()
+            squares = corner_squares(screen)
+            if squares.any():
+                left, top, right, bottom = extent(squares)
+                if cube_coloured(screen[top:bottom, left:right]).any():
+                    return screen, (left, top, right, bottom)
+        self.fail("no cube in the camera's picture" if corner_squares(screen).any() else "no camera's picture")
+
+    def test_an_object_covers_its_mark_in_the_picture(self):
+        self.show_marked_cube()
+        screen, (left, top, right, bottom) = self.picture_with_cube()
+        self.assertGreater(right - left, 640, "the camera's picture is the larger part of the window")
+        self.assertAlmostEqual((right - left) / (bottom - top), 640 / 480, delta=0.01)
+        camera = ShownCamera((left, top, right, bottom))
+        expected = room_picture.silhouette(camera, *CUBE)
+        picture = numpy.zeros(screen.shape[:2], bool)
+        picture[top:bottom, left:right] = True
+        cube = cube_coloured(screen) & picture
+        self.assertGreater(expected.sum(), 2000)
+        self.assertEqual((cube & ~grown(expected, TOLERANCE)).sum(), 0, "the cube is drawn beside its place")
+        inside = ~grown(~expected, TOLERANCE)
+        self.assertEqual((inside & ~cube).sum(), 0, "the cube leaves part of its place open")
+        self.assertEqual((inside & mark(screen)).sum(), 0, "the mark shows through")
+
+    @staticmethod
+    def nodes(*arguments):
+        listed = subprocess.run(["roslaunch", "--nodes", "mr_hand_interaction", "mr_view.launch"] + list(arguments),
+                                check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+        return {name.strip("/") for name in listed.split()}
+
+    def test_only_what_is_asked_for_is_started(self):
+        leap = {"hand_tracking_node", "interaction_node", "world_to_leap_hands"}
+        self.assertEqual(self.nodes(), leap | {"synthetic_hand_node", "world_to_camera", "rviz"})
+        self.assertEqual(self.nodes("hands:=leap", "still:=table"), leap | {"world_to_camera", "still", "rviz"})
+        self.assertEqual(self.nodes("hands:=leap", "mount:=none", "camera_pose:=none", "rviz:=false"),
+                         leap - {"world_to_leap_hands"})
+        self.assertEqual(self.nodes("hands:=none"), {"world_to_camera", "rviz"})
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "mr_view", MrViewTest)
