@@ -3,44 +3,51 @@
 #include <algorithm>
 
 #include "marker_layers.h"
-#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kPerNewton = 0.1;    // length of an arrow [m/N]
-constexpr double kLongest = 0.12;     // [m]
-constexpr double kShortest = 0.003;   // [m]
-constexpr double kPointSize = 0.006;  // [m]
+constexpr double kLongest = 0.08;       // of an arrow, which no force reaches [m]
+constexpr double kHalfOfLongest = 1.0;  // the force whose arrow is half as long [N]
+constexpr double kShortest = 0.004;     // [m]
+constexpr double kGap = 0.002;          // between the arrow and the back of the finger [m]
+constexpr double kPointSize = 0.005;    // [m]
+constexpr double kLift = 0.0006;        // of a ring off the surface [m]
 
-std_msgs::ColorRGBA phase_color(const Contact& contact) {
+std_msgs::ColorRGBA friction_color(const Contact& contact) {
   if (!contact.impulse.isZero(0.0)) return color(1.0, 1.0, 1.0);
-  return contact.friction == Friction::sticking ? color(0.941, 0.894, 0.259) : color(0.800, 0.475, 0.655);
+  return contact.friction == Friction::sticking ? color(0.000, 0.620, 0.451) : color(0.941, 0.894, 0.259);
 }
 
 void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {
   const double newtons = contact.force.norm();
-  const double length = std::min(kPerNewton * newtons, kLongest);
+  const double length = kLongest * newtons / (newtons + kHalfOfLongest);
   if (length < kShortest) return;
-  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.004, 0.010, 0.4 * length}, phase_color(contact));
-  arrow.points = {to_message(Vector3(contact.point - length / newtons * contact.force)),
-                  to_message(contact.point)};
+  const Vector3 direction = contact.force / newtons;
+  const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
+  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.0035, 0.009, std::min(0.014, 0.5 * length)},
+                            color(0.97, 0.97, 0.97));
+  arrow.points = {to_message(Vector3(end - length * direction)), to_message(end)};
 }
 
 }  // namespace
 
-void add_contacts(const FrameResult& result, MarkerLayer& layer) {
+void add_contacts(const FrameResult& result, ContactLayers layers) {
   if (result.contacts.empty()) return;
-  int id = 1;
-  for (const Contact& contact : result.contacts) add_arrow(contact, id++, layer);
   Marker& points =
-      layer.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), color(1.0, 1.0, 1.0));
+      layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), color(1.0, 1.0, 1.0));
+  for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
+  Marker& rings =
+      layers.friction.add(0, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
   for (const Contact& contact : result.contacts) {
-    points.points.push_back(to_message(contact.point));
-    points.colors.push_back(phase_color(contact));
+    const Pose place{contact.point + kLift * contact.normal,
+                     Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
+    add_ring({0.9 * contact.radius, 1.15 * contact.radius}, place, friction_color(contact), rings);
   }
+  int id = 0;
+  for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers.forces);
 }
 
 }  // namespace mrhi

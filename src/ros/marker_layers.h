@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
@@ -29,20 +30,36 @@ class MarkerLayer {
 
 std_msgs::ColorRGBA color(double r, double g, double b, double a = 1.0);
 
+constexpr int kIdsPerHand = 100;
+
 /// How a hand is drawn.
 struct HandStyle {
   std_msgs::ColorRGBA skin, touching;
   double thickness;  ///< share of the phalanges' radii
 };
 
-/// Spheres at the joints, cylinders along the bones, a palm between the metacarpals. Ids from `first_id`, at
-/// most 100.
-void add_hand(const Hand& hand, const std::array<bool, kCapsules>& touching, const HandStyle& style,
-              int first_id, MarkerLayer& layer);
+/// Spheres at the joints, cylinders along the bones, a palm between the metacarpals. Ids from `first_id`,
+/// less than kIdsPerHand.
+void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
+                  MarkerLayer& layer);
 
 void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, MarkerLayer& layer);
 
-/// Points, and arrows of the forces on the objects that end in them.
-void add_contacts(const FrameResult& result, MarkerLayer& layer);
+/// Where a body is touched, and by what force.
+struct ContactLayers {
+  MarkerLayer& points;    ///< a dot at each contact
+  MarkerLayer& friction;  ///< a ring on the surface around it: green where it sticks, yellow where it slips
+  MarkerLayer& forces;    ///< an arrow behind the finger that presses; its length grows with the force
+};
+void add_contacts(const FrameResult& result, ContactLayers layers);
+
+/// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
+/// z, starting at x.
+struct Ring {
+  double inner, outer;  // radii [m]
+  double begin = 0.0, end = 1.0;
+};
+void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
+              visualization_msgs::Marker& marker);
 
 }  // namespace mrhi

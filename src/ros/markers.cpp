@@ -2,9 +2,10 @@
 
 #include <visualization_msgs/Marker.h>
 
+#include <algorithm>
 #include <cstdio>
 
-#include "marker_layers.h"
+#include "hand_markers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/result_conversion.h"
 
@@ -16,15 +17,15 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kPassing = 0.5;  // hands and contacts go if the node does [s]
 constexpr double kForEver = 0.0;
-constexpr int kIdsPerHand = 100;
-const Vector3 kTextPlace{0.0, 0.0, 0.1};
 
-HandStyle rendered_style() {
-  return {color(0.91, 0.76, 0.65), color(0.84, 0.28, 0.06), 1.0};
-}
-/// Thinner, so that it is hidden in the rendered hand where the two agree.
-HandStyle ghost_style() {
-  return {color(0.337, 0.706, 0.914, 0.45), color(0.337, 0.706, 0.914, 0.45), 0.75};
+/// Under all that is there at the start, where no hand comes between.
+Vector3 below(const Scene& scene) {
+  constexpr double kClearance = 0.05;  // [m]
+  Vector3 place(0.0, 0.0, 0.15);
+  for (const Body& body : scene.bodies) {
+    place.z() = std::min(place.z(), body.start.position.z() - body.bounding_radius);
+  }
+  return place - kClearance * Vector3::UnitZ();
 }
 
 std::string heads_up(const Scene& scene, const Configuration& configuration, const SimulationState& state) {
@@ -69,23 +70,28 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
 }
 
 Markers::Markers(const Scene& scene, const Configuration& configuration)
-    : scene_(scene), configuration_(configuration) {}
+    : scene_(scene),
+      configuration_(configuration),
+      text_place_(below(scene)),
+      hands_(std::make_unique<HandMarkers>()) {}
+Markers::~Markers() = default;
 
 MarkerArray Markers::update(const FrameResult& result, const SimulationState& state,
                             const std_msgs::Header& header) {
   MarkerArray array;
-  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing);
+  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing),
+      capsules(array, header, "capsules", kPassing);
   MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
-  MarkerLayer contacts(array, header, "contacts", kPassing), text(array, header, "text", kForEver);
+  MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
+      forces(array, header, "forces", kPassing), text(array, header, "text", kForEver);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
-    add_hand(result.rendered[i].hand, result.rendered[i].touching, rendered_style(), first_id, hands);
-    add_hand(result.tracked[i], {}, ghost_style(), first_id, ghosts);
+    hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts, capsules});
   }
   add_bodies(scene_, state, false, objects);
   add_bodies(scene_, state, true, fixtures);
-  add_contacts(result, contacts);
-  text.add(0, Marker::TEXT_VIEW_FACING, {kTextPlace, Quaternion::Identity()}, Vector3::Constant(0.012),
+  add_contacts(result, {points, friction, forces});
+  text.add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
            color(0.9, 0.9, 0.9))
       .text = heads_up(scene_, configuration_, state);
   delete_stale(header, array);

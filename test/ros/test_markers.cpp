@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "mr_hand_interaction/rendering/skin.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "support/fixtures.h"
@@ -27,8 +29,8 @@ struct Shown {
     state.hands.resize(kMaxHands);
   }
 
-  void see_hands(int count) {
-    result.tracked.assign(static_cast<std::size_t>(count), complete_hand(adult_hand(Side::right), Pose{}));
+  void see_hands(int count, Side side = Side::right) {
+    result.tracked.assign(static_cast<std::size_t>(count), complete_hand(adult_hand(side), Pose{}));
     result.rendered.clear();
     for (const Hand& hand : result.tracked) result.rendered.push_back({hand, {}});
   }
@@ -40,6 +42,16 @@ struct Shown {
     std::map<std::string, int> added;
     for (const Marker& marker : array.markers) added[marker.ns] += marker.action == Marker::ADD;
     return added;
+  }
+
+  /// The first marker of a layer.
+  const Marker& first(const std::string& layer) const {
+    static const Marker none;
+    for (const Marker& marker : array.markers) {
+      if (marker.ns == layer && marker.action == Marker::ADD) return marker;
+    }
+    ADD_FAILURE() << "nothing in " << layer;
+    return none;
   }
 
   long deleted(const std::string& layer) const {
@@ -77,27 +89,76 @@ TEST(Markers, bodies_are_in_their_layers_also_without_visuals) {
   EXPECT_EQ(added["objects"], 1);
   EXPECT_EQ(added["fixtures"], 1);
   EXPECT_EQ(added["text"], 1);
-  EXPECT_EQ(added["hand"] + added["ghost"] + added["contacts"], 0);
+  EXPECT_EQ(added["hand"] + added["ghost"] + added["capsules"] + added["contacts"], 0);
   const auto mesh = std::find_if(shown.array.markers.begin(), shown.array.markers.end(),
                                  [](const Marker& marker) { return marker.type == Marker::MESH_RESOURCE; });
   ASSERT_NE(mesh, shown.array.markers.end());
   EXPECT_EQ(mesh->mesh_resource, "package://some/mesh.stl");
 }
 
-TEST(Markers, hands_that_go_are_deleted_and_ids_are_used_again) {
+TEST(Markers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   Shown shown;
   shown.see_hands(2);
   auto added = shown.update();
-  const int of_two = added["hand"];
-  EXPECT_GT(of_two, 2 * kPhalanges);
-  EXPECT_EQ(added["ghost"], of_two);
+  EXPECT_EQ(added["hand"], 2);
+  const int capsules = added["capsules"];
+  EXPECT_GT(capsules, 2 * kPhalanges);
+  const Marker& skin = shown.first("hand");
+  EXPECT_EQ(skin.type, Marker::TRIANGLE_LIST);
+  EXPECT_EQ(skin.points.size(), 3 * Skin::human().triangles().size());
+  EXPECT_EQ(skin.colors.size(), skin.points.size());
   shown.see_hands(1);
   added = shown.update();
-  EXPECT_EQ(added["hand"], of_two / 2);
-  EXPECT_EQ(shown.deleted("hand"), of_two / 2);
-  EXPECT_EQ(shown.deleted("ghost"), of_two / 2);
+  EXPECT_EQ(added["hand"], 1);
+  EXPECT_EQ(shown.deleted("hand"), 1);
+  EXPECT_EQ(shown.deleted("capsules"), capsules / 2);
   shown.update();
   EXPECT_EQ(shown.deleted("hand"), 0);
+}
+
+TEST(Markers, triangles_of_either_hand_are_counter_clockwise_from_outside) {
+  for (const Side side : {Side::left, Side::right}) {
+    Shown shown;
+    shown.see_hands(1, side);
+    shown.update();
+    const auto& points = shown.first("hand").points;
+    double six_volumes = 0.0;
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+      six_volumes +=
+          from_message(points[i]).dot(from_message(points[i + 1]).cross(from_message(points[i + 2])));
+    }
+    EXPECT_GT(six_volumes, 0.0);
+  }
+}
+
+TEST(Markers, a_hand_with_a_bone_missing_is_drawn_as_capsules) {
+  Shown shown;
+  shown.see_hands(1);
+  shown.result.rendered[0].hand.capsules[static_cast<std::size_t>(capsule_index(3, 2))] = {};
+  const auto added = shown.update();
+  EXPECT_EQ(added.at("hand"), added.at("capsules"));
+  EXPECT_GT(added.at("hand"), kPhalanges);
+}
+
+TEST(Markers, the_ghost_is_seen_where_the_tracked_hand_is_elsewhere_and_more_so_the_farther) {
+  Shown shown;
+  shown.see_hands(1);
+  EXPECT_EQ(shown.update()["ghost"], 0);
+  const auto tip = static_cast<std::size_t>(capsule_index(1, 3));
+  float before = 0.0f;
+  for (const double shift : {0.0005, 0.003, 0.006}) {
+    shown.result.tracked[0] = shown.result.rendered[0].hand;
+    shown.result.tracked[0].capsules[tip].end.z() -= shift;
+    const bool seen = shift > 0.001;
+    ASSERT_EQ(shown.update()["ghost"], seen);
+    if (!seen) continue;
+    const Marker& ghost = shown.first("ghost");
+    EXPECT_LT(ghost.points.size(), shown.first("hand").points.size() / 10);  // the fingertip alone
+    float most = 0.0f;
+    for (const auto& color : ghost.colors) most = std::max(most, color.a);
+    EXPECT_GT(most, before);
+    before = most;
+  }
 }
 
 TEST(Markers, keys_are_unique_and_quaternions_unit) {
@@ -120,33 +181,73 @@ TEST(Markers, what_touches_is_highlighted) {
   Shown shown;
   shown.see_hands(1);
   shown.update();
-  const auto before = shown.array;
-  shown.result.rendered[0].touching[static_cast<std::size_t>(capsule_index(1, 3))] = true;
+  const auto before = shown.first("hand").colors;
+  const int touching = capsule_index(1, 3);
+  shown.result.rendered[0].touching[static_cast<std::size_t>(touching)] = true;
   shown.update();
+  const auto& after = shown.first("hand").colors;
   int changed = 0;
-  for (const Marker& marker : shown.array.markers) {
-    for (const Marker& old : before.markers) {
-      if (marker.ns != "hand" || old.ns != marker.ns || old.id != marker.id) continue;
-      changed += old.color.g != marker.color.g;
-    }
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const auto vertex =
+        static_cast<std::size_t>(Skin::human().triangles()[i / 3][i % 3]);  // a right hand: the same order
+    if (after[i].g == before[i].g) continue;
+    EXPECT_GT(Skin::human().share(vertex, touching), 0.3f);
+    ++changed;
   }
-  EXPECT_EQ(changed, 2);  // the bone and its tip
+  EXPECT_GT(changed, 100);
 }
 
-TEST(Markers, arrows_end_at_the_contact_and_push_as_the_force_does) {
+TEST(Markers, arrows_push_as_the_force_does_behind_the_finger_and_are_longer_for_more) {
   Shown shown;
   Contact contact;
   contact.point = {0.1, 0.2, 0.3};
-  contact.force = {0, 0, -1};
-  shown.result.contacts = {contact};
-  shown.update();
-  const auto arrow = std::find_if(
-      shown.array.markers.begin(), shown.array.markers.end(),
-      [](const Marker& marker) { return marker.action == Marker::ADD && marker.type == Marker::ARROW; });
-  ASSERT_NE(arrow, shown.array.markers.end());
-  ASSERT_EQ(arrow->points.size(), 2u);
-  EXPECT_EQ(arrow->points[1].z, 0.3);
-  EXPECT_GT(arrow->points[0].z, 0.3);
+  contact.radius = 0.01;
+  double before = 0.0;
+  for (const double newtons : {0.2, 1.0, 5.0, 100.0}) {
+    contact.force = {0, 0, -newtons};
+    shown.result.contacts = {contact};
+    shown.update();
+    const Marker& arrow = shown.first("forces");
+    ASSERT_EQ(arrow.points.size(), 2u);
+    EXPECT_GT(arrow.points[1].z, contact.point.z() + 2.0 * contact.radius);
+    const double length = arrow.points[0].z - arrow.points[1].z;
+    EXPECT_GT(length, before);
+    EXPECT_LT(length, 0.1);
+    before = length;
+  }
+}
+
+TEST(Markers, sticking_slipping_and_striking_differ_in_colour) {
+  Shown shown;
+  Contact contact;
+  contact.radius = 0.01;
+  const auto ring = [&] {
+    shown.result.contacts = {contact};
+    shown.update();
+    EXPECT_EQ(shown.first("contacts").points.size(), 1u);
+    const auto c = shown.first("friction").colors.at(0);
+    return std::array<float, 3>{c.r, c.g, c.b};
+  };
+  const auto sticking = ring();
+  contact.friction = Friction::slipping;
+  const auto slipping = ring();
+  contact.impulse = Vector3::UnitX();
+  const auto striking = ring();
+  EXPECT_NE(sticking, slipping);
+  EXPECT_NE(slipping, striking);
+  EXPECT_GT(slipping[0] + slipping[1],
+            sticking[0] + sticking[1] + 0.5f);  // also where hues are not told apart
+}
+
+TEST(Markers, the_text_is_under_everything) {
+  Shown shown;
+  shown.scene.bodies[1].start.position.z() = -0.5;
+  Markers markers(shown.scene, shown.configuration);
+  const auto array = markers.update(shown.result, shown.state, std_msgs::Header());
+  for (const Marker& marker : array.markers) {
+    if (marker.ns != "text") continue;
+    EXPECT_LT(marker.pose.position.z, -0.53);
+  }
 }
 
 }  // namespace

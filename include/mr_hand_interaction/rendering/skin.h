@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mr_hand_interaction/scene/shape.h"
+#include "mr_hand_interaction/tracking/hand.h"
+
+namespace mrhi {
+
+/// The skin of one hand at one time, in world. Vertex i is the same place of every hand's skin.
+struct SkinSurface {
+  std::vector<Vector3> vertices;  ///< [m]
+  std::vector<Vector3> normals;   ///< outward, unit
+};
+
+/// A smooth closed skin over a hand's bones. Its triangles are made once, from the shape of a resting hand;
+/// each hand, left or right and of any size, has the same ones, bent over its bones. Immutable.
+class Skin {
+ public:
+  Skin();
+  /// The one that all share.
+  static const Skin& human();
+
+  /// Counter-clockwise seen from outside, for a right hand; for a left one clockwise.
+  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
+  /// The vertices of the rest hand: right, stretched, fingers along x, back up, wrist at the origin [m].
+  const std::vector<Vector3>& rest() const { return rest_; }
+  std::size_t size() const { return parts_.size(); }
+
+  /// False, and the surface as it was, if a bone of the hand is missing (the thumb's metacarpal may be).
+  bool pose(const Hand& hand, SkinSurface& surface) const;
+
+  /// How far vertex i belongs to each capsule, 0 to 1.
+  double share(std::size_t vertex, int capsule) const {
+    return parts_[vertex].share[static_cast<std::size_t>(capsule)];
+  }
+
+ private:
+  /// A bone that carries a vertex, and where it is on that bone: along it as a share of its length, what is
+  /// beyond its ends, and to the sides in radii.
+  struct Influence {
+    int bone;
+    double weight, along;
+    Vector3 beyond;
+  };
+  struct Part {
+    std::size_t first, last;  ///< of the influences
+    std::array<float, kCapsules> share;
+  };
+  static Influence influence(int bone, double weight, const Vector3& vertex);
+
+  std::vector<Vector3> rest_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<Influence> influences_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "mr_hand_interaction/rendering/skin.h"
+
+namespace mrhi {
+
+using Rgb = Eigen::Array3f;  ///< 0 to 1
+
+/// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. One light from above,
+/// light from all around, less of it where fingers cover each other or the palm (spheres as occluders). Fixed
+/// in world, so that a still hand keeps its colours while the view turns. Immutable.
+class SkinPaint {
+ public:
+  explicit SkinPaint(const Skin& skin);  ///< keeps a reference
+
+  /// A colour for each vertex of the surface, which is that of `hand`.
+  void paint(const Hand& hand, const SkinSurface& surface, const std::array<bool, kCapsules>& touching,
+             std::vector<Rgb>& colours) const;
+
+  static Rgb touching_colour() { return {0.86f, 0.30f, 0.08f}; }
+
+ private:
+  struct Tint {
+    Rgb colour;
+    int capsule;  ///< that the vertex belongs to most
+  };
+  const Skin& skin_;
+  std::vector<Tint> tints_;
+};
+
+}  // namespace mrhi

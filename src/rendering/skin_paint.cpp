@@ -1,0 +1,124 @@
+#include "mr_hand_interaction/rendering/skin_paint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "skin_rig.h"
+#include "smooth_step.h"
+
+namespace mrhi {
+namespace {
+
+const Rgb kSkin(0.93f, 0.75f, 0.64f), kBlush(0.93f, 0.62f, 0.53f), kNail(0.96f, 0.82f, 0.75f);
+const Rgb kSleeve(0.29f, 0.33f, 0.40f);
+const Eigen::Vector3f kLight = Eigen::Vector3f(0.35f, -0.45f, 0.82f).normalized();
+const Eigen::Vector3f kFill = Eigen::Vector3f(-0.55f, -0.45f, -0.70f).normalized();
+const Rgb kLightColour(0.40f, 0.39f, 0.37f), kFillColour(0.20f, 0.19f, 0.18f);
+const Rgb kAbove(0.62f, 0.63f, 0.65f), kBelow(0.55f, 0.51f, 0.49f);
+const Rgb kWrap(0.45f, 0.30f, 0.25f);  // light that goes on in the skin past where it would end
+constexpr float kOcclusion = 0.8f;
+
+/// One sphere in the middle of each phalanx and one at its end, in arrays that vector instructions like.
+constexpr int kSpheres = 2 * kPhalanges;
+using Floats = Eigen::Array<float, kSpheres, 1>;
+
+struct Occluders {
+  Floats x, y, z, squared;
+
+  explicit Occluders(const Hand& hand) {
+    for (int i = 0; i < kPhalanges; ++i) {
+      const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
+      set(2 * i, capsule.centre(), capsule.radius);
+      set(2 * i + 1, capsule.end, capsule.radius);
+    }
+  }
+
+  void set(int i, const Vector3& centre, double radius) {
+    x[i] = static_cast<float>(centre.x());
+    y[i] = static_cast<float>(centre.y());
+    z[i] = static_cast<float>(centre.z());
+    squared[i] = static_cast<float>(radius * radius);
+  }
+
+  /// Share of the light from all around that is left; `counts` is 0 for the spheres that do not count.
+  float left(const Eigen::Vector3f& p, const Eigen::Vector3f& n, const Floats& counts) const {
+    const Floats dx = x - p.x(), dy = y - p.y(), dz = z - p.z();
+    const Floats d = dx * dx + dy * dy + dz * dz + 1e-6f;
+    const Floats facing = (dx * n.x() + dy * n.y() + dz * n.z()).max(0.0f);
+    return std::max(0.35f, 1.0f - kOcclusion * (counts * squared * facing / (d * d.sqrt())).sum());
+  }
+};
+
+/// A phalanx is not covered by itself and its neighbours, nor by the metacarpals, which are in the palm.
+std::array<Floats, kCapsules> make_counts() {
+  std::array<Floats, kCapsules> counts;
+  for (int own = 0; own < kCapsules; ++own) {
+    Floats& row = counts[static_cast<std::size_t>(own)];
+    for (int other = 0; other < kPhalanges; ++other) {
+      const bool palm = own == kPalm || bone_of(own) == 0;
+      const bool near =
+          palm ? bone_of(other) <= 1 : finger_of(own) == finger_of(other) && std::abs(own - other) <= 1;
+      row[2 * other] = row[2 * other + 1] = near || bone_of(other) == 0 ? 0.0f : 1.0f;
+    }
+  }
+  return counts;
+}
+
+/// In the frame of the bone, in its radii: where fingers are redder, and the nail.
+Rgb finger_colour(int finger, const Vector3& vertex) {
+  const SkinBone& tip = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 3))];
+  const Vector3 q = tip.axes.transpose() * (vertex - tip.start) / tip.radius;
+  const double length = tip.length / tip.radius;
+  const double red = smooth_step(-0.3, length + 0.5, q.x()) * smooth_step(0.9, -0.6, q.z());
+  Rgb colour = kSkin + static_cast<float>(0.7 * red) * (kBlush - kSkin);
+  const double along =
+      smooth_step(0.25 * length, 0.5 * length, q.x()) * smooth_step(length + 0.75, length + 0.35, q.x());
+  const double nail = along * smooth_step(0.15, 0.45, q.z()) * smooth_step(0.85, 0.55, std::abs(q.y()));
+  return colour + static_cast<float>(nail) * (kNail - colour);
+}
+
+Rgb light_on(const Eigen::Vector3f& normal, float around) {
+  const Rgb direct = (normal.dot(kLight) + kWrap) / (1.0f + kWrap);
+  const Rgb ambient = kBelow + (0.5f + 0.5f * normal.z()) * (kAbove - kBelow);
+  const float fill = 0.6f * std::max(0.0f, normal.dot(kFill) + 0.4f);
+  return kLightColour * direct.max(0.0f) * (0.4f + 0.6f * around) + (ambient + kFillColour * fill) * around;
+}
+
+}  // namespace
+
+SkinPaint::SkinPaint(const Skin& skin) : skin_(skin) {
+  tints_.reserve(skin.size());
+  for (std::size_t v = 0; v < skin.size(); ++v) {
+    int most = 0;
+    for (int c = 1; c < kPhalanges; ++c) {
+      if (skin.share(v, c) > skin.share(v, most)) most = c;
+    }
+    const Vector3& vertex = skin.rest()[v];
+    Rgb colour = kSkin;
+    if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex);
+    const auto sleeve =
+        static_cast<float>(smooth_step(kSleeveBegins + 0.003, kSleeveBegins - 0.003, vertex.x()));
+    tints_.push_back({colour + sleeve * (kSleeve - colour), most});
+  }
+}
+
+void SkinPaint::paint(const Hand& hand, const SkinSurface& surface,
+                      const std::array<bool, kCapsules>& touching, std::vector<Rgb>& colours) const {
+  static const std::array<Floats, kCapsules> counts = make_counts();
+  const Occluders occluders(hand);
+  colours.resize(surface.vertices.size());
+  for (std::size_t v = 0; v < colours.size(); ++v) {
+    double touch = 0.0;
+    for (int c = 0; c < kCapsules; ++c) {
+      if (touching[static_cast<std::size_t>(c)]) touch += skin_.share(v, c);
+    }
+    const auto touched = static_cast<float>(smooth_step(0.35, 0.75, touch));
+    const Rgb colour = tints_[v].colour + touched * (touching_colour() - tints_[v].colour);
+    const Eigen::Vector3f normal = surface.normals[v].cast<float>();
+    const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
+                                        counts[static_cast<std::size_t>(tints_[v].capsule)]);
+    colours[v] = (colour * light_on(normal, around)).min(1.0f);
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,148 @@
+#include "skin_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "skin_rig.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kWeb = 0.005;    // how far two fingers' skins are rounded into each other [m]
+constexpr double kFlesh = 0.010;  // two parts of the palm [m]
+constexpr double kStump = 0.036;  // from the wrist to where the sleeve ends [m]
+
+double smooth_min(double a, double b, double width) {
+  const double overlap = std::max(0.0, 1.0 - std::abs(a - b) / width);
+  return std::min(a, b) - 0.25 * width * overlap * overlap;
+}
+
+/// A cone with round ends.
+struct Cone {
+  Vector3 a, b;
+  double at_a, at_b;  // radii [m]
+
+  double distance(const Vector3& p) const {
+    const Vector3 along = b - a;
+    const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return (p - a - t * along).norm() - (at_a + t * (at_b - at_a));
+  }
+};
+
+const SkinBone& bone(int finger, int index) {
+  return rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, index))];
+}
+Vector3 on(int finger, int index, double share) {
+  const SkinBone& b = bone(finger, index);
+  return b.start + share * b.length * b.axes.col(0);
+}
+
+/// A finger from its knuckle on, straight; thickest at the joints.
+class Finger {
+ public:
+  explicit Finger(int finger) : frame_(bone(finger, 1)) {
+    const double joint[] = {1.02, 1.02, 0.97}, middle[] = {0.97, 0.93, 0.95};
+    double begin = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double length = bone(finger, static_cast<int>(i) + 1).length;
+      stations_[2 * i] = {begin, joint[i]};
+      stations_[2 * i + 1] = {begin + 0.5 * length, middle[i]};
+      begin += length;
+    }
+    stations_[6] = {begin, 0.86};
+  }
+
+  double distance(const Vector3& p) const {
+    Vector3 q = frame_.axes.transpose() * (p - frame_.start);
+    const double s = std::clamp(q.x(), 0.0, stations_[6].s), radius = frame_.radius * share(s);
+    q.x() -= s;
+    if (q.x() > 0.0) q.x() *= radius / frame_.radius;
+    q.z() += frame_.radius - radius;
+    return q.norm() - radius;
+  }
+
+ private:
+  struct Station {
+    double s, share;  // from the knuckle [m], of the capsule's radius
+  };
+  double share(double s) const {
+    std::size_t i = 1;
+    while (i < 6 && s > stations_[i].s) ++i;
+    const Station &a = stations_[i - 1], &b = stations_[i];
+    const double t = (s - a.s) / (b.s - a.s);
+    return a.share + (b.share - a.share) * 0.5 * (1.0 - std::cos(M_PI * t));
+  }
+
+  SkinBone frame_;
+  std::array<Station, 7> stations_;
+};
+
+/// Palm, balls of the thumb and of the little finger, knuckles and wrist, in the rest hand's frame.
+std::vector<Cone> palm_cones() {
+  std::vector<Cone> cones;
+  const Vector3 up = Vector3::UnitZ();
+  for (int f = 1; f < kFingers; ++f) {
+    const double r = bone(f, 0).radius;
+    cones.push_back({on(f, 0, 0.0), on(f, 0, 1.0), 1.05 * r, r});
+    cones.push_back({on(f, 0, 0.35) - 0.003 * up, on(f, 0, 1.0) - 0.0025 * up, 1.05 * r, 0.97 * r});
+    cones.push_back({on(f, 0, 0.97) + 0.1 * r * up, on(f, 1, 0.06) + 0.1 * r * up, 0.98 * r, 0.85 * r});
+  }
+  const double ball = bone(0, 1).radius;
+  cones.push_back({on(0, 1, 0.1) - 0.001 * up, on(0, 1, 0.6), 1.3 * ball, 1.22 * ball});
+  cones.push_back({on(0, 1, 0.25), on(1, 0, 0.45) - 0.004 * up, 1.0 * ball, 0.9 * ball});
+  cones.push_back({on(0, 1, 0.6), on(1, 0, 0.7), 0.75 * ball, 0.7 * ball});
+  cones.push_back({on(0, 1, 0.85), on(1, 0, 0.8), 0.5 * ball, 0.5 * ball});
+  const double edge = bone(4, 0).radius;
+  cones.push_back({on(4, 0, 0.1) - 0.006 * up, on(4, 0, 0.75) - 0.004 * up, 1.35 * edge, 1.15 * edge});
+  return cones;
+}
+
+std::vector<Cone> web_cones() {
+  std::vector<Cone> cones;
+  for (int f = 1; f + 1 < kFingers; ++f) {
+    const double r = bone(f, 0).radius;
+    cones.push_back({on(f, 1, 0.15) - Vector3(0, 0, 0.001),
+                     on(f + 1, 1, f == 3 ? 0.25 : 0.18) - Vector3(0, 0, 0.001), 0.62 * r, 0.62 * r});
+  }
+  return cones;
+}
+
+/// An elliptic cylinder about x that ends round, at the x of its last point.
+double forearm_distance(const Vector3& p, double end, double half_width, double half_thickness) {
+  const Vector3 q(std::max(0.0, p.x() - end + 0.5 * half_thickness) * 2.0,
+                  p.y() * half_thickness / half_width, p.z() - 0.001);
+  return q.norm() - half_thickness;
+}
+
+}  // namespace
+
+double skin_distance(const Vector3& point) {
+  static const std::vector<Cone> palm = palm_cones(), webs = web_cones();
+  static const std::array<Finger, kFingers> fingers{{Finger(0), Finger(1), Finger(2), Finger(3), Finger(4)}};
+  double distance = palm[0].distance(point);
+  for (const Cone& cone : palm) distance = smooth_min(distance, cone.distance(point), kFlesh);
+  for (const Finger& finger : fingers) distance = smooth_min(distance, finger.distance(point), kWeb);
+  for (const Cone& cone : webs) distance = smooth_min(distance, cone.distance(point), kWeb);
+  distance = smooth_min(distance, forearm_distance(point, 0.012, 0.027, 0.0165), kFlesh);
+  distance = smooth_min(distance, forearm_distance(point, kSleeveBegins, 0.032, 0.0205), 0.002);
+  return -smooth_min(-distance, point.x() + kStump, 0.004);
+}
+
+SkinBox skin_box() {
+  SkinBox box{Vector3::Constant(1.0), Vector3::Constant(-1.0)};
+  for (const Capsule& capsule : rest_hand().hand.capsules) {
+    if (capsule.radius == 0.0) continue;
+    for (const Vector3& end : {capsule.start, capsule.end}) {
+      box.lowest = box.lowest.cwiseMin(end);
+      box.highest = box.highest.cwiseMax(end);
+    }
+  }
+  constexpr double kMargin = 0.022;  // thicker than any part
+  box.lowest -= Vector3::Constant(kMargin);
+  box.highest += Vector3::Constant(kMargin);
+  box.lowest.x() = -kStump - kMargin;
+  return box;
+}
+
+}  // namespace mrhi

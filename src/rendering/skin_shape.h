@@ -1,0 +1,18 @@
+#pragma once
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// Signed distance, roughly, from the rest hand's skin [m], negative inside: rounded cones smoothly united
+/// (Quilez's polynomial minimum). Fingers reach the capsules' surface on the side of the palm and are slimmer
+/// elsewhere.
+double skin_distance(const Vector3& point);
+
+/// A box around it.
+struct SkinBox {
+  Vector3 lowest, highest;
+};
+SkinBox skin_box();
+
+}  // namespace mrhi

@@ -1,0 +1,29 @@
+#include <visualization_msgs/Marker.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "marker_layers.h"
+
+namespace mrhi {
+
+void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
+              visualization_msgs::Marker& marker) {
+  constexpr double kPieces = 36.0;  // of a full turn
+  const double turn = ring.end - ring.begin;
+  const int pieces = std::max(0, static_cast<int>(std::ceil(kPieces * turn)));
+  const auto at = [&](double radius, int piece) {
+    const double angle = -2.0 * M_PI * (ring.begin + turn * piece / pieces);
+    return to_message(place * (radius * Vector3(std::cos(angle), std::sin(angle), 0.0)));
+  };
+  for (int i = 0; i < pieces; ++i) {
+    const auto a = at(ring.inner, i), b = at(ring.outer, i), c = at(ring.outer, i + 1),
+               d = at(ring.inner, i + 1);
+    for (const auto& corner : {a, b, c, a, c, d}) {
+      marker.points.push_back(corner);
+      marker.colors.push_back(paint);
+    }
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "mr_hand_interaction/rendering/skin.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "rendering/skin_checks.h"
+#include "support/postures.h"
+#include "tracking/adult_hand.h"
+
+namespace mrhi {
+namespace {
+
+using testing::farthest_from_bones;
+using testing::finite;
+using testing::fist_posture;
+using testing::flipped_triangles;
+using testing::hand_in;
+using testing::open_posture;
+
+SkinSurface skin_of(const Hand& hand) {
+  SkinSurface surface;
+  EXPECT_TRUE(Skin::human().pose(hand, surface));
+  return surface;
+}
+
+HandJoints scaled(HandJoints hand, double factor) {
+  for (auto& finger : hand.joints)
+    for (auto& joint : finger) *joint *= factor;
+  *hand.palm_centre *= factor;
+  *hand.wrist *= factor;
+  *hand.palm_width *= static_cast<float>(factor);
+  for (auto& width : hand.finger_width) *width *= static_cast<float>(factor);
+  return hand;
+}
+
+TEST(Skin, is_closed_every_edge_between_two_triangles_that_pass_it_in_opposite_ways) {
+  std::map<std::pair<int, int>, int> edges;
+  for (const auto& triangle : Skin::human().triangles()) {
+    for (std::size_t i = 0; i < 3; ++i) ++edges[{triangle[i], triangle[(i + 1) % 3]}];
+  }
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+  }
+}
+
+TEST(Skin, is_one_piece_without_a_hole) {
+  const auto vertices = static_cast<long>(Skin::human().size());
+  const auto triangles = static_cast<long>(Skin::human().triangles().size());
+  EXPECT_EQ(vertices - triangles * 3 / 2 + triangles, 2);  // Euler's formula for a sphere
+}
+
+TEST(Skin, rest_hand_posed_is_the_rest_hand) {
+  const Hand rest = hand_in([] {
+    HandPosture posture = HandPosture::Zero();
+    posture.row(kAbduction) << 0.0, 6.0, 1.0, -5.0, -10.0;
+    return HandPosture(M_PI / 180.0 * posture);
+  }());
+  const SkinSurface surface = skin_of(rest);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+    EXPECT_LT((surface.vertices[v] - Skin::human().rest()[v]).norm(), 1e-9);
+  }
+}
+
+TEST(Skin, fingers_are_as_thick_as_their_capsules_and_no_thicker) {
+  const Hand hand = hand_in(relaxed_posture());
+  const SkinSurface surface = skin_of(hand);
+  for (int finger = 0; finger < kFingers; ++finger) {
+    for (int bone = 2; bone < kBonesPerFinger; ++bone) {
+      const int index = capsule_index(finger, bone);
+      const Capsule& capsule = hand.capsules[static_cast<std::size_t>(index)];
+      for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+        if (Skin::human().share(v, index) < 0.99f) continue;
+        const double radii = testing::distance_to_axis(capsule, surface.vertices[v]) / capsule.radius;
+        EXPECT_LT(radii, 1.05);  // joints are a little thicker
+        EXPECT_GT(radii, 0.70);  // the back of the fingertip is slimmer
+      }
+    }
+  }
+}
+
+TEST(Skin, left_hand_is_the_mirror_image_of_the_right) {
+  const SkinSurface right = skin_of(hand_in(pointing_posture(), Side::right));
+  const SkinSurface left = skin_of(hand_in(pointing_posture(), Side::left));
+  const Vector3 mirror(1.0, -1.0, 1.0);
+  for (std::size_t v = 0; v < right.vertices.size(); ++v) {
+    EXPECT_LT((left.vertices[v] - mirror.cwiseProduct(right.vertices[v])).norm(), 1e-6);  // float32 wrist
+    EXPECT_LT((left.normals[v] - mirror.cwiseProduct(right.normals[v])).norm(), 1e-3);
+  }
+}
+
+TEST(Skin, grows_with_the_hand) {
+  const SkinSurface adult = skin_of(complete_hand(adult_hand(Side::right), Pose{}));
+  for (const double factor : {0.6, 1.4}) {
+    const SkinSurface other = skin_of(complete_hand(scaled(adult_hand(Side::right), factor), Pose{}));
+    for (std::size_t v = 0; v < adult.vertices.size(); ++v) {
+      EXPECT_LT((other.vertices[v] - factor * adult.vertices[v]).norm(), 1e-6);  // float32 sizes
+    }
+  }
+}
+
+TEST(Skin, goes_with_the_hand) {
+  const Pose pose{Vector3(0.3, -0.2, 0.5), Quaternion(0.5, 0.5, -0.5, 0.5)};
+  const SkinSurface here = skin_of(complete_hand(adult_hand(Side::left), Pose{}));
+  const SkinSurface there = skin_of(complete_hand(adult_hand(Side::left), pose));
+  for (std::size_t v = 0; v < here.vertices.size(); ++v) {
+    EXPECT_LT((there.vertices[v] - pose * here.vertices[v]).norm(), 1e-6);  // float32 wrist
+  }
+}
+
+TEST(Skin, no_triangle_turns_over_in_a_fist) {
+  for (const Side side : {Side::left, Side::right}) {
+    for (const HandPosture& posture :
+         {fist_posture(), open_posture(), flat_posture(), relaxed_posture(), pointing_posture()}) {
+      EXPECT_EQ(flipped_triangles(side, skin_of(hand_in(posture, side))), 0);
+    }
+  }
+}
+
+TEST(Skin, stays_on_the_bones_in_every_motion) {
+  for (const std::string& motion : motion_names()) {
+    for (const char* side : {"left", "right"}) {
+      SyntheticHandOptions options;
+      options.motion = motion;
+      options.side = side;
+      options.rate = 30.0;
+      for (const JointsFrame& frame : record_motion(options)) {
+        for (const HandJoints& joints : frame.hands) {
+          const Hand hand = complete_hand(joints, default_device_mount());
+          const SkinSurface surface = skin_of(hand);
+          ASSERT_TRUE(finite(surface)) << motion;
+          ASSERT_LT(farthest_from_bones(hand, surface), 0.5) << motion;  // the web of the thumb
+          ASSERT_EQ(flipped_triangles(hand.side, surface), 0) << motion;
+        }
+      }
+    }
+  }
+}
+
+TEST(Skin, needs_every_bone_but_the_thumbs_metacarpal) {
+  SkinSurface surface;
+  Hand hand = complete_hand(adult_hand(Side::right), Pose{});
+  hand.capsules[static_cast<std::size_t>(capsule_index(4, 2))] = {};
+  EXPECT_FALSE(Skin::human().pose(hand, surface));
+  EXPECT_TRUE(surface.vertices.empty());
+}
+
+TEST(Skin, keeps_its_memory) {
+  SkinSurface surface = skin_of(hand_in(flat_posture()));
+  const Vector3 *vertices = surface.vertices.data(), *normals = surface.normals.data();
+  ASSERT_TRUE(Skin::human().pose(hand_in(fist_posture()), surface));
+  EXPECT_EQ(surface.vertices.data(), vertices);
+  EXPECT_EQ(surface.normals.data(), normals);
+}
+
+}  // namespace
+}  // namespace mrhi
