@@ -29,6 +29,8 @@ class Demo:
     def __init__(self):
         self.changed = threading.Condition()
         self.frames = 0
+        self.palm = None
+        self.first_seen = self.last_seen = None
         self.touched = set()
         self.grasped = set()
         self.most_contacts = 0
@@ -40,9 +42,14 @@ class Demo:
         rospy.Subscriber("interaction_events", InteractionEvent, self.take_event, queue_size=100)
         rospy.Subscriber("objects", ObjectStateArray, self.take_objects, queue_size=10)
 
-    def take_frame(self, _):
+    def take_frame(self, frame):
         with self.changed:
             self.frames += 1
+            if frame.hands:
+                self.palm = frame.hands[0].palm.position
+                self.last_seen = frame.header.stamp
+                self.first_seen = self.first_seen or self.last_seen
+            self.changed.notify_all()
 
     def take_contacts(self, message):
         with self.changed:
@@ -62,6 +69,10 @@ class Demo:
                 self.objects[thing.name] = thing
             self.changed.notify_all()
 
+    def seen_for(self):
+        """Seconds from the first frame with a hand to the last."""
+        return (self.last_seen - self.first_seen).to_sec() if self.first_seen else 0.0
+
     def moved(self, name):
         return distance(self.objects[name].pose.position, self.start[name])
 
@@ -77,16 +88,30 @@ class Demo:
             return self.changed.wait_for(condition, max(0.0, deadline - time.monotonic()))
 
 
+def join_master(name, deadline):
+    while not rosgraph.is_master_online() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    rospy.init_node(name, disable_signals=True)
+
+
 def rviz_listens():
     subscribers = rosgraph.Master("/watch_demo").getSystemState()[1]
     return any(topic == "/markers" and "/rviz" in nodes for topic, nodes in subscribers)
 
 
+def grab(file):
+    """What is on the screen."""
+    subprocess.run(["import", "-silent", "-window", "root", file], check=True)
+
+
+def colours_of(file):
+    return int(subprocess.run(["identify", "-format", "%k", file], check=True, stdout=subprocess.PIPE).stdout)
+
+
 def take_picture(file):
     """Whether the screen shows more than an empty window; if so, its picture is in the file."""
-    subprocess.run(["import", "-silent", "-window", "root", file], check=True)
-    colours = subprocess.run(["identify", "-format", "%k", file], check=True, stdout=subprocess.PIPE)
-    return int(colours.stdout) >= COLOURS
+    grab(file)
+    return colours_of(file) >= COLOURS
 
 
 def summary(demo, motion, done, picture):
@@ -115,9 +140,7 @@ def main():
     if os.path.exists(options.picture):
         os.remove(options.picture)
 
-    while not rosgraph.is_master_online() and time.monotonic() < deadline:
-        time.sleep(0.1)
-    rospy.init_node("watch_demo", disable_signals=True)
+    join_master("watch_demo", deadline)
     demo = Demo()
     what = demo.struck if options.motion in STRIKES else demo.carried
     done = False

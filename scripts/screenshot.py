@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""Waits for a moment of a running demo or recording, pauses the simulation there, and takes rviz's picture of it.
+Exits with 0 if it was taken, 1 if the time was up before, 2 on bad usage."""
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import rospy
+import yaml
+from std_srvs.srv import SetBool
+
+from watch_demo import COLOURS, STRIKES, Demo, colours_of, grab, join_master
+
+REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+MOMENTS = ("hand", "contact", "grasp", "done")
+VIEWS = {"front": (5.35, 0.5), "left": (3.9, 0.45), "right": (0.3, 0.45), "back": (2.2, 0.5), "top": (5.35, 1.3),
+         "below": (5.35, -0.6)}
+LAYERS = ("hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "text", "Grid")
+
+
+def view(text):
+    if text in VIEWS:
+        return VIEWS[text]
+    yaw, pitch = (float(number) for number in text.split(","))
+    return yaw, pitch
+
+
+def layers(text):
+    names = [name for name in text.split(",") if name]
+    unknown = set(names) - set(LAYERS)
+    if unknown:
+        raise argparse.ArgumentTypeError(f"unknown layer {', '.join(sorted(unknown))}")
+    return names
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="screenshot")
+    parser.add_argument("--motion", required=True)
+    parser.add_argument("--moment", choices=MOMENTS, default="done")
+    parser.add_argument("--time", type=lambda text: float(text) if text else None)
+    parser.add_argument("--view", type=view, default=VIEWS["front"])
+    parser.add_argument("--distance", type=float, default=0.42)
+    parser.add_argument("--hide", type=layers, default=["capsules"])
+    parser.add_argument("--size", required=True)
+    parser.add_argument("--output", required=True)
+    parser.add_argument("--time-limit", type=float, default=120.0)
+    parser.add_argument("--check", action="store_true", help="the options alone")
+    return parser.parse_args()
+
+
+def has_come(demo, options):
+    if options.time is not None:
+        return demo.seen_for() >= options.time
+    if options.moment == "hand":
+        return demo.palm is not None
+    if options.moment == "contact":
+        return bool(demo.touched)
+    if options.moment == "grasp":
+        return any(thing.held for thing in demo.objects.values())
+    return demo.struck() if options.motion in STRIKES else demo.carried()
+
+
+def middle(demo):
+    """Between the hand's palm and the object nearest to it."""
+    palm = demo.palm
+    nearest = min((thing.pose.position for thing in demo.objects.values()),
+                  key=lambda p: (p.x - palm.x) ** 2 + (p.y - palm.y) ** 2 + (p.z - palm.z) ** 2, default=palm)
+    return {axis.upper(): 0.5 * (getattr(palm, axis) + getattr(nearest, axis)) for axis in "xyz"}
+
+
+def write_config(options, focus, file):
+    with open(os.path.join(REPOSITORY, "rviz", "interaction.rviz"), encoding="utf-8") as source:
+        config = yaml.safe_load(source)
+    manager = config["Visualization Manager"]
+    manager["Views"]["Current"].update({"Yaw": options.view[0], "Pitch": options.view[1], "Distance": options.distance,
+                                        "Focal Point": focus})
+    for display in manager["Displays"]:
+        if display["Name"] in options.hide:
+            display["Enabled"] = display["Value"] = False
+        if display["Name"] == "Hands and objects":
+            display["Namespaces"] = {name: name not in options.hide for name in LAYERS if name != "Grid"}
+    width, height = (2 * int(number) for number in options.size.split("x"))
+    config["Window Geometry"].update({"Width": width, "Height": height})
+    yaml.safe_dump(config, file)
+    file.flush()
+
+
+def take_when_drawn(options, deadline):
+    """The picture once rviz has drawn the scene and no longer changes it."""
+    with tempfile.TemporaryDirectory() as folder:
+        before, now = os.path.join(folder, "before.png"), os.path.join(folder, "now.png")
+        grab(before)
+        while time.monotonic() < deadline:
+            time.sleep(0.5)
+            grab(now)
+            same = subprocess.run(["compare", "-metric", "AE", before, now, "null:"], stderr=subprocess.DEVNULL,
+                                  check=False).returncode == 0
+            if same and colours_of(now) >= COLOURS:
+                subprocess.run(["convert", now, "-resize", options.size, "-strip", options.output],
+                               check=True)
+                return True
+            os.replace(now, before)
+    return False
+
+
+def main():
+    options = parse()
+    if options.check:
+        return 0
+    deadline = time.monotonic() + options.time_limit
+    os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
+    join_master("screenshot", deadline)
+    demo = Demo()
+    if not demo.wait_for(lambda: demo.palm is not None and has_come(demo, options), deadline):
+        print(f"screenshot: the moment has not come within {options.time_limit:.0f} s", file=sys.stderr)
+        return 1
+    rospy.ServiceProxy("interaction_node/pause", SetBool)(True)
+    with demo.changed:
+        focus = middle(demo)
+    with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
+        write_config(options, focus, config)
+        rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
+                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            taken = take_when_drawn(options, deadline)
+        finally:
+            rviz.terminate()
+            rviz.wait()
+    if not taken:
+        print(f"screenshot: rviz has not drawn it within {options.time_limit:.0f} s", file=sys.stderr)
+    return 0 if taken else 1
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)  # rospy's threads would hold it up
