@@ -3,6 +3,7 @@
 #include <ros/callback_queue.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
