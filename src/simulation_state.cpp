@@ -110,6 +110,8 @@ std::uint64_t hash(const SimulationState& state) {
     hash.add(body.pose);
     hash.add(body.linear_momentum);
     hash.add(body.angular_momentum);
+    hash.add(body.pushed.linear);
+    hash.add(body.pushed.angular);
   }
   for (const HandTrack& track : state.hands) add_track(track, state.time, hash);
   for (const Contact& contact : state.contacts) add_contact(contact, hash);

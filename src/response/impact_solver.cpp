@@ -117,8 +117,8 @@ ImpactSolver::ImpactSolver() {
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction) {
   for (Contact& contact : step.contacts) contact.impulse.setZero();
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
-  for (std::size_t first = 0; first < islands.size();) {
-    collect(step, islands.next(first), friction);
+  for (const Island& island : islands.all()) {
+    collect(step, island, friction);
     if (strikes_.empty()) continue;
     order_blows();
     for (auto blow = strikes_.begin(); blow != strikes_.end();) {
@@ -131,17 +131,13 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   }
 }
 
-void ImpactSolver::collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction) {
+void ImpactSolver::collect(ContactStep& step, const Island& island, ImpactFriction friction) {
   strikes_.clear();
   by_hand_ = false;
-  for (const ContactIndex& entry : island) {
-    const auto i = static_cast<std::size_t>(entry.index);
-    if (entry.between_bodies) {
-      add(step, step.body_contacts[i], friction);
-    } else {
-      add(step, step.contacts[i], friction);
-    }
+  for (const IslandBody& body : island.bodies) {
+    for (std::size_t i = body.first; i < body.last; ++i) add(step, step.contacts[i], friction);
   }
+  for (const Link& link : island.links) add(step, step.body_contacts[link.index], friction);
 }
 
 void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction friction) {

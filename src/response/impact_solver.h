@@ -55,7 +55,7 @@ class ImpactSolver {
 
  private:
   using Strikes = std::vector<Strike>::iterator;
-  void collect(ContactStep& step, const Islands::Island& island, ImpactFriction friction);
+  void collect(ContactStep& step, const Island& island, ImpactFriction friction);
   void add(ContactStep& step, Contact& contact, ImpactFriction friction);
   void add(ContactStep& step, BodyContact& contact, ImpactFriction friction);
   void add_strike(Strike strike, const Material& material, ImpactFriction friction);

@@ -16,19 +16,14 @@ class ImplicitModel : public ContactModel {
   void respond(ContactStep& step) override;
 
  private:
-  void respond(ContactStep& step, const Islands::Island& island);
-  void gather(const ContactStep& step, const Islands::Island& island);
-  int place_of(int body);
+  template <typename Problem>
+  void solve(ContactStep& step, const Island& island, Problem& problem) const;
 
   const ContactConfiguration configuration_;
   ImpactSolver impacts_;
   Islands islands_;
   BodyProblem one_;
   IslandProblem several_;
-  // The island at hand: its bodies, and its contacts with the entries they stand for.
-  std::vector<int> bodies_, places_;
-  std::vector<IslandContact> contacts_;
-  std::vector<ContactIndex> entries_;
 };
 
 }  // namespace mrhi

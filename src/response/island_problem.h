@@ -4,9 +4,18 @@
 #include <Eigen/SparseCholesky>
 #include <vector>
 
-#include "island_contact.h"
+#include "islands.h"
+#include "spring_contact.h"
 
 namespace mrhi {
+
+/// Of the bodies of an island, which are numbered from 0: body 2 is number `b`, body 1 number `a` or, moving
+/// by itself, none of them.
+struct IslandContact : SpringContact<double> {
+  static constexpr int kAlone = -1;
+  int a, b;
+  Vector3 arm_a;  // from the centre of a [m]
+};
 
 /// Several bodies that touch each other, and what presses them: six unknowns a body, solved together. A
 /// Problem for Newton. Keeps its memory from island to island.
@@ -14,9 +23,7 @@ class IslandProblem {
  public:
   static constexpr bool kTrustsLastStep = false;  // momentum is conserved between the bodies
 
-  /// Bodies by their index in the scene; each contact's a and b are places in `bodies`. Keeps a reference to
-  /// the contacts until the next call.
-  void begin(const ContactStep& step, const std::vector<int>& bodies, std::vector<IslandContact>& contacts);
+  void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
@@ -28,9 +35,9 @@ class IslandProblem {
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 
-  /// Gives the bodies their momenta at the step's end: what the forces make of them where these and the
-  /// velocity `agree`, so that none is lost between bodies.
-  void finish(bool agree, const std::vector<int>& bodies, std::vector<BodyState>& states) const;
+  /// Gives the contacts what they have become, and the bodies their momenta at the step's end: what the
+  /// forces make of them where these and the velocity `agree`, so that none is lost between bodies.
+  void finish(bool agree, ContactStep& step, const Island& island) const;
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -50,10 +57,12 @@ class IslandProblem {
   Vector3 velocity_at(int body, const Vector3& arm) const;
   Vector3 relative_velocity(const IslandContact& contact) const;
   double relative_spin(const IslandContact& contact) const;
+  void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
+  void add_contacts(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
   void list_blocks();
   void factorise_sparse();
 
-  std::vector<IslandContact>* contacts_ = nullptr;
+  std::vector<IslandContact> contacts_;
   double step_ = 0.0;
   std::vector<Mass> masses_;
   Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;

@@ -21,10 +21,6 @@ bool couples(const ContactStep& step, const BodyContact& contact) {
   return contact.depth - step.step * contact.normal.dot(relative) + fall > 0.0;
 }
 
-bool in_order(const ContactIndex& x, const ContactIndex& y) {
-  return std::tie(x.root, x.between_bodies, x.index) < std::tie(y.root, y.between_bodies, y.index);
-}
-
 }  // namespace
 
 int Islands::root_of(int body) {
@@ -42,31 +38,55 @@ void Islands::unite(int a, int b) {
 }
 
 void Islands::build(const ContactStep& step) {
-  entries_.clear();
-  for (int i = 0; i < static_cast<int>(step.contacts.size()); ++i) {
-    const int body = step.contacts[static_cast<std::size_t>(i)].key.body;
-    if (!step.scene.bodies[static_cast<std::size_t>(body)].fixed) entries_.push_back({body, false, i});
+  bodies_.clear();
+  links_.clear();
+  for (std::size_t first = 0, last = 0; first < step.contacts.size(); first = last) {
+    const std::size_t body = step.contacts[first].key.body;
+    while (last < step.contacts.size() && step.contacts[last].key.body == body) ++last;
+    if (!step.scene.bodies[body].fixed) bodies_.push_back({static_cast<int>(body), body, first, last});
   }
-  if (step.body_contacts.empty()) return;
-
-  parent_.resize(step.scene.bodies.size());
-  std::iota(parent_.begin(), parent_.end(), 0);
-  for (int i = 0; i < static_cast<int>(step.body_contacts.size()); ++i) {
-    const BodyContact& contact = step.body_contacts[static_cast<std::size_t>(i)];
-    if (!couples(step, contact)) continue;
-    if (!step.scene.bodies[contact.key.a].fixed) unite(contact.key.a, contact.key.b);
-    entries_.push_back({contact.key.b, true, i});
-  }
-  for (ContactIndex& entry : entries_) entry.root = root_of(entry.root);
-  std::sort(entries_.begin(), entries_.end(), in_order);
+  if (!step.body_contacts.empty()) link_bodies(step);
+  divide();
 }
 
-Islands::Island Islands::next(std::size_t& first) const {
-  std::size_t last = first;
-  while (last < entries_.size() && entries_[last].root == entries_[first].root) ++last;
-  const Island island{entries_.data() + first, entries_.data() + last};
-  first = last;
-  return island;
+void Islands::link_bodies(const ContactStep& step) {
+  parent_.resize(step.scene.bodies.size());
+  std::iota(parent_.begin(), parent_.end(), 0);
+  for (std::size_t i = 0; i < step.body_contacts.size(); ++i) {
+    const BodyContact& contact = step.body_contacts[i];
+    if (!couples(step, contact)) continue;
+    links_.push_back({contact.key.b, i});
+    bodies_.push_back({contact.key.b, contact.key.b, 0, 0});
+    if (step.scene.bodies[contact.key.a].fixed) continue;
+    bodies_.push_back({contact.key.a, contact.key.a, 0, 0});
+    unite(contact.key.a, contact.key.b);
+  }
+  for (IslandBody& body : bodies_) body.root = root_of(body.root);
+  for (Link& link : links_) link.root = root_of(link.root);
+  // Of each body the entry with what hands do to it is kept, which is the last.
+  std::sort(bodies_.begin(), bodies_.end(), [](const IslandBody& x, const IslandBody& y) {
+    return std::tie(x.root, x.body, y.last) < std::tie(y.root, y.body, x.last);
+  });
+  const auto same = [](const IslandBody& x, const IslandBody& y) { return x.body == y.body; };
+  bodies_.erase(std::unique(bodies_.begin(), bodies_.end(), same), bodies_.end());
+  std::sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) {
+    return std::tie(x.root, x.index) < std::tie(y.root, y.index);
+  });
+}
+
+void Islands::divide() {
+  islands_.clear();
+  const Link *link = links_.data(), *const links_end = link + links_.size();
+  const IslandBody *body = bodies_.data(), *const bodies_end = body + bodies_.size();
+  while (body != bodies_end) {
+    const int root = body->root;
+    Island island{{body, body}, {link, link}};
+    while (body != bodies_end && body->root == root) ++body;
+    while (link != links_end && link->root == root) ++link;
+    island.bodies.last = body;
+    island.links.last = link;
+    islands_.push_back(island);
+  }
 }
 
 }  // namespace mrhi

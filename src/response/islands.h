@@ -6,35 +6,51 @@
 
 namespace mrhi {
 
-/// A contact of an island: with a hand, or between two bodies.
-struct ContactIndex {
-  int root;  // the island's first body
-  bool between_bodies;
-  int index;  // in ContactStep::contacts or body_contacts
+/// A free body that something touches, and the hands' contacts with it.
+struct IslandBody {
+  int root;                 // the island's first body
+  std::size_t body;         // in Scene::bodies
+  std::size_t first, last;  // in ContactStep::contacts
 };
 
-/// Groups of free bodies that touch each other, with the contacts that act on them. Bodies that touch
-/// nothing, and fixtures, belong to none.
+/// A contact of an island's body with another one of it, or with a fixture.
+struct Link {
+  int root;
+  std::size_t index;  // in ContactStep::body_contacts
+};
+
+template <typename T>
+struct Range {
+  const T* first;
+  const T* last;
+  const T* begin() const { return first; }
+  const T* end() const { return last; }
+  std::size_t size() const { return static_cast<std::size_t>(last - first); }
+};
+
+/// A group of free bodies that touch each other, with the contacts that act on them.
+struct Island {
+  Range<IslandBody> bodies;  // by their index
+  Range<Link> links;         // likewise
+};
+
+/// Bodies that touch nothing, and fixtures, belong to none.
 class Islands {
  public:
-  struct Island {
-    const ContactIndex* first;
-    const ContactIndex* last;
-    const ContactIndex* begin() const { return first; }
-    const ContactIndex* end() const { return last; }
-  };
-
   void build(const ContactStep& step);
-  /// The island that begins at entry `first`; `first` moves on to the next one. Ordered by their first body.
-  Island next(std::size_t& first) const;
-  std::size_t size() const { return entries_.size(); }
+  /// By their first body.
+  const std::vector<Island>& all() const { return islands_; }
 
  private:
+  void link_bodies(const ContactStep& step);
+  void divide();
   int root_of(int body);
   void unite(int a, int b);
 
-  std::vector<int> parent_;
-  std::vector<ContactIndex> entries_;
+  std::vector<IslandBody> bodies_;
+  std::vector<Link> links_;
+  std::vector<Island> islands_;
+  std::vector<int> parent_;  // by body
 };
 
 }  // namespace mrhi

@@ -1,53 +1,108 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
-
-#include "mr_hand_interaction/math.h"
 
 namespace mrhi {
 
-/// Four contacts side by side. Every operation works lane by lane, each as exact as on a double, so that a
-/// law written for a `Real` gives the same bits on a double and on a lane.
-using Lanes = Eigen::Array<double, 4, 1>;
+/// Numbers of four contacts side by side, in memory.
 constexpr int kLanes = 4;
+struct alignas(32) Lanes {
+  double lane[kLanes];
+};
+
+// This is compiled for any processor and once more for those with wider registers. No function of the one may
+// end up in the other's place, so all that is not a template of `Wide` stands in a namespace of its own.
+#ifdef __AVX2__
+inline namespace avx2 {
+constexpr int kParts = 1;
+#else
+inline namespace portable {
+constexpr int kParts = 2;
+#endif
+
+/// Four numbers in registers. Every operation works lane by lane, each as exact as on a double, so that a law
+/// written for a `Real` gives the same bits on a double and on a lane, whatever the registers.
+struct [[gnu::may_alias]] alignas(Lanes) Wide {
+  using Part [[gnu::vector_size(sizeof(Lanes) / kParts)]] = double;
+  Part part[kParts];
+};
+static_assert(sizeof(Wide) == sizeof(Lanes), "what is stored as the one is worked on as the other");
+
+/// What is stored in lanes, to be worked on.
+template <template <typename> class Of>
+Of<Wide>& wide(Of<Lanes>& stored) {
+  return reinterpret_cast<Of<Wide>&>(stored);
+}
+template <template <typename> class Of>
+const Of<Wide>& wide(const Of<Lanes>& stored) {
+  return reinterpret_cast<const Of<Wide>&>(stored);
+}
+
+inline Wide side_by_side(double a, double b, double c, double d) {
+  const Lanes lanes{{a, b, c, d}};
+  return reinterpret_cast<const Wide&>(lanes);
+}
+inline double lane_of(int lane, const Lanes& lanes) {
+  return lanes.lane[lane];
+}
+inline double lane_of(int lane, const Wide& lanes) {
+  return reinterpret_cast<const Lanes&>(lanes).lane[lane];
+}
+/// Sum over the lanes, always in this order.
+inline double sum(const Wide& a) {
+  return (lane_of(0, a) + lane_of(1, a)) + (lane_of(2, a) + lane_of(3, a));
+}
+
+template <typename Operation>
+inline Wide by_parts(Operation operation) {
+  Wide result;
+  for (int i = 0; i < kParts; ++i) result.part[i] = operation(i);
+  return result;
+}
+inline Wide operator+(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return a.part[i] + b.part[i]; });
+}
+inline Wide operator-(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return a.part[i] - b.part[i]; });
+}
+inline Wide operator*(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return a.part[i] * b.part[i]; });
+}
+inline Wide operator/(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return a.part[i] / b.part[i]; });
+}
+inline Wide lesser(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return b.part[i] < a.part[i] ? b.part[i] : a.part[i]; });
+}
+inline Wide greater(const Wide& a, const Wide& b) {
+  return by_parts([&](int i) { return a.part[i] < b.part[i] ? b.part[i] : a.part[i]; });
+}
+inline Wide where_at_most(const Wide& a, const Wide& b, const Wide& yes, const Wide& no) {
+  return by_parts([&](int i) { return a.part[i] <= b.part[i] ? yes.part[i] : no.part[i]; });
+}
+inline Wide root(const Wide& a) {
+  Wide result;
+  for (Wide::Part& part : result.part) {
+    const Wide::Part& of = a.part[&part - result.part];
+    for (int i = 0; i < kLanes / kParts; ++i) part[i] = std::sqrt(of[i]);
+  }
+  return result;
+}
+inline bool any_above(const Wide& a, double b) {
+  return lane_of(0, a) > b || lane_of(1, a) > b || lane_of(2, a) > b || lane_of(3, a) > b;
+}
 
 inline double lesser(double a, double b) {
-  return std::min(a, b);
+  return b < a ? b : a;
 }
 inline double greater(double a, double b) {
-  return std::max(a, b);
-}
-inline double root(double a) {
-  return std::sqrt(a);
+  return a < b ? b : a;
 }
 inline double where_at_most(double a, double b, double yes, double no) {
   return a <= b ? yes : no;
 }
-inline bool any_above(double a, double b) {
-  return a > b;
-}
-
-inline Lanes lesser(const Lanes& a, const Lanes& b) {
-  return a.min(b);
-}
-inline Lanes greater(const Lanes& a, const Lanes& b) {
-  return a.max(b);
-}
-inline Lanes root(const Lanes& a) {
-  return a.sqrt();
-}
-inline Lanes where_at_most(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
-  return (a <= b).select(yes, no);
-}
-inline bool any_above(const Lanes& a, const Lanes& b) {
-  return (a > b).any();
-}
-
-/// Sum over the lanes, always in this order.
-inline double sum(const Lanes& a) {
-  return (a[0] + a[1]) + (a[2] + a[3]);
+inline double root(double a) {
+  return std::sqrt(a);
 }
 
 template <typename Real>
@@ -57,46 +112,21 @@ inline double constant<double>(double value) {
   return value;
 }
 template <>
-inline Lanes constant<Lanes>(double value) {
-  return Lanes::Constant(value);
+inline Wide constant<Wide>(double value) {
+  return side_by_side(value, value, value, value);
 }
+}  // namespace
 
-/// A vector of each lane.
+/// A vector, or one of each lane.
 template <typename Real>
 struct Triple {
   Real x, y, z;
 
   Real dot(const Triple& o) const { return x * o.x + y * o.y + z * o.z; }
-  Triple cross(const Triple& o) const {
-    return {Real(y * o.z - z * o.y), Real(z * o.x - x * o.z), Real(x * o.y - y * o.x)};
-  }
-  Triple operator+(const Triple& o) const { return {Real(x + o.x), Real(y + o.y), Real(z + o.z)}; }
-  Triple operator-(const Triple& o) const { return {Real(x - o.x), Real(y - o.y), Real(z - o.z)}; }
-  friend Triple operator*(const Real& s, const Triple& v) {
-    return {Real(s * v.x), Real(s * v.y), Real(s * v.z)};
-  }
+  Triple cross(const Triple& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
+  Triple operator+(const Triple& o) const { return {x + o.x, y + o.y, z + o.z}; }
+  Triple operator-(const Triple& o) const { return {x - o.x, y - o.y, z - o.z}; }
+  friend Triple operator*(const Real& s, const Triple& v) { return {s * v.x, s * v.y, s * v.z}; }
 };
-
-inline Triple<double> triple(const Vector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-inline Vector3 vector(const Triple<double>& v) {
-  return {v.x, v.y, v.z};
-}
-
-/// Puts a vector into a lane, and takes one out.
-inline void set_lane(int lane, const Vector3& v, Triple<Lanes>& lanes) {
-  lanes.x[lane] = v.x(), lanes.y[lane] = v.y(), lanes.z[lane] = v.z();
-}
-inline Vector3 lane_of(int lane, const Triple<Lanes>& lanes) {
-  return {lanes.x[lane], lanes.y[lane], lanes.z[lane]};
-}
-inline Vector3 sum(const Triple<Lanes>& v) {
-  return {sum(v.x), sum(v.y), sum(v.z)};
-}
-/// The same vector in every lane.
-inline Triple<Lanes> everywhere(const Vector3& v) {
-  return {Lanes::Constant(v.x()), Lanes::Constant(v.y()), Lanes::Constant(v.z())};
-}
 
 }  // namespace mrhi

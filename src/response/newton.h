@@ -6,7 +6,7 @@ namespace mrhi {
 
 /// Solves a contact problem for its velocity: Newton's method with the friction limits of the last iterate;
 /// each iterate's problem is convex. A Problem has
-///   restart()             puts the velocity back to the step's start
+///   restart()             puts the velocity back to the step's start; before, it is near the solution
 ///   evaluate(renew)       what acts at the velocity, with Coulomb's limits renewed there first or held
 ///   error(), scale()      impulse that is missing, impulses that act [N s]
 ///   factorise()           the Hessian of the convex problem there
@@ -21,7 +21,6 @@ class Newton {
 
   /// True if the forces and the velocity found agree.
   bool solve() {
-    problem_.restart();
     double last = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
       problem_.evaluate(true);

@@ -1,62 +1,180 @@
 #include "spring_contact.h"
 
+#include <algorithm>
+
+#include "mr_hand_interaction/response/penetration_force.h"
+
 namespace mrhi {
 namespace {
 
-/// Integral of min(k q, limit) from 0 to q: energy of a spring that yields.
-double yielding_energy(double stiffness, double stretch, double limit) {
-  if (stiffness * stretch <= limit) return 0.5 * stiffness * stretch * stretch;
-  return limit * stretch - 0.5 * limit * limit / stiffness;
+/// The contact's own damping, as the time by which a spring with a dashpot beside it (Kelvin-Voigt) looks
+/// ahead. A step solved at its end damps as much as half the step does, so only the rest is added: a held
+/// object comes to rest equally fast at every step length [s].
+constexpr double kRelaxation = 0.005;
+
+/// Lever at which the tangential springs of a fingertip's contact patch resist twisting about the normal [m].
+constexpr double kTwistLever = 0.025;
+
+/// Friction torque of a patch that presses evenly, over friction times push times its radius.
+constexpr double kPatchTorque = 2.0 / 3.0;
+
+/// Nothing is damped before it touches.
+template <typename Real>
+Real look_ahead(double step, const Real& depth, bool damping) {
+  const double more = damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0;
+  return where_at_most(depth, constant<Real>(0.0), constant<Real>(step), constant<Real>(step + more));
 }
 
-/// Integral of the push from the rate up, until it is none any more.
-double push_energy(double stiffness, double depth, double ahead, double rate) {
-  // Where the push is released, that of a line times a parabola.
-  const auto antiderivative = [=](double x) {
-    const double r = 1.0 / (kReleaseSpeed * kReleaseSpeed), x2 = x * x;
-    return stiffness * (depth * x - 0.5 * ahead * x2 - depth * r * x * x2 / 3.0 + 0.25 * ahead * r * x2 * x2);
-  };
-  const double gone = depth / ahead;  // the rate at which the surfaces just part
-  const double from = std::max(rate, 0.0), to = std::min(gone, kReleaseSpeed);
-  double energy = to > from ? antiderivative(to) - antiderivative(from) : 0.0;
-  if (rate < std::min(gone, 0.0) || (rate < 0.0 && gone > 0.0)) {
-    const double deep = std::max(0.0, depth - ahead * rate), at_rest = std::max(0.0, depth);
-    energy += 0.5 * stiffness * (deep * deep - at_rest * at_rest) / ahead;
-  }
-  return energy;
+double friction_of(const Material& material, Friction friction) {
+  return friction == Friction::sticking ? material.static_friction : material.dynamic_friction;
+}
+
+/// With a hand; all on the same body.
+template <typename Each, typename Real>
+void make_from(const ContactStep& step, const ContactConfiguration& configuration, const Contact& first,
+               const Each& each, SpringContact<Real>& result) {
+  const Material& material = step.scene.bodies[first.key.body].material;
+  const Triple<Real> n = each(&Contact::normal), point = each(&Contact::point);
+  const Triple<Real> reach = each(&Contact::hand_point) - point + each(&Contact::lever);
+  Spring<Real>& spring = result.spring;
+  spring.normal = n;
+  spring.stretch = reach - n.dot(reach) * n;
+  spring.depth = each(&Contact::depth);
+  spring.twist = each(&Contact::twist);
+  spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
+  spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
+  const double twisting = configuration.torsion ? kTwistLever * kTwistLever : 0.0;
+  spring.twist_stiffness = spring.stiffness * constant<Real>(twisting);
+  spring.friction = each([&](const Contact& contact) { return friction_of(material, contact.friction); });
+  spring.patch_friction = constant<Real>(kPatchTorque) * spring.friction * each(&Contact::patch);
+  result.arm = point - everywhere<Real>(step.bodies[first.key.body].pose.position);
+  result.drive = each(&Contact::hand_velocity);
+  result.drive_spin = each(&Contact::hand_spin);
+}
+
+/// Of bodies.
+template <typename Each, typename Real>
+void make_from(const ContactStep& step, const ContactConfiguration& configuration, const BodyContact&,
+               const Each& each, SpringContact<Real>& result) {
+  const Real zero = constant<Real>(0.0);
+  Spring<Real>& spring = result.spring;
+  spring.normal = each(&BodyContact::normal);
+  spring.stretch = each(&BodyContact::stretch);
+  spring.depth = each(&BodyContact::depth);
+  spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
+  spring.stiffness = constant<Real>(configuration.object_stiffness) * each(&BodyContact::share);
+  spring.friction =
+      each([](const BodyContact& contact) { return friction_of(contact.material, contact.friction); });
+  spring.twist = spring.twist_stiffness = spring.patch_friction = zero;
+  result.arm = each(&BodyContact::arm_b);
+  result.drive = {zero, zero, zero};
+  result.drive_spin = zero;
+}
+
+SpringContact<double> contact_in(int, const SpringContact<double>& only) {
+  return only;
+}
+
+/// By how much the end on 2 has to follow along the surface where it slips: what the spring and its damping,
+/// in line with the friction, do not.
+Vector3 slide(const SpringContact<double>& solved, double dynamic_friction, double step) {
+  const Spring<double>& spring = solved.spring;
+  const SpringResponse<double>& response = solved.response;
+  const double followed = step / spring.ahead;
+  const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
+  const Vector3 tangential = vector(response.force + response.push * spring.normal);
+  const double rim = std::min(1.0, dynamic_friction * response.push / tangential.norm());
+  const Vector3 kept = stretch + followed * (rim * tangential / spring.stiffness - stretch);
+  return stretch + followed * (drawn - stretch) - kept;
+}
+
+void follow(const ContactStep& step, const Vector3& slide, Contact& contact) {
+  const Pose& pose = step.bodies[contact.key.body].pose;
+  contact.god_object = pose.to_local(contact.point + slide - contact.lever);
+}
+
+void follow(const ContactStep& step, const Vector3& slide, BodyContact& contact) {
+  const Pose& pose = step.bodies[contact.key.b].pose;
+  contact.anchor_b = pose.to_local(pose * contact.anchor_b + slide);
+}
+
+const Material& material_of(const ContactStep& step, const Contact& contact) {
+  return step.scene.bodies[contact.key.body].material;
+}
+const Material& material_of(const ContactStep&, const BodyContact& contact) {
+  return contact.material;
+}
+
+template <typename Of, typename Stored>
+void keep_twist(const ContactStep& step, const Of& of, const SpringContact<Stored>& solved,
+                Contact& contact) {
+  const double stiffness = of(solved.spring.twist_stiffness);
+  if (stiffness <= 0.0) return;
+  const double followed = step.step / of(solved.spring.ahead);
+  contact.twist += followed * (of(solved.response.torque) / stiffness - contact.twist);
+}
+template <typename Of, typename Stored>
+void keep_twist(const ContactStep&, const Of&, const SpringContact<Stored>&, BodyContact&) {}
+
+/// One contact of those that `solved` stands for.
+template <typename Stored, typename Touch>
+void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
+  const auto of = [lane](const auto& value) { return lane_of(lane, value); };
+  touch.force = vector(of(solved.response.force));
+  keep_twist(step, of, solved, touch);
+  const double part = touch.friction == Friction::sticking ? 1.0 : kStickAgain;
+  const bool sticks = of(solved.response.wanted) <= part * of(solved.spring.slip_limit);
+  touch.friction = sticks ? Friction::sticking : Friction::slipping;
+  if (sticks || of(solved.response.push) <= 0.0) return;
+  const double friction = material_of(step, touch).dynamic_friction;
+  follow(step, slide(contact_in(lane, solved), friction, step.step), touch);
 }
 
 }  // namespace
 
-double potential(const Spring<double>& spring, const Vector3& u, double spin) {
-  const Vector3 normal = vector(spring.normal);
-  const double rate = normal.dot(u);
-  const Vector3 drawn = vector(spring.stretch) + spring.ahead * (u - rate * normal);
-  const double turned = std::abs(spring.twist + spring.ahead * spin);
-  return push_energy(spring.stiffness, spring.depth, spring.ahead, rate) +
-         (yielding_energy(spring.stiffness, drawn.norm(), spring.slip_limit) +
-          yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
-             spring.ahead;
+SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four) {
+  constexpr std::size_t kNumbers = sizeof(SpringContact<double>) / sizeof(double);
+  static_assert(sizeof(four) == kNumbers * sizeof(Lanes), "the same members, each a number or four");
+  SpringContact<double> result;
+  for (std::size_t i = 0; i < kNumbers; ++i)
+    reinterpret_cast<double*>(&result)[i] = reinterpret_cast<const Lanes*>(&four)[i].lane[lane];
+  return result;
 }
 
-Settled settle(const Spring<double>& spring, const SpringResponse<double>& response, Friction before,
-               double dynamic_friction, double step) {
-  Settled settled{before, Vector3::Zero(), spring.twist};
-  const bool sticks =
-      response.wanted <= (before == Friction::sticking ? 1.0 : kStickAgain) * spring.slip_limit;
-  settled.friction = sticks ? Friction::sticking : Friction::slipping;
-  // What slides is what the spring and its damping, in line with the friction, do not follow.
-  const double followed = step / spring.ahead;
-  if (!sticks && response.push > 0.0) {
-    const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
-    const Vector3 tangential = vector(response.force) + response.push * vector(spring.normal);
-    const double rim = std::min(1.0, dynamic_friction * response.push / tangential.norm());
-    const Vector3 kept = stretch + followed * (rim * tangential / spring.stiffness - stretch);
-    settled.slide = stretch + followed * (drawn - stretch) - kept;
-  }
-  if (spring.twist_stiffness > 0.0)
-    settled.twist += followed * (response.torque / spring.twist_stiffness - spring.twist);
-  return settled;
+template <typename Touch>
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Touch& touch,
+                 SpringContact<double>& result) {
+  make_from(step, configuration, touch, One<Touch>(touch), result);
 }
+
+template <typename Touch>
+void make_springs(const ContactStep& step, const ContactConfiguration& configuration,
+                  const FourTouches<Touch>& touches, SpringContact<Lanes>& result) {
+  make_from(step, configuration, *touches[0], Four<Touch>(touches), wide(result));
+}
+
+template <typename Touch>
+void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch) {
+  settle_lane(step, solved, 0, touch);
+}
+
+template <typename Touch>
+void settle(const ContactStep& step, const SpringContact<Lanes>& solved, const FourTouches<Touch>& touches) {
+  for (int lane = 0; lane < kLanes; ++lane)
+    settle_lane(step, solved, lane, *touches[static_cast<std::size_t>(lane)]);
+}
+
+template void make_spring(const ContactStep&, const ContactConfiguration&, const Contact&,
+                          SpringContact<double>&);
+template void make_springs(const ContactStep&, const ContactConfiguration&, const FourTouches<Contact>&,
+                           SpringContact<Lanes>&);
+template void settle(const ContactStep&, const SpringContact<double>&, Contact&);
+template void settle(const ContactStep&, const SpringContact<Lanes>&, const FourTouches<Contact>&);
+template void make_spring(const ContactStep&, const ContactConfiguration&, const BodyContact&,
+                          SpringContact<double>&);
+template void make_springs(const ContactStep&, const ContactConfiguration&, const FourTouches<BodyContact>&,
+                           SpringContact<Lanes>&);
+template void settle(const ContactStep&, const SpringContact<double>&, BodyContact&);
+template void settle(const ContactStep&, const SpringContact<Lanes>&, const FourTouches<BodyContact>&);
 
 }  // namespace mrhi

@@ -1,98 +1,31 @@
 #pragma once
 
-#include "lanes.h"
-#include "mr_hand_interaction/collision/contact.h"
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/response/contact_model.h"
+#include "side_by_side.h"
+#include "spring.h"
 
 namespace mrhi {
 
-/// What a spring contact gives at a relative velocity and spin of its ends.
-template <typename Real>
-struct SpringResponse {
-  Triple<Real> force;  ///< on 2 [N]
-  Real push;           ///< normal part of the force, >= 0 [N]
-  Real wanted;         ///< size of the tangential force that would keep it from sliding [N]
-  Real torque;         ///< on 2 about n [N m]
-  // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
-  Real across, along, slip;
-  Triple<Real> drawn;  ///< d times a length: the stretch at the step's end [m]
-  Real drawn_squared;  ///< of that length
-  Real torque_slope;   ///< -d torque / d spin of 2 [N m s]
-};
+/// Contacts of one body that are worked on side by side. A lane too many is a contact without share.
+template <typename Touch>
+using FourTouches = std::array<Touch*, kLanes>;
 
-/// The spring of one contact as the implicit model solves it: where its two ends will be at the end of the
-/// step, as a function of their relative velocity then. Body 1 is the hand, or body a; forces are on body 2,
-/// the object, or body b. World axes, n from 2 to 1. Real is double, or Lanes for four contacts at once.
-template <typename Real>
-struct Spring {
-  // At the step's start.
-  Triple<Real> normal;
-  Triple<Real> stretch;  ///< along the surface: end on 1 less end on 2 [m]
-  Real depth;            ///< [m]
-  Real twist;            ///< turn of 1 about n against 2, as far as it is held [rad]
+/// Makes the springs that touches stand for; Touch is Contact or BodyContact.
+template <typename Touch>
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Touch& touch,
+                 SpringContact<double>& result);
+template <typename Touch>
+void make_springs(const ContactStep& step, const ContactConfiguration& configuration,
+                  const FourTouches<Touch>& touches, SpringContact<Lanes>& result);
 
-  // What it is made of.
-  Real ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
-  Real stiffness;        ///< [N/m]
-  Real twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
-  Real friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
-  Real patch_friction;   ///< torque that the patch bears, over the push [m]
+/// Writes what the solution made of them back.
+template <typename Touch>
+void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch);
+template <typename Touch>
+void settle(const ContactStep& step, const SpringContact<Lanes>& solved, const FourTouches<Touch>& touches);
 
-  // Coulomb's limits, by the normal force of the last iterate.
-  Real slip_limit;   ///< [N]
-  Real twist_limit;  ///< [N m]
-
-  /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
-  /// limits by the normal force there first, where asked.
-  [[gnu::always_inline]] inline void respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
-                                             SpringResponse<Real>& response);
-};
-
-template <typename Real>
-inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
-                                  SpringResponse<Real>& response) {
-  const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
-  const Real rate = u.dot(normal);
-  const Real deep = greater(zero, depth - ahead * rate);
-  const Real parting = lesser(greater(rate, zero) * (1.0 / kReleaseSpeed), one);
-  const Real kept = one - parting * parting;
-  const Real push = stiffness * deep * kept;
-  response.push = push;
-  response.across = where_at_most(push, zero, zero,
-                                  Real(stiffness * (ahead * kept + deep * parting * (2.0 / kReleaseSpeed))));
-  if (renew_limits) {
-    slip_limit = friction * push;
-    twist_limit = patch_friction * push;
-  }
-
-  response.drawn = stretch + ahead * (u - rate * normal);
-  response.drawn_squared = response.drawn.dot(response.drawn);
-  const Real length = root(response.drawn_squared);
-  response.wanted = stiffness * length;
-  // Beyond the limit the spring yields: it bears the limit at any stretch.
-  const Real tiny = constant<Real>(1e-300);
-  const Real borne =
-      where_at_most(response.wanted, slip_limit, stiffness, Real(slip_limit / greater(length, tiny)));
-  response.force = borne * response.drawn - push * normal;
-  response.along = where_at_most(slip_limit, zero, zero, Real(borne * ahead));
-  response.slip = where_at_most(response.wanted, slip_limit, zero, response.along);
-
-  const Real torque = twist_stiffness * (twist + ahead * spin);
-  response.torque = greater(zero - twist_limit, lesser(torque, twist_limit));
-  const Real size = greater(torque, zero - torque);
-  response.torque_slope = where_at_most(twist_limit, size, zero, Real(twist_stiffness * ahead));
-}
-
-/// Convex function of the velocities whose gradient gives the response at the limits that are set [W].
-double potential(const Spring<double>& spring, const Vector3& u, double spin);
-
-/// What is kept in a contact's memory at the end of the step.
-struct Settled {
-  Friction friction;
-  Vector3 slide;  ///< by how much 2's end has to follow along the surface [m]
-  double twist;
-};
-Settled settle(const Spring<double>& spring, const SpringResponse<double>& response, Friction before,
-               double dynamic_friction, double step);
+/// One of four.
+SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four);
 
 }  // namespace mrhi

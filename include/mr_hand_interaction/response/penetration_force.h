@@ -3,13 +3,9 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/response/release.h"
 
 namespace mrhi {
-
-/// A pressed object leaves a phalanx no faster than this: the spring gives back ever less of its force as the
-/// two part, none at this speed. It is what damps a held object; it acts only where something touches, and
-/// never pulls [m/s].
-constexpr double kReleaseSpeed = 0.1;
 
 /// While slipping, a contact sticks again once friction needs less than this part of what sliding gives.
 constexpr double kStickAgain = 0.9;

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "lanes.h"
+#include "mr_hand_interaction/response/release.h"
+
+namespace mrhi {
+
+/// What a spring contact gives at a relative velocity and spin of its ends.
+template <typename Real>
+struct SpringResponse {
+  Triple<Real> force;  ///< on 2 [N]
+  Real push;           ///< normal part of the force, >= 0 [N]
+  Real wanted;         ///< size of the tangential force that would keep it from sliding [N]
+  Real torque;         ///< on 2 about n [N m]
+  // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
+  Real across, along, slip;
+  Triple<Real> drawn;  ///< d times a length: the stretch at the step's end [m]
+  Real drawn_squared;  ///< of that length
+  Real torque_slope;   ///< -d torque / d spin of 2 [N m s]
+};
+
+/// The spring of one contact as the implicit model solves it: where its two ends will be at the end of the
+/// step, as a function of their relative velocity then. Body 1 is the hand, or body a; forces are on body 2,
+/// the object, or body b. World axes, n from 2 to 1. Real is double, or Wide for four contacts at once.
+template <typename Real>
+struct Spring {
+  // At the step's start.
+  Triple<Real> normal;
+  Triple<Real> stretch;  ///< along the surface: end on 1 less end on 2 [m]
+  Real depth;            ///< [m]
+  Real twist;            ///< turn of 1 about n against 2, as far as it is held [rad]
+
+  // What it is made of.
+  Real ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
+  Real stiffness;        ///< [N/m]
+  Real twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
+  Real friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
+  Real patch_friction;   ///< torque that the patch bears, over the push [m]
+
+  // Coulomb's limits, by the normal force of the last iterate.
+  Real slip_limit;   ///< [N]
+  Real twist_limit;  ///< [N m]
+
+  /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
+  /// limits by the normal force there first, where asked.
+  [[gnu::always_inline]] inline void respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
+                                             SpringResponse<Real>& response);
+};
+
+/// A spring, and where it acts on body 2. Body 1 is a hand or a fixture and moves by itself, if not said
+/// otherwise.
+template <typename Real>
+struct SpringContact {
+  Spring<Real> spring;
+  SpringResponse<Real> response;  ///< of the last iterate
+  Triple<Real> arm;               ///< from the centre of 2 [m]
+  Triple<Real> drive;             ///< velocity of 1 at the point [m/s]
+  Real drive_spin;                ///< of 1 about n [rad/s]
+};
+
+template <typename Real>
+inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
+                                  SpringResponse<Real>& response) {
+  const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real rate = u.dot(normal);
+  const Real deep = greater(zero, depth - ahead * rate);
+  const Real parting = lesser(greater(rate, zero) * constant<Real>(1.0 / kReleaseSpeed), one);
+  const Real kept = one - parting * parting;
+  const Real push = stiffness * deep * kept;
+  response.push = push;
+  const Real steep = ahead * kept + deep * parting * constant<Real>(2.0 / kReleaseSpeed);
+  response.across = where_at_most(push, zero, zero, stiffness * steep);
+  if (renew_limits) {
+    slip_limit = friction * push;
+    twist_limit = patch_friction * push;
+  }
+
+  response.drawn = stretch + ahead * (u - rate * normal);
+  response.drawn_squared = response.drawn.dot(response.drawn);
+  const Real length = root(response.drawn_squared);
+  response.wanted = stiffness * length;
+  // Beyond the limit the spring yields: it bears the limit at any stretch.
+  const Real tiny = constant<Real>(1e-300);
+  const Real borne =
+      where_at_most(response.wanted, slip_limit, stiffness, slip_limit / greater(length, tiny));
+  response.force = borne * response.drawn - push * normal;
+  response.along = where_at_most(slip_limit, zero, zero, borne * ahead);
+  response.slip = where_at_most(response.wanted, slip_limit, zero, response.along);
+
+  const Real torque = twist_stiffness * (twist + ahead * spin);
+  response.torque = greater(zero - twist_limit, lesser(torque, twist_limit));
+  const Real size = greater(torque, zero - torque);
+  response.torque_slope = where_at_most(twist_limit, size, zero, twist_stiffness * ahead);
+}
+
+}  // namespace mrhi
