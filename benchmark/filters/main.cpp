@@ -1,10 +1,11 @@
-// Jitter against lag of every filter and setting, over real recordings, as they are and with noise added. See
-// docs/filters.md.
+// Jitter against lag of every filter and setting, over real recordings, as they are and with noise added; and
+// what a cube does that a noisy hand holds. See docs/filters.md.
 
 #include <fstream>
 #include <iostream>
 #include <string>
 
+#include "held.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "scores.h"
 #include "settings.h"
@@ -34,15 +35,46 @@ std::vector<Group> load_groups(const std::vector<std::string>& files) {
   return groups;
 }
 
-void write_row(const Group& group, const Setting& setting, std::ostream& csv) {
-  constexpr double kMilli = 1e3;
-  const Scores scores = score(group.takes, setting.configuration);
-  csv << group.input << ',' << group.rate << ',' << setting.filter << ',' << setting.series << ','
-      << setting.setting << ',' << setting.is_default;
-  for (const double value : {scores.jitter, scores.lag, scores.lag_p90, scores.moving_error,
-                             scores.still_error, scores.moving_jitter, scores.bone_error})
-    csv << ',' << kMilli * value;
-  csv << ',' << scores.moves << '\n';
+constexpr double kMilli = 1e3;
+
+std::string named(const Setting& setting) {
+  return setting.filter + ',' + setting.series + ',' + setting.setting + ',' +
+         (setting.is_default ? "1" : "0");
+}
+
+void write_recordings(const std::vector<std::string>& files, std::ostream& csv) {
+  csv << "input,frames_per_s,filter,series,setting,default,jitter_mm,lag_ms,lag_p90_ms,moving_error_mm,"
+         "still_error_mm,moving_jitter_mm,bone_error_mm,moves\n";
+  for (const Group& group : load_groups(files)) {
+    for (const Setting& setting : settings()) {
+      const Scores scores = score(group.takes, setting.configuration);
+      csv << group.input << ',' << group.rate << ',' << named(setting);
+      for (const double value : {scores.jitter, scores.lag, scores.lag_p90, scores.moving_error,
+                                 scores.still_error, scores.moving_jitter, scores.bone_error})
+        csv << ',' << kMilli * value;
+      csv << ',' << scores.moves << '\n';
+    }
+  }
+}
+
+void write_rides(std::ostream& csv) {
+  csv << "filter,series,setting,default,true_slip_mm,displacement_mm,jitter_mm\n";
+  for (const Setting& setting : settings()) {
+    const Ride held = ride(setting.configuration);
+    csv << named(setting) << ',' << kMilli * held.true_slip << ',' << kMilli * held.displacement << ','
+        << kMilli * held.jitter << '\n';
+  }
+}
+
+/// False if the file cannot be written.
+template <typename Write>
+bool write_file(const std::string& path, Write write) {
+  std::ofstream csv(path);
+  csv.precision(6);
+  if (csv) write(csv);
+  csv.close();
+  if (!csv) std::cerr << "filters: cannot write " << path << '\n';
+  return static_cast<bool>(csv);
 }
 
 int run(const std::string& folder) {
@@ -52,18 +84,10 @@ int run(const std::string& folder) {
               << "; set MR_HAND_RECORDINGS to their folder\n";
     return 1;
   }
-  const std::string path = folder + "/filters.csv";
-  std::ofstream csv(path);
-  csv.precision(6);
-  csv << "input,frames_per_s,filter,series,setting,default,jitter_mm,lag_ms,lag_p90_ms,moving_error_mm,"
-         "still_error_mm,moving_jitter_mm,bone_error_mm,moves\n";
-  const std::vector<Group> groups = load_groups(files);
-  for (const Group& group : groups)
-    for (const Setting& setting : settings()) write_row(group, setting, csv);
-  csv.close();
-  if (csv) return 0;
-  std::cerr << "filters: cannot write " << path << '\n';
-  return 1;
+  const bool written =
+      write_file(folder + "/filters.csv", [&](std::ostream& csv) { write_recordings(files, csv); }) &&
+      write_file(folder + "/filters_held.csv", [](std::ostream& csv) { write_rides(csv); });
+  return written ? 0 : 1;
 }
 
 }  // namespace

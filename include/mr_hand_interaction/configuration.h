@@ -12,14 +12,14 @@ enum class ContactModelKind { implicit, seed, penetration, impulse, virtual_spri
 enum class FilterKind { none, window, one_euro, constant_velocity };
 
 struct FilterConfiguration {
-  FilterKind type = FilterKind::window;
+  FilterKind type = FilterKind::constant_velocity;
   int window = 3;                   ///< F of Eq. 1, frames
   double min_cutoff = 2.0;          ///< one_euro: cutoff of a hand at rest [Hz]
   double beta = 100.0;              ///< one_euro: what the cutoff gains with speed [Hz per m/s]
   double derivative_cutoff = 10.0;  ///< one_euro: cutoff of the speed that beta multiplies [Hz]
   double noise = 0.0004;            ///< constant_velocity: of a sample, rms on an axis [m]
-  double acceleration = 0.3;        ///< constant_velocity: of a hand at rest, rms [m/s^2]
-  double agility = 3.0;             ///< constant_velocity: what the acceleration gains with speed [1/s]
+  double acceleration = 0.1;        ///< constant_velocity: of a hand at rest, rms [m/s^2]
+  double agility = 4.0;             ///< constant_velocity: what the acceleration gains with speed [1/s]
 };
 
 struct TrackingConfiguration {

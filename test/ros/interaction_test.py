@@ -129,7 +129,7 @@ class InteractionTest(unittest.TestCase):
         self.assertAlmostEqual(cube.mass, 0.1)
         self.assertGreater(cube.pose.position.x, 0.005)
         self.assertGreater(cube.twist.linear.x, 0.5 * SPEED)
-        # The finger's speed comes out of a filter over three frames: a tenth is for its ripple.
+        # The finger's speed comes out of a filter: a tenth is for its ripple.
         self.assertLess(cube.twist.linear.x, 1.1 * (1.0 + RESTITUTION) * SPEED)
         self.assertAlmostEqual(cube.pose.position.y, 0.0, delta=1e-3)
         self.assertAlmostEqual(cube.pose.position.z, HEIGHT, delta=1e-3)
