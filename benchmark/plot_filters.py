@@ -30,8 +30,10 @@ STYLES = collections.OrderedDict([
 PAPER = 'window=3'
 CAPTION = 'How steady and how late each filter shows the recorded hands'
 FOOTNOTE = ('Jitter: rms of what is faster than 10 Hz while a joint is still. Lag: the middle one of all moves of '
-            'fingertips. Grey: no more jitter than F = 3 and at most half its lag.')
-LEAST_SLIP = 1e-4  # drawn for less [mm]
+            'fingertips. Grey: no more jitter than F = 3 and at most half its lag. '
+            'Slip: 0.0001 mm stands for less, too.')
+LATEST = 26.0  # lag that is drawn [ms]
+LEAST_SLIP = 1e-4  # what is less is drawn there [mm]
 
 
 def read(path):
@@ -67,15 +69,17 @@ def draw_lines(axes, lines, place_of):
             if row['setting'] == PAPER:
                 ring(axes, place_of(row), 'F = 3 (the paper)', (9, 8))
     label(axes, place_of(lines['none'][0]), 'none', (8, 0))
+    steep = 'one_euro beta=100'
+    label(axes, place_of(lines[steep][0]), 'one_euro, beta 100', (8, 2), STYLES[steep].colour)
 
 
-def scale(axes, places):
+def scale(axes, places, ticks):
     axes.set_yscale('log')
-    axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=ticks))
     axes.yaxis.set_major_formatter(ticker.FormatStrFormatter('%g'))
     axes.yaxis.set_minor_locator(ticker.NullLocator())
-    axes.set_xlim(-1.0, 26.0)
-    heights = [y for x, y in places if x < 26.0]
+    axes.set_xlim(-1.0, LATEST)
+    heights = [y for x, y in places if x < LATEST]
     axes.set_ylim(0.8 * min(heights), 1.4 * max(heights))
 
 
@@ -83,7 +87,7 @@ def draw_recordings(axes, panel, lines):
     lag, jitter = place(next(row for row in lines['window'] if row['setting'] == PAPER))
     axes.fill_between([-2.0, 0.5 * lag], 1e-5, jitter, color='#E8E8E8', linewidth=0)
     draw_lines(axes, lines, place)
-    scale(axes, [place(row) for rows in lines.values() for row in rows])
+    scale(axes, [place(row) for rows in lines.values() for row in rows], (1.0, 2.0, 5.0))
     axes.set_title('%s, %s frames/s' % panel, fontsize=11, loc='left')
     axes.set_ylabel('jitter of a still joint [mm]')
 
@@ -97,7 +101,7 @@ def draw_held(axes, held, recorded):
     axes.axhline(0.05, color='#999999', linewidth=1, linestyle='--')
     axes.text(25.5, 0.055, 'asked for', fontsize=9, ha='right', va='bottom', color='#555555')
     draw_lines(axes, held, place_held)
-    scale(axes, [place_held(row) for rows in held.values() for row in rows])
+    scale(axes, [place_held(row) for rows in held.values() for row in rows], (1.0,))
     axes.set_title('a cube held and swayed by a noisy hand, 120 frames/s', fontsize=11, loc='left')
     axes.set_ylabel('true slip [mm]')
 
@@ -124,7 +128,7 @@ def main(arguments):
     with open(os.path.join(arguments[1], 'filters_held.csv'), newline='') as file:
         held = by_series(csv.DictReader(file))
     figure, grid = plt.subplots(2, 3, figsize=(15, 8.2), dpi=76)
-    figure.subplots_adjust(left=0.05, right=0.99, top=0.91, bottom=0.105, hspace=0.25, wspace=0.16)
+    figure.subplots_adjust(left=0.05, right=0.99, top=0.91, bottom=0.105, hspace=0.25, wspace=0.2)
     for axes, (panel, lines) in zip(grid[:, :2].flat, panels.items()):
         draw_recordings(axes, panel, lines)
     draw_held(grid[1, 2], held, panels['noise added', '99 to 116'])
