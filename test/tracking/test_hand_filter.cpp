@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "mr_hand_interaction/tracking/hand_filter.h"
 #include "support/fixtures.h"
@@ -126,6 +127,49 @@ TEST(ConstantVelocityFilter, a_turning_palm_is_followed_without_lag_through_a_fu
     EXPECT_NEAR(last.palm.orientation.norm(), 1.0, 1e-12);
   }
   EXPECT_LE(last.palm.orientation.angularDistance(turned(479).palm.orientation), 1e-7);
+}
+
+/// One finger of a hand that stands still, or sways by 0.1 m every two seconds, with white noise of 0.2 mm.
+class NoisyFinger {
+ public:
+  explicit NoisyFinger(bool sways) : sways_(sways) {}
+
+  double x(double t) const { return sways_ ? 0.1 * std::sin(M_PI * t) : 0.0; }
+  double speed(double t) const { return sways_ ? 0.1 * M_PI * std::cos(M_PI * t) : 0.0; }
+
+  struct Outcome {
+    double rms, lag;  // [m], [s]
+  };
+  Outcome through(const FilterConfiguration& filter) const {
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0.0, 0.0002);
+    FilterMemory memory;
+    double squares = 0.0, along = 0.0, speeds = 0.0;
+    for (int i = 0; i < kFrames; ++i) {
+      const double t = i * kFrame;
+      const Hand hand = filtered(hand_at(x(t) + noise(random)), kFrame, filter, memory);
+      const double behind = x(t) - hand.capsules[kTip].start.x();
+      if (t < 1.0) continue;
+      squares += behind * behind / (kFrames - 120);
+      along += behind * speed(t);
+      speeds += speed(t) * speed(t);
+    }
+    return {std::sqrt(squares), speeds > 0.0 ? along / speeds : 0.0};
+  }
+
+ private:
+  static constexpr int kFrames = 120 + 4800;
+  bool sways_;
+};
+
+// docs/filters.md has the same of real hands.
+TEST(DefaultFilter, has_at_most_half_the_lag_of_F_3_and_no_more_jitter) {
+  const FilterConfiguration shipped;
+  EXPECT_LE(NoisyFinger(false).through(shipped).rms, NoisyFinger(false).through(kWindow).rms);
+  const double lag = NoisyFinger(true).through(shipped).lag;
+  const double lag_of_three = NoisyFinger(true).through(kWindow).lag;
+  EXPECT_NEAR(lag_of_three, kFrame, 0.02 * kFrame);
+  EXPECT_LE(lag, 0.5 * lag_of_three);
 }
 
 class EveryFilter : public ::testing::TestWithParam<FilterKind> {
