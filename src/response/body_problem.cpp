@@ -5,11 +5,10 @@
 namespace mrhi {
 namespace {
 
-/// Adds a touch to those that are worked on side by side; `none` fills up what is not taken.
+/// Fills the last four up.
 template <typename Touch>
-void add_touch(Touch& touch, std::size_t index, Touch& none, std::vector<FourTouches<Touch>>& fours) {
-  if (index % kLanes == 0) fours.push_back({&touch, &none, &none, &none});
-  fours.back()[index % kLanes] = &touch;
+void fill_up(Touch& none, std::vector<Touch*>& touches) {
+  while (touches.size() % kLanes != 0) touches.push_back(&none);
 }
 
 }  // namespace
@@ -20,21 +19,22 @@ BodyProblem::BodyProblem() {
 
 void BodyProblem::begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration) {
   const IslandBody& touched = island.bodies.begin()[0];
+  hands_.clear(), objects_.clear();
+  for (std::size_t i = touched.first; i < touched.last; ++i) {
+    if (!step.contacts[i].ignored) hands_.push_back(&step.contacts[i]);
+  }
+  for (const Link& link : island.links) objects_.push_back(&step.body_contacts[link.index]);
+  fill_up(no_contact_, hands_);
+  fill_up(no_body_contact_, objects_);
+  springs_.resize((hands_.size() + objects_.size()) / kLanes);
+  auto spring = springs_.begin();
+  for (std::size_t i = 0; i < hands_.size(); i += kLanes)
+    make_springs(step, configuration, &hands_[i], *spring++);
+  for (std::size_t i = 0; i < objects_.size(); i += kLanes)
+    make_springs(step, configuration, &objects_[i], *spring++);
+
   step_ = step.step;
   begin_body(step.scene.bodies[touched.body], step.bodies[touched.body], step.gravity);
-
-  hands_.clear(), objects_.clear();
-  std::size_t count = 0;
-  for (std::size_t i = touched.first; i < touched.last; ++i) {
-    if (!step.contacts[i].ignored) add_touch(step.contacts[i], count++, no_contact_, hands_);
-  }
-  count = 0;
-  for (const Link& link : island.links)
-    add_touch(step.body_contacts[link.index], count++, no_body_contact_, objects_);
-  springs_.resize(hands_.size() + objects_.size());
-  auto spring = springs_.begin();
-  for (const auto& four : hands_) make_springs(step, configuration, four, *spring++);
-  for (const auto& four : objects_) make_springs(step, configuration, four, *spring++);
 }
 
 void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vector3& gravity) {
@@ -68,8 +68,8 @@ void BodyProblem::factorise() {
   factors_.factorise(slope.entry);
 }
 
-double BodyProblem::error() const {
-  return std::sqrt(gradient_.head<3>().squaredNorm() + gradient_.tail<3>().squaredNorm() / gyration_squared_);
+double BodyProblem::error_squared() const {
+  return gradient_.head<3>().squaredNorm() + gradient_.tail<3>().squaredNorm() / gyration_squared_;
 }
 
 double BodyProblem::energy() const {
@@ -99,8 +99,8 @@ void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) co
     state.angular_momentum -= gradient_.tail<3>();
   }
   auto spring = springs_.begin();
-  for (const auto& four : hands_) settle(step, *spring++, four);
-  for (const auto& four : objects_) settle(step, *spring++, four);
+  for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, *spring++, &hands_[i]);
+  for (std::size_t i = 0; i < objects_.size(); i += kLanes) settle(step, *spring++, &objects_[i]);
 }
 
 }  // namespace mrhi

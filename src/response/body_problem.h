@@ -20,7 +20,7 @@ class BodyProblem {
 
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
-  double error() const;
+  double error_squared() const;
   double scale() const { return step_ * sum_.push; }
   void factorise();
   void find_direction() { direction_ = factors_.solve(-gradient_); }
@@ -36,12 +36,11 @@ class BodyProblem {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
-  std::size_t fours() const { return hands_.size() + objects_.size(); }
 
   const SpringLanes& lanes_ = spring_lanes();
-  // What presses the body, and then as springs.
-  std::vector<FourTouches<Contact>> hands_;
-  std::vector<FourTouches<BodyContact>> objects_;
+  // What presses the body, filled up to fours, and all of it as springs.
+  std::vector<Contact*> hands_;
+  std::vector<BodyContact*> objects_;
   std::vector<SpringContact<Lanes>> springs_;
   Contact no_contact_;
   BodyContact no_body_contact_;

@@ -135,13 +135,18 @@ void ImpactSolver::collect(ContactStep& step, const Island& island, ImpactFricti
   strikes_.clear();
   by_hand_ = false;
   for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) add(step, step.contacts[i], friction);
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      Contact& contact = step.contacts[i];
+      if (!contact.ignored && !contact.struck) add(step, contact, friction);
+    }
   }
-  for (const Link& link : island.links) add(step, step.body_contacts[link.index], friction);
+  for (const Link& link : island.links) {
+    BodyContact& contact = step.body_contacts[link.index];
+    if (!contact.struck) add(step, contact, friction);
+  }
 }
 
 void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction friction) {
-  if (contact.ignored || contact.struck) return;
   const Body& body = step.scene.bodies[contact.key.body];
   const BodyState& state = step.bodies[contact.key.body];
   const double rate = contact.normal.dot(relative_velocity(contact, body, state));
@@ -161,7 +166,6 @@ void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction frict
 }
 
 void ImpactSolver::add(ContactStep& step, BodyContact& contact, ImpactFriction friction) {
-  if (contact.struck) return;
   Strike strike;
   strike.a = partner(step, contact.key.a, contact.arm_a);
   strike.b = partner(step, contact.key.b, contact.arm_b);

@@ -208,14 +208,14 @@ void IslandProblem::find_direction() {
   }
 }
 
-double IslandProblem::error() const {
+double IslandProblem::error_squared() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(6 * i);
     sum += gradient_.segment<3>(row).squaredNorm() +
            gradient_.segment<3>(row + 3).squaredNorm() / masses_[i].gyration_squared;
   }
-  return std::sqrt(sum);
+  return sum;
 }
 
 double IslandProblem::energy() const {

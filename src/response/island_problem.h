@@ -27,7 +27,7 @@ class IslandProblem {
 
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
-  double error() const;
+  double error_squared() const;
   double scale() const { return scale_; }
   void factorise();
   void find_direction();

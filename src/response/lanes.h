@@ -88,10 +88,6 @@ inline Wide root(const Wide& a) {
   }
   return result;
 }
-inline bool any_above(const Wide& a, double b) {
-  return lane_of(0, a) > b || lane_of(1, a) > b || lane_of(2, a) > b || lane_of(3, a) > b;
-}
-
 inline double lesser(double a, double b) {
   return b < a ? b : a;
 }
@@ -104,6 +100,9 @@ inline double where_at_most(double a, double b, double yes, double no) {
 inline double root(double a) {
   return std::sqrt(a);
 }
+inline bool any_above(double a, double b) {
+  return a > b;
+}
 
 template <typename Real>
 Real constant(double value);
@@ -114,6 +113,9 @@ inline double constant<double>(double value) {
 template <>
 inline Wide constant<Wide>(double value) {
   return side_by_side(value, value, value, value);
+}
+inline bool any_above(const Wide& a, const Wide& b) {
+  return sum(where_at_most(a, b, constant<Wide>(0.0), constant<Wide>(1.0))) > 0.0;
 }
 }  // namespace
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <type_traits>
 
@@ -53,7 +52,7 @@ template <typename Thing>
 class Four {
  public:
   using Real = Wide;
-  explicit Four(const std::array<Thing*, kLanes>& things) : things_(things) {}
+  explicit Four(Thing* const* things) : a_(things[0]), b_(things[1]), c_(things[2]), d_(things[3]) {}
 
   template <typename Get>
   auto operator()(Get get) const {
@@ -70,10 +69,10 @@ class Four {
  private:
   template <typename Get>
   Wide each(Get get) const {
-    return side_by_side(get(*things_[0]), get(*things_[1]), get(*things_[2]), get(*things_[3]));
+    return side_by_side(get(*a_), get(*b_), get(*c_), get(*d_));
   }
 
-  const std::array<Thing*, kLanes>& things_;
+  const Thing *a_, *b_, *c_, *d_;
 };
 
 }  // namespace mrhi

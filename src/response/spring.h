@@ -8,10 +8,10 @@ namespace mrhi {
 /// What a spring contact gives at a relative velocity and spin of its ends.
 template <typename Real>
 struct SpringResponse {
-  Triple<Real> force;  ///< on 2 [N]
-  Real push;           ///< normal part of the force, >= 0 [N]
-  Real wanted;         ///< size of the tangential force that would keep it from sliding [N]
-  Real torque;         ///< on 2 about n [N m]
+  Triple<Real> force;   ///< on 2 [N]
+  Real push;            ///< normal part of the force, >= 0 [N]
+  Real wanted_squared;  ///< of the size of the tangential force that would keep it from sliding [N^2]
+  Real torque;          ///< on 2 about n [N m]
   // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
   Real across, along, slip;
   Triple<Real> drawn;  ///< d times a length: the stretch at the step's end [m]
@@ -77,15 +77,19 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
 
   response.drawn = stretch + ahead * (u - rate * normal);
   response.drawn_squared = response.drawn.dot(response.drawn);
-  const Real length = root(response.drawn_squared);
-  response.wanted = stiffness * length;
-  // Beyond the limit the spring yields: it bears the limit at any stretch.
-  const Real tiny = constant<Real>(1e-300);
-  const Real borne =
-      where_at_most(response.wanted, slip_limit, stiffness, slip_limit / greater(length, tiny));
+  response.wanted_squared = stiffness * stiffness * response.drawn_squared;
+  response.along = where_at_most(slip_limit, zero, zero, stiffness * ahead);
+  response.slip = zero;
+  Real borne = stiffness;
+  const Real limit_squared = slip_limit * slip_limit;
+  if (any_above(response.wanted_squared, limit_squared)) {
+    // Beyond the limit the spring yields: it bears the limit at any stretch.
+    const Real length = root(greater(response.drawn_squared, constant<Real>(1e-300)));
+    borne = where_at_most(response.wanted_squared, limit_squared, stiffness, slip_limit / length);
+    response.along = where_at_most(slip_limit, zero, zero, borne * ahead);
+    response.slip = where_at_most(response.wanted_squared, limit_squared, zero, response.along);
+  }
   response.force = borne * response.drawn - push * normal;
-  response.along = where_at_most(slip_limit, zero, zero, borne * ahead);
-  response.slip = where_at_most(response.wanted, slip_limit, zero, response.along);
 
   const Real torque = twist_stiffness * (twist + ahead * spin);
   response.torque = greater(zero - twist_limit, lesser(torque, twist_limit));

@@ -105,25 +105,28 @@ const Material& material_of(const ContactStep&, const BodyContact& contact) {
   return contact.material;
 }
 
-template <typename Of, typename Stored>
-void keep_twist(const ContactStep& step, const Of& of, const SpringContact<Stored>& solved,
-                Contact& contact) {
-  const double stiffness = of(solved.spring.twist_stiffness);
-  if (stiffness <= 0.0) return;
-  const double followed = step.step / of(solved.spring.ahead);
-  contact.twist += followed * (of(solved.response.torque) / stiffness - contact.twist);
+/// The turn that is left of the twist, as far as the torque holds it.
+template <typename Real>
+Real kept_twist(const SpringContact<Real>& solved, double step) {
+  const Spring<Real>& spring = solved.spring;
+  const Real followed = constant<Real>(step) / spring.ahead;
+  const Real kept =
+      spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
+  return where_at_most(spring.twist_stiffness, constant<Real>(0.0), spring.twist, kept);
 }
-template <typename Of, typename Stored>
-void keep_twist(const ContactStep&, const Of&, const SpringContact<Stored>&, BodyContact&) {}
+void keep_twist(double twist, Contact& contact) {
+  contact.twist = twist;
+}
+void keep_twist(double, BodyContact&) {}
 
 /// One contact of those that `solved` stands for.
 template <typename Stored, typename Touch>
 void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
   const auto of = [lane](const auto& value) { return lane_of(lane, value); };
   touch.force = vector(of(solved.response.force));
-  keep_twist(step, of, solved, touch);
-  const double part = touch.friction == Friction::sticking ? 1.0 : kStickAgain;
-  const bool sticks = of(solved.response.wanted) <= part * of(solved.spring.slip_limit);
+  const double limit =
+      (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * of(solved.spring.slip_limit);
+  const bool sticks = of(solved.response.wanted_squared) <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
   if (sticks || of(solved.response.push) <= 0.0) return;
   const double friction = material_of(step, touch).dynamic_friction;
@@ -148,33 +151,37 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
 }
 
 template <typename Touch>
-void make_springs(const ContactStep& step, const ContactConfiguration& configuration,
-                  const FourTouches<Touch>& touches, SpringContact<Lanes>& result) {
+void make_springs(const ContactStep& step, const ContactConfiguration& configuration, Touch* const* touches,
+                  SpringContact<Lanes>& result) {
   make_from(step, configuration, *touches[0], Four<Touch>(touches), wide(result));
 }
 
 template <typename Touch>
 void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch) {
+  keep_twist(kept_twist(solved, step.step), touch);
   settle_lane(step, solved, 0, touch);
 }
 
 template <typename Touch>
-void settle(const ContactStep& step, const SpringContact<Lanes>& solved, const FourTouches<Touch>& touches) {
-  for (int lane = 0; lane < kLanes; ++lane)
-    settle_lane(step, solved, lane, *touches[static_cast<std::size_t>(lane)]);
+void settle(const ContactStep& step, const SpringContact<Lanes>& solved, Touch* const* touches) {
+  const Wide twist = kept_twist(wide(solved), step.step);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    keep_twist(lane_of(lane, twist), *touches[lane]);
+    settle_lane(step, solved, lane, *touches[lane]);
+  }
 }
 
 template void make_spring(const ContactStep&, const ContactConfiguration&, const Contact&,
                           SpringContact<double>&);
-template void make_springs(const ContactStep&, const ContactConfiguration&, const FourTouches<Contact>&,
+template void make_springs(const ContactStep&, const ContactConfiguration&, Contact* const*,
                            SpringContact<Lanes>&);
 template void settle(const ContactStep&, const SpringContact<double>&, Contact&);
-template void settle(const ContactStep&, const SpringContact<Lanes>&, const FourTouches<Contact>&);
+template void settle(const ContactStep&, const SpringContact<Lanes>&, Contact* const*);
 template void make_spring(const ContactStep&, const ContactConfiguration&, const BodyContact&,
                           SpringContact<double>&);
-template void make_springs(const ContactStep&, const ContactConfiguration&, const FourTouches<BodyContact>&,
+template void make_springs(const ContactStep&, const ContactConfiguration&, BodyContact* const*,
                            SpringContact<Lanes>&);
 template void settle(const ContactStep&, const SpringContact<double>&, BodyContact&);
-template void settle(const ContactStep&, const SpringContact<Lanes>&, const FourTouches<BodyContact>&);
+template void settle(const ContactStep&, const SpringContact<Lanes>&, BodyContact* const*);
 
 }  // namespace mrhi

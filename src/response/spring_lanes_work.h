@@ -56,7 +56,8 @@ void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>* last, 
     // S of the contact point; [r]x S, of the torque by the velocity; and [r]x S [r]x' with the twist's.
     Slope3 s{response.along, zero, response.along, zero, zero, response.along};
     s.add(response.across - response.along, n);
-    s.add(zero - response.slip / greater(response.drawn_squared, tiny), response.drawn);
+    if (any_above(response.slip, zero))
+      s.add(zero - response.slip / greater(response.drawn_squared, tiny), response.drawn);
     const Triple<Wide> x = r.cross({s.xx, s.xy, s.xz}), y = r.cross({s.xy, s.yy, s.yz}),
                        z = r.cross({s.xz, s.yz, s.zz});
     const Triple<Wide> row_x = r.cross({x.x, y.x, z.x}), row_y = r.cross({x.y, y.y, z.y}),
@@ -67,6 +68,7 @@ void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>* last, 
                               x.x,  y.x,  z.x,  turn.xx,                 //
                               x.y,  y.y,  z.y,  turn.xy, turn.yy,        //
                               x.z,  y.z,  z.z,  turn.xz, turn.yz, turn.zz};
+#pragma GCC unroll 21
     for (int i = 0; i < 21; ++i) sums[i] = sums[i] + entries[i];
   }
   for (int i = 0; i < 21; ++i) result.entry[i] = sum(sums[i]);
