@@ -16,28 +16,33 @@ const Eigen::Vector3f kFill = Eigen::Vector3f(-0.55f, -0.45f, -0.70f).normalized
 const Rgb kLightColour(0.40f, 0.39f, 0.37f), kFillColour(0.20f, 0.19f, 0.18f);
 const Rgb kAbove(0.62f, 0.63f, 0.65f), kBelow(0.55f, 0.51f, 0.49f);
 const Rgb kWrap(0.45f, 0.30f, 0.25f);  // light that goes on in the skin past where it would end
-constexpr float kOcclusion = 0.8f;
+constexpr float kOcclusion = 0.7f, kDarkest = 0.4f;
 
-/// One sphere in the middle of each phalanx and one at its end, in arrays that vector instructions like.
-constexpr int kSpheres = 2 * kPhalanges;
+/// A sphere for each phalanx, as large as the phalanx is seen from its side, in arrays that vector
+/// instructions like; the last one is nothing.
+constexpr int kSpheres = 16;
 using Floats = Eigen::Array<float, kSpheres, 1>;
 
+constexpr int sphere_of(int finger, int bone) {
+  return finger * (kBonesPerFinger - 1) + bone - 1;
+}
+
 struct Occluders {
-  Floats x, y, z, squared;
+  Floats x = Floats::Zero(), y = Floats::Zero(), z = Floats::Zero(), squared = Floats::Zero();
 
   explicit Occluders(const Hand& hand) {
-    for (int i = 0; i < kPhalanges; ++i) {
-      const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
-      set(2 * i, capsule.centre(), capsule.radius);
-      set(2 * i + 1, capsule.end, capsule.radius);
+    for (int f = 0; f < kFingers; ++f) {
+      for (int b = 1; b < kBonesPerFinger; ++b) {
+        const Capsule& capsule = hand.capsules[static_cast<std::size_t>(capsule_index(f, b))];
+        const Vector3 centre = capsule.centre();
+        const double length = (capsule.end - capsule.start).norm(), r = capsule.radius;
+        const int i = sphere_of(f, b);
+        x[i] = static_cast<float>(centre.x());
+        y[i] = static_cast<float>(centre.y());
+        z[i] = static_cast<float>(centre.z());
+        squared[i] = static_cast<float>(2.0 / M_PI * r * length + r * r);
+      }
     }
-  }
-
-  void set(int i, const Vector3& centre, double radius) {
-    x[i] = static_cast<float>(centre.x());
-    y[i] = static_cast<float>(centre.y());
-    z[i] = static_cast<float>(centre.z());
-    squared[i] = static_cast<float>(radius * radius);
   }
 
   /// Share of the light from all around that is left; `counts` is 0 for the spheres that do not count.
@@ -45,20 +50,22 @@ struct Occluders {
     const Floats dx = x - p.x(), dy = y - p.y(), dz = z - p.z();
     const Floats d = dx * dx + dy * dy + dz * dz + 1e-6f;
     const Floats facing = (dx * n.x() + dy * n.y() + dz * n.z()).max(0.0f);
-    return std::max(0.35f, 1.0f - kOcclusion * (counts * squared * facing / (d * d.sqrt())).sum());
+    return std::max(kDarkest, 1.0f - kOcclusion * (counts * squared * facing / (d * d.sqrt())).sum());
   }
 };
 
-/// A phalanx is not covered by itself and its neighbours, nor by the metacarpals, which are in the palm.
+/// A phalanx is not covered by itself and its neighbours, nor the palm by what grows out of it.
 std::array<Floats, kCapsules> make_counts() {
   std::array<Floats, kCapsules> counts;
   for (int own = 0; own < kCapsules; ++own) {
     Floats& row = counts[static_cast<std::size_t>(own)];
-    for (int other = 0; other < kPhalanges; ++other) {
-      const bool palm = own == kPalm || bone_of(own) == 0;
-      const bool near =
-          palm ? bone_of(other) <= 1 : finger_of(own) == finger_of(other) && std::abs(own - other) <= 1;
-      row[2 * other] = row[2 * other + 1] = near || bone_of(other) == 0 ? 0.0f : 1.0f;
+    row.setZero();
+    for (int f = 0; f < kFingers; ++f) {
+      for (int b = 1; b < kBonesPerFinger; ++b) {
+        const bool palm = own == kPalm || bone_of(own) == 0;
+        const bool near = palm ? b == 1 : finger_of(own) == f && std::abs(bone_of(own) - b) <= 1;
+        row[sphere_of(f, b)] = near ? 0.0f : 1.0f;
+      }
     }
   }
   return counts;

@@ -23,13 +23,23 @@ struct LookOf {
   Look operator()(const Mesh& m) const { return {Marker::MESH_RESOURCE, m.scale, m.uri}; }
 };
 
-void add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-               MarkerLayer& layer) {
-  const Look look = std::visit(LookOf{}, shape);
-  layer.add(id, look.type, pose, look.scale, paint).mesh_resource = look.mesh;
+/// STL knows none.
+bool has_materials(const std::string& mesh) {
+  const std::size_t dot = mesh.rfind('.');
+  if (dot == std::string::npos) return false;
+  const std::string ending = mesh.substr(dot + 1);
+  return ending != "stl" && ending != "STL";
 }
 
 }  // namespace
+
+visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
+                                      int id, MarkerLayer& layer) {
+  const Look look = std::visit(LookOf{}, shape);
+  Marker& marker = layer.add(id, look.type, pose, look.scale, paint);
+  marker.mesh_resource = look.mesh;
+  return marker;
+}
 
 void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, MarkerLayer& layer) {
   int id = 0;
@@ -39,7 +49,12 @@ void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, Ma
     const Pose& pose = state.bodies[i].pose;
     for (const Visual& visual : body.visuals) {
       const auto& c = visual.rgba;
-      add_shape(visual.shape, pose * visual.pose, color(c[0], c[1], c[2], c[3]), id++, layer);
+      Marker& marker =
+          add_shape(visual.shape, pose * visual.pose, color(c[0], c[1], c[2], c[3]), id++, layer);
+      if (!visual.has_color && has_materials(marker.mesh_resource)) {
+        marker.mesh_use_embedded_materials = true;
+        marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
+      }
     }
     if (!body.visuals.empty()) continue;
     for (const PlacedShape& placed : body.shapes) {

@@ -43,6 +43,10 @@ struct HandStyle {
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
                   MarkerLayer& layer);
 
+/// A shape as a marker; valid until the layer's next call.
+visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
+                                      int id, MarkerLayer& layer);
+
 void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, MarkerLayer& layer);
 
 /// Where a body is touched, and by what force.
@@ -61,5 +65,17 @@ struct Ring {
 };
 void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
               visualization_msgs::Marker& marker);
+
+/// A place that an object is to be brought to.
+struct TargetMark {
+  const Body& body;
+  Pose pose;              ///< of the body's frame, in world
+  double progress = 0.0;  ///< 0 to 1, of the time that it is to stay there
+  bool reached = false;
+};
+
+/// The object's shape there, translucent: blue, and green once it is reached; around it a level ring that
+/// fills with the progress. Ids from `first_id`, one more than the body has shapes to be seen.
+void add_target(const TargetMark& target, int first_id, MarkerLayer& layer);
 
 }  // namespace mrhi

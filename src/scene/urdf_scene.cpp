@@ -79,6 +79,7 @@ class BodyReader {
       if (given.material && given.material->texture_filename.empty()) {
         const urdf::Color& color = given.material->color;
         visual.rgba = {{color.r, color.g, color.b, color.a}};
+        visual.has_color = true;
       }
       body.visuals.push_back(visual);
     }

@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "ros/marker_layers.h"
 #include "support/fixtures.h"
 #include "tracking/adult_hand.h"
 
@@ -237,6 +238,56 @@ TEST(Markers, sticking_slipping_and_striking_differ_in_colour) {
   EXPECT_NE(slipping, striking);
   EXPECT_GT(slipping[0] + slipping[1],
             sticking[0] + sticking[1] + 0.5f);  // also where hues are not told apart
+}
+
+TEST(Markers, a_mesh_without_a_color_keeps_the_materials_of_its_file) {
+  Shown shown;
+  Visual plain{Mesh{nullptr, "package://some/mesh.dae", Vector3::Ones()}, {}}, painted = plain;
+  painted.has_color = true;
+  shown.scene.bodies[0].visuals = {plain, painted};
+  shown.update();
+  std::vector<const Marker*> meshes;
+  for (const Marker& marker : shown.array.markers) {
+    if (marker.ns == "objects" && marker.action == Marker::ADD) meshes.push_back(&marker);
+  }
+  ASSERT_EQ(meshes.size(), 2u);
+  EXPECT_TRUE(meshes[0]->mesh_use_embedded_materials);
+  EXPECT_EQ(meshes[0]->color.a, 0.0f);
+  EXPECT_FALSE(meshes[1]->mesh_use_embedded_materials);
+  EXPECT_EQ(meshes[1]->color.a, 1.0f);
+}
+
+TEST(TargetMarks, show_the_object_translucent_where_it_is_to_be_and_a_ring_that_fills) {
+  const Body body = testing::box_body({0.05, 0.05, 0.05}, 0.1);
+  const Pose pose{Vector3(0.1, 0.2, 0.3), Quaternion::Identity()};
+  std::size_t before = 0;
+  for (const double progress : {0.0, 0.3, 1.0}) {
+    MarkerArray array;
+    MarkerLayer layer(array, std_msgs::Header(), "targets", 0.0);
+    add_target({body, pose, progress, false}, 5, layer);
+    ASSERT_EQ(array.markers.size(), 2u);
+    EXPECT_EQ(array.markers[0].id, 5);
+    EXPECT_EQ(from_message(array.markers[0].pose.position), pose.position);
+    EXPECT_LT(array.markers[0].color.a, 0.5f);
+    const auto& ring = array.markers[1];
+    ASSERT_EQ(ring.points.size(), ring.colors.size());
+    const auto filled = static_cast<std::size_t>(std::count_if(
+        ring.colors.begin(), ring.colors.end(), [](const std_msgs::ColorRGBA& c) { return c.a == 1.0f; }));
+    EXPECT_NEAR(static_cast<double>(filled) / static_cast<double>(ring.points.size()), progress, 0.05);
+    EXPECT_GE(filled, before);
+    before = filled;
+    for (const auto& point : ring.points)
+      EXPECT_GT((from_message(point) - pose.position).norm(), body.bounding_radius);
+  }
+}
+
+TEST(TargetMarks, that_are_reached_have_another_colour) {
+  const Body body = testing::ball_body(0.03, 0.1);
+  MarkerArray array;
+  MarkerLayer layer(array, std_msgs::Header(), "targets", 0.0);
+  add_target({body, Pose{}, 0.5, false}, 0, layer);
+  add_target({body, Pose{}, 0.5, true}, 10, layer);
+  EXPECT_NE(array.markers.front().color.b, array.markers[2].color.b);
 }
 
 TEST(Markers, the_text_is_under_everything) {

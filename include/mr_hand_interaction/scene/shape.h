@@ -46,6 +46,7 @@ struct Visual {
   Shape shape;
   Pose pose;
   std::array<float, 4> rgba{{0.7f, 0.7f, 0.7f, 1.0f}};
+  bool has_color = false;  ///< given; a mesh without one keeps its file's materials
 };
 
 /// Radius of the smallest sphere around the shape frame's origin that holds the shape [m].
