@@ -36,7 +36,7 @@ def layers(text):
     return names
 
 
-def parse():
+def parse(arguments):
     parser = argparse.ArgumentParser(prog="screenshot")
     parser.add_argument("--motion", required=True)
     parser.add_argument("--moment", choices=MOMENTS, default="done")
@@ -48,7 +48,7 @@ def parse():
     parser.add_argument("--output", required=True)
     parser.add_argument("--time-limit", type=float, default=120.0)
     parser.add_argument("--check", action="store_true", help="the options alone")
-    return parser.parse_args()
+    return parser.parse_args(arguments)
 
 
 def has_come(demo, options):
@@ -88,8 +88,9 @@ def write_config(options, focus, file):
     file.flush()
 
 
-def take_when_drawn(options, deadline):
-    """The picture once rviz has drawn the scene and no longer changes it."""
+def drawn_picture(size, output, deadline):
+    """Whether rviz has drawn the scene and no longer changes it; its picture, at half the screen's size, is then in
+    the file."""
     with tempfile.TemporaryDirectory() as folder:
         before, now = os.path.join(folder, "before.png"), os.path.join(folder, "now.png")
         grab(before)
@@ -99,39 +100,49 @@ def take_when_drawn(options, deadline):
             same = subprocess.run(["compare", "-metric", "AE", before, now, "null:"], stderr=subprocess.DEVNULL,
                                   check=False).returncode == 0
             if same and colours_of(now) >= COLOURS:
-                subprocess.run(["convert", now, "-resize", options.size, "-strip", options.output],
-                               check=True)
+                subprocess.run(["convert", now, "-resize", size, "-strip", output], check=True)
                 return True
             os.replace(now, before)
     return False
 
 
-def main():
-    options = parse()
-    if options.check:
-        return 0
-    deadline = time.monotonic() + options.time_limit
-    os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
-    join_master("screenshot", deadline)
-    demo = Demo()
-    if not demo.wait_for(lambda: demo.palm is not None and has_come(demo, options), deadline):
-        print(f"screenshot: the moment has not come within {options.time_limit:.0f} s", file=sys.stderr)
-        return 1
-    rospy.ServiceProxy("interaction_node/pause", SetBool)(True)
-    with demo.changed:
-        focus = middle(demo)
+def draw(options, focus, deadline):
+    """Starts rviz on the scene as it is, and ends it when its picture is taken."""
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
         write_config(options, focus, config)
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            taken = take_when_drawn(options, deadline)
+            return drawn_picture(options.size, options.output, deadline)
         finally:
             rviz.terminate()
             rviz.wait()
-    if not taken:
+
+
+def stop_at_moment(demo, options, deadline):
+    """Pauses the simulation when the moment has come; returns where to look, or None if it was not in time."""
+    if not demo.wait_for(lambda: demo.palm is not None and has_come(demo, options), deadline):
+        return None
+    rospy.ServiceProxy("interaction_node/pause", SetBool)(True)
+    with demo.changed:
+        return middle(demo)
+
+
+def main():
+    options = parse(sys.argv[1:])
+    if options.check:
+        return 0
+    deadline = time.monotonic() + options.time_limit
+    os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
+    join_master("screenshot", deadline)
+    focus = stop_at_moment(Demo(), options, deadline)
+    if focus is None:
+        print(f"screenshot: the moment has not come within {options.time_limit:.0f} s", file=sys.stderr)
+        return 1
+    if not draw(options, focus, deadline):
         print(f"screenshot: rviz has not drawn it within {options.time_limit:.0f} s", file=sys.stderr)
-    return 0 if taken else 1
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
