@@ -93,6 +93,13 @@ void add_contact(const BodyContact& contact, Fnv1a& hash) {
 
 }  // namespace
 
+bool is_held(std::size_t body, const SimulationState& state) {
+  for (std::size_t i = body; i < state.interactions.size(); i += state.bodies.size()) {
+    if (state.interactions[i].level == InteractionLevel::grasp) return true;
+  }
+  return false;
+}
+
 void forget_contacts(std::size_t body, SimulationState& state) {
   wake_all(state);
   const auto forget = [](auto& contacts, auto concerns) {

@@ -30,6 +30,8 @@ struct SimulationState {
 /// Every body awake.
 void wake_all(SimulationState& state);
 
+/// Whether any hand grasps the body.
+bool is_held(std::size_t body, const SimulationState& state);
 /// Takes all contacts of a body away. Wakes all bodies.
 void forget_contacts(std::size_t body, SimulationState& state);
 

@@ -32,13 +32,6 @@ std::uint8_t phase(const Contact& contact) {
   return contact.friction == Friction::sticking ? Message::STICKING : Message::SLIPPING;
 }
 
-bool is_held(std::size_t body, const SimulationState& state) {
-  for (std::size_t i = body; i < state.interactions.size(); i += state.bodies.size()) {
-    if (state.interactions[i].level == InteractionLevel::grasp) return true;
-  }
-  return false;
-}
-
 mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header) {
   mr_hand_interaction::HandFrame message;
   message.header = header;

@@ -1,54 +1,16 @@
 #include "scene_yaml.h"
 
 #include <algorithm>
-#include <set>
 
 #include "material_fields.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "text.h"
-#include "yaml_values.h"
+#include "yaml_element.h"
 
 namespace mrhi {
 namespace {
 
-/// A node and its path in the file ("materials/cube"), for messages.
-struct Element {
-  const std::string& file;
-  std::string path;
-  YAML::Node node;
-
-  Element at(const std::string& key) const {
-    return {file, path.empty() ? key : path + "/" + key, node[key]};
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw SceneError(yaml_place(file, node.Mark()) + ": " + path + (path.empty() ? "" : ": ") + what);
-  }
-  [[noreturn]] void refuse(const std::string& allowed) const {
-    fail(yaml_text(node) + " is not allowed; allowed: " + allowed);
-  }
-};
-
-/// The keys of a map, each known and given once.
-std::vector<std::string> checked_keys(const Element& map, const std::vector<std::string>& known) {
-  if (!map.node.IsMap()) map.refuse("a map with the keys " + text::joined(known));
-  std::vector<std::string> keys;
-  std::set<std::string> seen;
-  for (const auto& entry : map.node) {
-    const std::string key = yaml_text(entry.first);
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      map.fail("unknown key '" + key + "'; allowed: " + text::joined(known));
-    }
-    if (!seen.insert(key).second) map.fail("key '" + key + "' is given twice; allowed: once");
-    keys.push_back(key);
-  }
-  return keys;
-}
-
-Vector3 read_vector(const Element& element) {
-  const std::optional<Vector3> vector = yaml_vector(element.node);
-  if (!vector) element.refuse("three finite numbers [x, y, z]");
-  return *vector;
-}
+using Element = YamlElement;
 
 void read_bounds(const Element& element, Bounds& bounds) {
   for (const std::string& key : checked_keys(element, {"min", "max"})) {

@@ -19,8 +19,6 @@ const char* to_string(ContactModelKind kind);
 std::uint32_t hand_id(const Contact& contact, const SimulationState& state);
 /// A phase of Contact.msg.
 std::uint8_t phase(const Contact& contact);
-/// Whether any hand grasps the body.
-bool is_held(std::size_t body, const SimulationState& state);
 
 /// What has happened, as messages in world (header.frame_id).
 mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header);

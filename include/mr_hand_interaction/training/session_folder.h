@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/training/trial.h"
+
+namespace mrhi {
+
+/// A session that cannot be opened or written. what() is one line.
+class SessionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What session.yaml says; docs/study.md has its meaning.
+struct SessionHeader {
+  std::string participant, group, handedness, condition;
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
+  std::uint64_t seed = 1;
+  std::string task;
+  bool simulated = false;
+  std::string started;             ///< UTC, as 2024-05-06T10:00:00Z
+  std::vector<std::string> order;  ///< of objects
+  std::string software;
+};
+
+/// A row of trials.csv.
+struct TrialRow {
+  int trial = 0;
+  std::string object;
+  int repetition = 1;  ///< from 1
+  TrialResult result = TrialResult::none;
+  double start = 0.0;  ///< since the session's start [s]
+  TrialMeasures measures;
+};
+
+/// A row of events.csv.
+struct EventRow {
+  double time = 0.0;  ///< since the session's start [s]
+  int trial = 0;      ///< 0: none
+  TrainingStage stage = TrainingStage::manipulation;
+  std::string event, object, detail;
+};
+
+/// A session's folder: session.yaml, trials.csv, events.csv. What is logged is in the file when the call
+/// returns, whatever becomes of this program.
+class SessionFolder {
+ public:
+  /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
+  /// Throws SessionError if it is that of another session, or cannot be read or written.
+  SessionFolder(const std::string& folder, const SessionHeader& header);
+
+  const std::string& path() const { return path_; }
+  bool resumed() const { return resumed_; }
+  /// What was in trials.csv: without measures.
+  const std::vector<TrialRow>& earlier_trials() const { return earlier_; }
+  int last_trial() const { return last_trial_; }   ///< highest number in either file; 0: none
+  double last_time() const { return last_time_; }  ///< of events.csv [s]
+  /// What was taken away, for the log.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  void log(const EventRow& row);
+  void log(const TrialRow& row);
+
+ private:
+  void open_header(const SessionHeader& header);
+  std::vector<std::vector<std::string>> open_table(const char* name, const char* columns, std::ofstream& out);
+
+  std::string path_, condition_;
+  bool resumed_ = false;
+  std::vector<TrialRow> earlier_;
+  int last_trial_ = 0;
+  double last_time_ = 0.0;
+  std::vector<std::string> notes_;
+  std::ofstream trials_, events_;
+};
+
+}  // namespace mrhi

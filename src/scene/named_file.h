@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mrhi {
+
+/// The file that `name` means: a path to a file with this extension (".urdf"), or a name looked up as
+/// DIRECTORY/NAME.urdf. Throws SceneError that says what `kind` of file it is ("scene") and lists the names
+/// known.
+std::string find_named_file(const std::string& kind, const std::string& name, const std::string& extension,
+                            const std::vector<std::string>& directories);
+
+}  // namespace mrhi

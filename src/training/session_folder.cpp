@@ -1,0 +1,162 @@
+#include "mr_hand_interaction/training/session_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <locale>
+#include <sstream>
+
+#include "session_header.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kTrialColumns =
+    "trial,object,condition,repetition,result,start,completion_time,manipulation_time,maintenance_time,"
+    "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
+    "tracking_losses";
+const char* const kEventColumns = "time,trial,stage,event,object,detail";
+
+/// A line of a table, of numbers with six decimals.
+class Line {
+ public:
+  Line() {
+    stream_.imbue(std::locale::classic());
+    stream_.setf(std::ios::fixed);
+  }
+  template <class Value>
+  Line& add(const Value& value) {
+    stream_ << (empty_ ? "" : ",") << value;
+    empty_ = false;
+    return *this;
+  }
+  Line& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
+  std::string text() const { return stream_.str() + '\n'; }
+
+ private:
+  std::ostringstream stream_;
+  bool empty_ = true;
+};
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == ',') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+std::string read_all(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void write_now(std::ofstream& out, const std::string& text, const std::string& file) {
+  out << text << std::flush;
+  if (!out) throw SessionError(file + ": cannot be written; allowed: a folder to write to with space left");
+}
+
+int whole_number(const std::string& field) {
+  std::istringstream in(field);
+  int value = 0;
+  return in >> value && value > 0 ? value : 0;
+}
+
+TrialResult result_named(const std::string& name) {
+  for (const TrialResult result :
+       {TrialResult::completed, TrialResult::skipped, TrialResult::timed_out, TrialResult::aborted}) {
+    if (name == to_string(result)) return result;
+  }
+  return TrialResult::none;
+}
+
+}  // namespace
+
+SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& header)
+    : path_(folder), condition_(header.condition) {
+  check_header(header);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw SessionError(folder + ": cannot be made: " + error.message());
+  open_header(header);
+
+  for (const auto& row : open_table("trials.csv", kTrialColumns, trials_)) {
+    earlier_.push_back({whole_number(row[0]), row[1], whole_number(row[3]), result_named(row[4]), 0.0, {}});
+    last_trial_ = std::max(last_trial_, earlier_.back().trial);
+  }
+  for (const auto& row : open_table("events.csv", kEventColumns, events_)) {
+    std::istringstream time(row[0]);
+    time.imbue(std::locale::classic());
+    if (double seconds = 0.0; time >> seconds) last_time_ = std::max(last_time_, seconds);
+    last_trial_ = std::max(last_trial_, whole_number(row[1]));
+  }
+}
+
+void SessionFolder::open_header(const SessionHeader& header) {
+  const fs::path file = fs::path(path_) / "session.yaml";
+  resumed_ = fs::exists(file);
+  if (resumed_) {
+    check_same_session(file.string(), header);
+    return;
+  }
+  const fs::path unfinished = fs::path(path_) / "session.yaml.part";
+  std::ofstream out(unfinished, std::ios::binary);
+  write_now(out, header_text(header), file.string());
+  out.close();
+  fs::rename(unfinished, file);
+}
+
+std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name, const char* columns,
+                                                                std::ofstream& out) {
+  const fs::path file = fs::path(path_) / name;
+  std::string text = read_all(file);
+  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  if (whole < text.size()) {
+    notes_.push_back(file.string() + ": its last line was cut off while it was written: taken away");
+    fs::resize_file(file, whole);
+    text.resize(whole);
+  }
+  out.open(file, std::ios::binary | std::ios::app);
+  if (text.empty()) write_now(out, std::string(columns) + '\n', file.string());
+
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(text);
+  std::string line;
+  if (std::getline(lines, line) && line != columns)
+    throw SessionError(file.string() + ":1: these columns are not allowed; allowed: " + columns);
+  const std::size_t fields = split(columns).size();
+  for (int number = 2; std::getline(lines, line); ++number) {
+    rows.push_back(split(line));
+    if (rows.back().size() != fields)
+      throw SessionError(file.string() + ":" + std::to_string(number) + ": " +
+                         std::to_string(rows.back().size()) + " fields; allowed: " + std::to_string(fields));
+  }
+  return rows;
+}
+
+void SessionFolder::log(const EventRow& row) {
+  Line line;
+  line.add(row.time);
+  row.trial > 0 ? line.add(row.trial) : line.add("");
+  line.add(to_string(row.stage)).add(row.event).add(row.object).add(row.detail);
+  write_now(events_, line.text(), path_ + "/events.csv");
+}
+
+void SessionFolder::log(const TrialRow& row) {
+  const TrialMeasures& m = row.measures;
+  Line line;
+  line.add(row.trial).add(row.object).add(condition_).add(row.repetition).add(to_string(row.result));
+  line.add(row.start).add(m.completion_time);
+  for (const std::optional<double>& time : m.stage_times) line.add(time);
+  line.add(m.attempts).add(m.drops).add(m.path_length).add(m.grip_force_mean).add(m.grip_force_max);
+  line.add(m.release_drift).add(m.release_speed).add(m.tracking_losses);
+  write_now(trials_, line.text(), path_ + "/trials.csv");
+}
+
+}  // namespace mrhi

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../scene/yaml_element.h"
+
+/// Values of a task's file; each throws SceneError for what is not allowed.
+namespace mrhi::task_yaml {
+
+constexpr Range kAboveZero{0.0, 1e6, false}, kFromZero{0.0, 1e6};
+
+double number(const YamlElement& element, const Range& range, const char* unit);
+std::string string(const YamlElement& element);
+std::string choice(const YamlElement& element, const std::string& one, const std::string& other);
+/// Without what would end a field of a CSV file or a part of a path.
+std::string name(const YamlElement& element);
+Vector3 unit_vector(const YamlElement& element);
+Quaternion quaternion(const YamlElement& element);
+Twist twist(const YamlElement& element);
+void check_has(const YamlElement& element, const std::vector<std::string>& needed);
+
+}  // namespace mrhi::task_yaml

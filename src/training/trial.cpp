@@ -1,0 +1,195 @@
+#include "mr_hand_interaction/training/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "goal.h"
+
+namespace mrhi {
+namespace {
+
+constexpr Nanoseconds kTouchOver = 100'000'000;  // without contact this long
+
+Nanoseconds nanoseconds(double seconds) {
+  return static_cast<Nanoseconds>(std::llround(1e9 * seconds));
+}
+
+}  // namespace
+
+const char* to_string(TrialResult result) {
+  static const char* const names[] = {"none", "completed", "skipped", "timed_out", "aborted"};
+  return names[static_cast<std::size_t>(result)];
+}
+
+const char* to_string(TrialEventKind kind) {
+  static const char* const names[] = {"begun",   "grasped",       "dropped",       "released",
+                                      "reached", "left",          "goal_achieved", "touched",
+                                      "missed",  "tracking_lost", "put_back",      "ended"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+void Trial::update(const Observation& seen) {
+  events_.clear();
+  if (result_ != TrialResult::none || (last_ && seen.stamp <= last_->stamp)) return;
+  const Nanoseconds passed = counting_ ? seen.stamp - last_->stamp : 0;
+  stamp_ = seen.stamp;
+  before_ = elapsed_;
+  elapsed_ += passed;
+  counting_ = true;
+  if (!let_go_) stage_elapsed_[static_cast<std::size_t>(stage())] += passed;
+  if (!last_) {
+    start_ = seen.pose.position;
+    add(TrialEventKind::begun);
+  }
+  measure(seen, passed);
+  note_grasp(seen);
+  note_touch(seen, passed);
+  if (now().kind == GoalKind::release) {
+    release(seen);
+  } else if (now().kind == GoalKind::strike) {
+    strike(seen);
+  } else {
+    hold(seen, passed);
+  }
+  if (!let_go_ && result_ == TrialResult::none && elapsed_ >= nanoseconds(task_->time_out))
+    finish(TrialResult::timed_out);
+  last_ = seen;
+}
+
+void Trial::measure(const Observation& seen, Nanoseconds passed) {
+  for (int i = 0; i < seen.tracking_losses; ++i) add(TrialEventKind::tracking_lost);
+  measures_.tracking_losses += seen.tracking_losses;
+  if (seen.put_back) add(TrialEventKind::put_back);
+  if (!seen.held || !last_ || !last_->held || seen.put_back) return;
+  measures_.path_length += (seen.pose.position - last_->pose.position).norm();
+  if (!seen.grip_force) return;
+  gripped_ += passed;
+  grip_impulse_ += *seen.grip_force * to_seconds(passed);
+  measures_.grip_force_max = std::max(measures_.grip_force_max.value_or(0.0), *seen.grip_force);
+}
+
+void Trial::note_grasp(const Observation& seen) {
+  const bool held_before = last_ && last_->held;
+  if (seen.held && !held_before) {
+    add(TrialEventKind::grasped);
+    measures_.attempts += !asks_to_touch(now().kind);
+  }
+  if (!seen.held && held_before && asks_to_hold(now().kind)) {
+    add(TrialEventKind::dropped);
+    ++measures_.drops;
+  }
+}
+
+void Trial::note_touch(const Observation& seen, Nanoseconds passed) {
+  untouched_ = seen.touched ? 0 : untouched_ + passed;
+  if (seen.touched && !touching_ && asks_to_touch(now().kind)) {
+    add(TrialEventKind::touched);
+    ++measures_.attempts;
+  }
+  if (seen.touched) touching_ = true;
+}
+
+void Trial::hold(const Observation& seen, Nanoseconds passed) {
+  const Goal& goal = now();
+  const bool met = is_met(goal, seen, start_);
+  if (met && inside_) timer_ += passed;
+  if (met && !inside_) add(TrialEventKind::reached, static_cast<double>(goal_ + 1));
+  if (!met && inside_) {
+    add(TrialEventKind::left, to_seconds(timer_));
+    if (goal.leaving == Leaving::reset) timer_ = 0;
+  }
+  inside_ = met;
+  if (untouched_ >= kTouchOver) touching_ = false;
+  if (met && timer_ >= nanoseconds(goal.hold)) {
+    achieve();
+  } else if (goal.kind == GoalKind::catch_it && measures_.attempts == 0 &&
+             elapsed_ > nanoseconds(goal.within)) {
+    finish(TrialResult::timed_out);
+  }
+}
+
+void Trial::strike(const Observation& seen) {
+  if (!touching_ || untouched_ < kTouchOver) return;
+  touching_ = false;
+  const double speed = seen.twist.linear.norm();
+  if (speed >= now().min_speed && speed <= now().max_speed) {
+    achieve();
+  } else {
+    add(TrialEventKind::missed, speed);
+    ++measures_.drops;
+  }
+}
+
+void Trial::release(const Observation& seen) {
+  if (seen.held) {
+    if (let_go_) stage_elapsed_[static_cast<std::size_t>(stage())] += elapsed_ - let_go_->elapsed;
+    let_go_.reset();  // taken again: it was not let go after all
+    return;
+  }
+  const Nanoseconds drift_time = nanoseconds(now().drift_time);
+  if (!let_go_) {
+    add(TrialEventKind::released);
+    let_go_ = LettingGo{elapsed_, seen.pose.position};
+    measures_.release_speed = seen.twist.linear.norm();
+  } else if (seen.put_back || elapsed_ - let_go_->elapsed >= drift_time) {
+    const Vector3 end =
+        seen.put_back ? last_->pose.position : position_at(let_go_->elapsed + drift_time, seen);
+    measures_.release_drift = (end - let_go_->position).norm();
+    achieve();
+  }
+}
+
+Vector3 Trial::position_at(Nanoseconds elapsed, const Observation& seen) const {
+  if (elapsed_ == before_) return seen.pose.position;
+  const double share = to_seconds(elapsed - before_) / to_seconds(elapsed_ - before_);
+  return last_->pose.position + share * (seen.pose.position - last_->pose.position);
+}
+
+void Trial::achieve() {
+  add(TrialEventKind::goal_achieved, static_cast<double>(goal_ + 1));
+  timer_ = 0;
+  if (goal_ + 1 == task_->goals.size()) {
+    finish(TrialResult::completed);
+    return;
+  }
+  inside_ = false;
+  ++goal_;
+}
+
+void Trial::end(TrialResult result) {
+  events_.clear();
+  if (result_ == TrialResult::none) finish(result);
+}
+
+void Trial::finish(TrialResult result) {
+  result_ = result;
+  measures_.completion_time = to_seconds(let_go_ ? let_go_->elapsed : elapsed_);
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(stage()); ++i) {
+    const bool has = std::any_of(task_->goals.begin(), task_->goals.end(),
+                                 [i](const Goal& goal) { return static_cast<std::size_t>(goal.stage) == i; });
+    if (has) measures_.stage_times[i] = to_seconds(stage_elapsed_[i]);
+  }
+  if (gripped_ > 0) measures_.grip_force_mean = grip_impulse_ / to_seconds(gripped_);
+  add(TrialEventKind::ended);
+}
+
+double Trial::progress() const {
+  if (result_ == TrialResult::completed) return 1.0;
+  const double asked = timed();
+  return asked > 0.0 ? 1.0 - remaining() / asked : 0.0;
+}
+
+double Trial::timed() const {
+  return now().kind == GoalKind::release ? now().drift_time : now().hold;
+}
+
+double Trial::remaining() const {
+  if (result_ == TrialResult::completed) return 0.0;
+  return std::max(0.0, timed() - to_seconds(let_go_ ? elapsed_ - let_go_->elapsed : timer_));
+}
+
+void Trial::add(TrialEventKind kind, double detail) {
+  events_.push_back({stamp_, stage(), kind, detail});
+}
+
+}  // namespace mrhi

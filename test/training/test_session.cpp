@@ -1,0 +1,318 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "mr_hand_interaction/training/session.h"
+#include "scene/scene_files.h"
+#include "training/trials.h"
+
+namespace mrhi {
+namespace {
+
+Task three_objects() {
+  Task task = test::two_places();
+  task.objects = {{"cube", "cube", {}, {}}, {"flat", "flat", {}, {}}, {"long", "long", {}, {}}};
+  task.latin_square = false;
+  return task;
+}
+
+SessionHeader header() {
+  SessionHeader header;
+  header.participant = "P01";
+  header.group = "beginner";
+  header.handedness = "right";
+  header.condition = "implicit";
+  header.started = "2024-05-06T10:00:00Z";
+  header.software = "0.1.0";
+  return header;
+}
+
+std::vector<std::string> lines(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(in, line);) all.push_back(line);
+  return all;
+}
+
+std::string text(const std::string& file) {
+  std::ifstream in(file);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+class SessionTest : public testing::Test {
+ protected:
+  Session open(const SessionHeader& who = header(), Nanoseconds now = 0) {
+    return Session(three_objects(), who, 0, path_, now);
+  }
+  /// Plays the running trial to its release, or only `seconds` of it.
+  void play(Session& session, double seconds = 1e9) {
+    test::Feeder hand(session.task());  // tells what is seen at each time
+    hand.seen.stamp = stamp_;
+    const auto see = [&](const Vector3& position, bool held, double duration) {
+      hand.seen.pose.position = position;
+      hand.seen.held = held;
+      for (int i = 0; i < static_cast<int>(100 * duration) && seconds > 0.0; ++i, seconds -= 0.01) {
+        hand.seen.stamp += 10'000'000;
+        session.update(hand.seen);
+      }
+      stamp_ = hand.seen.stamp;
+    };
+    see({0, 0, 0}, false, 0.5);
+    see({0.06, 0, 0}, true, 0.5);
+    see(test::kFirst, true, 3.1);
+    see(test::kSecond, true, 3.1);
+    see(test::kSecond, false, 2.1);
+  }
+  void do_trial(Session& session) {
+    session.begin(stamp_);
+    play(session);
+  }
+  std::string refusal(const SessionHeader& who) {
+    try {
+      open(who);
+    } catch (const SessionError& error) {
+      EXPECT_EQ(std::string::npos, std::string(error.what()).find('\n'));
+      return error.what();
+    }
+    return "";
+  }
+
+  test::Folder folder_;
+  std::string path_ = folder_.path() + "/P01";
+  std::string trials_ = path_ + "/trials.csv", events_ = path_ + "/events.csv";
+  Nanoseconds stamp_ = 0;
+};
+
+TEST_F(SessionTest, runs_each_object_and_is_finished) {
+  Session session = open();
+  for (const char* name : {"cube", "flat", "long"}) {
+    EXPECT_EQ(SessionPhase::ready, session.phase());
+    EXPECT_EQ(name, session.object().name);
+    do_trial(session);
+    EXPECT_EQ(TrialResult::completed, session.last()->result);
+  }
+  EXPECT_EQ(SessionPhase::finished, session.phase());
+  const auto rows = lines(trials_);
+  ASSERT_EQ(4u, rows.size());
+  EXPECT_EQ(0u, rows[1].find("1,cube,implicit,1,completed,0.01")) << rows[1];
+  EXPECT_EQ(0u, rows[3].find("3,long,implicit,1,completed,18.")) << rows[3];
+}
+
+TEST_F(SessionTest, events_are_in_the_file_at_once) {
+  Session session = open();
+  session.begin(0);
+  play(session, 1.5);
+  const std::string log = text(events_);
+  for (const char* event : {"session_begun", ",1,manipulation,begun,cube,", ",1,manipulation,grasped,cube,",
+                            ",1,maintenance,reached,cube,2"})
+    EXPECT_NE(std::string::npos, log.find(event)) << event << "\n" << log;
+}
+
+TEST_F(SessionTest, skip_passes_over_the_running_trial_or_the_next) {
+  Session session = open();
+  session.begin(0);
+  play(session, 1.0);
+  session.skip(stamp_);
+  EXPECT_EQ(TrialResult::skipped, session.last()->result);
+  EXPECT_EQ("flat", session.object().name);
+  session.skip(stamp_);
+  EXPECT_EQ("long", session.object().name);
+  EXPECT_EQ(SessionPhase::ready, session.phase());
+  session.skip(stamp_);
+  EXPECT_EQ(SessionPhase::finished, session.phase());
+  session.skip(stamp_);
+  EXPECT_EQ(4u, lines(trials_).size());
+}
+
+TEST_F(SessionTest, repeat_aborts_the_running_trial_and_does_it_again_under_a_new_number) {
+  Session session = open();
+  session.begin(0);
+  play(session, 1.0);
+  session.repeat(stamp_);
+  EXPECT_EQ(SessionPhase::ready, session.phase());
+  EXPECT_EQ("cube", session.object().name);
+  do_trial(session);
+  const auto rows = lines(trials_);
+  ASSERT_EQ(3u, rows.size());
+  EXPECT_EQ(0u, rows[1].find("1,cube,implicit,1,aborted,"));
+  EXPECT_EQ(0u, rows[2].find("2,cube,implicit,1,completed,"));
+}
+
+TEST_F(SessionTest, repeat_between_trials_does_the_last_again) {
+  Session session = open();
+  session.repeat(0);
+  EXPECT_EQ("cube", session.object().name) << "nothing before the first";
+  do_trial(session);
+  session.repeat(stamp_);
+  EXPECT_EQ("cube", session.object().name);
+  do_trial(session);
+  EXPECT_EQ("flat", session.object().name);
+  EXPECT_EQ(0u, lines(trials_)[2].find("2,cube,implicit,1,completed,"));
+}
+
+TEST_F(SessionTest, repeat_after_the_last_trial_goes_back_to_it) {
+  Session session = open();
+  for (int i = 0; i < 3; ++i) do_trial(session);
+  session.repeat(stamp_);
+  EXPECT_EQ(SessionPhase::ready, session.phase());
+  EXPECT_EQ("long", session.object().name);
+}
+
+TEST_F(SessionTest, what_is_seen_while_paused_is_not_taken) {
+  Session session = open();
+  session.begin(0);
+  play(session, 1.2);
+  const double elapsed = session.trial().elapsed();
+  session.pause(true, stamp_);
+  play(session, 5.0);
+  EXPECT_EQ(elapsed, session.trial().elapsed());
+  session.pause(false, stamp_);
+  play(session, 0.5);
+  EXPECT_NEAR(elapsed + 0.5, session.trial().elapsed(), 0.011);
+  EXPECT_NE(std::string::npos, text(events_).find("paused"));
+}
+
+TEST_F(SessionTest, goes_on_after_the_last_trial_that_has_ended) {
+  {
+    Session session = open();
+    do_trial(session);
+    session.begin(stamp_);
+    play(session, 2.0);
+  }
+  Session session = open(header(), 7'000'000'000'000);
+  EXPECT_TRUE(session.folder().resumed());
+  EXPECT_EQ("flat", session.object().name);
+  EXPECT_EQ(1u, session.position());
+  stamp_ = 7'000'000'000'000;
+  do_trial(session);
+  const auto rows = lines(trials_);
+  ASSERT_EQ(3u, rows.size());
+  EXPECT_EQ(0u, rows[2].find("3,flat,implicit,1,completed,10.3")) << "number 2 is in the events: " << rows[2];
+}
+
+TEST_F(SessionTest, survives_being_killed_in_the_middle_of_a_trial) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    Session session = open();
+    do_trial(session);
+    session.begin(stamp_);
+    play(session, 2.0);
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(child, waitpid(child, &status, 0));
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const std::string before = text(trials_);
+  EXPECT_EQ(2u, lines(trials_).size());
+  EXPECT_NE(std::string::npos, text(events_).find(",2,maintenance,reached,flat,")) << "up to the kill";
+
+  Session session = open();
+  EXPECT_EQ(before, text(trials_));
+  for (int i = 0; i < 2; ++i) do_trial(session);
+  EXPECT_EQ(SessionPhase::finished, session.phase());
+  EXPECT_EQ(4u, lines(trials_).size());
+  EXPECT_EQ(0u, text(trials_).find(before)) << "what was there stays";
+}
+
+TEST_F(SessionTest, a_line_that_was_cut_off_anywhere_is_done_again) {
+  {
+    Session session = open();
+    for (int i = 0; i < 2; ++i) do_trial(session);
+  }
+  const std::string whole = text(trials_);
+  const std::size_t second = whole.rfind('\n', whole.size() - 2) + 1;
+  for (std::size_t cut = second; cut < whole.size(); cut += 5) {
+    std::ofstream(trials_, std::ios::trunc) << whole.substr(0, cut);
+    const Session session = open();
+    EXPECT_EQ("flat", session.object().name) << cut;
+    EXPECT_EQ(whole.substr(0, second), text(trials_));
+    EXPECT_EQ(cut == second ? 0u : 1u, session.folder().notes().size());
+  }
+  std::ofstream(trials_, std::ios::trunc) << whole.substr(0, 30);
+  EXPECT_EQ("cube", open().object().name) << "cut in the header";
+  EXPECT_EQ(1u, lines(trials_).size());
+}
+
+TEST_F(SessionTest, refuses_the_folder_of_another_session_and_leaves_it_alone) {
+  open();
+  const std::string before = text(events_);
+  SessionHeader other = header();
+  other.participant = "P02";
+  test::expect_words(refusal(other), {path_ + "/session.yaml", "participant", "'P01'", "'P02'"});
+  other = header();
+  other.condition = "seed";
+  test::expect_words(refusal(other), {"condition", "'implicit'", "'seed'"});
+  other = header();
+  other.group = "veteran";
+  test::expect_words(refusal(other), {"group", "'beginner'", "'veteran'"});
+  EXPECT_EQ(before, text(events_));
+  other = header();
+  other.started = "2025-01-01T00:00:00Z";
+  EXPECT_EQ("", refusal(other)) << "it has been started anew";
+}
+
+TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
+  SessionHeader bad = header();
+  bad.group = "expert";
+  test::expect_words(refusal(bad), {"'expert'", "veteran or beginner"});
+  bad = header();
+  bad.handedness = "both";
+  test::expect_words(refusal(bad), {"'both'", "right or left"});
+  bad = header();
+  bad.participant = "a,b";
+  test::expect_words(refusal(bad), {"'a,b'", "commas"});
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
+  open();
+  std::ofstream(trials_, std::ios::trunc) << "trial,object\n";
+  test::expect_words(refusal(header()), {"trials.csv:1", "columns"});
+  std::filesystem::remove(trials_);
+  open();
+  std::ofstream(trials_, std::ios::app) << "1,cube\n";
+  test::expect_words(refusal(header()), {"trials.csv:2", "2 fields"});
+}
+
+TEST_F(SessionTest, orders_objects_by_the_latin_square_and_writes_it_down) {
+  Task task = three_objects();
+  task.latin_square = true;
+  std::vector<std::string> firsts;
+  for (std::uint64_t place = 0; place < 3; ++place) {
+    const std::string path = folder_.path() + "/" + std::to_string(place);
+    Session session(task, header(), place, path, 0);
+    firsts.push_back(session.object().name);
+    EXPECT_NE(std::string::npos, text(path + "/session.yaml").find("order: [" + firsts.back()));
+  }
+  std::sort(firsts.begin(), firsts.end());
+  EXPECT_EQ((std::vector<std::string>{"cube", "flat", "long"}), firsts);
+}
+
+TEST_F(SessionTest, repetitions_go_through_the_order_again) {
+  Task task = three_objects();
+  task.repetitions = 2;
+  Session session(task, header(), 0, path_, 0);
+  EXPECT_EQ(6u, session.trials());
+  for (int i = 0; i < 3; ++i) session.skip(0);
+  EXPECT_EQ("cube", session.object().name);
+  session.skip(0);
+  EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,2,skipped,"));
+}
+
+TEST(ParticipantPlace, is_the_number_at_the_end_of_the_name) {
+  EXPECT_EQ(6u, participant_place("P07"));
+  EXPECT_EQ(0u, participant_place("1"));
+  EXPECT_EQ(29u, participant_place("group2_30"));
+  EXPECT_THROW(participant_place("Anna"), SessionError);
+  EXPECT_THROW(participant_place("P07b"), SessionError);
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,178 @@
+#include <cmath>
+#include <filesystem>
+
+#include "mr_hand_interaction/training/task.h"
+#include "scene/scene_files.h"
+
+namespace mrhi {
+namespace {
+
+const std::string kHead = "name: t\nobjects: [{name: cube, position: [0, 0, 0.2]}]\n";
+const std::string kGoals = "goals:\n  - pick: {}\n";
+
+class TaskFile : public testing::Test {
+ protected:
+  Task load(const std::string& yaml) { return load_task(folder_.write("task.yaml", yaml)); }
+  /// The message of the refusal, checked to be one line that begins with the file.
+  std::string error(const std::string& yaml) {
+    try {
+      load(yaml);
+    } catch (const SceneError& refusal) {
+      const std::string message = refusal.what();
+      EXPECT_EQ(std::string::npos, message.find('\n')) << message;
+      EXPECT_EQ(0u, message.find(folder_.path() + "/task.yaml")) << message;
+      return message;
+    }
+    return "";
+  }
+  std::string goal_error(const std::string& goal) { return error(kHead + "goals:\n  - " + goal + "\n"); }
+
+  test::Folder folder_;
+};
+
+TEST_F(TaskFile, sets_what_it_names_and_has_defaults_for_the_rest) {
+  const Task task =
+      load(kHead + "goals:\n  - pick:\n  - place: {position: [0.1, 0, 0.2]}\n  - release: {}\n");
+  EXPECT_EQ("t", task.name);
+  EXPECT_EQ("cube", task.objects.at(0).file);
+  EXPECT_EQ(0.2, task.objects.at(0).start.position.z());
+  EXPECT_TRUE(task.latin_square);
+  EXPECT_EQ(1, task.repetitions);
+  EXPECT_EQ(120.0, task.time_out);
+  ASSERT_EQ(3u, task.goals.size());
+  EXPECT_EQ(0.05, task.goals[0].distance);
+  EXPECT_EQ(3.0, task.goals[1].hold);
+  EXPECT_FALSE(task.goals[1].angle_tolerance);
+  EXPECT_EQ(2.0, task.goals[2].drift_time);
+}
+
+TEST_F(TaskFile, reads_every_key) {
+  const Task task = load(
+      "name: all\ninstructions: Do it\ngravity: [0, 0, -9.81]\norder: as_listed\nrepetitions: 2\ntime_out: "
+      "30\n"
+      "objects:\n  - {name: a, file: a.urdf, position: [0, 0, 0], orientation: [0, 0, 1, 0], twist: [1, 2, "
+      "3, 4, 5, 6]}\n"
+      "fixtures: [{name: wall, file: wall.urdf, position: [1, 1, 1], orientation: [1, 0, 0, 0]}]\n"
+      "goals:\n"
+      "  - pick: {distance: 0.1, instruction: Up}\n"
+      "  - place: {position: [1, 0, 0], orientation: [0, 0, 0, 1], tolerance: 0.01, angle_tolerance: 90, "
+      "hold: 1, "
+      "leaving: stop}\n"
+      "  - insert: {position: [2, 0, 0], axis: [0, 0, 2], angle_tolerance: 5}\n"
+      "  - release: {drift_time: 1}\n");
+  EXPECT_EQ(-9.81, task.gravity.z());
+  EXPECT_FALSE(task.latin_square);
+  EXPECT_EQ(folder_.path() + "/a.urdf", task.objects[0].file);
+  EXPECT_EQ(1.0, task.objects[0].start.orientation.z());
+  EXPECT_EQ(6.0, task.objects[0].twist.angular.z());
+  EXPECT_EQ(1.0, task.fixtures.at(0).pose.position.x());
+  EXPECT_EQ("Up", instruction(task, 0, "a"));
+  EXPECT_NEAR(M_PI / 2, *task.goals[1].angle_tolerance, 1e-12);
+  EXPECT_EQ(Leaving::stop, task.goals[1].leaving);
+  EXPECT_EQ(Vector3::UnitZ(), *task.goals[2].axis);
+  EXPECT_EQ(2u, task.places());
+  EXPECT_EQ(0u, task.place_number(0));
+  EXPECT_EQ(2u, task.place_number(2));
+}
+
+TEST_F(TaskFile, refuses_unknown_and_missing_keys) {
+  test::expect_words(error(kHead + kGoals + "timeout: 3\n"), {":", "'timeout'", "time_out"});
+  test::expect_words(error("name: t\n" + kGoals), {"'objects'", "needed"});
+  test::expect_words(error(kHead), {"'goals'", "needed"});
+  test::expect_words(goal_error("fly: {}"), {"goals/1", "'fly'", "nudge_into"});
+  test::expect_words(goal_error("place: {hold: 1}"), {"goals/1/place", "'position'"});
+  test::expect_words(goal_error("pick: {position: [0, 0, 0]}"), {"goals/1/pick", "'position'", "distance"});
+  test::expect_words(error("name: t\nobjects: [{name: a}]\n" + kGoals), {"objects/1", "'position'"});
+  test::expect_words(error(kHead + "name: again\n" + kGoals), {"name", "twice"});
+}
+
+TEST_F(TaskFile, refuses_wrong_types_and_what_is_out_of_range) {
+  test::expect_words(error(kHead + kGoals + "time_out: soon\n"), {"time_out", "soon", "a number above 0"});
+  test::expect_words(error(kHead + kGoals + "time_out: 0\n"), {"time_out", "a number above 0"});
+  test::expect_words(error(kHead + kGoals + "repetitions: 1.5\n"), {"repetitions", "1.5", "whole number"});
+  test::expect_words(error(kHead + kGoals + "gravity: 9.81\n"), {"gravity", "9.81", "three finite numbers"});
+  test::expect_words(error(kHead + kGoals + "order: random\n"),
+                     {"order", "random", "latin_square or as_listed"});
+  test::expect_words(goal_error("place: {position: [0, 0]}"),
+                     {"goals/1/place/position", "three finite numbers"});
+  test::expect_words(goal_error("place: {position: [0, 0, .nan]}"), {"goals/1/place/position"});
+  test::expect_words(goal_error("place: {position: [0, 0, 0], tolerance: -1}"),
+                     {"tolerance", "-1", "above 0"});
+  test::expect_words(goal_error("place: {position: [0, 0, 0], leaving: go}"), {"leaving", "reset or stop"});
+  test::expect_words(goal_error("insert: {position: [0, 0, 0], angle_tolerance: 200}"), {"200", "180"});
+  test::expect_words(goal_error("insert: {position: [0, 0, 0], angle_tolerance: 5, axis: [0, 0, 0]}"),
+                     {"axis"});
+  test::expect_words(goal_error("tap: {speed: [0.2, 0.1]}"), {"goals/1/tap/speed", "slowest"});
+  test::expect_words(goal_error("catch: {within: 0}"), {"within", "above 0"});
+  test::expect_words(error("name: a/b\n" + kGoals), {"name", "a/b", "slashes"});
+  test::expect_words(error("name: t\nobjects: []\n" + kGoals), {"objects", "at least one"});
+  test::expect_words(
+      error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0], twist: [1, 2, 3]}\n" + kGoals),
+      {"objects/1/twist", "six"});
+  test::expect_words(
+      error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0], orientation: [0, 0, 0, 2]}\n" + kGoals),
+      {"orientation", "unit quaternion"});
+  test::expect_words(error("- a\n- b\n"), {"a map with the keys"});
+  test::expect_words(error("name: [\n"), {"not YAML"});
+}
+
+TEST_F(TaskFile, refuses_what_makes_no_sense_together) {
+  test::expect_words(error(kHead + "goals: [{release: {}}, {pick: {}}]\n"), {"goals/1", "release", "last"});
+  test::expect_words(error(kHead + "goals: [{release: {}}]\n"), {"goals/1", "release", "held"});
+  test::expect_words(error(kHead + "goals: [{slap: {min_speed: 1}}, {release: {}}]\n"), {"goals/2", "held"});
+  test::expect_words(error(kHead + "goals: [{place: {position: [0, 0, 0]}}, {pick: {}}]\n"),
+                     {"goals/2", "pick after place"});
+  test::expect_words(error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0]}\n  - {name: a, position: "
+                           "[1, 0, 0]}\n" +
+                           kGoals),
+                     {"'a'", "twice"});
+}
+
+TEST(ShippedTasks, load_and_name_bodies_that_there_are) {
+  int tasks = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("config/tasks")) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++tasks;
+    const Task task = load_task(entry.path().string());
+    EXPECT_EQ(entry.path().stem().string(), task.name);
+    EXPECT_EQ(entry.path().string(),
+              std::filesystem::path(find_task_file(task.name, {"config/tasks"})).string());
+    EXPECT_FALSE(task.instructions.empty());
+    for (const TaskObject& object : task.objects) {
+      const Scene scene = load_scene(find_scene_file(object.file, {"config/scenes"}), {});
+      ASSERT_EQ(1u, scene.bodies.size());
+      EXPECT_EQ(object.name, scene.bodies[0].name);
+      EXPECT_FALSE(scene.bodies[0].fixed);
+    }
+    for (const Fixture& fixture : task.fixtures) {
+      const Scene scene = load_scene(find_scene_file(fixture.file, {"config/scenes"}), {});
+      ASSERT_EQ(1u, scene.bodies.size());
+      EXPECT_TRUE(scene.bodies[0].fixed);
+    }
+  }
+  EXPECT_EQ(6, tasks);
+}
+
+TEST(ShippedTasks, are_listed_where_another_is_asked_for) {
+  try {
+    find_task_file("juggle", {"config/tasks"});
+    FAIL();
+  } catch (const SceneError& error) {
+    test::expect_words(error.what(),
+                       {"'juggle'", "assemble, catch, nudge_into_box, pick_and_place, slap, tap"});
+  }
+}
+
+TEST(ShippedTasks, pick_and_place_is_the_papers) {
+  const Task task = load_task("config/tasks/pick_and_place.yaml");
+  ASSERT_EQ(3u, task.objects.size());
+  EXPECT_EQ(3u, task.places());
+  for (const Goal& goal : task.goals) {
+    EXPECT_EQ(goal.stage == TrainingStage::maintenance ? 3.0 : 0.0, goal.hold);
+  }
+  EXPECT_EQ(GoalKind::release, task.goals.back().kind);
+  EXPECT_EQ("Hold the cube at place 2 of 3 for 3 s", instruction(task, 2, "cube"));
+}
+
+}  // namespace
+}  // namespace mrhi
