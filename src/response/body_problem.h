@@ -25,6 +25,7 @@ class BodyProblem {
   void factorise();
   void find_direction() { direction_ = factors_.solve(-gradient_); }
   void move(double part) { velocity_ += part * direction_; }
+  Twist velocity() const { return {velocity_.head<3>(), velocity_.tail<3>()}; }
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 

@@ -78,6 +78,15 @@ bool solve(Strikes first, Strikes last, double most) {
   return true;
 }
 
+/// An island of one body that a hand presses.
+bool is_held(const ContactStep& step, const Island& island) {
+  if (island.bodies.size() != 1) return false;
+  const IslandBody& body = *island.bodies.begin();
+  return std::any_of(step.contacts.begin() + static_cast<std::ptrdiff_t>(body.first),
+                     step.contacts.begin() + static_cast<std::ptrdiff_t>(body.last),
+                     [](const Contact& contact) { return contact.touching() && contact.struck; });
+}
+
 template <typename Strikes>
 void undo(Strikes first, Strikes last) {
   for (auto strike = first; strike != last; ++strike) {
@@ -114,11 +123,13 @@ ImpactSolver::ImpactSolver() {
   impacts_.reserve(2 * kUsualStrikes);
 }
 
-void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction) {
+void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
+                           const SpringMotion& springs) {
   for (Contact& contact : step.contacts) contact.impulse.setZero();
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
   for (const Island& island : islands.all()) {
     collect(step, island, friction);
+    if (springs && by_hand_ && is_held(step, island)) spare_carried(step, springs(island));
     if (strikes_.empty()) continue;
     order_blows();
     for (auto blow = strikes_.begin(); blow != strikes_.end();) {
@@ -157,6 +168,8 @@ void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction frict
   if (strike.time >= step.step) return;
   contact.time_of_impact = strike.time;
   strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
+  strike.by_hand = true;
+  strike.gap = -contact.depth;
   strike.drive = contact.hand_velocity;
   strike.normal = contact.normal;
   strike.impulse = &contact.impulse;
@@ -198,6 +211,15 @@ void ImpactSolver::add_strike(Strike strike, const Material& material, ImpactFri
     strike.along_mass = (strike.along.transpose() * k * strike.along).inverse();
   }
   strikes_.push_back(strike);
+}
+
+void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) {
+  const auto parts = [&](const Strike& strike) {
+    const Vector3 velocity = carried.linear + carried.angular.cross(strike.b.arm);
+    const double rate = strike.normal.dot(strike.drive - velocity);
+    return strike.by_hand && strike.gap + step.step * rate > 0.0;
+  };
+  strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), parts), strikes_.end());
 }
 
 void ImpactSolver::order_blows() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "islands.h"
@@ -27,7 +28,9 @@ struct Strike {
   Vector3 normal;         // from b to a
   std::size_t order = 0;  // among the island's strikes
   double restitution = 0.0;
-  double acceleration = 0.0;          // of the rate n.(c1' - c2'), by gravity [m/s^2]
+  double acceleration = 0.0;  // of the rate n.(c1' - c2'), by gravity [m/s^2]
+  bool by_hand = false;
+  double gap = 0.0;                   // to the hand at the step's start [m]
   double time = 0.0;                  // of impact, from the step's start [s]
   double blow = 0.0;                  // time of the first strike of its pair, which are one blow [s]
   double target = 0.0;                // rate after the impact, as it would be at the step's start [m/s]
@@ -51,7 +54,12 @@ struct Strike {
 class ImpactSolver {
  public:
   ImpactSolver();
-  void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction);
+  /// Gives where its springs alone take the body of an island of one: its velocity at the step's end.
+  using SpringMotion = std::function<Twist(const Island&)>;
+  /// With `springs`, what a hand holds is struck only by what its springs do not carry it away from: by its
+  /// velocity at the step's start alone, every phalanx beside a grip that speeds up would strike.
+  void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
+               const SpringMotion& springs = {});
 
  private:
   using Strikes = std::vector<Strike>::iterator;
@@ -59,6 +67,7 @@ class ImpactSolver {
   void add(ContactStep& step, Contact& contact, ImpactFriction friction);
   void add(ContactStep& step, BodyContact& contact, ImpactFriction friction);
   void add_strike(Strike strike, const Material& material, ImpactFriction friction);
+  void spare_carried(const ContactStep& step, const Twist& carried);
   void order_blows();
   void deal(ContactStep& step, Strikes first, Strikes last);
   void report(ContactStep& step, Strikes first, Strikes last);

@@ -6,8 +6,13 @@ namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
   islands_.build(step);
+  const auto springs = [&](const Island& island) {
+    one_.begin(step, island, configuration_);
+    Newton<BodyProblem>(one_).solve();
+    return one_.velocity();
+  };
   impacts_.resolve(step, islands_,
-                   configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none);
+                   configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none, springs);
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();
