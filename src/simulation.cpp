@@ -141,8 +141,8 @@ int Simulation::Impl::steps_needed(Nanoseconds frame) {
 /// True if nothing that is awake may come near a hand or a body within `seconds`.
 bool Simulation::Impl::quiet(double seconds) const {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    for (const int body : neighbours.near_hand(static_cast<int>(slot))) {
-      const auto b = static_cast<std::size_t>(body);
+    for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
+      const auto b = static_cast<std::size_t>(near.body);
       if (neighbours.may_meet_hand(b, state.bodies[b], seconds)) return false;
     }
   }

@@ -26,6 +26,31 @@ double nearest(const Segment& axis, const Vector3& half) {
   return minimum.linear();
 }
 
+/// The dimension in which the whole axis is outside the box, while it is between the faces of the others; or
+/// none.
+int outside_dimension(const Capsule& capsule, const Vector3& half) {
+  int outside = -1;
+  for (int i = 0; i < 3; ++i) {
+    const double lo = std::min(capsule.start[i], capsule.end[i]);
+    const double hi = std::max(capsule.start[i], capsule.end[i]);
+    if (lo >= -half[i] && hi <= half[i]) continue;
+    if (outside >= 0 || (lo <= half[i] + kOnSurface && hi >= -half[i] - kOnSurface)) return -1;
+    outside = i;
+  }
+  return outside;
+}
+
+/// The frequent case: the whole axis is over one face.
+ClosestFeatures over_face(const Capsule& capsule, const Vector3& half, int i) {
+  const double side = capsule.start[i] > 0.0 ? 1.0 : -1.0;
+  const double rise = side * (capsule.end[i] - capsule.start[i]);
+  const double s = std::abs(rise) < kParallel ? 0.5 : rise > 0.0 ? 0.0 : 1.0;
+  Vector3 point = capsule.axis_point(s);
+  const double distance = side * point[i] - half[i] - capsule.radius;
+  point[i] = side * half[i];
+  return {distance, side * Vector3::Unit(i), point, s};
+}
+
 /// A direction in which the axis can leave the box: `separation` < 0 is how far it has to go.
 struct WayOut {
   double separation = -1e300;
@@ -85,8 +110,10 @@ ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const Wa
 }  // namespace
 
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
-  const Segment axis(capsule);
   const Vector3& half = box.half_extents;
+  const int outside = outside_dimension(capsule, half);
+  if (outside >= 0) return over_face(capsule, half, outside);
+  const Segment axis(capsule);
   const double s = nearest(axis, half);
   const Vector3 axis_point = axis.at(s);
   const Vector3 point = axis_point.cwiseMax(-half).cwiseMin(half);

@@ -23,13 +23,16 @@ struct FlatPart {
   AxisSpan operator()(const Sphere&) const { return at_point(); }
   AxisSpan operator()(const Mesh&) const { return at_point(); }
   AxisSpan operator()(const Box& box) const {
-    int face;
-    features.normal.cwiseAbs().maxCoeff(&face);
+    int across = 0;
     Stretch stretch;
-    for (const int i : {(face + 1) % 3, (face + 2) % 3}) {
-      if (std::abs(features.normal[i]) > kSameNormal) return at_point();
-      stretch.clip_to_slab(axis.start[i], axis.along[i], box.half_extents[i]);
+    for (int i = 0; i < 3; ++i) {
+      if (std::abs(features.normal[i]) > kSameNormal) {
+        ++across;
+      } else {
+        stretch.clip_to_slab(axis.start[i], axis.along[i], box.half_extents[i]);
+      }
     }
+    if (across != 1) return at_point();
     return over(stretch);
   }
   AxisSpan operator()(const Cylinder& cylinder) const {

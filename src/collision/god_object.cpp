@@ -1,7 +1,6 @@
 #include "mr_hand_interaction/collision/god_object.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace mrhi {
@@ -13,20 +12,18 @@ constexpr double kSameFace = 0.5;
 /// Below this a contact is at rest [m/s].
 constexpr double kRestingSpeed = 1e-9;
 
+/// The plane of the face that the phalanx pushes on, in the body's frame.
 struct Plane {
-  Vector3 point;         // on the surface, world
-  Vector3 normal;        // world
-  Vector3 local_normal;  // body frame
-  bool entry;            // the face that the phalanx entered by, which is not the nearest any more
+  Vector3 point;
+  Vector3 normal;
+  bool entry;  // the face that the phalanx entered by, which is not the nearest any more
 };
 
-/// The plane of the face that the phalanx pushes on.
 Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
-  const Vector3 local = pair.moving.rotation.transpose() * features.normal;
-  if (memory == nullptr || !pair.refinements.entry_face || memory->entry_normal.dot(local) >= kSameFace)
-    return {features.point, features.normal, local, false};
-  return {pair.moving.to_world(memory->god_object), pair.moving.rotation * memory->entry_normal,
-          memory->entry_normal, true};
+  if (memory == nullptr || !pair.refinements.entry_face ||
+      memory->entry_normal.dot(features.normal) >= kSameFace)
+    return {features.point, features.normal, false};
+  return {memory->god_object, memory->entry_normal, true};
 }
 
 const Contact* nearest_memory(const Contact* before, int count, double s) {
@@ -47,98 +44,96 @@ const Contact* memory_of_point(const Contact* before, int count, int point) {
   return nullptr;
 }
 
-/// A contact that goes on from its memory, or begins.
-Contact& begin_contact(const TouchingPair& pair, int point, const Contact* memory,
-                       std::vector<Contact>& contacts) {
-  if (memory != nullptr) {
-    contacts.push_back(*memory);
-    return contacts.back();
-  }
-  contacts.emplace_back();
-  Contact& contact = contacts.back();
-  contact.key = {static_cast<std::uint16_t>(pair.body_index), static_cast<std::uint8_t>(pair.hand.slot),
-                 static_cast<std::uint8_t>(pair.capsule), static_cast<std::uint8_t>(pair.shape_index),
-                 static_cast<std::uint8_t>(point)};
-  contact.ignored = pair.hand.emerged;
-  return contact;
-}
+/// A phalanx on a plane, with what all its points share.
+struct Press {
+  Press(const TouchingPair& of, const Plane& on)
+      : pair(of),
+        plane(on),
+        along(of.in_body.end - of.in_body.start),
+        start_depth(on.normal.dot(on.point - of.in_body.start) + of.in_body.radius),
+        fall(on.normal.dot(along)),
+        normal(of.moving.rotation * on.normal),
+        motion(of.hand.motion(of.capsule, of.in_world)),
+        start_velocity(motion.of_surface(0.0, -of.in_world.radius * normal)),
+        spin(normal.dot(motion.spin)) {}
 
-/// When another point of the phalanx comes to press, the god object moves along by as much: the stretch
-/// between the two, which is what friction has stored, stays.
-void roll(const TouchingPair& pair, const Capsule& capsule, const Plane& plane, double s, Contact& contact) {
-  const Vector3 shift = (s - contact.axis_parameter) * (capsule.end - capsule.start);
-  const Vector3 along = shift - plane.normal.dot(shift) * plane.normal;
-  contact.point = pair.moving.to_world(contact.god_object) + along;
-  contact.point -= plane.normal.dot(contact.point - plane.point) * plane.normal;
+  double depth(double s) const { return start_depth - s * fall; }
+  bool reaches_surface(double s) const { return depth(s) > -kSeparation; }
+  double deepest_end() const { return fall < 0.0 ? 1.0 : 0.0; }
+
+  const TouchingPair& pair;
+  const Plane& plane;
+  // Body's frame.
+  Vector3 along;
+  double start_depth, fall;  // towards the surface: of the start, from the start to the end [m]
+  // World.
+  Vector3 normal;
+  PhalanxMotion motion;
+  Vector3 start_velocity;  // of the surface
+  double spin;
+};
+
+/// Where the god object is, in the body's frame. One that has not been pressed yet follows the finger: the
+/// stretch begins at the touch. When another point of the phalanx comes to press, it moves along by as much:
+/// the stretch between the two, which is what friction has stored, stays.
+Vector3 god_object(const Press& press, double s, const Contact* pressed) {
+  const Vector3 point = pressed != nullptr
+                            ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * press.along)
+                            : Vector3(press.pair.in_body.start + s * press.along);
+  return point + press.plane.normal.dot(press.plane.point - point) * press.plane.normal;
 }
 
 /// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
 /// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm.
-void swing_back(const TouchingPair& pair, const Plane& plane, bool remembered, Contact& contact) {
-  if (!remembered) contact.touched_from = pair.hand.palm.transpose() * plane.normal;
-  const Vector3 way_back = pair.hand.palm * contact.touched_from;
-  contact.lever = std::max(contact.depth, 0.0) * (way_back - plane.normal.dot(way_back) * plane.normal);
+void swing_back(const Matrix3& palm, bool held, Contact& contact) {
+  if (!held) {
+    contact.touched_from = palm.transpose() * contact.normal;
+    contact.lever.setZero();
+    return;
+  }
+  const Vector3 way_back = palm * contact.touched_from;
+  contact.lever = contact.depth * (way_back - contact.normal.dot(way_back) * contact.normal);
 }
 
-/// How the phalanx moves in this step.
-struct PhalanxMotion {
-  explicit PhalanxMotion(const TouchingPair& pair) {
-    const auto c = static_cast<std::size_t>(pair.capsule);
-    const Capsule& capsule = pair.hand.capsules[c];
-    axis = capsule.end - capsule.start;
-    start = pair.hand.start_velocity[c];
-    spread = pair.hand.end_velocity[c] - start;
-    const double length_squared = axis.squaredNorm();
-    if (length_squared > 0.0) swing = axis.cross(spread) / length_squared;
-    spin = length_squared > 0.0 ? Vector3(swing + (axis.dot(pair.hand.palm_spin) / length_squared) * axis)
-                                : pair.hand.palm_spin;
-  }
-
-  Vector3 axis, start, spread;
-  Vector3 swing = Vector3::Zero();  // angular velocity across the axis, as the ends tell
-  Vector3 spin;                     // the same with what the palm tells about the axis
-};
-
-void place(const TouchingPair& pair, const PhalanxMotion& motion, const Plane& plane, double s,
-           bool remembered, Contact& contact) {
-  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
-  const Vector3 offset = -capsule.radius * plane.normal;
-  contact.hand_point = capsule.axis_point(s) + offset;
-  contact.depth = plane.normal.dot(plane.point - contact.hand_point);
-  // A god object that has not been pressed yet follows the finger: the stretch begins at the touch.
-  const bool pressed = remembered && contact.depth > 0.0;
-  if (pressed && pair.refinements.anchors) {
-    roll(pair, capsule, plane, s, contact);
-  } else {
-    contact.point = contact.hand_point + contact.depth * plane.normal;
+/// Where the point at s is. `memory` is the contact that it goes on from, or null.
+void place(const Press& press, double s, const Contact* memory, Contact& contact) {
+  const ContactConfiguration& refinements = press.pair.refinements;
+  contact.depth = press.depth(s);
+  const bool pressed = refinements.anchors && memory != nullptr && memory->depth > 0.0 && contact.depth > 0.0;
+  contact.god_object = god_object(press, s, pressed ? memory : nullptr);
+  contact.entry_normal = press.plane.normal;
+  contact.axis_parameter = s;
+  if (!pressed) {
     contact.friction = Friction::sticking;
     contact.twist = 0.0;
   }
-  if (pair.refinements.swing_back && pair.refinements.anchors)
-    swing_back(pair, plane, pressed && contact.friction == Friction::sticking, contact);
-  contact.god_object = pair.moving.to_local(contact.point);
-  contact.entry_normal = plane.local_normal;
-  contact.axis_parameter = s;
-  contact.normal = plane.normal;
-  contact.hand_velocity = motion.start + s * motion.spread + motion.swing.cross(offset);
-  contact.hand_spin = plane.normal.dot(motion.spin);
-  contact.axis = motion.axis;
+  const Capsule& capsule = press.pair.in_world;
+  contact.point = press.pair.moving.to_world(contact.god_object);
+  contact.normal = press.normal;
+  contact.hand_point = capsule.start + s * press.motion.axis - capsule.radius * press.normal;
+  contact.hand_velocity = press.start_velocity + s * press.motion.spread;
+  contact.hand_spin = press.spin;
+  contact.axis = press.motion.axis;
   contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
-  const Twist& twist = pair.moving.twist;
-  const Vector3 point_velocity =
-      twist.linear + twist.angular.cross(contact.point - pair.moving.pose.position);
-  contact.approach = classify(contact.normal.dot(contact.hand_velocity - point_velocity));
+  contact.share = 1.0;
+  contact.impulse.setZero();
+  contact.time_of_impact = 0.0;
+  const bool held = pressed && refinements.swing_back && contact.friction == Friction::sticking;
+  swing_back(press.pair.hand.palm, held, contact);
 }
 
-bool reaches_surface(const TouchingPair& pair, const Plane& plane, double s) {
-  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
-  return plane.normal.dot(capsule.axis_point(s) - plane.point) - capsule.radius < kSeparation;
-}
-
-double deepest_end(const TouchingPair& pair, const Plane& plane) {
-  const Capsule& capsule = pair.hand.capsules[static_cast<std::size_t>(pair.capsule)];
-  return plane.normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;
+/// Contact `point` of the pair, going on from its memory, or beginning. `nearest` tells what the pair did.
+void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory,
+                   const ContactMemory* nearest, ContactMemory& contact) {
+  if (memory != nullptr) {
+    contact = *memory;
+    return;
+  }
+  contact = ContactMemory();
+  contact.key = pair.key(point);
+  contact.struck = nearest != nullptr && nearest->struck;
+  contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged;
 }
 
 /// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a
@@ -151,33 +146,26 @@ void share_load(Contact& a, Contact& b) {
 
 }  // namespace
 
-void update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
-                        const Contact* before, int count, std::vector<Contact>& contacts) {
+int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+                       const Contact* before, int count, Contact* now) {
   const Contact* nearest = nearest_memory(before, count, features.axis_parameter);
   const Plane plane = contact_plane(pair, features, nearest);
-  const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 &&
-                         reaches_surface(pair, plane, span.s0) && reaches_surface(pair, plane, span.s1);
-  const PhalanxMotion motion(pair);
+  const Press press(pair, plane);
+  const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 && press.reaches_surface(span.s0) &&
+                         press.reaches_surface(span.s1);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
-    Contact& contact = begin_contact(pair, point, nearest, contacts);
-    const double s = plane.entry ? deepest_end(pair, plane) : features.axis_parameter;
-    place(pair, motion, plane, s, nearest != nullptr && nearest->depth > 0.0, contact);
-    contact.share = 1.0;
-    return;
+    begin_contact(pair, point, nearest, nullptr, now[0]);
+    place(press, plane.entry ? press.deepest_end() : features.axis_parameter, nearest, now[0]);
+    return 1;
   }
-  const std::array<double, 2> ends{{span.s0, span.s1}};
-  for (int point = 0; point < 2; ++point) {
+  for (const int point : {0, 1}) {
     const Contact* memory = memory_of_point(before, count, point);
-    Contact& contact = begin_contact(pair, point, memory, contacts);
-    if (memory == nullptr && nearest != nullptr) {
-      contact.struck = nearest->struck;
-      contact.ignored = nearest->ignored;
-    }
-    place(pair, motion, plane, ends[static_cast<std::size_t>(point)],
-          memory != nullptr && memory->depth > 0.0, contact);
+    begin_contact(pair, point, memory, nearest, now[point]);
+    place(press, point == 0 ? span.s0 : span.s1, memory, now[point]);
   }
-  share_load(contacts[contacts.size() - 2], contacts.back());
+  share_load(now[0], now[1]);
+  return 2;
 }
 
 Approach classify(double normal_velocity) {

@@ -22,27 +22,34 @@ Neighbours::Neighbours(const Scene& scene)
       rooms_(scene.bodies.size()),
       reaches_(kMaxHands),
       near_hand_(kMaxHands) {
-  for (std::vector<int>& near : near_hand_) near.reserve(scene.bodies.size());
+  for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
+  for (Reach& reach : reaches_) reach.ways.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
 }
 
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-    Reach& reach = reaches_[slot];
-    reach.min.setConstant(std::numeric_limits<double>::max());
-    reach.max = -reach.min;
-    if (!hands[slot].active) continue;
-    for (const Hand* hand : {&hands[slot].previous, &hands[slot].current}) {
-      for (const Capsule& capsule : hand->capsules) {
-        if (capsule.radius <= 0.0) continue;
-        const Vector3 radius = Vector3::Constant(capsule.radius);
-        reach.min = reach.min.cwiseMin(capsule.start.cwiseMin(capsule.end) - radius);
-        reach.max = reach.max.cwiseMax(capsule.start.cwiseMax(capsule.end) + radius);
-      }
-    }
-  }
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], reaches_[slot]);
   if (place_those_leaving(bodies, 0.0)) list_pairs();
   list_near_hands();
+}
+
+void Neighbours::measure(const HandTrack& hand, Reach& reach) {
+  reach.min.setConstant(std::numeric_limits<double>::max());
+  reach.max = -reach.min;
+  reach.ways.clear();
+  if (!hand.active) return;
+  for (int c = 0; c < kCapsules; ++c) {
+    const auto ci = static_cast<std::size_t>(c);
+    const Capsule& to = hand.current.capsules[ci];
+    const Capsule& from = hand.previous.capsules[ci].radius > 0.0 ? hand.previous.capsules[ci] : to;
+    if (to.radius <= 0.0) continue;
+    const Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
+    const double longer_way = std::max((to.start - from.start).norm(), (to.end - from.end).norm());
+    const Way way{c, start, end - start, to.radius + 0.5 * longer_way};
+    reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
+    reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));
+    reach.ways.push_back(way);
+  }
 }
 
 void Neighbours::begin_step(const std::vector<BodyState>& bodies, double step) {
@@ -57,12 +64,18 @@ double Neighbours::reach_of(std::size_t body, const BodyState& state, double sec
   return b.bounding_radius + way + kFollowed;
 }
 
+bool Neighbours::Way::comes_near(const Vector3& centre, double radius) const {
+  const double length_squared = along.squaredNorm(), foot = along.dot(centre - start);
+  const double s = foot <= 0.0 ? 0.0 : foot >= length_squared ? 1.0 : foot / length_squared;
+  return (start + s * along - centre).squaredNorm() <= (reach + radius) * (reach + radius);
+}
+
 bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double seconds) const {
   const Vector3& centre = state.pose.position;
   const double radius = reach_of(body, state, seconds);
+  const auto near = [&](const Way& way) { return way.comes_near(centre, radius); };
   return std::any_of(reaches_.begin(), reaches_.end(), [&](const Reach& hand) {
-    if (hand.min.x() > hand.max.x()) return false;
-    return (centre - centre.cwiseMax(hand.min).cwiseMin(hand.max)).norm() <= radius;
+    return std::any_of(hand.ways.begin(), hand.ways.end(), near);
   });
 }
 
@@ -85,8 +98,8 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
     if (way <= room.slack_squared) continue;
     const double speed = body.fixed ? 0.0 : bodies[b].linear_momentum.norm() / body.mass;
     const double slack = kRoom + kRoomPart * body.bounding_radius + (kRoomTime + 2.0 * step) * speed;
-    room = {position, slack * slack};
-    broad_phase_.update(static_cast<int>(b), position, body.bounding_radius + slack + kFollowed);
+    room = {position, slack * slack, body.bounding_radius + slack + kFollowed};
+    broad_phase_.update(static_cast<int>(b), position, room.radius);
     any = true;
   }
   return any;
@@ -96,7 +109,15 @@ void Neighbours::list_near_hands() {
   for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
     const Reach& reach = reaches_[slot];
     near_hand_[slot].clear();
-    if (reach.min.x() <= reach.max.x()) near_hand_[slot] = broad_phase_.query(reach.min, reach.max);
+    if (reach.ways.empty()) continue;
+    for (const int body : broad_phase_.query(reach.min, reach.max)) {
+      const Room& room = rooms_[static_cast<std::size_t>(body)];
+      NearBody near{body, 0, {}};
+      for (const Way& way : reach.ways) {
+        if (way.comes_near(room.centre, room.radius)) near.add(way.capsule);
+      }
+      if (near.count > 0) near_hand_[slot].push_back(near);
+    }
   }
 }
 

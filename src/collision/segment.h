@@ -43,7 +43,10 @@ struct Stretch {
     s0 = std::min(s0, next.s0), s1 = std::max(s1, next.s1);
   }
   /// Keeps what has |x0 + s * dx| <= half.
-  void clip_to_slab(double x0, double dx, double half) { clip(-x0, -dx, half), clip(x0, dx, half); }
+  void clip_to_slab(double x0, double dx, double half) {
+    if (std::abs(x0) <= half && std::abs(x0 + dx) <= half) return;
+    clip(-x0, -dx, half), clip(x0, dx, half);
+  }
   /// Keeps what is no farther than `radius` from the z axis.
   void clip_to_disc(const Segment& axis, double radius) {
     const Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();

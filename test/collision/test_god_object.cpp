@@ -115,13 +115,14 @@ TEST(ContactVelocity, of_an_objects_point_is_that_of_its_centre_plus_spin_cross_
 
 TEST(ContactVelocity, of_a_phalanx_is_its_ends_velocity_at_the_ends_and_turns_with_the_bone) {
   MovingHand hand;
-  hand.capsules[kTip] = {Vector3(0, 0, 0), Vector3(0.1, 0, 0), kRadius};
+  hand.from[kTip] = {Vector3(0, 0, 0), Vector3(0.1, 0, 0), kRadius};
   hand.start_velocity[kTip] = Vector3(0, 1, 0);
   hand.end_velocity[kTip] = Vector3(0, 3, 0);  // 20 rad/s about z
   const int tip = static_cast<int>(kTip);
-  EXPECT_EQ(hand.surface_velocity(tip, 0.0, Vector3::Zero()), Vector3(0, 1, 0));
-  EXPECT_EQ(hand.surface_velocity(tip, 1.0, Vector3::Zero()), Vector3(0, 3, 0));
-  EXPECT_LE((hand.surface_velocity(tip, 0.5, Vector3(0, 0.01, 0)) - Vector3(-0.2, 2, 0)).norm(), 1e-12);
+  const PhalanxMotion motion = hand.motion(tip, hand.capsule(tip));
+  EXPECT_EQ(motion.of_surface(0.0, Vector3::Zero()), Vector3(0, 1, 0));
+  EXPECT_EQ(motion.of_surface(1.0, Vector3::Zero()), Vector3(0, 3, 0));
+  EXPECT_LE((motion.of_surface(0.5, Vector3(0, 0.01, 0)) - Vector3(-0.2, 2, 0)).norm(), 1e-12);
 }
 
 TEST(Classification, follows_the_sign_of_equation_8) {

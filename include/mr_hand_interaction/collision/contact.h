@@ -6,20 +6,21 @@
 
 namespace mrhi {
 
-/// Which surfaces touch. Ordered, so that contacts are always treated in the same order.
+/// Which surfaces touch. Ordered, so that contacts are always treated in the same order. Fields stand from
+/// the least significant up, so that a compiler reads the order in one go.
 struct ContactKey {
-  std::uint16_t body;    ///< index in Scene::bodies
-  std::uint8_t hand;     ///< index of the hand's track
-  std::uint8_t capsule;  ///< of the hand
-  std::uint8_t shape;    ///< of the body
   std::uint8_t point;    ///< 0, and 1 where a capsule lies along a face and touches at two points
+  std::uint8_t shape;    ///< of the body
+  std::uint8_t capsule;  ///< of the hand
+  std::uint8_t hand;     ///< index of the hand's track
+  std::uint16_t body;    ///< index in Scene::bodies
 
   friend bool operator<(const ContactKey& a, const ContactKey& b) { return a.order() < b.order(); }
   friend bool operator==(const ContactKey& a, const ContactKey& b) { return a.order() == b.order(); }
   bool same_pair(const ContactKey& other) const { return order() >> 8 == other.order() >> 8; }
   std::uint64_t order() const {
-    return (std::uint64_t(body) << 32) | (std::uint64_t(hand) << 24) | (std::uint64_t(capsule) << 16) |
-           (std::uint64_t(shape) << 8) | std::uint64_t(point);
+    return std::uint64_t(point) | (std::uint64_t(shape) << 8) | (std::uint64_t(capsule) << 16) |
+           (std::uint64_t(hand) << 24) | (std::uint64_t(body) << 32);
   }
 };
 
@@ -28,24 +29,28 @@ enum class Approach : std::uint8_t { separating, resting, colliding };
 
 enum class Friction : std::uint8_t { sticking, slipping };
 
-/// One touch of a hand (body 1) with an object (body 2): the god object with its memory, where things are in
-/// this step, and what acts. World frame unless said otherwise; n points from the object to the hand; impulse
-/// and force act on the OBJECT.
-struct Contact {
+/// What lasts of a contact while the surfaces touch.
+struct ContactMemory {
   ContactKey key{};
-
-  // Memory: lasts while the surfaces touch.
+  Friction friction = Friction::sticking;
+  bool struck = false;   ///< the impulse of this approach has been given
+  bool ignored = false;  ///< overlapped when the hand appeared: touches nothing until it has separated
   Vector3 god_object = Vector3::Zero();     ///< c, on the object's surface, body frame
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
   Vector3 touched_from = Vector3::UnitZ();  ///< n as the touch began, palm frame
   double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
-  Friction friction = Friction::sticking;
-  double twist =
-      0.0;  ///< turn of the phalanx about n against the object since the touch, as far as it is held [rad]
-  bool struck = false;   ///< the impulse of this approach has been given
-  bool ignored = false;  ///< overlapped when the hand appeared: touches nothing until it has separated
+  double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
+  /// Turn of the phalanx about n against the object since the touch, as far as it is held [rad].
+  double twist = 0.0;
+  Vector3 force = Vector3::Zero();  ///< that the contact model last found [N]
 
-  // This step.
+  bool touching() const { return depth > 0.0 && !ignored; }
+};
+
+/// One touch of a hand (body 1) with an object (body 2): the god object with its memory, where things are in
+/// this step, and what acts. World frame unless said otherwise; n points from the object to the hand; impulse
+/// and force act on the OBJECT.
+struct Contact : ContactMemory {
   Vector3 point = Vector3::Zero();       ///< c in world
   Vector3 normal = Vector3::UnitZ();     ///< n
   Vector3 hand_point = Vector3::Zero();  ///< p: the phalanx's surface point that entered at c
@@ -55,15 +60,9 @@ struct Contact {
   Vector3 axis = Vector3::Zero();           ///< of the phalanx, from start to end [m]
   double radius = 0.0;                      ///< of the phalanx [m]
   double patch = 0.0;                       ///< radius of the touching patch [m]
-  double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
-  Approach approach = Approach::separating;
-  bool touching() const { return depth > 0.0 && !ignored; }
-
-  // What the contact model made of it in this step.
-  Vector3 force = Vector3::Zero();    ///< [N]
-  Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
-  double time_of_impact = 0.0;        ///< of that impact, from the step's start [s]
+  Vector3 impulse = Vector3::Zero();        ///< of an impact in this step [N s]
+  double time_of_impact = 0.0;              ///< of that impact, from the step's start [s]
 };
 
 }  // namespace mrhi

@@ -31,18 +31,13 @@ class ContactFinder {
                                          double margin) const;
 
  private:
-  /// A shape of a body in world.
-  struct PlacedFrame {
-    Matrix3 rotation;
-    Vector3 position;
-  };
-
-  void find_pair(const MovingHand& hand, int body, const BodyState& state, double step,
+  void find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state, double step,
                  const std::vector<Contact>& before);
-  void find_touch(const TouchingPair& pair, const PlacedFrame& frame, double step, double margin,
-                  const std::vector<Contact>& before);
-  /// Closest features at the time within the step at which the pair first touches, if it does.
-  std::optional<ClosestFeatures> swept(const TouchingPair& pair, double step, double margin) const;
+  void find_touch(const TouchingPair& pair, double step, double margin, const std::vector<Contact>& before);
+  /// Closest features, in the shape's frame, at the time within the step at which the pair first touches, if
+  /// it does.
+  std::optional<ClosestFeatures> swept(const TouchingPair& pair, const PlacedCollider& collider, double step,
+                                       double margin) const;
   void touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
              const std::vector<Contact>& before);
 
@@ -50,9 +45,9 @@ class ContactFinder {
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
   const ContactConfiguration refinements_;
-  std::vector<PlacedFrame> frames_;  // of the body at hand
   std::vector<Contact> found_;
-  std::size_t memory_ = 0;  // where the last pair had its contacts in the last step
+  std::size_t found_count_ = 0;
+  const Contact* memory_ = nullptr;  // in the last step, from those of the pair at hand on
 };
 
 }  // namespace mrhi

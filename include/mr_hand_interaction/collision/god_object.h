@@ -17,19 +17,27 @@ constexpr double kSeparation = 0.0005;
 struct TouchingPair {
   const MovingHand& hand;
   int capsule;
-  int body_index;
-  int shape_index;
+  const Capsule& in_world;  // at the step's start
+  const Capsule& in_body;   // the same in the body's frame
+  int body;
+  int shape;
   const MovingBody& moving;
   const ContactConfiguration& refinements;
+
+  ContactKey key(int point) const {
+    return {static_cast<std::uint8_t>(point), static_cast<std::uint8_t>(shape),
+            static_cast<std::uint8_t>(capsule), static_cast<std::uint8_t>(hand.slot),
+            static_cast<std::uint16_t>(body)};
+  }
 };
 
 /// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now
-/// (world) into one contact, or two where the capsule lies along a face, and carries the memory of `before`
-/// (this pair's contacts in the last step) over. A god object stays on the face that the phalanx entered by,
-/// however deep the phalanx goes, and moves with it only where friction lets it (response) or where the
-/// phalanx rolls.
-void update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
-                        const Contact* before, int count, std::vector<Contact>& contacts);
+/// (body frame) into one contact, or two where the capsule lies along a face, and carries the memory of the
+/// pair's `count` contacts `before`, in the last step, over. A god object stays on the face that the phalanx
+/// entered by, however deep the phalanx goes, and moves with it only where friction lets it (response) or
+/// where the phalanx rolls. Writes the contacts to `now`, which holds two, and returns how many there are.
+int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+                       const Contact* before, int count, Contact* now);
 
 /// Eq. 8 sorted: v = n.(c1' - c2') [m/s], < 0 approaches.
 Approach classify(double normal_velocity);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mr_hand_interaction/collision/capsule.h"
 #include "mr_hand_interaction/integration/body_state.h"
 
 namespace mrhi {
@@ -14,6 +15,9 @@ struct MovingBody {
 
   Vector3 to_world(const Vector3& local) const { return rotation * local + pose.position; }
   Vector3 to_local(const Vector3& world) const { return rotation.transpose() * (world - pose.position); }
+  Capsule to_local(const Capsule& world) const {
+    return {to_local(world.start), to_local(world.end), world.radius};
+  }
 
   const Body& body;
   const Pose& pose;      ///< at the step's start

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,17 @@
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
+
+/// A body and the capsules of a hand that may come near it in this frame, ascending.
+struct NearBody {
+  int body;
+  int count = 0;
+  std::array<std::uint8_t, kCapsules> capsules;
+
+  void add(int capsule) { capsules[static_cast<std::size_t>(count++)] = static_cast<std::uint8_t>(capsule); }
+  const std::uint8_t* begin() const { return capsules.data(); }
+  const std::uint8_t* end() const { return capsules.data() + count; }
+};
 
 /// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
 /// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
@@ -28,7 +40,9 @@ class Neighbours {
   bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
 
   /// Bodies near the hand in `slot`, ascending.
-  const std::vector<int>& near_hand(int slot) const { return near_hand_[static_cast<std::size_t>(slot)]; }
+  const std::vector<NearBody>& near_hand(int slot) const {
+    return near_hand_[static_cast<std::size_t>(slot)];
+  }
   /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
   /// free.
   const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
@@ -39,10 +53,21 @@ class Neighbours {
   struct Room {
     Vector3 centre = Vector3::Zero();
     double slack_squared = -1.0;  // of the way that the body may go from there [m^2]
+    double radius = 0.0;          // of the sphere that holds the body and the gap that is followed [m]
+  };
+  /// A capsule's axis half-way through the frame, and how far from it the capsule reaches in the frame.
+  struct Way {
+    bool comes_near(const Vector3& centre, double radius) const;
+
+    int capsule;
+    Vector3 start, along;
+    double reach;
   };
   struct Reach {
     Vector3 min, max;  // of a hand in this frame; min > max without a hand
+    std::vector<Way> ways;
   };
+  static void measure(const HandTrack& hand, Reach& reach);
   /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
   /// followed.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;
@@ -54,7 +79,7 @@ class Neighbours {
   BroadPhase broad_phase_;
   std::vector<Room> rooms_;
   std::vector<Reach> reaches_;
-  std::vector<std::vector<int>> near_hand_;
+  std::vector<std::vector<NearBody>> near_hand_;
   std::vector<std::pair<int, int>> pairs_;
   std::vector<int> paired_;
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/collision/body_manifold.h"
+#include "mr_hand_interaction/collision/placed_collider.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -14,6 +15,7 @@ struct SceneGeometry {
 
   std::vector<std::vector<std::unique_ptr<MeshCollider>>> meshes;  ///< [body][shape], null unless a mesh
   std::vector<std::vector<ManifoldShape>> shapes;                  ///< [body][shape]
+  std::vector<std::vector<PlacedCollider>> colliders;              ///< [body][shape], for hands
 };
 
 }  // namespace mrhi

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "mr_hand_interaction/collision/mesh_collision.h"
+
+namespace mrhi {
+
+/// A shape of a body as the hand's capsules meet it.
+class PlacedCollider {
+ public:
+  /// Keeps references; `mesh` is null unless the shape is one.
+  PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh);
+
+  /// Closest features, if nearer than `margin` [m]. Capsule and features in the shape's frame.
+  std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
+  AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
+    return contact_span(capsule, shape_, features);
+  }
+
+  /// Between the body's frame and the shape's.
+  Capsule to_shape(const Capsule& in_body) const {
+    if (has_bodys_frame_) return in_body;
+    return {rotation_.transpose() * (in_body.start - position_),
+            rotation_.transpose() * (in_body.end - position_), in_body.radius};
+  }
+  ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
+    if (has_bodys_frame_) return in_shape;
+    return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,
+            in_shape.axis_parameter};
+  }
+
+ private:
+  const Shape& shape_;
+  const MeshCollider* mesh_;
+  const bool has_bodys_frame_;
+  const Matrix3 rotation_;
+  const Vector3 position_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mr_hand_interaction/collision/closest_features.h"
+#include "mr_hand_interaction/collision/neighbours.h"
+#include "random_capsules.h"
+#include "support/fixtures.h"
+
+namespace mrhi {
+namespace {
+
+Scene balls(Random& random, int count) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    scene.bodies.push_back(testing::ball_body(random.between(0.01, 0.06), 0.1));
+    scene.bodies.back().start.position = random.in_box({0.15, 0.15, 0.15});
+  }
+  return scene;
+}
+
+HandTrack moving_hand(Random& random) {
+  HandTrack track;
+  track.active = true;
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    const double radius = random.below(5) == 0 ? 0.0 : 0.008;
+    const Vector3 middle = random.in_box({0.2, 0.2, 0.2}), way = random.in_box({0.03, 0.03, 0.03});
+    track.previous.capsules[c] = capsule_about(middle, 0.03 * random.direction(), 0.008);
+    track.current.capsules[c] = capsule_about(middle + way, 0.03 * random.direction(), radius);
+  }
+  return track;
+}
+
+bool lists(const Neighbours& neighbours, int body, int capsule) {
+  for (const NearBody& near : neighbours.near_hand(0)) {
+    if (near.body == body) return std::find(near.begin(), near.end(), capsule) != near.end();
+  }
+  return false;
+}
+
+TEST(Neighbours, list_every_capsule_that_touches_a_body_on_its_way_and_not_all) {
+  Random random(11);
+  int touching = 0, listed = 0, all = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Scene scene = balls(random, 5);
+    std::vector<BodyState> bodies;
+    for (const Body& body : scene.bodies) bodies.push_back(start_state(body));
+    std::vector<HandTrack> hands(kMaxHands);
+    hands[0] = moving_hand(random);
+    Neighbours neighbours(scene);
+    neighbours.begin_frame(hands, bodies);
+    for (int body = 0; body < 5; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      const Sphere sphere{scene.bodies[b].bounding_radius};
+      for (int capsule = 0; capsule < kCapsules; ++capsule) {
+        const auto c = static_cast<std::size_t>(capsule);
+        const bool is_listed = lists(neighbours, body, capsule);
+        listed += is_listed, ++all;
+        if (!hands[0].current.has(capsule)) continue;
+        for (double fraction = 0.0; fraction <= 1.0; fraction += 0.125) {
+          const Capsule now = blend(hands[0].previous, hands[0].current, fraction).capsules[c];
+          const Vector3& centre = bodies[b].pose.position;
+          const Capsule local{now.start - centre, now.end - centre, now.radius};
+          if (capsule_sphere(local, sphere).distance > 0.0) continue;
+          ++touching;
+          ASSERT_TRUE(is_listed) << body << " " << capsule << " " << fraction;
+          EXPECT_TRUE(neighbours.may_meet_hand(b, bodies[b], 0.0));
+        }
+      }
+    }
+  }
+  EXPECT_GT(touching, 1000);
+  EXPECT_LT(2 * listed, all);
+}
+
+}  // namespace
+}  // namespace mrhi
