@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/integration/free_flight.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/scene_change.h"
 #include "mr_hand_interaction/tracking/tracker.h"
 #include "sleeping.h"
 
@@ -331,6 +332,10 @@ void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
   impl_->state.asleep.resize(impl_->scene.bodies.size(), 0);
   impl_->steps = impl_->steps_done = 0;
+}
+void Simulation::go_on_from(const Simulation& other) {
+  set_state(carried_over(other.state(), other.scene(), scene()));
+  impl_->result = carried_over(other.result(), other.scene(), scene());
 }
 
 const char* to_string(Stage stage) {

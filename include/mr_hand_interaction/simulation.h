@@ -75,6 +75,9 @@ class Simulation {
   /// Stamp up to which bodies have been advanced, between the steps of a frame too.
   Nanoseconds time() const;
   void set_state(const SimulationState& state);
+  /// Takes over where a simulation of another scene or configuration is, by the names of bodies; see
+  /// scene_change.h. Call between frames.
+  void go_on_from(const Simulation& other);
 
  private:
   struct Impl;

@@ -6,10 +6,11 @@ namespace mrhi {
 
 const std::array<MaterialField, 4>& material_fields() {
   static const std::array<MaterialField, 4> fields{{
-      {"restitution", "", &Material::restitution, Range{0, 1}},
-      {"static_friction", "", &Material::static_friction, Range{0}},
-      {"dynamic_friction", "", &Material::dynamic_friction, Range{0}},
-      {"stiffness", " [N/m]", &Material::stiffness, Range{0, std::numeric_limits<double>::infinity(), false}},
+      {"restitution", "", &Material::restitution, &OwnMaterial::restitution, Range{0, 1}},
+      {"static_friction", "", &Material::static_friction, &OwnMaterial::static_friction, Range{0}},
+      {"dynamic_friction", "", &Material::dynamic_friction, &OwnMaterial::dynamic_friction, Range{0}},
+      {"stiffness", " [N/m]", &Material::stiffness, &OwnMaterial::stiffness,
+       Range{0, std::numeric_limits<double>::infinity(), false}},
   }};
   return fields;
 }

@@ -14,6 +14,7 @@ struct MaterialField {
   const char* name;
   const char* unit;
   double Material::*value;
+  bool OwnMaterial::*own;
   Range range;
 };
 

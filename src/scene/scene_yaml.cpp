@@ -21,7 +21,7 @@ void read_bounds(const Element& element, Bounds& bounds) {
                "; allowed: min below max on each axis");
 }
 
-void read_material(const Element& element, Material& material) {
+void read_material(const Element& element, Body& body) {
   std::vector<std::string> known;
   for (const MaterialField& field : material_fields()) known.push_back(field.name);
   const std::vector<std::string> keys = checked_keys(element, known);
@@ -30,16 +30,17 @@ void read_material(const Element& element, Material& material) {
     const Element given = element.at(field.name);
     const std::optional<double> value = yaml_number(given.node);
     if (!value || !field.range.contains(*value)) given.refuse(field.range.describe() + field.unit);
-    material.*field.value = *value;
+    body.material.*field.value = *value;
+    body.own_material.*field.own = true;
   }
-  if (const auto conflict = material_conflict(material)) element.fail(*conflict);
+  if (const auto conflict = material_conflict(body.material)) element.fail(*conflict);
 }
 
 void read_materials(const Element& element, Scene& scene) {
   std::vector<std::string> links;
   for (const Body& body : scene.bodies) links.push_back(body.name);
   for (const std::string& link : checked_keys(element, links)) {
-    read_material(element.at(link), scene.bodies[*find_body(scene, link)].material);
+    read_material(element.at(link), scene.bodies[*find_body(scene, link)]);
   }
 }
 
@@ -57,6 +58,14 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
     }
   } catch (const YAML::Exception& error) {
     throw SceneError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
+  }
+}
+
+void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body) {
+  try {
+    read_material({source, "", YAML::Load(yaml)}, body);
+  } catch (const YAML::Exception& error) {
+    throw SceneError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }
 }
 

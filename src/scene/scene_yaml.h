@@ -10,4 +10,8 @@ namespace mrhi {
 /// what the file does not name. Throws SceneError.
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
 
+/// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws
+/// SceneError.
+void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body);
+
 }  // namespace mrhi

@@ -79,7 +79,10 @@ std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface&
 }  // namespace
 
 UrdfDocument parse_urdf_file(const std::string& file) {
-  const std::string xml = read_file(file);
+  return parse_urdf(file, read_file(file));
+}
+
+UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
   const Complaints complaints;
   UrdfDocument document;
   std::string problem;
@@ -91,7 +94,7 @@ UrdfDocument parse_urdf_file(const std::string& file) {
     problem = error.what();
   }
   if (!problem.empty()) {
-    throw SceneError(file + ": bad URDF: " + text::one_line(problem) +
+    throw SceneError(source + ": bad URDF: " + text::one_line(problem) +
                      "; allowed: a robot of links (box, sphere, cylinder, mesh) joined to one root link");
   }
   document.links = links_in_order(*document.model, xml);

@@ -17,4 +17,7 @@ struct UrdfDocument {
 /// Throws SceneError with urdfdom's complaints on one line; urdfdom itself prints nothing.
 UrdfDocument parse_urdf_file(const std::string& file);
 
+/// The same from the XML itself; `source` names it in messages.
+UrdfDocument parse_urdf(const std::string& source, const std::string& xml);
+
 }  // namespace mrhi

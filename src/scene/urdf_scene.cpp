@@ -4,7 +4,6 @@
 
 #include "text.h"
 #include "urdf_shapes.h"
-#include "urdf_tree.h"
 
 namespace mrhi {
 namespace {
@@ -110,6 +109,10 @@ class BodyReader {
   ShapeReader shapes_;
 };
 
+bool has_shape(const urdf::Link& link) {
+  return !link.collision_array.empty() || !link.visual_array.empty();
+}
+
 }  // namespace
 
 std::vector<Body> read_bodies(const std::string& urdf_file, const SceneOptions& options) {
@@ -117,13 +120,32 @@ std::vector<Body> read_bodies(const std::string& urdf_file, const SceneOptions& 
   BodyReader reader(urdf_file, options);
   std::vector<Body> bodies;
   for (const PlacedLink& placed : place_links(urdf_file, document)) {
-    const bool only_a_frame =
-        placed.fixed && placed.link->collision_array.empty() && placed.link->visual_array.empty();
-    if (!only_a_frame) bodies.push_back(reader.read(placed));
+    if (!placed.fixed || has_shape(*placed.link)) bodies.push_back(reader.read(placed));
   }
   if (bodies.empty())
     throw SceneError(urdf_file + ": no bodies; allowed: at least one link joined to the root");
   return bodies;
+}
+
+Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options) {
+  return BodyReader(source, options).read(placed);
+}
+
+PlacedLink only_link(const std::string& source, const std::string& xml) {
+  const UrdfDocument document = parse_urdf(source, xml);
+  std::vector<PlacedLink> found;
+  const urdf::LinkConstSharedPtr root = document.model->getRoot();
+  if (has_shape(*root)) {
+    found.push_back({root, false, Pose{}});
+    if (document.links.size() > 1) found.push_back(found.front());  // whatever hangs on it
+  } else {
+    for (const PlacedLink& placed : place_links(source, document)) {
+      if (has_shape(*placed.link)) found.push_back(placed);
+    }
+  }
+  if (found.size() == 1) return found.front();
+  throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +
+                   " with a shape; allowed: one");
 }
 
 }  // namespace mrhi

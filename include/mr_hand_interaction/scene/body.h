@@ -21,6 +21,7 @@ struct Body {
   Twist start_twist;  ///< world axes
   Pose link_in_body;  ///< the URDF link's frame in the body frame (rotation is identity)
   Material material;
+  OwnMaterial own_material;
   std::vector<PlacedShape> shapes;  ///< for collision
   std::vector<Visual> visuals;
   double bounding_radius = 0.0;  ///< of all shapes, about the body frame's origin [m]

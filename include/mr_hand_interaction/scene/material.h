@@ -10,4 +10,9 @@ struct Material {
   double stiffness = 100.0;       ///< gamma of the penetration force (Eq. 16) [N/m]
 };
 
+/// Which of a material's numbers a scene gives itself; the others follow the parameters.
+struct OwnMaterial {
+  bool restitution = false, static_friction = false, dynamic_friction = false, stiffness = false;
+};
+
 }  // namespace mrhi

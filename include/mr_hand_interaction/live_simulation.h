@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi {
+
+/// A simulation whose scene and configuration change while it runs, between frames: each change builds a
+/// simulation of the new ones, which goes on from where the old one was. What is held stays held, what flies
+/// flies on. A change that is refused changes nothing.
+class LiveSimulation {
+ public:
+  /// `scene`: without the configuration's gravity, which overrides it. Throws as Simulation does.
+  LiveSimulation(Scene scene, const Configuration& configuration);
+
+  /// Until the next change.
+  Simulation& now() { return *simulation_; }
+  const Simulation& now() const { return *simulation_; }
+
+  /// Names of parameters.h and their values in YAML: all or none. Throws ParameterError.
+  void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);
+  /// Throws std::invalid_argument for a name that is taken, and a place out of bounds or in another body.
+  void add(const Body& body);
+  /// Returns the events with which hands leave it; their index is that before the change. Throws
+  /// std::invalid_argument for a name that is not known.
+  std::vector<Event> remove(const std::string& name);
+  /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
+  /// place out of bounds.
+  void place(const std::string& name, const Pose& pose);
+
+ private:
+  void go_on_with(const Scene& scene, const Configuration& configuration);
+
+  std::unique_ptr<Simulation> simulation_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+
+namespace mrhi {
+
+/// An object that somebody wants in a scene.
+struct ObjectRequest {
+  std::string name;          ///< empty: that of the URDF's link
+  std::string urdf;          ///< XML with one link that has a shape; empty: `shape` instead
+  std::string shape;         ///< box, sphere, or cylinder (about z)
+  std::vector<double> size;  ///< box: x, y, z; sphere: radius; cylinder: radius, length [m]
+  double mass = 0.0;         ///< of `shape`, which is solid [kg]; 0: a fixture
+  Pose pose;                 ///< of the link in world
+  Twist twist;               ///< of the centre of mass, world axes
+  std::string material;      ///< YAML, as in a scene's materials; empty: the parameters'
+  std::optional<std::array<float, 4>> rgba;
+};
+
+/// Throws SceneError with one line that says what is wrong and what is allowed. A link of the URDF on a fixed
+/// joint is a fixture.
+Body requested_body(const ObjectRequest& request, const SceneOptions& options);
+
+}  // namespace mrhi

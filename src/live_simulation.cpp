@@ -1,0 +1,123 @@
+#include "mr_hand_interaction/live_simulation.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/scene_change.h"
+#include "scene/text.h"
+
+namespace mrhi {
+namespace {
+
+/// What two bodies may overlap as one is added, as things that rest on each other do [m].
+constexpr double kOverlap = 0.001;
+
+void check_in_bounds(const std::string& name, const Vector3& place, const Bounds& bounds) {
+  if ((place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all()) return;
+  throw std::invalid_argument("'" + name + "': " + text::vector(place) + " m is out of bounds; allowed: " +
+                              text::vector(bounds.min) + " to " + text::vector(bounds.max));
+}
+
+double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
+               std::size_t a, std::size_t b) {
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < scene.bodies[a].shapes.size(); ++i) {
+    for (std::size_t j = 0; j < scene.bodies[b].shapes.size(); ++j) {
+      const Manifold manifold =
+          body_manifold(geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose,
+                        geometry.shapes[b][j], bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0);
+      for (int k = 0; k < manifold.count; ++k)
+        deepest = std::max(deepest, manifold.points[static_cast<std::size_t>(k)].depth);
+    }
+  }
+  return deepest;
+}
+
+void check_free_place(const Simulation& simulation, std::size_t added) {
+  const Scene& scene = simulation.scene();
+  const SceneGeometry geometry(scene);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (b == added || (scene.bodies[b].fixed && scene.bodies[added].fixed)) continue;
+    const double depth = overlap(scene, geometry, simulation.state().bodies, added, b);
+    if (depth <= kOverlap) continue;
+    throw std::invalid_argument("'" + scene.bodies[added].name + "' would be " + text::number(depth) +
+                                " m in '" + scene.bodies[b].name + "'; allowed: a place that is free");
+  }
+}
+
+std::string names_of(const Scene& scene, bool free_only) {
+  std::vector<std::string> names;
+  for (const Body& body : scene.bodies) {
+    if (!free_only || !body.fixed) names.push_back(body.name);
+  }
+  return names.empty() ? "none" : text::joined(names);
+}
+
+std::size_t known_body(const Scene& scene, const std::string& name, bool free_only) {
+  const std::optional<int> found = find_body(scene, name);
+  if (found && !(free_only && scene.bodies[static_cast<std::size_t>(*found)].fixed))
+    return static_cast<std::size_t>(*found);
+  throw std::invalid_argument("no object '" + text::one_line(name, 60) +
+                              "'; allowed: " + names_of(scene, free_only));
+}
+
+}  // namespace
+
+LiveSimulation::LiveSimulation(Scene scene, const Configuration& configuration)
+    : simulation_(std::make_unique<Simulation>(std::move(scene), configuration)) {}
+
+void LiveSimulation::set_parameters(const std::vector<std::pair<std::string, std::string>>& values) {
+  Configuration configuration = simulation_->configuration();
+  for (const auto& [name, value] : values) set_parameter(configuration, name, value);
+  validate(configuration);
+  Scene scene = simulation_->scene();
+  try {
+    set_default_material(default_material(configuration), scene);
+  } catch (const std::invalid_argument& error) {
+    throw ParameterError(std::string("parameter 'material': ") + error.what());
+  }
+  go_on_with(scene, configuration);
+}
+
+void LiveSimulation::add(const Body& body) {
+  Scene scene = simulation_->scene();
+  if (find_body(scene, body.name)) {
+    throw std::invalid_argument("object '" + body.name + "' is there already; allowed: a name other than " +
+                                names_of(scene, false));
+  }
+  check_in_bounds(body.name, body.start.position, scene.bounds);
+  scene.bodies.push_back(body);
+  auto next = std::make_unique<Simulation>(std::move(scene), simulation_->configuration());
+  next->go_on_from(*simulation_);
+  check_free_place(*next, next->scene().bodies.size() - 1);
+  simulation_ = std::move(next);
+}
+
+std::vector<Event> LiveSimulation::remove(const std::string& name) {
+  Scene scene = simulation_->scene();
+  const std::size_t body = known_body(scene, name, false);
+  SimulationState state = simulation_->state();
+  std::vector<Event> events = end_interactions_with(body, state);
+  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(body));
+  go_on_with(scene, simulation_->configuration());
+  return events;
+}
+
+void LiveSimulation::place(const std::string& name, const Pose& pose) {
+  const Scene& scene = simulation_->scene();
+  const std::size_t body = known_body(scene, name, true);
+  check_in_bounds(name, pose.position, scene.bounds);
+  SimulationState state = simulation_->state();
+  mrhi::place(body, {pose, Vector3::Zero(), Vector3::Zero()}, scene, state);
+  simulation_->set_state(state);
+}
+
+void LiveSimulation::go_on_with(const Scene& scene, const Configuration& configuration) {
+  auto next = std::make_unique<Simulation>(scene, configuration);
+  next->go_on_from(*simulation_);
+  simulation_ = std::move(next);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,264 @@
+#include "mr_hand_interaction/live_simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mr_hand_interaction/parameters.h"
+#include "support/pinch_scene.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+
+constexpr double kRate = 120.0;
+
+Body ball_at(const Vector3& place, const std::string& name, const Vector3& velocity = Vector3::Zero()) {
+  Body ball = testing::ball_body(0.02, 0.05);
+  ball.name = name;
+  ball.start.position = place;
+  ball.start_twist.linear = velocity;
+  return ball;
+}
+
+/// A hand that holds a cube and swings it, with a ball that flies by; bodies before and after the cube.
+class Held {
+ public:
+  explicit Held(const Configuration& configuration = testing::unfiltered(ContactModelKind::implicit))
+      : live_(scene(), configuration) {}
+
+  void play(double until) {
+    for (; frame_ <= std::lround(until * kRate); ++frame_) {
+      const double t = static_cast<double>(frame_) / kRate;
+      const Vector3 sway = t < 0.5 ? Vector3::Zero() : testing::swing(t - 0.5, 0.05, 1.0);
+      live_.now().advance({at(t), {pinch_.hand(t, sway)}});
+      for (const Event& event : live_.now().result().events) kinds.push_back(event.kind);
+    }
+  }
+
+  LiveSimulation& live() { return live_; }
+  Simulation& now() { return live_.now(); }
+  std::size_t index(const std::string& name) const {
+    return static_cast<std::size_t>(*find_body(live_.now().scene(), name));
+  }
+  const BodyState& state(const std::string& name) const { return live_.now().state().bodies[index(name)]; }
+  Twist twist(const std::string& name) const {
+    return twist_of(live_.now().scene().bodies[index(name)], state(name));
+  }
+  std::vector<Contact> contacts_with(const std::string& name) const {
+    std::vector<Contact> found;
+    for (const Contact& contact : live_.now().state().contacts) {
+      if (contact.key.body == index(name) && contact.touching()) found.push_back(contact);
+    }
+    return found;
+  }
+  bool holds() const {
+    const SimulationState& state = live_.now().state();
+    return state.interactions[index("object")].level == InteractionLevel::grasp;
+  }
+  /// Of the cube against the hand.
+  double speed_in_hand() const {
+    const HandTrack& track = live_.now().state().hands[0];
+    const Vector3 hand = (track.current.palm.position - track.previous.palm.position) * kRate;
+    return (twist("object").linear - hand).norm();
+  }
+
+  std::vector<EventKind> kinds;
+
+ private:
+  Scene scene() const {
+    Scene scene = pinch_.scene();
+    scene.bodies.insert(scene.bodies.begin(), ball_at({0.3, 0, 0}, "first", {0, 0.1, 0}));
+    scene.bodies.push_back(ball_at({-0.3, 0, 0}, "last", {0, 0, -0.1}));
+    return scene;
+  }
+
+  testing::PinchScene pinch_;
+  LiveSimulation live_;
+  long frame_ = 0;
+};
+
+void expect_same(const BodyState& a, const BodyState& b) {
+  EXPECT_EQ(a.pose.position, b.pose.position);
+  EXPECT_EQ(a.pose.orientation.coeffs(), b.pose.orientation.coeffs());
+  EXPECT_EQ(a.linear_momentum, b.linear_momentum);
+  EXPECT_EQ(a.angular_momentum, b.angular_momentum);
+}
+
+TEST(LiveSimulation, what_is_not_changed_keeps_its_bits_when_an_object_comes_or_goes) {
+  Held held;
+  held.play(0.7);
+  const BodyState cube = held.state("object"), last = held.state("last");
+  const std::vector<Contact> contacts = held.contacts_with("object");
+  ASSERT_TRUE(held.holds());
+  ASSERT_FALSE(contacts.empty());
+  held.live().add(ball_at({0, 0.4, 0}, "new"));
+  held.live().remove("first");
+  expect_same(held.state("object"), cube);
+  expect_same(held.state("last"), last);
+  EXPECT_TRUE(held.holds());
+  const std::vector<Contact> after = held.contacts_with("object");
+  ASSERT_EQ(after.size(), contacts.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_EQ(after[i].key.capsule, contacts[i].key.capsule);
+    EXPECT_EQ(after[i].god_object, contacts[i].god_object);
+    EXPECT_EQ(after[i].friction, contacts[i].friction);
+  }
+}
+
+TEST(LiveSimulation, goes_on_after_a_far_body_is_gone_as_if_it_had_never_been) {
+  Held changed, unchanged;
+  changed.play(0.6), unchanged.play(0.6);
+  changed.live().remove("first");
+  changed.play(1.5), unchanged.play(1.5);
+  expect_same(changed.state("object"), unchanged.state("object"));
+  expect_same(changed.state("last"), unchanged.state("last"));
+}
+
+TEST(LiveSimulation, a_new_object_is_where_it_was_asked_for_and_takes_part) {
+  Held held;
+  held.play(0.5);
+  held.live().add(ball_at({0, 0.4, 0}, "new", {0.2, 0, 0}));
+  EXPECT_EQ(held.state("new").pose.position, Vector3(0, 0.4, 0));
+  held.play(1.0);
+  EXPECT_NEAR(held.state("new").pose.position.x(), 0.2 * 0.5, 1e-12);
+}
+
+TEST(LiveSimulation, an_object_that_comes_into_the_hand_is_not_pushed_until_the_hand_has_left_it) {
+  Scene scene;
+  LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
+  const auto tip = [](double x) { return testing::finger({x, -0.1, 0}, {x, 0, 0}, 0.008); };
+  for (int i = 0; i < 5; ++i) live.now().advance({at(i / kRate), {tip(0.0)}});
+  live.add(ball_at({0.005, 0, 0}, "ball"));
+  for (int i = 5; i < 60; ++i) live.now().advance({at(i / kRate), {tip(0.0)}});
+  EXPECT_EQ(live.now().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
+  for (int i = 60; i < 80; ++i) live.now().advance({at(i / kRate), {tip(-0.002 * (i - 59))}});
+  EXPECT_EQ(live.now().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
+  for (int i = 80; i < 120; ++i) live.now().advance({at(i / kRate), {tip(-0.042 + 0.002 * (i - 79))}});
+  EXPECT_GT(live.now().state().bodies[0].linear_momentum.x(), 0.0);
+}
+
+TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) {
+  Held held;
+  held.play(0.7);
+  ASSERT_TRUE(held.holds());
+  const std::size_t cube = held.index("object");
+  const std::vector<Event> events = held.live().remove("object");
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].kind, EventKind::grasp_end);
+  EXPECT_EQ(events[1].kind, EventKind::contact_end);
+  EXPECT_EQ(events[2].kind, EventKind::hover_end);
+  EXPECT_EQ(events[0].body, static_cast<int>(cube));
+  EXPECT_EQ(events[0].hand_id, 1u);
+  EXPECT_TRUE(held.now().state().contacts.empty());
+  for (const Contact& contact : held.now().result().contacts) EXPECT_LT(contact.key.body, 2);
+  held.play(0.8);
+  held.live().remove("first");
+  held.live().remove("last");
+  held.play(0.9);
+  EXPECT_TRUE(held.now().state().bodies.empty());
+}
+
+TEST(LiveSimulation, no_change_by_eye_drops_what_is_held_or_jolts_it) {
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"material/stiffness", "4000"},      {"material/stiffness", "1000"},
+      {"material/static_friction", "1"},   {"material/dynamic_friction", "0.5"},
+      {"material/restitution", "0"},       {"step", "0.004"},
+      {"gravity", "[0, 0, -1.0]"},         {"contact_model", "soft_pad"},
+      {"contact_model", "virtual_spring"}, {"contact_model", "penetration"}};
+  for (const auto& change : changes) {
+    SCOPED_TRACE(change.first + " " + change.second);
+    Held held;
+    held.play(0.7);
+    ASSERT_TRUE(held.holds());
+    const Twist before = held.twist("object");
+    held.live().set_parameters({change});
+    EXPECT_EQ(held.twist("object").linear, before.linear);
+    EXPECT_EQ(held.twist("object").angular, before.angular);
+    double fastest = 0.0;
+    for (int i = 1; i <= 60; ++i) {
+      held.play(0.7 + i / kRate);
+      fastest = std::max(fastest, held.speed_in_hand());
+    }
+    EXPECT_TRUE(held.holds());
+    EXPECT_EQ(std::count(held.kinds.begin(), held.kinds.end(), EventKind::grasp_end), 0);
+    // The hand swings at up to 0.3 m/s; on softer springs, soft_pad's a quarter as stiff, the cube sways in
+    // it.
+    EXPECT_LT(fastest, 0.05);
+  }
+}
+
+TEST(LiveSimulation, a_bad_value_is_refused_and_nothing_changes_nor_does_what_was_set_with_it) {
+  Held held;
+  held.play(0.7);
+  const std::uint64_t before = hash(held.now().state());
+  const Simulation* simulation = &held.now();
+  EXPECT_THROW(held.live().set_parameters({{"step", "0.002"}, {"step", "-1"}}), ParameterError);
+  EXPECT_THROW(held.live().set_parameters({{"step", "0.002"}, {"speed", "1"}}), ParameterError);
+  EXPECT_THROW(held.live().set_parameters({{"material/dynamic_friction", "0.9"}}), ParameterError);
+  EXPECT_THROW(held.live().remove("nobody"), std::invalid_argument);
+  EXPECT_THROW(held.live().add(ball_at({0, 0.4, 0}, "last")), std::invalid_argument);
+  EXPECT_THROW(held.live().add(ball_at({0, 9, 0}, "new")), std::invalid_argument);
+  EXPECT_THROW(held.live().add(ball_at({0, 0, 0.03}, "new")), std::invalid_argument);
+  EXPECT_THROW(held.live().place("last", {{9, 0, 0}, Quaternion::Identity()}), std::invalid_argument);
+  EXPECT_EQ(hash(held.now().state()), before);
+  EXPECT_EQ(&held.now(), simulation);
+  EXPECT_EQ(held.now().configuration().step, Configuration().step);
+}
+
+TEST(LiveSimulation, only_bodies_without_a_material_of_their_own_follow_the_parameters) {
+  Scene scene = testing::scene_of(ball_at({0, 0, 0}, "follows"));
+  scene.bodies.push_back(ball_at({0, 1, 0}, "own"));
+  scene.bodies.back().material.static_friction = 0.9;
+  scene.bodies.back().own_material.static_friction = true;
+  LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
+  live.set_parameters({{"material/static_friction", "0.7"}, {"material/restitution", "0.1"}});
+  EXPECT_EQ(live.now().scene().bodies[0].material.static_friction, 0.7);
+  EXPECT_EQ(live.now().scene().bodies[1].material.static_friction, 0.9);
+  EXPECT_EQ(live.now().scene().bodies[1].material.restitution, 0.1);
+  live.set_parameters({{"contact_model", "seed"}});
+  EXPECT_EQ(live.now().scene().bodies[0].material.stiffness, 100.0);
+}
+
+TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_there_are_to_their_start) {
+  Held held;
+  held.play(0.7);
+  held.live().place("last", {{0, 0.5, 0}, Quaternion::Identity()});
+  held.play(1.0);
+  EXPECT_EQ(held.state("last").pose.position, Vector3(0, 0.5, 0));
+  EXPECT_EQ(held.twist("last").linear, Vector3(0, 0, 0));
+  held.live().add(ball_at({0, 0.4, 0}, "new", {0.2, 0, 0}));
+  held.live().remove("first");
+  held.play(1.2);
+  held.now().reset();
+  EXPECT_EQ(held.state("last").pose.position, Vector3(-0.3, 0, 0));
+  EXPECT_EQ(held.state("new").pose.position, Vector3(0, 0.4, 0));
+  EXPECT_FALSE(find_body(held.now().scene(), "first"));
+}
+
+/// A stack that stands goes on standing: contacts between bodies come along.
+TEST(LiveSimulation, a_stack_keeps_standing_when_something_else_goes) {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  scene.bodies = {ball_at({0.5, 0, 0.02}, "away"), testing::box_body({0.3, 0.3, 0.02}, 1.0)};
+  scene.bodies[1].name = "table", scene.bodies[1].fixed = true;
+  scene.bodies[1].start.position.z() = -0.01;
+  for (const char* name : {"lower", "upper"}) {
+    scene.bodies.push_back(testing::box_body({0.05, 0.05, 0.05}, 0.1));
+    scene.bodies.back().name = name;
+    scene.bodies.back().start.position.z() = name[0] == 'l' ? 0.025 : 0.075;
+  }
+  Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+  LiveSimulation changed(scene, configuration), unchanged(scene, configuration);
+  for (int i = 0; i < 120; ++i) {
+    if (i == 60) changed.remove("away");
+    changed.now().advance({at(i / kRate), {}}), unchanged.now().advance({at(i / kRate), {}});
+  }
+  expect_same(changed.now().state().bodies[1], unchanged.now().state().bodies[2]);
+  expect_same(changed.now().state().bodies[2], unchanged.now().state().bodies[3]);
+  EXPECT_NEAR(changed.now().state().bodies[2].pose.position.z(), 0.075, 1e-3);
+}
+
+}  // namespace
+}  // namespace mrhi
