@@ -95,14 +95,16 @@ void LiveSimulation::add(const Body& body) {
   simulation_ = std::move(next);
 }
 
-std::vector<Event> LiveSimulation::remove(const std::string& name) {
+void LiveSimulation::remove(const std::string& name) {
   Scene scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, false);
-  SimulationState state = simulation_->state();
-  std::vector<Event> events = end_interactions_with(body, state);
   scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(body));
   go_on_with(scene, simulation_->configuration());
-  return events;
+}
+
+std::vector<Event> LiveSimulation::farewell(const std::string& name) const {
+  SimulationState state = simulation_->state();
+  return end_interactions_with(known_body(simulation_->scene(), name, false), state);
 }
 
 void LiveSimulation::place(const std::string& name, const Pose& pose) {

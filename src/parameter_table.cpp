@@ -16,24 +16,34 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 template <class T>
 using Member = std::function<T&(Configuration&)>;
 
+template <class T>
+T value_of(Configuration configuration, const Member<T>& member) {
+  return member(configuration);
+}
+
 ParameterEntry number(const std::string& name, const std::string& unit, Range range,
                       const Member<double>& member) {
-  return {name, range.describe() + unit, [=](Configuration& configuration, const YAML::Node& node) {
+  return {name, range.describe() + unit,
+          [=](Configuration& configuration, const YAML::Node& node) {
             const std::optional<double> value = yaml_number(node);
             if (!value || !range.contains(*value)) return false;
             member(configuration) = *value;
             return true;
-          }};
+          },
+          [=](const Configuration& configuration) { return text::exact(value_of(configuration, member)); }};
 }
 
 ParameterEntry integer(const std::string& name, int min, int max, const Member<int>& member) {
   const std::string allowed = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
-  return {name, allowed, [=](Configuration& configuration, const YAML::Node& node) {
-            const std::optional<int> value = yaml_integer(node);
-            if (!value || *value < min || *value > max) return false;
-            member(configuration) = *value;
-            return true;
-          }};
+  return {
+      name, allowed,
+      [=](Configuration& configuration, const YAML::Node& node) {
+        const std::optional<int> value = yaml_integer(node);
+        if (!value || *value < min || *value > max) return false;
+        member(configuration) = *value;
+        return true;
+      },
+      [=](const Configuration& configuration) { return std::to_string(value_of(configuration, member)); }};
 }
 
 template <class T>
@@ -42,13 +52,20 @@ ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::
   std::vector<std::string> words;
   words.reserve(choices.size());
   for (const auto& option : choices) words.push_back(option.first);
-  return {name, text::joined(words), [=](Configuration& configuration, const YAML::Node& node) {
+  return {name, text::joined(words),
+          [=](Configuration& configuration, const YAML::Node& node) {
             for (const auto& option : choices) {
               if (!node.IsScalar() || node.Scalar() != option.first) continue;
               member(configuration) = option.second;
               return true;
             }
             return false;
+          },
+          [=](const Configuration& configuration) {
+            const T value = value_of(configuration, member);
+            return std::find_if(choices.begin(), choices.end(),
+                                [&](const auto& option) { return option.second == value; })
+                ->first;
           }};
 }
 
@@ -58,6 +75,12 @@ bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
   if (!value && !of_the_scene) return false;
   configuration.gravity = value;
   return true;
+}
+
+std::string gravity_text(const Configuration& configuration) {
+  if (!configuration.gravity) return "scene";
+  const Vector3& g = *configuration.gravity;
+  return "[" + text::exact(g.x()) + ", " + text::exact(g.y()) + ", " + text::exact(g.z()) + "]";
 }
 
 ParameterEntry stiffness(const MaterialField& field) {
@@ -70,6 +93,9 @@ ParameterEntry stiffness(const MaterialField& field) {
             if (!of_the_model && (!value || !range.contains(*value))) return false;
             configuration.stiffness = of_the_model ? std::nullopt : value;
             return true;
+          },
+          [](const Configuration& configuration) {
+            return configuration.stiffness ? text::exact(*configuration.stiffness) : "model";
           }};
 }
 
@@ -139,7 +165,8 @@ std::vector<ParameterEntry> make_table() {
           [](C & c) -> auto& { return c.contact.object_stiffness; }),
       number(
           "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
-      {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity},
+      {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity,
+       gravity_text},
       number(
           "hand/radius_scale", "", {0.1, 10}, [](C & c) -> auto& { return c.hand_radius_scale; }),
       number(

@@ -16,6 +16,8 @@ struct ParameterEntry {
   std::string allowed;  ///< what it may be, for messages
   /// False, and nothing changed, if the value is of a wrong type or out of range.
   std::function<bool(Configuration&, const YAML::Node&)> assign;
+  /// What it is now, as YAML that `assign` takes.
+  std::function<std::string(const Configuration&)> text;
 };
 
 /// All parameters, sorted by name.

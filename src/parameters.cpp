@@ -10,15 +10,19 @@
 namespace mrhi {
 namespace {
 
-void assign(Configuration& configuration, const std::string& name, const YAML::Node& node) {
+const ParameterEntry& entry_of(const std::string& name) {
   for (const ParameterEntry& entry : parameter_table()) {
-    if (entry.name != name) continue;
-    if (entry.assign(configuration, node)) return;
-    throw ParameterError("parameter '" + name + "': " + yaml_text(node) +
-                         " is not allowed; allowed: " + entry.allowed);
+    if (entry.name == name) return entry;
   }
   throw ParameterError("unknown parameter '" + text::one_line(name, 60) +
                        "'; allowed: " + text::joined(parameter_names()));
+}
+
+void assign(Configuration& configuration, const std::string& name, const YAML::Node& node) {
+  const ParameterEntry& entry = entry_of(name);
+  if (entry.assign(configuration, node)) return;
+  throw ParameterError("parameter '" + name + "': " + yaml_text(node) +
+                       " is not allowed; allowed: " + entry.allowed);
 }
 
 /// Sets what a map holds; maps in it are name spaces.
@@ -87,6 +91,10 @@ void validate(const Configuration& configuration) {
   if (const auto conflict = material_conflict(configuration.material)) {
     throw ParameterError("parameter 'material/dynamic_friction': " + *conflict);
   }
+}
+
+std::string parameter_text(const Configuration& configuration, const std::string& name) {
+  return entry_of(name).text(configuration);
 }
 
 std::vector<std::string> parameter_names() {

@@ -25,9 +25,10 @@ class LiveSimulation {
   void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);
   /// Throws std::invalid_argument for a name that is taken, and a place out of bounds or in another body.
   void add(const Body& body);
-  /// Returns the events with which hands leave it; their index is that before the change. Throws
-  /// std::invalid_argument for a name that is not known.
-  std::vector<Event> remove(const std::string& name);
+  /// Both throw std::invalid_argument for a name that is not known.
+  void remove(const std::string& name);
+  /// The events with which hands would leave a body if it were removed now.
+  std::vector<Event> farewell(const std::string& name) const;
   /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
   /// place out of bounds.
   void place(const std::string& name, const Pose& pose);

@@ -25,6 +25,9 @@ void load_parameters(Configuration& configuration, const std::string& yaml_file)
 /// Checks what only shows when all are set (dynamic friction at most static). Throws ParameterError.
 void validate(const Configuration& configuration);
 
+/// What a parameter is now, as YAML that set_parameter takes. Throws ParameterError for an unknown name.
+std::string parameter_text(const Configuration& configuration, const std::string& name);
+
 /// All public names, sorted.
 std::vector<std::string> parameter_names();
 

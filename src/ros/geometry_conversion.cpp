@@ -32,6 +32,10 @@ Vector3 from_message(const geometry_msgs::Point& point) {
   return {point.x, point.y, point.z};
 }
 
+Vector3 from_message(const geometry_msgs::Vector3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
 Pose from_message(const geometry_msgs::Pose& pose) {
   const auto& q = pose.orientation;
   return {from_message(pose.position), Quaternion(q.w, q.x, q.y, q.z)};

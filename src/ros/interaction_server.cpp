@@ -1,16 +1,12 @@
 #include "mr_hand_interaction/ros/interaction_server.h"
 
-#include <mr_hand_interaction/ContactArray.h>
-#include <mr_hand_interaction/InteractionEvent.h>
-#include <mr_hand_interaction/ObjectStateArray.h>
-#include <visualization_msgs/MarkerArray.h>
-
 #include <chrono>
 #include <stdexcept>
 
+#include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/object_request_message.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/ros/result_conversion.h"
 
 namespace mrhi {
 namespace {
@@ -18,11 +14,17 @@ namespace {
 constexpr int kQueue = 10;
 constexpr Nanoseconds kSlack = 100'000'000;  // a frame may be that late after all
 const ros::WallDuration kIdlePeriod(1.0 / 30);
-const ros::WallDuration kMarkerPeriod(1.0 / 75);  // a display does not show more
+
+/// Gravity stays the scene's own here, as the configuration's may be taken back.
+SceneOptions options_of(const Configuration& configuration) {
+  SceneOptions options = scene_options(configuration);
+  options.gravity.reset();
+  return options;
+}
 
 Scene scene_of(const ServerParameters& parameters) {
   Scene scene =
-      load_scene(find_scene_file(parameters.scene, scene_folders()), scene_options(parameters.configuration));
+      load_scene(find_scene_file(parameters.scene, scene_folders()), options_of(parameters.configuration));
   for (const auto& [name, twist] : parameters.object_twists) free_body(scene, name).start_twist = twist;
   return scene;
 }
@@ -31,42 +33,79 @@ std::string without_slash(const std::string& frame_id) {
   return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
 }
 
+template <class Service, class Handler>
+ros::ServiceServer advertise(ros::NodeHandle& node, const char* name, Handler handler) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  return node.advertiseService<Request, Response>(name, boost::function<bool(Request&, Response&)>(handler));
+}
+
+/// Answers a service with what a change says it has done, or why it was refused.
+template <class Response, class Change>
+bool answer(Response& response, const Change& change) {
+  try {
+    response.message = change();
+    response.success = true;
+  } catch (const std::exception& error) {
+    response.message = error.what();
+    response.success = false;
+    ROS_WARN("refused: %s", error.what());
+  }
+  return true;
+}
+
 }  // namespace
 
 InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle private_node,
                                      const ServerParameters& parameters)
     : fixed_frame_(parameters.fixed_frame),
-      simulation_(scene_of(parameters), parameters.configuration),
-      markers_(simulation_.scene(), simulation_.configuration()),
-      diagnostics_(node, private_node, simulation_.scene().name),
-      haptics_(node, parameters.haptics_rate) {
-  rendered_hands_ = node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue);
-  objects_ = node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue);
-  contacts_ = node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue);
-  events_ = node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", 100);
-  marker_publisher_ = node.advertise<visualization_msgs::MarkerArray>("markers", kQueue);
-  using Reset = std_srvs::Trigger;
-  using Pause = std_srvs::SetBool;
-  reset_ = private_node.advertiseService<Reset::Request, Reset::Response>(
-      "reset", [this](Reset::Request&, Reset::Response& response) { return reset(response); });
-  pause_ = private_node.advertiseService<Pause::Request, Pause::Response>(
-      "pause",
-      [this](Pause::Request& request, Pause::Response& response) { return pause(request.data, response); });
+      live_(scene_of(parameters), parameters.configuration),
+      results_(node, fixed_frame_, parameters.haptics_rate, clock_),
+      diagnostics_(node, private_node, live_.now().scene().name),
+      placing_(private_node, fixed_frame_),
+      tuning_(private_node, parameters.place_by_mouse,
+              {[this](const Tuning::Values& values) { change_parameters(values); },
+               [this](bool on) { placing_.turn(on, live_.now()); },
+               [this]() -> const Simulation& { return live_.now(); }}) {
+  results_.show(live_.now());
+  placing_.turn(parameters.place_by_mouse, live_.now());
+  advertise_services(private_node);
   idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
-  hands_ = node.subscribe("hand_frame", kQueue, &InteractionServer::take, this,
-                          ros::TransportHints().tcpNoDelay());
+  hands_ = node.subscribe<mr_hand_interaction::HandFrame>(
+      "hand_frame", kQueue,
+      boost::function<void(const HandFrameEvent&)>([this](const HandFrameEvent& event) { take(event); }),
+      nullptr, ros::TransportHints().tcpNoDelay());
 }
 
-void InteractionServer::take(const mr_hand_interaction::HandFrame& message) {
+void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
+  using namespace mr_hand_interaction;
+  services_ = {
+      advertise<std_srvs::Trigger>(private_node, "reset",
+                                   [this](auto&, auto& response) { return reset(response); }),
+      advertise<std_srvs::SetBool>(
+          private_node, "pause",
+          [this](auto& request, auto& response) { return pause(request.data, response); }),
+      advertise<SpawnObject>(private_node, "spawn",
+                             [this](auto& request, auto& response) { return spawn(request, response); }),
+      advertise<DeleteObject>(
+          private_node, "delete",
+          [this](auto& request, auto& response) { return remove(request.name, response); }),
+      advertise<SetParameter>(private_node, "set",
+                              [this](auto& request, auto& response) { return set(request, response); })};
+}
+
+void InteractionServer::take(const HandFrameEvent& event) {
+  const mr_hand_interaction::HandFrame& message = *event.getConstMessage();
   if (clock_.paused()) {
     clock_.take(from_ros_time(message.header.stamp), ros::Time::now());
     diagnostics_.dropped_while_paused();
     return;
   }
   if (!begin(message)) return;
-  while (timed_step()) haptics_.note_step(simulation_, clock_.to_stamp(simulation_.time()));
-  const FrameResult& result = simulation_.end();
-  publish(result);
+  while (timed_step()) results_.note_step();
+  const FrameResult& result = live_.now().end();
+  place_dragged();
+  results_.publish(result);
   const ros::Time now = ros::Time::now();
   diagnostics_.taken((now - message.header.stamp).toSec());
   clock_.take(from_ros_time(message.header.stamp), now);
@@ -80,7 +119,7 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
   try {
     HandFrame frame = from_message(message);
     frame.stamp = clock_.to_simulation(frame.stamp);
-    const Rejection rejection = simulation_.begin(frame);
+    const Rejection rejection = live_.now().begin(frame);
     if (rejection == Rejection::none) return true;
     diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
   } catch (const std::invalid_argument& error) {
@@ -91,32 +130,33 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
 
 bool InteractionServer::timed_step() {
   const auto begin = std::chrono::steady_clock::now();
-  if (!simulation_.step()) return false;
+  if (!live_.now().step()) return false;
   const auto time = std::chrono::steady_clock::now() - begin;
   diagnostics_.step(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
   return true;
 }
 
 void InteractionServer::idle() {
-  const ros::Time now = ros::Time::now();
-  const Nanoseconds stamp = clock_.stamp(now);
-  if (!clock_.paused() && simulation_.state().started &&
-      simulation_.advance_without_hands(clock_.to_simulation(stamp) - kSlack)) {
-    publish(simulation_.result());
-  } else if (ros::WallTime::now() - published_ > kIdlePeriod * 0.5) {
-    publish_scene(simulation_.result(), to_ros_time(stamp));
+  const Nanoseconds stamp = clock_.stamp(ros::Time::now());
+  const bool running = !clock_.paused() && live_.now().state().started;
+  if (running && live_.now().advance_without_hands(clock_.to_simulation(stamp) - kSlack)) {
+    place_dragged();
+    results_.publish(live_.now().result());
+  } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
+    place_dragged();
+    results_.publish_scene(live_.now().result(), to_ros_time(stamp));
   }
+  placing_.follow(live_.now());
 }
 
 bool InteractionServer::reset(std_srvs::Trigger::Response& response) {
-  simulation_.reset();
-  markers_.clear();
+  live_.now().reset();
+  results_.show(live_.now());
   FrameResult start;
   start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-  markers_published_ = {};
-  publish(start);
+  results_.publish(start);
   response.success = true;
-  response.message = "scene " + simulation_.scene().name + " is at its start";
+  response.message = "scene " + live_.now().scene().name + " is at its start";
   return true;
 }
 
@@ -127,39 +167,54 @@ bool InteractionServer::pause(bool paused, std_srvs::SetBool::Response& response
   return true;
 }
 
-void InteractionServer::publish(const FrameResult& result) {
-  std_msgs::Header header;
-  header.stamp = to_ros_time(clock_.to_stamp(result.stamp));
-  header.frame_id = fixed_frame_;
-  rendered_hands_.publish(rendered_message(result, header));
-  contacts_.publish(contacts_message(simulation_.scene(), result, simulation_.state(), header));
-  for (const Event& event : result.events) {
-    std_msgs::Header when = header;
-    when.stamp = to_ros_time(clock_.to_stamp(event.stamp));
-    events_.publish(event_message(simulation_.scene(), event, when));
-  }
-  haptics_.publish(simulation_, result, header);
-  publish_scene(result, header.stamp);
+bool InteractionServer::spawn(const mr_hand_interaction::SpawnObject::Request& request,
+                              mr_hand_interaction::SpawnObject::Response& response) {
+  return answer(response, [&] {
+    const Body body = requested_body(from_message(request), options_of(live_.now().configuration()));
+    live_.add(body);
+    show_change();
+    return "'" + body.name + "' is there";
+  });
 }
 
-void InteractionServer::publish_scene(const FrameResult& result, const ros::Time& stamp) {
-  std_msgs::Header header;
-  header.stamp = stamp;
-  header.frame_id = fixed_frame_;
-  objects_.publish(objects_message(simulation_.scene(), simulation_.state(), header));
-  if (stamp != transforms_stamp_) {  // tf2 warns of a stamp that it has
-    transforms_.sendTransform(object_transforms(simulation_.scene(), simulation_.state(), header));
-    transforms_stamp_ = stamp;
-  }
-  publish_markers(result, header);
-  published_ = ros::WallTime::now();
+bool InteractionServer::remove(const std::string& name,
+                               mr_hand_interaction::DeleteObject::Response& response) {
+  return answer(response, [&] {
+    results_.publish_events(live_.farewell(name));
+    live_.remove(name);
+    show_change();
+    return "'" + name + "' is gone";
+  });
 }
 
-void InteractionServer::publish_markers(const FrameResult& result, const std_msgs::Header& header) {
-  const ros::WallTime now = ros::WallTime::now();
-  if (marker_publisher_.getNumSubscribers() == 0 || now - markers_published_ < kMarkerPeriod) return;
-  marker_publisher_.publish(markers_.update(result, simulation_.state(), header));
-  markers_published_ = now;
+bool InteractionServer::set(const mr_hand_interaction::SetParameter::Request& request,
+                            mr_hand_interaction::SetParameter::Response& response) {
+  return answer(response, [&] {
+    change_parameters({{request.name, request.value}});
+    tuning_.show();
+    return request.name + " is " + parameter_text(live_.now().configuration(), request.name);
+  });
+}
+
+void InteractionServer::change_parameters(const Tuning::Values& values) {
+  live_.set_parameters(values);
+  show_change();
+}
+
+void InteractionServer::show_change() {
+  results_.show(live_.now());
+  results_.publish_scene(live_.now().result(), to_ros_time(clock_.stamp(ros::Time::now())));
+  placing_.renew(live_.now());
+}
+
+void InteractionServer::place_dragged() {
+  for (const auto& [name, pose] : placing_.dragged()) {
+    try {
+      live_.place(name, pose);
+    } catch (const std::invalid_argument&) {
+      // The mouse is out of bounds, or its object is gone: what was good stays.
+    }
+  }
 }
 
 }  // namespace mrhi

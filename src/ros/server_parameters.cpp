@@ -11,6 +11,8 @@ namespace mrhi {
 namespace {
 
 const std::string kTwists = "object_twist/";
+/// dynamic_reconfigure writes there what it shows.
+const std::string kTuned = "tune/";
 /// Read by libraries that the node uses.
 const std::set<std::string> kOthers{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
 
@@ -22,6 +24,12 @@ std::string text_parameter(const std::string& name, const XmlRpc::XmlRpcValue& v
   return static_cast<std::string>(copy);
 }
 
+bool truth_parameter(const std::string& name, const XmlRpc::XmlRpcValue& value) {
+  const std::string text = yaml_text(value);
+  if (text == "true" || text == "false") return text == "true";
+  throw ParameterError("parameter '" + name + "': " + text + " is not allowed; allowed: true, false");
+}
+
 HapticsRate haptics_rate(const std::string& name, const XmlRpc::XmlRpcValue& value) {
   const std::string rate = yaml_text(value);
   if (rate == "frame") return HapticsRate::frame;
@@ -30,7 +38,7 @@ HapticsRate haptics_rate(const std::string& name, const XmlRpc::XmlRpcValue& val
 }
 
 void require_known(const std::string& name) {
-  std::string allowed = "scene, fixed_frame, haptics/rate";
+  std::string allowed = "scene, fixed_frame, haptics/rate, place_by_mouse";
   for (const std::string& known : parameter_names()) {
     if (known == name) return;
     allowed += ", " + known;
@@ -63,11 +71,13 @@ void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParam
     parameters.scene = text_parameter(name, value);
   } else if (name == "fixed_frame") {
     parameters.fixed_frame = text_parameter(name, value);
+  } else if (name == "place_by_mouse") {
+    parameters.place_by_mouse = truth_parameter(name, value);
   } else if (name == "haptics/rate") {
     parameters.haptics_rate = haptics_rate(name, value);
   } else if (name.compare(0, kTwists.size(), kTwists) == 0) {
     parameters.object_twists[name.substr(kTwists.size())] = twist_parameter(name, value);
-  } else if (kOthers.count(name) == 0) {
+  } else if (kOthers.count(name) == 0 && name.compare(0, kTuned.size(), kTuned) != 0) {
     require_known(name);
     set_parameter(parameters.configuration, name, yaml_text(value));
   }

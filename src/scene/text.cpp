@@ -5,11 +5,35 @@
 
 namespace mrhi::text {
 
-std::string number(double value) {
+namespace {
+
+std::string with_digits(double value, int digits) {
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
+  stream.precision(digits);
   stream << value;
   return stream.str();
+}
+
+double read_back(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double value = 0.0;
+  stream >> value;
+  return value;
+}
+
+}  // namespace
+
+std::string number(double value) {
+  return with_digits(value, 6);
+}
+
+std::string exact(double value) {
+  constexpr int kEnough = 17;
+  int digits = 6;
+  while (digits < kEnough && read_back(with_digits(value, digits)) != value) ++digits;
+  return with_digits(value, digits);
 }
 
 std::string vector(const Vector3& value) {

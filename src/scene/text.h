@@ -9,6 +9,8 @@
 namespace mrhi::text {
 
 std::string number(double value);
+/// The shortest that is read back as the same bits.
+std::string exact(double value);
 std::string vector(const Vector3& value);
 std::string joined(const std::vector<std::string>& names);
 

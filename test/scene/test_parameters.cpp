@@ -177,6 +177,28 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(5, set("tracking/max_speed", "5").tracking.max_speed);
 }
 
+TEST(Parameters, AreReadBackAsTheyWereSet) {
+  Configuration set;
+  set_parameter(set, "step", "0.0012345678901234567");
+  set_parameter(set, "gravity", "[0, -0.1, -1.62]");
+  set_parameter(set, "contact_model", "seed");
+  set_parameter(set, "filter/window", "7");
+  set_parameter(set, "contact/sweep", "false");
+  Configuration read;
+  for (const std::string& name : parameter_names()) {
+    EXPECT_EQ(parameter_text(Configuration(), name), parameter_text(read, name)) << name;
+    set_parameter(read, name, parameter_text(set, name));
+  }
+  EXPECT_EQ(read.step, set.step);
+  EXPECT_EQ(read.gravity, set.gravity);
+  EXPECT_EQ(read.contact_model, set.contact_model);
+  EXPECT_EQ(read.filter.window, 7);
+  EXPECT_FALSE(read.contact.sweep);
+  EXPECT_EQ(parameter_text(read, "step"), "0.0012345678901234567");
+  EXPECT_EQ(parameter_text(read, "material/stiffness"), "model");
+  EXPECT_THROW(parameter_text(read, "speed"), ParameterError);
+}
+
 TEST(Parameters, RefusesAnUnknownNameAndListsTheKnown) {
   std::vector<std::string> words = parameter_names();
   words.push_back("'filter/windw'");

@@ -144,7 +144,9 @@ TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) 
   held.play(0.7);
   ASSERT_TRUE(held.holds());
   const std::size_t cube = held.index("object");
-  const std::vector<Event> events = held.live().remove("object");
+  const std::vector<Event> events = held.live().farewell("object");
+  EXPECT_TRUE(held.holds());
+  held.live().remove("object");
   ASSERT_EQ(events.size(), 3u);
   EXPECT_EQ(events[0].kind, EventKind::grasp_end);
   EXPECT_EQ(events[1].kind, EventKind::contact_end);

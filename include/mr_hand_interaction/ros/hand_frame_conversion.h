@@ -28,6 +28,7 @@ geometry_msgs::Point to_message(const Vector3& point);
 geometry_msgs::Vector3 vector_message(const Vector3& v);
 geometry_msgs::Pose to_message(const Pose& pose);
 Vector3 from_message(const geometry_msgs::Point& point);
+Vector3 from_message(const geometry_msgs::Vector3& vector);
 Pose from_message(const geometry_msgs::Pose& pose);
 /// With the quaternion brought to unit length.
 Pose from_message(const geometry_msgs::Transform& transform);

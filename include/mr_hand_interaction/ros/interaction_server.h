@@ -1,55 +1,66 @@
 #pragma once
 
+#include <mr_hand_interaction/DeleteObject.h>
 #include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/SetParameter.h>
+#include <mr_hand_interaction/SpawnObject.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
-#include <tf2_ros/transform_broadcaster.h>
 
+#include <functional>
 #include <string>
+#include <vector>
 
-#include "mr_hand_interaction/ros/haptics_publisher.h"
+#include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/ros/interaction_diagnostics.h"
-#include "mr_hand_interaction/ros/markers.h"
+#include "mr_hand_interaction/ros/placing.h"
+#include "mr_hand_interaction/ros/result_publisher.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 #include "mr_hand_interaction/ros/stamp_clock.h"
-#include "mr_hand_interaction/simulation.h"
+#include "mr_hand_interaction/ros/tuning.h"
 
 namespace mrhi {
 
-/// Feeds hand_frame to a simulation and publishes what comes of it. One thread.
+/// Feeds hand_frame to a simulation and publishes what comes of it; takes changes of its scene and parameters
+/// between frames. Callbacks of its node handles must not run at the same time.
 class InteractionServer {
  public:
   /// Throws SceneError for a scene that cannot be loaded.
   InteractionServer(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters);
 
  private:
-  void take(const mr_hand_interaction::HandFrame& message);
+  using HandFrameEvent = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
+
+  void advertise_services(ros::NodeHandle& private_node);
+  void take(const HandFrameEvent& event);
   bool begin(const mr_hand_interaction::HandFrame& message);
   bool timed_step();
   void idle();
 
   bool reset(std_srvs::Trigger::Response& response);
   bool pause(bool paused, std_srvs::SetBool::Response& response);
+  bool spawn(const mr_hand_interaction::SpawnObject::Request& request,
+             mr_hand_interaction::SpawnObject::Response& response);
+  bool remove(const std::string& name, mr_hand_interaction::DeleteObject::Response& response);
+  bool set(const mr_hand_interaction::SetParameter::Request& request,
+           mr_hand_interaction::SetParameter::Response& response);
 
-  /// All that a result holds, under its own stamp; and what may be shown again at any time.
-  void publish(const FrameResult& result);
-  void publish_scene(const FrameResult& result, const ros::Time& stamp);
-  void publish_markers(const FrameResult& result, const std_msgs::Header& header);
+  void change_parameters(const Tuning::Values& values);
+  /// There is another simulation, perhaps with other bodies.
+  void show_change();
+  void place_dragged();
 
   std::string fixed_frame_;
-  Simulation simulation_;
+  LiveSimulation live_;
   StampClock clock_;
-  Markers markers_;
+  ResultPublisher results_;
   InteractionDiagnostics diagnostics_;
-  HapticsPublisher haptics_;
-  ros::WallTime published_, markers_published_;
-  ros::Time transforms_stamp_;
+  Placing placing_;
+  Tuning tuning_;
 
-  ros::Publisher rendered_hands_, objects_, contacts_, events_, marker_publisher_;
-  tf2_ros::TransformBroadcaster transforms_;
   ros::Subscriber hands_;
-  ros::ServiceServer reset_, pause_;
+  std::vector<ros::ServiceServer> services_;
   ros::WallTimer idle_timer_;
 };
 

@@ -1,0 +1,94 @@
+#include "mr_hand_interaction/ros/result_publisher.h"
+
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/InteractionEvent.h>
+#include <mr_hand_interaction/ObjectStateArray.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <boost/make_shared.hpp>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/result_conversion.h"
+
+namespace mrhi {
+namespace {
+
+constexpr int kQueue = 10;
+constexpr int kEventQueue = 100;
+
+/// Shared, so that a subscriber in the same process gets it without a copy.
+template <class Message>
+void publish_shared(const ros::Publisher& publisher, Message&& message) {
+  publisher.publish(boost::make_shared<std::decay_t<Message>>(std::forward<Message>(message)));
+}
+
+}  // namespace
+
+ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
+                                 const StampClock& clock)
+    : fixed_frame_(fixed_frame),
+      clock_(clock),
+      haptics_(node, haptics),
+      rendered_hands_(node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue)),
+      objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
+      contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
+      events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
+      marker_publisher_(node.advertise<visualization_msgs::MarkerArray>("markers", kQueue)) {}
+
+void ResultPublisher::show(const Simulation& simulation) {
+  simulation_ = &simulation;
+  markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
+}
+
+void ResultPublisher::note_step() {
+  haptics_.note_step(*simulation_, clock_.to_stamp(simulation_->time()));
+}
+
+void ResultPublisher::publish(const FrameResult& result) {
+  const ros::Time stamp = to_ros_time(clock_.to_stamp(result.stamp));
+  const std_msgs::Header when = header(stamp);
+  publish_markers(result, when);
+  haptics_.publish(*simulation_, result, when);
+  if (rendered_hands_.getNumSubscribers() > 0)
+    publish_shared(rendered_hands_, rendered_message(result, when));
+  if (contacts_.getNumSubscribers() > 0) {
+    publish_shared(contacts_, contacts_message(simulation_->scene(), result, simulation_->state(), when));
+  }
+  publish_events(result.events);
+  publish_objects(when);
+}
+
+void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& stamp) {
+  publish_markers(result, header(stamp));
+  publish_objects(header(stamp));
+}
+
+void ResultPublisher::publish_events(const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(event.stamp)));
+    publish_shared(events_, event_message(simulation_->scene(), event, when));
+  }
+}
+
+std_msgs::Header ResultPublisher::header(const ros::Time& stamp) const {
+  std_msgs::Header header;
+  header.stamp = stamp;
+  header.frame_id = fixed_frame_;
+  return header;
+}
+
+void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs::Header& header) {
+  shown_ = ros::WallTime::now();
+  if (marker_publisher_.getNumSubscribers() == 0) return;
+  publish_shared(marker_publisher_, markers_->update(result, simulation_->state(), header));
+}
+
+void ResultPublisher::publish_objects(const std_msgs::Header& header) {
+  if (objects_.getNumSubscribers() > 0)
+    publish_shared(objects_, objects_message(simulation_->scene(), simulation_->state(), header));
+  if (header.stamp == transforms_stamp_) return;  // tf2 warns of a stamp that it has
+  transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
+  transforms_stamp_ = header.stamp;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""interaction_node while it runs: objects that come and go, parameters that change, an object moved by the mouse."""
+import os
+import sys
+import unittest
+
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from dynamic_reconfigure.msg import Config, DoubleParameter, StrParameter
+from dynamic_reconfigure.srv import Reconfigure
+from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, Marker, MarkerArray
+
+from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
+from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, SpawnObjectRequest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pointing_hand import PERIOD, frame, hand, push_tips  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+NODE = "interaction_node/"
+
+
+class LiveChangesTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("live_changes_test")
+        cls.objects, cls.pictures, cls.events, cls.frames = {}, [], [], set()
+        cls.subscribers = [rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
+                           rospy.Subscriber("markers", MarkerArray, lambda m: cls.pictures.append(m)),
+                           rospy.Subscriber("interaction_events", InteractionEvent, lambda m: cls.events.append(m)),
+                           rospy.Subscriber("/tf", TFMessage, cls.take_transforms)]
+        for name, kind in (("spawn", SpawnObject), ("delete", DeleteObject), ("set", SetParameter), ("reset", Trigger),
+                           ("pause", SetBool)):
+            rospy.wait_for_service(NODE + name, 30.0)
+            setattr(cls, name, staticmethod(rospy.ServiceProxy(NODE + name, kind)))
+        cls.hands = rospy.Publisher("hand_frame", HandFrame, queue_size=10)
+        cls.mouse = rospy.Publisher(NODE + "place/feedback", InteractiveMarkerFeedback, queue_size=10)
+        wait_until(lambda: cls.hands.get_num_connections() and cls.mouse.get_num_connections(), "the node")
+        wait_until(lambda: "cube" in cls.objects, "objects")
+
+    @classmethod
+    def take_objects(cls, message):
+        cls.objects = {o.name: o for o in message.objects}
+
+    @classmethod
+    def take_transforms(cls, message):
+        cls.frames.update(t.child_frame_id for t in message.transforms)
+
+    def setUp(self):
+        for name in set(self.objects) - {"cube"}:
+            self.delete(name)
+        self.assertTrue(self.reset().success)
+        wait_until(lambda: list(self.objects) == ["cube"] and self.objects["cube"].pose.position.x == 0.0, "the start")
+        del self.events[:]
+
+    def spawn_box(self, name, y=0.3, mass=0.05, **options):
+        request = SpawnObjectRequest(name=name, shape="box", size=[0.04, 0.04, 0.04], mass=mass, **options)
+        request.pose.position.y, request.pose.position.z = y, 0.22
+        return self.spawn(request)
+
+    def push(self, until=0.02):
+        """The finger pushes the cube; stamps go on from now."""
+        stamp = rospy.Time.now()
+        for tip in push_tips(end=until):
+            stamp += rospy.Duration(PERIOD)
+            self.hands.publish(frame(stamp, hand(tip)))
+            seen = len(self.pictures)
+            wait_until(lambda: len(self.pictures) > seen, "the frame shown")
+
+    @staticmethod
+    def boxes(picture):
+        return [m for m in picture.markers if m.ns == "objects" and m.action == Marker.ADD]
+
+    def test_an_object_comes_and_goes_in_all_that_is_published(self):
+        answer = self.spawn_box("box")
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: "box" in self.objects, "the box among the objects")
+        self.assertEqual(self.objects["box"].pose.position.y, 0.3)
+        wait_until(lambda: "box" in self.frames, "its frame")
+        wait_until(lambda: len(self.boxes(self.pictures[-1])) == 2, "its marker")
+        before = len(self.pictures)
+        self.assertTrue(self.delete("box").success)
+        wait_until(lambda: "box" not in self.objects, "the box gone")
+        wait_until(lambda: len(self.pictures) > before and len(self.boxes(self.pictures[-1])) == 1, "its marker gone")
+        removed = [m.action for p in self.pictures[before:] for m in p.markers if m.action != Marker.ADD]
+        self.assertTrue(removed, "no marker was told to go")
+
+    def test_one_line_says_why_an_object_is_refused(self):
+        for answer in (self.spawn_box("cube"), self.spawn_box("a b"), self.spawn_box("far", y=50.0),
+                       self.spawn_box("inside", y=0.01), self.spawn_box("odd", material="{restitution: 2}"),
+                       self.spawn(SpawnObjectRequest(urdf="<robot"))):
+            self.assertFalse(answer.success)
+            self.assertIn("allowed", answer.message)
+            self.assertNotIn("\n", answer.message)
+        self.assertFalse(self.delete("nobody").success)
+        self.assertEqual(list(self.objects), ["cube"])
+
+    def test_what_is_touched_and_deleted_is_left_in_order(self):
+        self.assertTrue(self.delete("cube").success)
+        self.assertTrue(self.spawn_box("heavy", y=0.0, mass=1e4).success)
+        self.assertTrue(self.set("tracking/hold_time", "10").success)  # the hand stays while nobody sends frames
+        self.push(until=-0.015)
+        wait_until(lambda: InteractionEvent.CONTACT_BEGIN in [e.kind for e in self.events], "the contact")
+        self.assertTrue(self.delete("heavy").success)
+        wait_until(lambda: InteractionEvent.HOVER_END in [e.kind for e in self.events], "its end")
+        last = [e for e in self.events if e.object == "heavy"][-2:]
+        self.assertEqual([e.kind for e in last], [InteractionEvent.CONTACT_END, InteractionEvent.HOVER_END])
+        self.assertTrue(self.set("tracking/hold_time", "0.2").success)
+        request = SpawnObjectRequest(name="cube", shape="box", size=[0.05, 0.05, 0.05], mass=0.1)
+        request.pose.position.z = 0.22
+        self.assertTrue(self.spawn(request).success)
+        wait_until(lambda: "cube" in self.objects, "a cube for the other tests")
+
+    def test_parameters_change_by_their_names_and_a_bad_value_is_refused(self):
+        answer = self.set("material/static_friction", "0.9")
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn("0.9", answer.message)
+        for name, value in (("step", "-1"), ("speed", "1"), ("material/dynamic_friction", "7"), ("step", "[")):
+            answer = self.set(name, value)
+            self.assertFalse(answer.success)
+            self.assertIn(name, answer.message)
+            self.assertNotIn("\n", answer.message)
+        self.assertTrue(self.set("material/static_friction", "0.8").success)
+
+    def test_dynamic_reconfigure_changes_what_flies_without_a_jump(self):
+        client = Client("interaction_node/tune", timeout=30.0)
+        self.push()
+        wait_until(lambda: self.objects["cube"].twist.linear.x > 0.1, "the cube flying")
+        speed = self.objects["cube"].twist.linear
+        held = client.update_configuration({"contact_model": "seed", "step": 0.002, "filter_window": 5,
+                                            "material_restitution": 0.1})
+        self.assertEqual((held["contact_model"], held["filter_window"]), ("seed", 5))
+        self.assertEqual(held["material_stiffness"], 100.0, "the model's own")
+        self.assertEqual(self.objects["cube"].twist.linear, speed)
+        held = client.update_configuration({"gravity_z": -1.0})
+        self.assertFalse(held["gravity_of_scene"])
+        wait_until(lambda: self.objects["cube"].twist.linear.z < -0.2, "gravity")
+        held = client.update_configuration({"gravity_of_scene": True, "contact_model": "implicit", "step": 0.001,
+                                            "filter_window": 3, "material_restitution": 0.3})
+        self.assertEqual(held["gravity_z"], 0.0)
+        self.assertEqual(held["material_stiffness"], 2000.0)
+
+    def test_dynamic_reconfigure_refuses_a_bad_value_and_keeps_what_is_good(self):
+        reconfigure = rospy.ServiceProxy(NODE + "tune/set_parameters", Reconfigure)
+        for bad in (Config(doubles=[DoubleParameter("step", 7.0)]), Config(strs=[StrParameter("contact_model", "glue")]),
+                    Config(doubles=[DoubleParameter("material_dynamic_friction", 0.9)])):
+            held = reconfigure(bad).config
+            values = {p.name: p.value for p in held.doubles + held.strs}
+            self.assertEqual((values["step"], values["contact_model"], values["material_dynamic_friction"]),
+                             (0.001, "implicit", 0.6))
+
+    def test_the_mouse_moves_an_object_and_lets_it_go_at_rest(self):
+        names = []
+        init = rospy.Subscriber(NODE + "place/update_full", InteractiveMarkerInit,
+                                lambda m: names.append([marker.name for marker in m.markers]))
+        self.assertTrue(self.spawn_box("box").success)
+        wait_until(lambda: names and sorted(names[-1]) == ["box", "cube"], "their markers")
+        init.unregister()
+        self.push()
+        wait_until(lambda: self.objects["cube"].twist.linear.x > 0.1, "the cube flying")
+        feedback = InteractiveMarkerFeedback(client_id="test", marker_name="cube", control_name="move y",
+                                             event_type=InteractiveMarkerFeedback.POSE_UPDATE)
+        feedback.header.frame_id = "world"
+        feedback.pose.position.y, feedback.pose.position.z, feedback.pose.orientation.w = 0.1, 0.3, 1.0
+        self.mouse.publish(feedback)
+        wait_until(lambda: self.objects["cube"].pose.position.y == 0.1, "the cube where the mouse is")
+        self.assertEqual(self.objects["cube"].twist.linear.x, 0.0)
+        feedback.event_type = InteractiveMarkerFeedback.MOUSE_UP
+        self.mouse.publish(feedback)
+        seen = len(self.pictures)
+        wait_until(lambda: len(self.pictures) > seen + 5, "pictures")
+        self.assertEqual(self.objects["cube"].pose.position.y, 0.1)
+        self.assertEqual(self.objects["cube"].twist.linear.x, 0.0)
+
+    def test_who_comes_late_sees_everything(self):
+        self.assertTrue(self.spawn_box("box").success)
+        late = []
+        subscriber = rospy.Subscriber("markers", MarkerArray, late.append)
+        wait_until(lambda: late, "a picture")
+        self.assertEqual(len(self.boxes(late[0])), 2)
+        subscriber.unregister()
+
+    def test_reset_brings_back_what_there_is(self):
+        self.assertTrue(self.spawn_box("box").success)
+        self.push()
+        self.assertTrue(self.reset().success)
+        wait_until(lambda: self.objects["cube"].pose.position.x == 0.0 and "box" in self.objects, "the start")
+        self.assertEqual(self.objects["box"].pose.position.y, 0.3)
+
+    def test_objects_come_and_go_while_paused(self):
+        self.assertTrue(self.pause(True).success)
+        self.assertTrue(self.spawn_box("box").success)
+        wait_until(lambda: "box" in self.objects, "the box")
+        self.assertTrue(self.delete("box").success)
+        wait_until(lambda: "box" not in self.objects, "the box gone")
+        self.assertTrue(self.pause(False).success)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "live_changes", LiveChangesTest)
