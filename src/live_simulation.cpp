@@ -6,6 +6,7 @@
 #include "mr_hand_interaction/collision/scene_geometry.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/scene_change.h"
+#include "mr_hand_interaction/tracking/tracker.h"
 #include "scene/text.h"
 
 namespace mrhi {
@@ -61,6 +62,15 @@ std::size_t known_body(const Scene& scene, const std::string& name, bool free_on
     return static_cast<std::size_t>(*found);
   throw std::invalid_argument("no object '" + text::one_line(name, 60) +
                               "'; allowed: " + names_of(scene, free_only));
+}
+
+bool same_filter(const Configuration& a, const Configuration& b) {
+  const std::string prefix = "filter/";
+  for (const std::string& name : parameter_names()) {
+    if (name.compare(0, prefix.size(), prefix) == 0 && parameter_text(a, name) != parameter_text(b, name))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -119,6 +129,11 @@ void LiveSimulation::place(const std::string& name, const Pose& pose) {
 void LiveSimulation::go_on_with(const Scene& scene, const Configuration& configuration) {
   auto next = std::make_unique<Simulation>(scene, configuration);
   next->go_on_from(*simulation_);
+  if (!same_filter(configuration, simulation_->configuration())) {
+    SimulationState state = next->state();
+    change_filter(simulation_->configuration().filter, state.last_frame, state.hands);
+    next->set_state(state);
+  }
   simulation_ = std::move(next);
 }
 

@@ -85,6 +85,8 @@ void ignore_overlaps(std::size_t b, const Body& body, SimulationState& state) {
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after) {
   const Places places = places_in(before, after);
   SimulationState next = state;
+  wake_all(next);
+  next.asleep.assign(after.bodies.size(), 0);
   next.bodies.clear();
   for (const Body& body : after.bodies) next.bodies.push_back(start_state(body));
   for (std::size_t b = 0; b < places.size(); ++b) {

@@ -61,6 +61,10 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   add_hand(track.previous, hash);
   add_hand(track.current, hash);
   add_filter(track.filter, hash);
+  if (track.filter_change) {
+    hash.add(now - track.filter_change->begin);
+    add_filter(track.filter_change->memory, hash);
+  }
   hash.add(track.rejoin.duration);
   if (track.rejoin.duration > 0) {
     hash.add(now - track.rejoin.begin);

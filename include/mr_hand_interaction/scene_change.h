@@ -10,7 +10,7 @@ namespace mrhi {
 
 /// The state of a simulation of `before` as that of one of `after`. A body that both have by name keeps its
 /// pose, momentum, contacts with their memory, and interactions to the bit; bodies that both have must be in
-/// the same order. A body that only `after` has is at its start, as by place().
+/// the same order. All are awake. A body that only `after` has is at its start, as by place().
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after);
 
 /// The same for what was shown last, without its events.

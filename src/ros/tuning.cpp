@@ -25,6 +25,11 @@ void slider_ends(Config& least, Config& most) {
   least.gravity_x = least.gravity_y = least.gravity_z = -10.0;
   most.gravity_x = most.gravity_y = most.gravity_z = 10.0;
   least.filter_window = 1, most.filter_window = 16;
+  least.filter_min_cutoff = 0.1, most.filter_min_cutoff = 10.0;
+  least.filter_beta = 0.0, most.filter_beta = 500.0;
+  least.filter_noise = 1e-5, most.filter_noise = 0.003;
+  least.filter_acceleration = 0.01, most.filter_acceleration = 10.0;
+  least.filter_agility = 0.0, most.filter_agility = 30.0;
   least.material_restitution = 0.0, most.material_restitution = 1.0;
   least.material_static_friction = least.material_dynamic_friction = 0.0;
   most.material_static_friction = most.material_dynamic_friction = 2.0;

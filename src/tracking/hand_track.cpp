@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mr_hand_interaction/synthetic/minimum_jerk.h"
+
 namespace mrhi {
 
 // With s(u) the share of the way at the share u of the duration T, the hand is at s (way + speed u T) beyond
@@ -19,7 +21,7 @@ Nanoseconds rejoin_duration(double way, double away) {
 
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
   const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
-  return blend(rejoin.from, tracked, u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
+  return blend(rejoin.from, tracked, minimum_jerk(u));
 }
 
 Hand blend(const Hand& from, const Hand& to, double fraction) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mr_hand_interaction/synthetic/minimum_jerk.h"
 #include "mr_hand_interaction/tracking/hand_filter.h"
 
 namespace mrhi {
@@ -11,6 +12,9 @@ namespace {
 
 /// A hand with a new id continues a held one if it is no farther from it than this [m].
 constexpr double kSameHandDistance = 0.3;
+
+/// One filter takes over from another within this time [s].
+constexpr double kFilterChange = 0.2;
 
 using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
 
@@ -75,6 +79,22 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.previous = track.current = hand;
   track.last_seen = stamp;
   track.rejoin.duration = 0;
+  track.filter_change.reset();
+}
+
+Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configuration& configuration,
+                             HandTrack& track) {
+  const double elapsed = to_seconds(stamp - track.last_seen);
+  const Hand now = filtered(hand, elapsed, configuration.filter, track.filter);
+  if (!track.filter_change) return now;
+  FilterChange& change = *track.filter_change;
+  const Hand before = filtered(hand, elapsed, change.from, change.memory);
+  const double u = to_seconds(stamp - change.begin) / kFilterChange;
+  if (u >= 1.0) {
+    track.filter_change.reset();
+    return now;
+  }
+  return blend(before, now, minimum_jerk(u));
 }
 
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
@@ -85,12 +105,13 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   }
   if (track.held) {
     track.filter.clear();
+    track.filter_change.reset();
     track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), away)};
   }
   track.emerged = track.appeared;
   track.appeared = track.held = false;
   track.previous = track.current;
-  track.current = filtered(hand, away, configuration.filter, track.filter);
+  track.current = filtered_through_change(hand, stamp, configuration, track);
   track.last_seen = stamp;
   if (track.rejoin.duration == 0) return;
   track.current = catching_up(track.rejoin, track.current, stamp);
@@ -123,6 +144,15 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
       appear(hand, frame.stamp, track);
       events.push_back({frame.stamp, EventKind::hand_found, -1, hand.id});
     }
+  }
+}
+
+void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands) {
+  for (HandTrack& track : hands) {
+    if (!track.active || track.filter.empty()) continue;
+    track.filter_change = FilterChange{from, track.filter, now};
+    track.filter.velocity = HandVelocity();
+    track.filter.variance = MotionVariance();
   }
 }
 

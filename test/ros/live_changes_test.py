@@ -179,8 +179,7 @@ class LiveChangesTest(unittest.TestCase):
         self.assertTrue(self.spawn_box("box").success)
         late = []
         subscriber = rospy.Subscriber("markers", MarkerArray, late.append)
-        wait_until(lambda: late, "a picture")
-        self.assertEqual(len(self.boxes(late[0])), 2)
+        wait_until(lambda: late and len(self.boxes(late[-1])) == 2, "a picture of both")
         subscriber.unregister()
 
     def test_reset_brings_back_what_there_is(self):

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/tracking/filter_memory.h"
 
 namespace mrhi {
@@ -14,6 +17,13 @@ struct Rejoin {
   Nanoseconds duration = 0;  ///< 0: not catching up
 };
 
+/// While one filter takes over from another the hand goes from the pose of the one to that of the other.
+struct FilterChange {
+  FilterConfiguration from;
+  FilterMemory memory;  ///< of the old filter, which runs on meanwhile
+  Nanoseconds begin = 0;
+};
+
 /// One hand followed through time.
 struct HandTrack {
   bool active = false;    ///< false: this slot is free
@@ -25,6 +35,7 @@ struct HandTrack {
   Nanoseconds last_seen = 0;
   FilterMemory filter;
   Rejoin rejoin;
+  std::optional<FilterChange> filter_change;
 };
 
 /// How long a hand takes to catch up with one that has gone `way` [m] in the `away` seconds of its loss and

@@ -14,6 +14,9 @@ namespace mrhi {
 void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
                  std::vector<Event>& events);
 
+/// From `now` on the hands are filtered otherwise: continuous in position and velocity, within 0.2 s.
+void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);
+
 /// Ends every track that was last seen more than hold_time before `now`, with hand_lost.
 void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
                        std::vector<Event>& events);
