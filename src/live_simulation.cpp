@@ -122,7 +122,9 @@ void LiveSimulation::place(const std::string& name, const Pose& pose) {
   const std::size_t body = known_body(scene, name, true);
   check_in_bounds(name, pose.position, scene.bounds);
   SimulationState state = simulation_->state();
-  mrhi::place(body, {pose, Vector3::Zero(), Vector3::Zero()}, scene, state);
+  BodyState at_rest;
+  at_rest.pose = pose;
+  mrhi::place(body, at_rest, scene, state);
   simulation_->set_state(state);
 }
 
