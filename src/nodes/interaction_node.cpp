@@ -8,8 +8,9 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "interaction_node");
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
   try {
-    const mrhi::InteractionServer server(ros::NodeHandle(), private_node,
-                                         mrhi::read_server_parameters(private_node));
+    ros::NodeHandle node;
+    mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
+    server.subscribe(node);
     ros::spin();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());

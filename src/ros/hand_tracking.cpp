@@ -2,6 +2,7 @@
 
 #include <mr_hand_interaction/HandFrame.h>
 
+#include <boost/make_shared.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -41,7 +42,7 @@ HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& p
       statistics_(known_reasons()),
       node_(node),
       transform_listener_(transforms_),
-      diagnostics_(node, parameters) {
+      diagnostics_(node, parameters, ros::this_node::getName()) {
   publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
   subscribe_leap();
   using PoseArrayEvent = ros::MessageEvent<const geometry_msgs::PoseArray>;
@@ -102,7 +103,10 @@ void HandTracking::take(JointsFrame joints, const std::string& frame_id, const r
     const auto frame = complete_frame(joints, device, defects);
     for (const std::string& found : defects) statistics_.rejected(kUnusableHand, found);
     if (!frame || !accept_stamp(frame->stamp)) return;
-    publisher_.publish(to_message(*frame, fixed_frame_));
+    const auto message =
+        boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(*frame, fixed_frame_));
+    if (sink_) sink_(*message, receipt);
+    publisher_.publish(message);
     statistics_.taken((ros::Time::now() - to_ros_time(frame->stamp)).toSec());
   } catch (const tf2::TransformException& error) {
     statistics_.rejected(kNoTransform, error.what());

@@ -19,6 +19,9 @@ void InteractionDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("step time p99 [us]", step_times_.quantile_us(0.99));
   status.add("step time max [us]", step_times_.max_us());
   step_times_.clear();
+  status.add("hand to markers p50 [ms]", 1e-3 * picture_latency_.quantile_us(0.5));
+  status.add("hand to markers p99 [ms]", 1e-3 * picture_latency_.quantile_us(0.99));
+  picture_latency_.clear();
 }
 
 }  // namespace mrhi

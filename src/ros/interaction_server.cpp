@@ -71,10 +71,14 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
   placing_.turn(parameters.place_by_mouse, live_.now());
   advertise_services(private_node);
   idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
-  hands_ = node.subscribe<mr_hand_interaction::HandFrame>(
-      "hand_frame", kQueue,
-      boost::function<void(const HandFrameEvent&)>([this](const HandFrameEvent& event) { take(event); }),
-      nullptr, ros::TransportHints().tcpNoDelay());
+}
+
+void InteractionServer::subscribe(ros::NodeHandle& node) {
+  using Event = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
+  const auto handler = [this](const Event& event) { take(*event.getConstMessage(), event.getReceiptTime()); };
+  hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
+                                                          boost::function<void(const Event&)>(handler),
+                                                          nullptr, ros::TransportHints().tcpNoDelay());
 }
 
 void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
@@ -94,8 +98,7 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
                               [this](auto& request, auto& response) { return set(request, response); })};
 }
 
-void InteractionServer::take(const HandFrameEvent& event) {
-  const mr_hand_interaction::HandFrame& message = *event.getConstMessage();
+void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
   if (clock_.paused()) {
     clock_.take(from_ros_time(message.header.stamp), ros::Time::now());
     diagnostics_.dropped_while_paused();
@@ -106,6 +109,7 @@ void InteractionServer::take(const HandFrameEvent& event) {
   const FrameResult& result = live_.now().end();
   place_dragged();
   results_.publish(result);
+  if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
   diagnostics_.taken((now - message.header.stamp).toSec());
   clock_.take(from_ros_time(message.header.stamp), now);

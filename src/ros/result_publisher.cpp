@@ -78,9 +78,9 @@ std_msgs::Header ResultPublisher::header(const ros::Time& stamp) const {
 }
 
 void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs::Header& header) {
+  if (marker_publisher_.getNumSubscribers() > 0)
+    publish_shared(marker_publisher_, markers_->update(result, simulation_->state(), header));
   shown_ = ros::WallTime::now();
-  if (marker_publisher_.getNumSubscribers() == 0) return;
-  publish_shared(marker_publisher_, markers_->update(result, simulation_->state(), header));
 }
 
 void ResultPublisher::publish_objects(const std_msgs::Header& header) {

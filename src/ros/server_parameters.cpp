@@ -11,10 +11,18 @@ namespace mrhi {
 namespace {
 
 const std::string kTwists = "object_twist/";
-/// dynamic_reconfigure writes there what it shows.
-const std::string kTuned = "tune/";
+/// What dynamic_reconfigure shows, and hand tracking's own in the same process.
+const std::string kTuned = "tune/", kTracking = "hand_tracking/";
 /// Read by libraries that the node uses.
 const std::set<std::string> kOthers{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
+
+bool begins_with(const std::string& name, const std::string& prefix) {
+  return name.compare(0, prefix.size(), prefix) == 0;
+}
+
+bool is_for_others(const std::string& name) {
+  return kOthers.count(name) > 0 || begins_with(name, kTuned) || begins_with(name, kTracking);
+}
 
 std::string text_parameter(const std::string& name, const XmlRpc::XmlRpcValue& value) {
   XmlRpc::XmlRpcValue copy = value;
@@ -75,9 +83,9 @@ void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParam
     parameters.place_by_mouse = truth_parameter(name, value);
   } else if (name == "haptics/rate") {
     parameters.haptics_rate = haptics_rate(name, value);
-  } else if (name.compare(0, kTwists.size(), kTwists) == 0) {
+  } else if (begins_with(name, kTwists)) {
     parameters.object_twists[name.substr(kTwists.size())] = twist_parameter(name, value);
-  } else if (kOthers.count(name) == 0 && name.compare(0, kTuned.size(), kTuned) != 0) {
+  } else if (!is_for_others(name)) {
     require_known(name);
     set_parameter(parameters.configuration, name, yaml_text(value));
   }

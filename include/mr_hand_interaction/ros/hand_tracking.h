@@ -2,12 +2,15 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseArray.h>
+#include <mr_hand_interaction/HandFrame.h>
 #include <ros/ros.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 #include <topic_tools/shape_shifter.h>
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "mr_hand_interaction/ros/input_statistics.h"
 #include "mr_hand_interaction/ros/leap_reader.h"
@@ -20,6 +23,11 @@ namespace mrhi {
 class HandTracking {
  public:
   HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
+
+  /// Who is in the same process gets each frame at once, before it is published, with when its message
+  /// arrived.
+  using Sink = std::function<void(const mr_hand_interaction::HandFrame&, const ros::Time& arrival)>;
+  void pass_to(Sink sink) { sink_ = std::move(sink); }
 
  private:
   using LeapEvent = ros::MessageEvent<const topic_tools::ShapeShifter>;
@@ -37,6 +45,7 @@ class HandTracking {
   /// tf2::TransformException.
   Pose device_pose(const std::string& frame_id, Nanoseconds stamp) const;
 
+  Sink sink_;
   std::string fixed_frame_;
   Side pose_array_side_ = Side::right;
   Nanoseconds last_stamp_ = -1;

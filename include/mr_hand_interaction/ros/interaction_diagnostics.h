@@ -19,6 +19,8 @@ class InteractionDiagnostics {
 
   /// Latency: from the frame's stamp until its results are published [s].
   void taken(double latency) { input_.taken(latency); }
+  /// From the arrival of the hand's message until its markers were published [s].
+  void picture(double latency) { picture_latency_.add(static_cast<Nanoseconds>(1e9 * latency)); }
   void rejected(const std::string& reason, const std::string& detail) { input_.rejected(reason, detail); }
   void dropped_while_paused() { ++dropped_; }
   void step(Nanoseconds duration) { step_times_.add(duration); }
@@ -27,7 +29,7 @@ class InteractionDiagnostics {
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   InputStatistics input_;
-  DurationHistogram step_times_;  ///< since the last report
+  DurationHistogram step_times_, picture_latency_;  ///< since the last report
   std::uint64_t dropped_ = 0;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;

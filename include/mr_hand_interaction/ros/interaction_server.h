@@ -29,11 +29,13 @@ class InteractionServer {
   /// Throws SceneError for a scene that cannot be loaded.
   InteractionServer(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters);
 
- private:
-  using HandFrameEvent = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
+  /// Frames come from the topic hand_frame,
+  void subscribe(ros::NodeHandle& node);
+  /// or from the same process. `arrival`: of the message that they were in.
+  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival);
 
+ private:
   void advertise_services(ros::NodeHandle& private_node);
-  void take(const HandFrameEvent& event);
   bool begin(const mr_hand_interaction::HandFrame& message);
   bool timed_step();
   void idle();

@@ -1,0 +1,177 @@
+// From a hand's message to its picture, beside a relay that only passes messages on: see docs/latency.md.
+#include <ros/ros.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/leap_human_encoder.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace {
+
+using topic_tools::ShapeShifter;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRate = 120.0;  // frames a second to each of the two
+constexpr double kWarmUp = 3.0;  // [s] not counted
+constexpr std::uint32_t kQueue = 10;
+
+/// Passes messages on and does nothing else.
+class Relay {
+ public:
+  explicit Relay(ros::NodeHandle& node) : node_(node) {
+    in_ = node_.subscribe("relay_in", kQueue, &Relay::take, this, ros::TransportHints().tcpNoDelay());
+  }
+
+ private:
+  void take(const ShapeShifter::ConstPtr& message) {
+    if (!out_) out_ = message->advertise(node_, "relay_out", kQueue);
+    out_.publish(message);
+  }
+
+  ros::NodeHandle& node_;
+  ros::Subscriber in_;
+  ros::Publisher out_;
+};
+
+/// One way there and back: when what was sent, and how long each took.
+class Track {
+ public:
+  void sent(std::uint64_t stamp) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sent_[stamp] = Clock::now();
+  }
+  void arrived(std::uint64_t stamp, Clock::time_point when, std::size_t bytes) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = sent_.find(stamp);
+    if (found == sent_.end()) return;
+    if (counting) times_.push_back(std::chrono::duration<double, std::milli>(when - found->second).count());
+    bytes_ = std::max(bytes_, bytes);
+    sent_.erase(found);
+  }
+  void report(const char* name, std::size_t frames) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::sort(times_.begin(), times_.end());
+    std::printf("| %s | %zu of %zu | %.1f | %.3f | %.3f | %.3f |\n", name, times_.size(), frames,
+                1e-3 * static_cast<double>(bytes_), quantile(0.5), quantile(0.99),
+                times_.empty() ? 0.0 : times_.back());
+  }
+  double quantile(double q) const {
+    if (times_.empty()) return 0.0;
+    return times_[std::min(times_.size() - 1,
+                           static_cast<std::size_t>(q * static_cast<double>(times_.size())))];
+  }
+
+  bool counting = false;
+
+ private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, Clock::time_point> sent_;
+  std::vector<double> times_;  // [ms]
+  std::size_t bytes_ = 0;
+};
+
+/// The first header's stamp in a serialised message whose header begins at `offset`.
+std::uint64_t stamp_in(const ShapeShifter& message, std::size_t offset) {
+  std::vector<std::uint8_t> bytes(message.size());
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  message.write(stream);
+  std::uint32_t time[2] = {0, 0};
+  const std::size_t after_sequence = offset + 4;
+  if (bytes.size() >= after_sequence + sizeof time)
+    std::memcpy(time, bytes.data() + after_sequence, sizeof time);
+  return std::uint64_t(time[0]) * 1000000000u + time[1];
+}
+
+class Measurement {
+ public:
+  Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options)
+      : node_(node), hand_(options) {
+    message_.morph(mrhi::LeapHumanEncoder::md5(), mrhi::LeapHumanEncoder::type(),
+                   mrhi::LeapHumanEncoder::definition(), "");
+    to_node_ = message_.advertise(node_, "/leap_motion/leap_device", kQueue);
+    to_relay_ = message_.advertise(node_, "relay_in", kQueue);
+    const auto listen = [&](const char* topic, Track& track, std::size_t offset) {
+      const auto handler = [&track, offset](const ShapeShifter::ConstPtr& message) {
+        const Clock::time_point now = Clock::now();
+        track.arrived(stamp_in(*message, offset), now, message->size());
+      };
+      listeners_.push_back(node_.subscribe<ShapeShifter>(
+          topic, kQueue, boost::function<void(const ShapeShifter::ConstPtr&)>(handler), nullptr,
+          ros::TransportHints().tcpNoDelay()));
+    };
+    listen("markers", pictures_, 4);  // after the array's length
+    listen("relay_out", relayed_, 0);
+  }
+
+  void run(double seconds) {
+    while (ros::ok() && (to_node_.getNumSubscribers() == 0 || to_relay_.getNumSubscribers() == 0))
+      ros::WallDuration(0.05).sleep();
+    ros::WallRate half_period(2.0 * kRate);
+    const long frames = std::lround((kWarmUp + seconds) * kRate);
+    for (long i = 0; i < frames && ros::ok(); ++i) {
+      pictures_.counting = relayed_.counting = i >= std::lround(kWarmUp * kRate);
+      mrhi::JointsFrame frame = hand_.next();
+      send(frame, to_node_, pictures_);
+      half_period.sleep();
+      send(frame, to_relay_, relayed_);
+      half_period.sleep();
+    }
+    ros::WallDuration(0.2).sleep();
+    const auto counted = static_cast<std::size_t>(std::lround(seconds * kRate));
+    std::printf("| | arrived | message [kB] | p50 [ms] | p99 [ms] | max [ms] |\n|---|---|---|---|---|---|\n");
+    relayed_.report("relay", counted);
+    pictures_.report("hand to markers", counted);
+    std::printf("p50 %.2f, p99 %.2f times the relay's\n", pictures_.quantile(0.5) / relayed_.quantile(0.5),
+                pictures_.quantile(0.99) / relayed_.quantile(0.99));
+    std::fflush(stdout);
+  }
+
+ private:
+  void send(mrhi::JointsFrame frame, ros::Publisher& publisher, Track& track) {
+    frame.stamp = mrhi::from_ros_time(ros::Time::now());
+    std::vector<std::uint8_t> bytes =
+        mrhi::LeapHumanEncoder::encode(frame, "leap_hands", sequence_++, static_cast<float>(kRate));
+    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message_.read(stream);
+    track.sent(static_cast<std::uint64_t>(frame.stamp));
+    publisher.publish(message_);
+  }
+
+  ros::NodeHandle& node_;
+  mrhi::SyntheticHand hand_;
+  ShapeShifter message_;
+  ros::Publisher to_node_, to_relay_;
+  std::vector<ros::Subscriber> listeners_;
+  Track pictures_, relayed_;
+  std::uint32_t sequence_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "latency");
+  ros::NodeHandle node;
+  const ros::NodeHandle parameters("~");
+  if (parameters.param("relay", false)) {
+    const Relay relay(node);
+    ros::spin();
+    return 0;
+  }
+  mrhi::SyntheticHandOptions options;
+  options.rate = kRate;
+  options.motion = parameters.param<std::string>("motion", options.motion);
+  Measurement measurement(node, options);
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  measurement.run(parameters.param("seconds", 30.0));
+  return 0;
+}

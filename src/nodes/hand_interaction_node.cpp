@@ -1,0 +1,26 @@
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "mr_hand_interaction/ros/hand_tracking.h"
+#include "mr_hand_interaction/ros/interaction_server.h"
+
+/// hand_tracking_node and interaction_node in one process and one thread: a frame goes from one to the other
+/// by a call. Parameters of tracking are in ~hand_tracking.
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "interaction_node");
+  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
+  try {
+    const ros::NodeHandle node;
+    mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
+    mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
+    tracking.pass_to([&server](const mr_hand_interaction::HandFrame& frame, const ros::Time& arrival) {
+      server.take(frame, arrival);
+    });
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}
