@@ -74,10 +74,12 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
 }
 
 void InteractionServer::subscribe(ros::NodeHandle& node) {
-  using Event = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
-  const auto handler = [this](const Event& event) { take(*event.getConstMessage(), event.getReceiptTime()); };
+  using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
+  const auto handler = [this](const Arrival& arrival) {
+    take(*arrival.getConstMessage(), arrival.getReceiptTime());
+  };
   hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
-                                                          boost::function<void(const Event&)>(handler),
+                                                          boost::function<void(const Arrival&)>(handler),
                                                           nullptr, ros::TransportHints().tcpNoDelay());
 }
 

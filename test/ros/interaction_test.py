@@ -178,7 +178,8 @@ class InteractionTest(unittest.TestCase):
             self.assertLess(tip, self.objects[stamp].pose.position.x + FACE + 5e-4)
 
     def test_every_layer_of_markers_is_published(self):
-        wanted = {"hand", "ghost", "objects", "fixtures", "contacts", "text"}
+        # The ghost is there only where the hand is shown elsewhere than it is tracked, which a light push is not.
+        wanted = {"hand", "objects", "fixtures", "contacts", "text"}
         end = time.monotonic() + 60.0
         while not wanted <= self.layers and time.monotonic() < end:
             self.setUp()  # a strike is short, and not every frame is shown

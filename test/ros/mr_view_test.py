@@ -153,7 +153,7 @@ class MrViewTest(unittest.TestCase):
         return {name.strip("/") for name in listed.split()}
 
     def test_only_what_is_asked_for_is_started(self):
-        leap = {"hand_tracking_node", "interaction_node", "world_to_leap_hands"}
+        leap = {"interaction_node", "world_to_leap_hands"}
         self.assertEqual(self.nodes(), leap | {"synthetic_hand_node", "world_to_camera", "rviz"})
         self.assertEqual(self.nodes("hands:=leap", "still:=table"), leap | {"world_to_camera", "still", "rviz"})
         self.assertEqual(self.nodes("hands:=leap", "mount:=none", "camera_pose:=none", "rviz:=false"),
