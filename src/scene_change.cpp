@@ -69,8 +69,8 @@ void ignore_overlaps(std::size_t b, const Body& body, SimulationState& state) {
       if (!may_overlap(state.hands[slot].current.capsules[c], body, state.bodies[b].pose)) continue;
       for (std::size_t shape = 0; shape < body.shapes.size(); ++shape) {
         Contact contact;
-        contact.key = {static_cast<std::uint16_t>(b), static_cast<std::uint8_t>(slot),
-                       static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(shape), 0};
+        contact.key = {0, static_cast<std::uint8_t>(shape), static_cast<std::uint8_t>(c),
+                       static_cast<std::uint8_t>(slot), static_cast<std::uint16_t>(b)};
         contact.ignored = true;
         state.contacts.push_back(contact);
       }

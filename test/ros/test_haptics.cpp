@@ -13,7 +13,7 @@ using mr_hand_interaction::PhalanxHaptics;
 Contact contact(std::uint16_t body, std::uint8_t hand, int capsule, std::uint8_t point,
                 const Vector3& force) {
   Contact made;
-  made.key = {body, hand, static_cast<std::uint8_t>(capsule), 0, point};
+  made.key = {point, 0, static_cast<std::uint8_t>(capsule), hand, body};
   made.force = force;
   made.depth = 0.001;
   return made;
