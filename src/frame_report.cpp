@@ -9,31 +9,16 @@
 namespace mrhi {
 namespace {
 
-/// The hand where it is at the frame's end.
-HandMotion resting_hand(const HandTrack& track, int slot) {
-  HandTrack resting = track;
-  resting.previous = resting.current;
-  HandMotion motion(resting, slot, 0.0);
-  motion.move_to(1.0);
-  return motion;
-}
-
-std::vector<Contact> contacts_at_end(const FrameEnd& end) {
-  std::vector<HandMotion> hands;
-  for (int slot = 0; slot < kMaxHands; ++slot) {
-    const HandTrack& track = end.state.hands[static_cast<std::size_t>(slot)];
-    if (track.active && !track.appeared) hands.push_back(resting_hand(track, slot));
-  }
-  std::vector<Contact> contacts;
+void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
+  for (HandMotion& hand : end.hands) hand.move_to(1.0);
   contacts.reserve(end.state.contacts.capacity());  // the finder keeps what it is given, for the next step
   contacts = end.state.contacts;
   end.neighbours.begin_step(end.state.bodies, 0.0);
-  end.finder.find(hands, end.neighbours, end.state.bodies, 0.0, contacts);
+  end.finder.find(end.hands, end.neighbours, end.state.bodies, 0.0, contacts);
   for (Contact& contact : contacts) contact.impulse.setZero();
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
-  return contacts;
 }
 
 std::vector<Contact>::iterator same_contact(std::vector<Contact>& contacts, const Contact& wanted) {
@@ -60,12 +45,11 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
-    const std::vector<int> near = near_bodies(track.current, end.scene, state.bodies, kHoverEnds);
-    auto next = near.begin();
+    const HandExtent hand(track.current);
     for (std::size_t b = 0; b < bodies; ++b) {
       const int body = static_cast<int>(b);
-      const bool is_near = next != near.end() && *next == body;
-      if (is_near) ++next;
+      const bool is_near =
+          hand.reaches(state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || !end.strikes.empty();
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
@@ -83,18 +67,16 @@ void render(const FrameEnd& end, FrameResult& result) {
     const HandTrack& track = end.state.hands[slot];
     if (!track.active) continue;
     result.tracked.push_back(track.current);
-    result.rendered.push_back(render_hand(track.current, static_cast<int>(slot), end.finder, end.scene,
-                                          end.state.bodies, result.contacts));
-    result.deepest_rendered =
-        std::max(result.deepest_rendered,
-                 deepest_penetration(result.rendered.back().hand, end.finder, end.scene, end.state.bodies));
+    result.rendered.emplace_back();
+    end.renderer.render(track, static_cast<int>(slot), end.state.time, end.state.bodies, result.contacts,
+                        end.state.offsets[slot], result.rendered.back());
   }
 }
 
 }  // namespace
 
 void report_frame(const FrameEnd& end, FrameResult& result) {
-  result.contacts = contacts_at_end(end);
+  find_contacts(end, result.contacts);
   add_strikes(end.strikes, result.contacts);
   update_interactions(end, result);
   render(end, result);

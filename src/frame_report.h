@@ -10,10 +10,12 @@ namespace mrhi {
 /// What a frame's result is made from, once bodies and hands are at the frame's stamp.
 struct FrameEnd {
   const Scene& scene;
+  std::vector<HandMotion>& hands;  ///< those that can touch
   Neighbours& neighbours;
   ContactFinder& finder;
+  HandRenderer& renderer;
   const std::vector<Contact>& strikes;  ///< impacts since the frame before, one entry per contact
-  SimulationState& state;               ///< its interactions are updated
+  SimulationState& state;               ///< its interactions and the rendered hands' offsets are updated
 };
 
 /// Contacts as they are at the frame's end, with the last step's forces, and the impacts since the frame

@@ -4,8 +4,9 @@ namespace mrhi {
 namespace {
 
 constexpr double kHoverBegins = 0.03;  // [m]
-/// What is left of the pushes when they are added as vectors, relative to their sum as numbers.
-constexpr double kBalanced = 0.6;
+/// What is left of the pushes when they are added as vectors, relative to their sum as numbers: at most this
+/// for a grasp to begin, and to last.
+constexpr double kBalanced = 0.6, kStillBalanced = 0.75;
 
 struct Pressing {
   Vector3 sum = Vector3::Zero();
@@ -50,7 +51,8 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
                             const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
                             InteractionLevel before) {
   const Pressing press = pressing(slot, body, contacts);
-  if (press.capsules >= 2 && press.sum.norm() <= kBalanced * press.total) return InteractionLevel::grasp;
+  const double balanced = before == InteractionLevel::grasp ? kStillBalanced : kBalanced;
+  if (press.capsules >= 2 && press.sum.norm() <= balanced * press.total) return InteractionLevel::grasp;
   if (press.capsules >= 1 || press.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
   const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];

@@ -45,7 +45,8 @@ struct Simulation::Impl {
         neighbours(scene),
         finder(scene, geometry, gravity, configuration.contact),
         body_finder(scene, geometry, gravity),
-        sleeping(scene, configuration.contact.sleep) {
+        sleeping(scene, configuration.contact.sleep),
+        renderer(scene, finder) {
     reset();
   }
 
@@ -72,6 +73,7 @@ struct Simulation::Impl {
   ContactFinder finder;
   BodyContactFinder body_finder;
   Sleeping sleeping;
+  HandRenderer renderer;
 
   SimulationState state;
   FrameResult result;
@@ -94,6 +96,7 @@ void Simulation::Impl::reset() {
   for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
   state.asleep.assign(scene.bodies.size(), 0);
   state.hands.resize(kMaxHands);
+  state.offsets.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
   state.contacts.reserve(64 * kMaxHands);
   state.body_contacts.reserve(16 * scene.bodies.size());
@@ -229,15 +232,17 @@ void Simulation::Impl::keep_in_bounds() {
 }
 
 void Simulation::Impl::clear_result() {
-  const bool restarted = result.restarted;
-  result = FrameResult();
-  result.restarted = restarted;
+  result.stamp = 0;
+  result.tracked.clear();
+  result.rendered.clear();
+  result.contacts.clear();
+  result.events.clear();
   strikes.clear();
 }
 
 void Simulation::Impl::finish(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_frame({scene, neighbours, finder, strikes, state}, result);
+  report_frame({scene, hands, neighbours, finder, renderer, strikes, state}, result);
 }
 
 Simulation::Simulation(Scene scene, const Configuration& configuration)
@@ -290,6 +295,14 @@ Rejection Simulation::advance(const HandFrame& frame) {
 
 const FrameResult& Simulation::result() const {
   return impl_->result;
+}
+
+double Simulation::deepest_rendered() const {
+  double deepest = 0.0;
+  for (const RenderedHand& rendered : impl_->result.rendered)
+    deepest = std::max(deepest,
+                       deepest_penetration(rendered.hand, impl_->finder, impl_->scene, impl_->state.bodies));
+  return deepest;
 }
 
 bool Simulation::advance_without_hands(Nanoseconds time) {

@@ -72,6 +72,16 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   }
 }
 
+void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {
+  if (offset.zero()) return;
+  hash.add(offset.shift);
+  for (const FingerOffset& finger : offset.fingers)
+    for (int i = 0; i < finger.size(); ++i) hash.add(finger[i]);
+  hash.add(now - offset.stamp);
+  hash.add(offset.left);
+  if (offset.left > 0.0) hash.add(now - offset.left_since);
+}
+
 void add_contact(const Contact& contact, Fnv1a& hash) {
   hash.add(contact.key.order());
   hash.add(contact.god_object);
@@ -124,11 +134,17 @@ std::uint64_t hash(const SimulationState& state) {
     hash.add(body.pushed.linear);
     hash.add(body.pushed.angular);
   }
-  for (const HandTrack& track : state.hands) add_track(track, state.time, hash);
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    add_track(state.hands[slot], state.time, hash);
+    if (state.hands[slot].active) add_offset(state.offsets[slot], state.time, hash);
+  }
   for (const Contact& contact : state.contacts) add_contact(contact, hash);
   for (const BodyContact& contact : state.body_contacts) add_contact(contact, hash);
   for (const BodyContact& contact : state.sleeping_contacts) add_contact(contact, hash);
-  for (const Interaction& interaction : state.interactions) hash.add(interaction.level);
+  for (const Interaction& interaction : state.interactions) {
+    hash.add(interaction.level);
+    if (interaction.level >= InteractionLevel::contact) hash.add(state.time - interaction.agreed);
+  }
   return hash.value();
 }
 

@@ -28,8 +28,7 @@ struct FrameResult {
   std::vector<RenderedHand> rendered;  ///< same order
   std::vector<Contact> contacts;       ///< touching at the frame's end, or struck since the frame before
   std::vector<Event> events;
-  double deepest_rendered = 0.0;  ///< deepest penetration of a rendered capsule in any object [m], >= 0
-  bool restarted = false;         ///< time went back (a looping bag): everything is at its start
+  bool restarted = false;  ///< time went back (a looping bag): everything is at its start
 };
 
 /// The stages of a step, in their order.
@@ -56,6 +55,8 @@ class Simulation {
 
   Rejection advance(const HandFrame& frame);
   const FrameResult& result() const;
+  /// Deepest penetration of a rendered capsule in any body, fixtures too, as the frame ended [m], >= 0.
+  double deepest_rendered() const;
 
   /// With no frames coming: moves on to `time`, which the next frame then continues from with the same bits
   /// as if this had not been called. Does nothing until hold_time after the last frame. True if a new result

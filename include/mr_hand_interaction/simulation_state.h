@@ -7,6 +7,7 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -24,6 +25,7 @@ struct SimulationState {
   std::vector<Contact> contacts;           ///< of hands with bodies, sorted by key
   std::vector<BodyContact> body_contacts;  ///< of bodies with each other, sorted by key
   std::vector<BodyContact> sleeping_contacts;  ///< likewise, of bodies that are asleep
+  std::vector<HandOffset> offsets;             ///< of the rendered hands, by slot
   std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };
 

@@ -39,13 +39,23 @@ void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours&
 
 std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,
                                                       const Pose& body_pose, double margin) const {
+  return closest(capsule, body, shape, {body_pose.orientation.toRotationMatrix(), body_pose.position}, margin);
+}
+
+std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,
+                                                      const PlacedFrame& frame, double margin,
+                                                      AxisSpan* span) const {
   const PlacedCollider& collider =
       geometry_.colliders[static_cast<std::size_t>(body)][static_cast<std::size_t>(shape)];
-  auto features = collider.closest(collider.to_shape(to_local(body_pose, capsule)), margin);
+  const Capsule in_body{frame.rotation.transpose() * (capsule.start - frame.position),
+                        frame.rotation.transpose() * (capsule.end - frame.position), capsule.radius};
+  const Capsule in_shape = collider.to_shape(in_body);
+  auto features = collider.closest(in_shape, margin);
   if (!features) return features;
+  if (span != nullptr) *span = collider.span(in_shape, *features);
   features = collider.to_body(*features);
-  features->normal = body_pose.orientation * features->normal;
-  features->point = body_pose * features->point;
+  features->normal = frame.rotation * features->normal;
+  features->point = frame.rotation * features->point + frame.position;
   return features;
 }
 

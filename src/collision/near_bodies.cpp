@@ -4,21 +4,28 @@
 
 namespace mrhi {
 
-std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::vector<BodyState>& bodies,
-                             double margin) {
-  Vector3 min = Vector3::Constant(std::numeric_limits<double>::max()), max = -min;
+HandExtent::HandExtent(const Hand& hand)
+    : min_(Vector3::Constant(std::numeric_limits<double>::max())), max_(-min_) {
   for (const Capsule& capsule : hand.capsules) {
     if (capsule.radius <= 0.0) continue;
-    const Vector3 reach = Vector3::Constant(capsule.radius + margin);
-    min = min.cwiseMin(capsule.start.cwiseMin(capsule.end) - reach);
-    max = max.cwiseMax(capsule.start.cwiseMax(capsule.end) + reach);
+    const Vector3 reach = Vector3::Constant(capsule.radius);
+    min_ = min_.cwiseMin(capsule.start.cwiseMin(capsule.end) - reach);
+    max_ = max_.cwiseMax(capsule.start.cwiseMax(capsule.end) + reach);
   }
+}
+
+bool HandExtent::reaches(const Vector3& centre, double radius) const {
+  const Vector3 outside = (min_ - centre).cwiseMax(centre - max_).cwiseMax(0.0);
+  return outside.squaredNorm() <= radius * radius;
+}
+
+std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::vector<BodyState>& bodies,
+                             double margin) {
+  const HandExtent extent(hand);
   std::vector<int> near;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Vector3& centre = bodies[b].pose.position;
-    const Vector3 outside = (min - centre).cwiseMax(centre - max).cwiseMax(0.0);
-    const double radius = scene.bodies[b].bounding_radius;
-    if (outside.squaredNorm() <= radius * radius) near.push_back(static_cast<int>(b));
+    if (extent.reaches(bodies[b].pose.position, scene.bodies[b].bounding_radius + margin))
+      near.push_back(static_cast<int>(b));
   }
   return near;
 }

@@ -1,142 +1,209 @@
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
-#include "hand_joints.h"
+#include "clearance_finder.h"
 #include "mr_hand_interaction/collision/near_bodies.h"
+#include "return_home.h"
 
 namespace mrhi {
 namespace {
 
-constexpr int kShapingPasses = 12;     // push out and keep together, alternately
-constexpr int kClearingPasses = 60;    // then push out alone until clear
-constexpr double kFarthestPush = 0.1;  // that a joint is moved out of what the hand is in [m]
-constexpr double kClear = 1e-6;        // deeper than this is pushed [m]
-
-struct Push {
-  double depth = 0.0;  // [m]
-  double s = 0.5;
-  Vector3 normal = Vector3::Zero();
-};
-
-/// The contact of this capsule and shape that tells which face it entered by, if it is inside.
-const Contact* memory(const std::vector<Contact>& contacts, int slot, int capsule, int body, int shape) {
-  for (const Contact& contact : contacts) {
-    if (contact.key.hand == slot && contact.key.capsule == capsule && contact.key.body == body &&
-        contact.key.shape == shape && contact.depth > 0.0) {
-      return &contact;
-    }
-  }
-  return nullptr;
-}
-
-class Renderer {
- public:
-  Renderer(int slot, const ContactFinder& finder, const Scene& scene, const std::vector<BodyState>& bodies,
-           const std::vector<Contact>& contacts, std::vector<int> near)
-      : slot_(slot),
-        finder_(finder),
-        scene_(scene),
-        bodies_(bodies),
-        contacts_(contacts),
-        near_(std::move(near)) {}
-
-  /// Pushes every capsule out of what it is in; returns the deepest penetration found.
-  double push_out(const Hand& hand, bool by_entry_face, JointNet& net) const {
-    double deepest = 0.0;
-    for (int capsule = 0; capsule < kCapsules; ++capsule) {
-      if (!hand.has(capsule)) continue;
-      for (const int body : near_) {
-        for (int shape = 0; shape < shapes_of(body); ++shape) {
-          const Push push = needed(net.capsule(capsule), capsule, body, shape, by_entry_face);
-          deepest = std::max(deepest, push.depth);
-          if (push.depth > kClear) net.push(capsule, push.s, push.depth * push.normal);
-        }
-      }
-    }
-    return deepest;
-  }
-
-  /// Neighbouring bones on either side of a thin body pull their joint to and fro: those that are still
-  /// inside leave on their own.
-  void clear_alone(Hand& hand) const {
-    for (int index = 0; index < kCapsules; ++index) {
-      Capsule& capsule = hand.capsules[static_cast<std::size_t>(index)];
-      if (capsule.radius <= 0.0) continue;
-      for (int pass = 0; pass < kClearingPasses; ++pass) {
-        const Push push = deepest(capsule, index);
-        if (push.depth <= kClear) break;
-        capsule.start += push.depth * push.normal;
-        capsule.end += push.depth * push.normal;
-      }
-    }
-  }
-
- private:
-  Push deepest(const Capsule& capsule, int index) const {
-    Push deepest;
-    for (const int body : near_) {
-      for (int shape = 0; shape < shapes_of(body); ++shape) {
-        const Push push = needed(capsule, index, body, shape, false);
-        if (push.depth > deepest.depth) deepest = push;
-      }
-    }
-    return deepest;
-  }
-
-  int shapes_of(int body) const {
-    return static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
-  }
-
-  Push needed(const Capsule& capsule, int index, int body, int shape, bool by_entry_face) const {
-    const auto b = static_cast<std::size_t>(body);
-    const double reach = scene_.bodies[b].bounding_radius + capsule.radius;
-    const double half = 0.5 * (capsule.end - capsule.start).norm();
-    const Pose& pose = bodies_[b].pose;
-    if ((capsule.centre() - pose.position).norm() > reach + half) return {};
-    const auto features = finder_.closest(capsule, body, shape, pose, 0.0);
-    if (!features || features->distance >= 0.0) return {};
-    Push push{-features->distance, features->axis_parameter, features->normal};
-    const Contact* contact = by_entry_face ? memory(contacts_, slot_, index, body, shape) : nullptr;
-    if (contact != nullptr && contact->normal.dot(features->normal) < 0.5) {
-      const Vector3& n = contact->normal;
-      push.normal = n;
-      push.s = n.dot(capsule.end - capsule.start) > 0.0 ? 0.0 : 1.0;
-      push.depth = std::max(0.0, n.dot(contact->point - capsule.axis_point(push.s)) + capsule.radius);
-    }
-    return push;
-  }
-
-  int slot_;
-  const ContactFinder& finder_;
-  const Scene& scene_;
-  const std::vector<BodyState>& bodies_;
-  const std::vector<Contact>& contacts_;
-  const std::vector<int> near_;
-};
+constexpr int kMaxPasses = 12;
+constexpr double kClear = 2e-5;        // gaps larger than -this are clear [m]
+constexpr double kTolerated = 1e-4;    // deeper than this after all passes, the next means are tried [m]
+constexpr double kAhead = 0.0015;      // surfaces nearer than this are kept off before they are met [m]
+constexpr double kFarthestPush = 0.1;  // bodies nearer than this may be met while the hand is pushed out [m]
+constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a frame, and this share of what hand
+constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
+constexpr double kAnyway = 1.0;        // for a hand that comes from nowhere [m]
+constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is not looked at again [m]
+/// A hand stays this long behind a body that the tracked hand has passed through, without coming nearer by as
+/// much as this [m].
+constexpr Nanoseconds kStaysBehind = 150'000'000;
+constexpr double kProgress = 0.001;
 
 }  // namespace
 
-RenderedHand render_hand(const Hand& tracked, int slot, const ContactFinder& finder, const Scene& scene,
-                         const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts) {
-  RenderedHand rendered;
-  rendered.hand = tracked;
+struct HandRenderer::Impl {
+  Impl(const Scene& scene, const ContactFinder& contact_finder) : finder(scene, contact_finder) {
+    clearances.reserve(128);
+  }
+
+  void keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
+  double settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
+  void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
+                  Hand& placed);
+  void linearise(const Hand& placed);
+  void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
+  double way(const HandOffset& from, const HandOffset& to);
+  bool left_behind(const ClearanceFinder::Setting& setting, Nanoseconds stamp, HandOffset& offset);
+
+  ClearanceFinder finder;
+  HandChain chain, chain_before;
+  std::vector<Clearance> clearances;
+  Hand before;
+};
+
+HandRenderer::HandRenderer(const Scene& scene, const ContactFinder& finder)
+    : impl_(std::make_unique<Impl>(scene, finder)) {}
+HandRenderer::~HandRenderer() = default;
+
+void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
+                          const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts,
+                          HandOffset& offset, RenderedHand& rendered) {
+  Impl& impl = *impl_;
+  rendered.hand = track.current;
+  rendered.touching.fill(false);
   for (const Contact& contact : contacts) {
     if (contact.key.hand == slot && contact.touching()) rendered.touching[contact.key.capsule] = true;
   }
-  const Renderer renderer(slot, finder, scene, bodies, contacts,
-                          near_bodies(tracked, scene, bodies, kFarthestPush));
-  JointNet net(tracked);
-  if (renderer.push_out(tracked, true, net) <= kClear) return rendered;
-  for (int pass = 0; pass < kShapingPasses; ++pass) {
-    net.restore_lengths();
-    renderer.push_out(tracked, true, net);
+  if (track.appeared) offset = HandOffset();
+  ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0};
+  const bool away = !offset.zero();
+  const bool near = impl.finder.begin(setting, away ? kFarthestPush : kAhead);
+  if (!away && !near) {
+    offset.stamp = stamp;
+    return;
   }
-  for (int pass = 0; pass < kClearingPasses && renderer.push_out(tracked, false, net) > kClear; ++pass) {
+
+  impl.chain.begin(track.current);
+  impl.clearances.clear();
+  const HandOffset reference = returning(offset, stamp, impl.chain);
+  HandOffset now = reference;
+  impl.chain.place(now, rendered.hand);
+  const double least = near ? impl.finder.find(rendered.hand, setting, kAhead, impl.clearances) : 0.0;
+  const bool pushed = least < -kClear;
+  if (pushed) {
+    setting.moved = kAnyway;
+    if (!track.appeared) {
+      impl.before = track.previous;
+      impl.chain_before.begin(track.previous);
+      impl.chain_before.place(offset, impl.before);
+      setting.shown_before = &impl.before;
+      setting.moved = farthest_joint(track.previous, track.current) +
+                      impl.finder.fastest_body(bodies) * to_seconds(stamp - offset.stamp);
+    }
+    impl.finder.begin(setting, kFarthestPush);
+    if (least < -ClearanceFinder::kShallow) impl.begin_anew(setting, reference, now, rendered.hand);
+    impl.keep_out(setting, reference, {offset, kSwingShare * setting.moved + kSwing}, now, rendered.hand);
+    if (impl.left_behind(setting, stamp, now)) {
+      now = HandOffset();
+      rendered.hand = track.current;
+    }
   }
-  rendered.hand = net.apply(tracked);
-  renderer.clear_alone(rendered.hand);
-  return rendered;
+  if (!pushed) now.left = 0.0;
+  now.stamp = stamp;
+  offset = now;
+}
+
+void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
+  if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
+  begin_anew(setting, reference, offset, placed);
+  if (settle(setting, reference, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+  begin_anew(setting, reference, offset, placed);
+  shift_out(setting, offset, placed);
+}
+
+/// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
+/// [m].
+double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
+  double least = 0.0;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    linearise(placed);
+    const HandOffset from = offset;
+    const double expected = solve_offset(reference, bounds, chain, clearances, offset);
+    chain.place(offset, placed);
+    if (expected > -kClear && way(from, offset) < kSmallStep) return expected;
+    least = finder.find(placed, setting, kAhead, clearances);
+    if (least > -kClear) return least;
+  }
+  return least;
+}
+
+void HandRenderer::Impl::begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                    HandOffset& offset, Hand& placed) {
+  offset = reference;
+  chain.place(offset, placed);
+  clearances.clear();
+  finder.find(placed, setting, kAhead, clearances);
+}
+
+void HandRenderer::Impl::linearise(const Hand& placed) {
+  for (Clearance& clearance : clearances) {
+    const int capsule = clearance.key.capsule;
+    const int finger_index = HandChain::finger_that_moves(capsule);
+    clearance.by_shift << clearance.normal.array(), 0.0;
+    if (finger_index < 0) continue;
+    const Vector3 point = placed.capsules[clearance.key.capsule].axis_point(clearance.s);
+    clearance.by_finger = chain.finger(finger_index).gradient(bone_of(capsule), point, clearance.normal);
+  }
+}
+
+double HandRenderer::Impl::way(const HandOffset& from, const HandOffset& to) {
+  double farthest = 0.0;
+  for (int f = 0; f < kFingers; ++f) {
+    const auto i = static_cast<std::size_t>(f);
+    const FingerOffset change = to.fingers[i] - from.fingers[i];
+    if (!(change == 0.0).all()) farthest = std::max(farthest, chain.finger(f).way(change));
+  }
+  return farthest + (to.shift - from.shift).norm();
+}
+
+/// The clearances contradict each other: the hand as it is goes as a whole to that side of the deepest body
+/// which is the nearest.
+void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset,
+                                   Hand& placed) {
+  constexpr int kMaxBodies = 4;
+  for (int attempt = 0; attempt < kMaxBodies; ++attempt) {
+    const auto deepest =
+        std::min_element(clearances.begin(), clearances.end(),
+                         [](const Clearance& a, const Clearance& b) { return a.gap < b.gap; });
+    Vector3 way = Vector3::Zero();
+    double least = std::numeric_limits<double>::max();
+    for (const Clearance& side : clearances) {
+      if (side.key.body != deepest->key.body || side.key.shape != deepest->key.shape) continue;
+      double reach = std::numeric_limits<double>::max();
+      for (const Capsule& capsule : placed.capsules) {
+        if (capsule.radius <= 0.0) continue;
+        const double lowest = std::min(side.normal.dot(capsule.start), side.normal.dot(capsule.end));
+        reach = std::min(reach, lowest - capsule.radius - side.height);
+      }
+      if (-reach >= least) continue;
+      least = -reach;
+      way = -reach * side.normal;
+    }
+    offset.shift += way;
+    chain.place(offset, placed);
+    clearances.clear();
+    if (finder.find(placed, setting, kAhead, clearances) > -kTolerated) return;
+  }
+}
+
+/// True once the tracked hand has been clear of everything for a while and the rendered one has not come any
+/// nearer to it.
+bool HandRenderer::Impl::left_behind(const ClearanceFinder::Setting& setting, Nanoseconds stamp,
+                                     HandOffset& offset) {
+  const auto holds = [&](const Contact& contact) {
+    return contact.key.hand == setting.slot && contact.touching();
+  };
+  const bool held = std::any_of(setting.contacts.begin(), setting.contacts.end(), holds);
+  if (held || !finder.clear(setting.tracked)) {
+    offset.left = 0.0;
+    return false;
+  }
+  const double left = way(HandOffset(), offset);
+  if (offset.left == 0.0 || left < offset.left - kProgress) {
+    offset.left = left;
+    offset.left_since = stamp;
+  }
+  return stamp - offset.left_since >= kStaysBehind;
 }
 
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,

@@ -20,9 +20,10 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-void add(const FrameResult& result, Nanoseconds since, ReplaySummary& summary) {
+void add(const Simulation& simulation, Nanoseconds since, ReplaySummary& summary) {
+  const FrameResult& result = simulation.result();
   ++summary.frames;
-  summary.deepest_rendered = std::max(summary.deepest_rendered, result.deepest_rendered);
+  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
   for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
   if (result.restarted) ++summary.restarts;
   if (summary.frames > 1 && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - since);
@@ -95,7 +96,7 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
     }
     const FrameResult& result = simulation.end();
     writer.write(result, simulation.state());
-    add(result, last_stamp, summary);
+    add(simulation, last_stamp, summary);
     last_stamp = result.stamp;
   }
 }

@@ -24,6 +24,17 @@ Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
   return blend(rejoin.from, tracked, minimum_jerk(u));
 }
 
+double farthest_joint(const Hand& from, const Hand& to) {
+  double distance_squared = 0.0;
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    const Capsule &a = from.capsules[c], &b = to.capsules[c];
+    if (a.radius <= 0.0 || b.radius <= 0.0) continue;
+    distance_squared =
+        std::max({distance_squared, (a.start - b.start).squaredNorm(), (a.end - b.end).squaredNorm()});
+  }
+  return std::sqrt(distance_squared);
+}
+
 Hand blend(const Hand& from, const Hand& to, double fraction) {
   if (fraction >= 1.0) return to;
   Hand hand = to;

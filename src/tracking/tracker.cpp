@@ -58,18 +58,6 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
   return assignment;
 }
 
-/// Longest way of a joint that both hands have [m].
-double farthest_joint(const Hand& from, const Hand& to) {
-  double distance_squared = 0.0;
-  for (std::size_t c = 0; c < kCapsules; ++c) {
-    const Capsule &a = from.capsules[c], &b = to.capsules[c];
-    if (a.radius <= 0.0 || b.radius <= 0.0) continue;
-    distance_squared =
-        std::max({distance_squared, (a.start - b.start).squaredNorm(), (a.end - b.end).squaredNorm()});
-  }
-  return std::sqrt(distance_squared);
-}
-
 void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;

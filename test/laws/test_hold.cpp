@@ -106,7 +106,7 @@ TEST(Hold, rendered_fingertips_stay_outside_however_deep_the_tracked_ones_are) {
   double tracked_depth = 0.0;
   play(simulation, 0.0, 1.0, 120.0, pinch(Vector3::Zero(), 10.0), [&](const Simulation& s) {
     for (const Contact& contact : s.result().contacts) tracked_depth = std::max(tracked_depth, contact.depth);
-    EXPECT_LE(s.result().deepest_rendered, 1e-5);
+    EXPECT_LE(s.deepest_rendered(), 1e-5);
   });
   EXPECT_GE(tracked_depth, 0.9 * kOverlap);
 }

@@ -40,7 +40,7 @@ void note(const Simulation& simulation, Outcome& outcome) {
   const FrameResult& result = simulation.result();
   ++outcome.frames;
   outcome.contacts += static_cast<int>(result.contacts.size());
-  outcome.deepest_rendered = std::max(outcome.deepest_rendered, result.deepest_rendered);
+  outcome.deepest_rendered = std::max(outcome.deepest_rendered, simulation.deepest_rendered());
   for (const RenderedHand& rendered : result.rendered) {
     for (const Capsule& capsule : rendered.hand.capsules) {
       outcome.finite = outcome.finite && capsule.start.allFinite() && capsule.end.allFinite();

@@ -30,6 +30,16 @@ class ContactFinder {
   std::optional<ClosestFeatures> closest(const Capsule& capsule, int body, int shape, const Pose& body_pose,
                                          double margin) const;
 
+  /// A body's frame in world.
+  struct PlacedFrame {
+    Matrix3 rotation;
+    Vector3 position;
+  };
+  /// The same of a body that has been placed; `span` becomes the stretch that lies flat, if it is asked for.
+  std::optional<ClosestFeatures> closest(const Capsule& capsule, int body, int shape,
+                                         const PlacedFrame& frame, double margin,
+                                         AxisSpan* span = nullptr) const;
+
  private:
   void find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state, double step,
                  const std::vector<Contact>& before);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "mr_hand_interaction/collision/contact_finder.h"
-#include "mr_hand_interaction/tracking/hand.h"
+#include "mr_hand_interaction/rendering/hand_offset.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -14,13 +16,26 @@ struct RenderedHand {
   std::array<bool, kCapsules> touching{};
 };
 
-/// Pushes a tracked hand's joints out of all bodies while its bones keep together (position-based
-/// constraints, Mueller et al. 2007): the rendered hand is where the god objects are, the tracked hand where
-/// it is free. `contacts` are this hand's, with the faces that its phalanges entered by.
-RenderedHand render_hand(const Hand& tracked, int slot, const ContactFinder& finder, const Scene& scene,
-                         const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts);
+/// Shows a tracked hand outside all bodies as one connected hand: its bones as tracked, turned about its
+/// joints within their limits, and where that is not enough shifted as a whole. docs/rendered_hand.md.
+class HandRenderer {
+ public:
+  /// Keeps references.
+  HandRenderer(const Scene& scene, const ContactFinder& finder);
+  ~HandRenderer();
 
-/// Deepest penetration of any of the hand's capsules into any body [m], >= 0.
+  /// The hand of a track at its frame's `stamp`. `contacts` are those of now, with the faces that phalanges
+  /// entered by. `offset` is the hand's of the frame before and becomes that of now.
+  void render(const HandTrack& track, int slot, Nanoseconds stamp, const std::vector<BodyState>& bodies,
+              const std::vector<Contact>& contacts, HandOffset& offset, RenderedHand& rendered);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Deepest penetration of any of the hand's capsules into any body [m], >= 0. Looks at the hand as it is: it
+/// shares nothing with what made it.
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
                            const std::vector<BodyState>& bodies);
 

@@ -46,6 +46,9 @@ Nanoseconds rejoin_duration(double way, double away);
 /// 1985).
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp);
 
+/// Longest way of a joint that both hands have [m].
+double farthest_joint(const Hand& from, const Hand& to);
+
 /// Pose between two of one hand: all points move on straight lines.
 Hand blend(const Hand& from, const Hand& to, double fraction);
 

@@ -1,0 +1,172 @@
+#include "finger_chain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrhi {
+namespace {
+
+// How readily joints give way beside the whole hand (kShiftCompliance): a fingertip yields a hundred times as
+// far by bending as by shifting the hand, and sideways less readily than by bending.
+constexpr double kBending = 1.0 / (0.03 * 0.03);   // [rad^2/m^2]
+constexpr double kSideways = 1.0 / (0.05 * 0.05);  // [rad^2/m^2]
+constexpr double kLoose = 1.0;                     // of a finger that nothing ties to the palm
+constexpr double kShortest = 0.001;                // reach of a joint [m]
+/// Which part of a bent thumb's own plane tells its hinges' axis, against the anatomical one.
+constexpr double kAnatomical = 0.15;
+
+Matrix3 about(const Vector3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+Vector3 direction(const Capsule& bone) {
+  return (bone.end - bone.start).normalized();
+}
+
+/// Where the finger's root joint counts from: straight on, and the axis about which it flexes.
+struct RootFrame {
+  Vector3 along, hinge;
+};
+
+RootFrame root_frame(const Hand& hand, int finger) {
+  const Matrix3 palm = hand.palm.orientation.toRotationMatrix();
+  if (finger == 0) {
+    const double side = hand.side == Side::left ? -1.0 : 1.0;
+    const Vector3 along = thumb_rest().along, hinge = side * thumb_rest().hinge;
+    const Vector3 mirror(1.0, side, 1.0);
+    return {palm * along.cwiseProduct(mirror), palm * hinge.cwiseProduct(mirror)};
+  }
+  const int metacarpal = capsule_index(finger, 0);
+  const Vector3 along =
+      hand.has(metacarpal) ? direction(hand.capsules[static_cast<std::size_t>(metacarpal)]) : palm.col(0);
+  const Vector3 across = palm.col(2).cross(along);
+  if (across.squaredNorm() < 0.01) return {palm.col(0), palm.col(1)};
+  return {along, across.normalized()};
+}
+
+}  // namespace
+
+FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift)
+    : finger_(finger), tied_(has(tracked, 1)) {
+  for (int bone = 0; bone < kBonesPerFinger; ++bone) {
+    const auto c = static_cast<std::size_t>(capsule_index(finger_, bone));
+    joints_[static_cast<std::size_t>(bone)] = tracked.capsules[c].start + shift;
+  }
+  find_axes(tracked);
+  find_limits(tracked);
+  placed_swing_ = swing_;
+  placed_hinge_ = hinge_;
+}
+
+void FingerChain::find_axes(const Hand& tracked) {
+  const std::size_t proximal = static_cast<std::size_t>(capsule_index(finger_, 1));
+  root_ = Vector3::UnitY(), swing_ = Vector3::UnitZ(), hinge_ = Vector3::UnitY();
+  if (!tied_) return;
+  const RootFrame frame = root_frame(tracked, finger_);
+  const Vector3 along = direction(tracked.capsules[proximal]);
+  root_ = frame.hinge;
+  const double onward = along.dot(frame.along), upward = along.dot(frame.along.cross(frame.hinge));
+  const double aside = along.dot(frame.hinge);
+  flexion_ = std::atan2(-upward, onward);
+  abduction_ = std::atan2(aside, std::hypot(onward, upward));
+  swing_ = along.cross(root_).normalized();
+  hinge_ = swing_.cross(along);
+  if (finger_ != 0 || !has(tracked, 2) || !has(tracked, 3)) return;
+  // A thumb turns about its own length when it opposes: once bent it tells the axis itself.
+  const Vector3 middle = direction(tracked.capsules[proximal + 1]);
+  Vector3 bent = along.cross(middle) + middle.cross(direction(tracked.capsules[proximal + 2]));
+  bent -= bent.dot(along) * along;
+  const double length = bent.norm();
+  if (length > 0.0) {
+    const Vector3 blended = kAnatomical * hinge_ + (std::max(0.0, bent.dot(hinge_)) / length) * bent;
+    hinge_ = blended.normalized();
+  }
+}
+
+void FingerChain::find_limits(const Hand& tracked) {
+  const auto bone = [&](int index) -> const Capsule& {
+    return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
+  };
+  lower_.setZero(), upper_.setZero(), reach_.setZero();
+  if (!tied_) {
+    lower_.head<3>().setConstant(-1.0), upper_.head<3>().setConstant(1.0);
+    return;
+  }
+  FingerOffset tracked_angles(flexion_, abduction_, 0.0, 0.0);
+  std::array<bool, 4> free{{true, true, false, false}};
+  reach_[0] = (bone(1).end - bone(1).start).norm();
+  for (int joint = 2; joint < kBonesPerFinger && has(tracked, joint) && has(tracked, joint - 1); ++joint) {
+    const Vector3 before = direction(bone(joint - 1)), after = direction(bone(joint));
+    tracked_angles[joint] = std::atan2(before.cross(after).dot(hinge_), before.dot(after));
+    free[static_cast<std::size_t>(joint)] = true;
+    reach_.head(joint + 1) += (bone(joint).end - bone(joint).start).norm();
+  }
+  reach_[1] = reach_[0];
+  const JointLimits limits = joint_limits(finger_);
+  for (int i = 0; i < 4; ++i) {
+    if (!free[static_cast<std::size_t>(i)]) continue;
+    lower_[i] = std::min(0.0, limits.lower[i] - tracked_angles[i]);
+    upper_[i] = std::max(0.0, limits.upper[i] - tracked_angles[i]);
+  }
+}
+
+void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed) {
+  const auto first = static_cast<std::size_t>(capsule_index(finger_, 0));
+  placed_swing_ = swing_;
+  placed_hinge_ = hinge_;
+  const bool turned = tied_ && !(offset == 0.0).all();
+  Matrix3 turn = Matrix3::Identity();
+  if (turned) {
+    const Matrix3 flexed = about(root_, offset[0]);
+    turn = flexed * about(swing_, offset[1]);
+    placed_swing_ = flexed * swing_;
+    placed_hinge_ = turn * hinge_;
+  }
+  const Vector3 moved = tied_ ? shift : Vector3(shift + offset.head<3>().matrix());
+  const Capsule* before = nullptr;
+  Vector3 joint;
+  for (std::size_t bone = 1; bone < kBonesPerFinger; ++bone) {
+    const Capsule& from = tracked.capsules[first + bone];
+    Capsule& to = placed.capsules[first + bone];
+    if (from.radius <= 0.0) continue;
+    if (!turned) {
+      to.start = from.start + moved;
+      to.end = from.end + moved;
+      joints_[bone] = to.start;
+      continue;
+    }
+    joint = before == nullptr ? Vector3(from.start + moved)
+                              : Vector3(joint + turn * (from.start - before->start));
+    if (bone > 1 && offset[static_cast<Eigen::Index>(bone)] != 0.0)
+      turn = turn * about(hinge_, offset[static_cast<Eigen::Index>(bone)]);
+    to.start = joints_[bone] = joint;
+    to.end = joint + turn * (from.end - from.start);
+    before = &from;
+  }
+}
+
+FingerOffset FingerChain::gradient(int bone, const Vector3& x, const Vector3& n) const {
+  if (!tied_) return {n.x(), n.y(), n.z(), 0.0};
+  const Vector3 at_root = (x - joints_[1]).cross(n);
+  FingerOffset gradient(root_.dot(at_root), placed_swing_.dot(at_root), 0.0, 0.0);
+  for (int joint = 2; joint <= bone; ++joint)
+    gradient[joint] = placed_hinge_.dot((x - joints_[static_cast<std::size_t>(joint)]).cross(n));
+  return gradient;
+}
+
+double FingerChain::way(const FingerOffset& change) const {
+  if (!tied_) return change.head<3>().matrix().norm();
+  return (change.abs() * reach_).sum();
+}
+
+FingerOffset FingerChain::swing(double way) const {
+  if (!tied_) return FingerOffset::Constant(way);
+  return way * FingerOffset(1.0, 0.5, 0.5, 0.5) / reach_.max(kShortest);
+}
+
+FingerOffset FingerChain::compliance() const {
+  if (!tied_) return FingerOffset(kLoose, kLoose, kLoose, 0.0);
+  return {kBending, kSideways, kBending, kBending};
+}
+
+}  // namespace mrhi

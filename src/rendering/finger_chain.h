@@ -1,0 +1,48 @@
+#pragma once
+
+#include "joint_limits.h"
+
+namespace mrhi {
+
+/// A tracked finger as a chain: a root joint that flexes and abducts, fixed to the palm, and two hinges.
+/// Joints are turned from where they were tracked, so that bones keep their lengths whatever the offset. All
+/// in world.
+class FingerChain {
+ public:
+  FingerChain() = default;
+  /// As placed with no offset of its own.
+  FingerChain(const Hand& tracked, int finger, const Vector3& shift);
+
+  /// Places the finger's phalanges, its joints turned by `offset` and all shifted by `shift`.
+  void place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed);
+  /// By how much n.x grows with each component of the offset, x a point of bone 1 to 3 as last placed.
+  FingerOffset gradient(int bone, const Vector3& x, const Vector3& n) const;
+  /// No joint of the finger moves farther than this for a change of the offset [m].
+  double way(const FingerOffset& change) const;
+
+  /// How far each joint may turn while the tip moves about as far as `way` [m].
+  FingerOffset swing(double way) const;
+
+  /// Offsets that leave every joint in its limits or, if it was tracked beyond one, let it go no farther. 0
+  /// is always among them.
+  const FingerOffset& lower() const { return lower_; }
+  const FingerOffset& upper() const { return upper_; }
+  /// How readily each component gives way.
+  FingerOffset compliance() const;
+
+ private:
+  void find_axes(const Hand& tracked);
+  void find_limits(const Hand& tracked);
+  bool has(const Hand& hand, int bone) const { return hand.has(capsule_index(finger_, bone)); }
+
+  int finger_ = 0;
+  bool tied_ = false;                            // to the palm: it has a proximal phalanx
+  Vector3 root_, swing_, hinge_;                 // axes of root flexion, abduction and the hinges; unit
+  Vector3 placed_swing_, placed_hinge_;          // the same as last placed
+  std::array<Vector3, kBonesPerFinger> joints_;  // start of each bone as last placed
+  FingerOffset lower_, upper_;                   // see lower()
+  FingerOffset reach_;                           // from each joint to the tip [m]
+  double flexion_ = 0.0, abduction_ = 0.0;       // of the root as tracked [rad]
+};
+
+}  // namespace mrhi

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+
+#include "mr_hand_interaction/collision/near_bodies.h"
+#include "support/finger_angles.h"
+#include "support/fixtures.h"
+
+namespace mrhi::testing {
+
+/// The largest of a kind, and when it was.
+struct Worst {
+  double value = 0.0;
+  double time = 0.0;  // stamp [s]
+
+  void note(double seen, Nanoseconds stamp) {
+    if (seen > value) value = seen, time = to_seconds(stamp);
+  }
+};
+
+/// Looks at the rendered hands after each frame, by other means than they are made by, and keeps the worst.
+class RenderedCheck {
+ public:
+  /// `scene` and its `finder` serve to look for bodies in the way.
+  explicit RenderedCheck(const Scene& scene)
+      : scene_(scene), geometry_(scene), finder_(scene, geometry_, Vector3::Zero()) {}
+
+  void see(const Simulation& simulation) {
+    const FrameResult& result = simulation.result();
+    const std::vector<BodyState>& bodies = simulation.state().bodies;
+    std::map<std::uint32_t, Before> now;
+    std::size_t i = 0;
+    for (std::size_t slot = 0; slot < simulation.state().hands.size(); ++slot) {
+      const HandTrack& track = simulation.state().hands[slot];
+      if (!track.active || i >= result.tracked.size()) continue;
+      const Hand &tracked = result.tracked[i], &shown = result.rendered[i].hand;
+      const auto& touching = result.rendered[i].touching;
+      ++i;
+      ++frames;
+      touched += std::count(touching.begin(), touching.end(), true) > 0;
+      see_bones(tracked, shown, result.stamp);
+      away.note(farthest_joint(tracked, shown), result.stamp);
+      moved_aside += farthest_joint(tracked, shown) > 0.0;
+      const auto before = before_.find(tracked.id);
+      Before entry{result.stamp, tracked, shown, simulation.state().offsets[slot].left > 0.0};
+      const bool near = near_anything(tracked, bodies);
+      if (!near && before != before_.end() && !track.appeared) entry.near_last = before->second.near_last;
+      if (to_seconds(result.stamp - entry.near_last) > kReturns)
+        late.note(farthest_joint(tracked, shown), result.stamp);
+      if (before != before_.end() && !track.appeared)
+        see_way(before->second, tracked, shown, bodies, result.stamp);
+      now[tracked.id] = entry;
+    }
+    depth.note(simulation.deepest_rendered(), result.stamp);
+    before_.swap(now);
+    bodies_before_ = bodies;
+  }
+
+  int frames = 0;       // hands seen
+  int touched = 0;      // of them with a phalanx that touches
+  int moved_aside = 0;  // of them not where they were tracked
+  int jumps = 0;        // of them that jumped
+  int passed = 0;       // of them that did because a body was in the way, or had held the hand back
+  Worst length;         // of a bone, against the tracked one [m]
+  Worst apart;          // ends of bones that are one joint in the tracked hand [m]
+  Worst angle;          // of a joint beyond its limit and beyond where it was tracked [rad]
+  Worst depth;          // in any body [m]
+  Worst jump;           // of a joint in a frame beyond what hand and bodies moved [m]
+  Worst away;           // of a joint from where it was tracked [m]
+  Worst late;           // the same though nothing has been near for long [m]
+
+ private:
+  static constexpr double kReturns = 1.5;  // [s]
+  static constexpr int kParts = 8;
+  /// A finger that is held away is farther from the axis about which the hand turns.
+  static constexpr double kTurning = 1.3;
+  static constexpr double kJump = 0.002;       // [m]
+  static constexpr double kInTheWay = 0.0005;  // [m]
+  struct Before {
+    Nanoseconds stamp;
+    Hand tracked, shown;
+    bool held_back;
+    Nanoseconds near_last = stamp;
+  };
+
+  bool near_anything(const Hand& hand, const std::vector<BodyState>& bodies) const {
+    return !near_bodies(hand, scene_, bodies, 0.01).empty();
+  }
+
+  void see_bones(const Hand& tracked, const Hand& shown, Nanoseconds stamp) {
+    for (std::size_t c = 0; c < kCapsules; ++c) {
+      const Capsule &from = tracked.capsules[c], &to = shown.capsules[c];
+      if (from.radius <= 0.0) continue;
+      length.note(std::abs((to.end - to.start).norm() - (from.end - from.start).norm()), stamp);
+      length.note(std::abs(to.radius - from.radius), stamp);
+      for (std::size_t other = c + 1; other < kPalm; ++other) {
+        if (tracked.capsules[other].radius <= 0.0) continue;
+        if (tracked.capsules[other].start == from.end)
+          apart.note((shown.capsules[other].start - to.end).norm(), stamp);
+        if (tracked.capsules[other].start == from.start)
+          apart.note((shown.capsules[other].start - to.start).norm(), stamp);
+      }
+    }
+    for (int finger = 0; finger < kFingers; ++finger)
+      angle.note(beyond_limits(tracked, shown, finger), stamp);
+  }
+
+  void see_way(const Before& before, const Hand& tracked, const Hand& shown,
+               const std::vector<BodyState>& bodies, Nanoseconds stamp) {
+    const double beyond = farthest_joint(before.shown, shown) -
+                          kTurning * farthest_joint(before.tracked, tracked) - fastest_body(shown, bodies);
+    if (beyond <= kJump) return jump.note(beyond, stamp);
+    if (before.held_back || body_in_the_way(before.shown, shown, bodies)) {
+      ++passed;
+    } else {
+      ++jumps;
+      jump.note(beyond, stamp);
+    }
+  }
+
+  /// Longest way of a surface of the bodies near the hand since the frame before.
+  double fastest_body(const Hand& hand, const std::vector<BodyState>& bodies) const {
+    double fastest = 0.0;
+    for (const int body : near_bodies(hand, scene_, bodies, 0.02)) {
+      const auto b = static_cast<std::size_t>(body);
+      const Pose &from = bodies_before_[b].pose, &to = bodies[b].pose;
+      fastest = std::max(
+          fastest, (to.position - from.position).norm() +
+                       scene_.bodies[b].bounding_radius * to.orientation.angularDistance(from.orientation));
+    }
+    return fastest;
+  }
+
+  /// True if the hand cannot have gone straight from how it was shown to how it is.
+  bool body_in_the_way(const Hand& from, const Hand& to, const std::vector<BodyState>& bodies) const {
+    for (int part = 1; part < kParts; ++part) {
+      const Hand between = blend(from, to, static_cast<double>(part) / kParts);
+      if (deepest_penetration(between, finder_, scene_, bodies) > kInTheWay) return true;
+    }
+    return false;
+  }
+
+  const Scene& scene_;
+  SceneGeometry geometry_;
+  ContactFinder finder_;
+  std::map<std::uint32_t, Before> before_;
+  std::vector<BodyState> bodies_before_;
+};
+
+}  // namespace mrhi::testing
