@@ -32,6 +32,8 @@ struct HandRenderer::Impl {
     clearances.reserve(128);
   }
 
+  void push_out(const HandTrack& track, Nanoseconds stamp, const HandOffset& last, double least,
+                ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
   void keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                 const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
   double settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
@@ -66,39 +68,41 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0};
   const bool away = !offset.zero();
   const bool near = impl.finder.begin(setting, away ? kFarthestPush : kAhead);
-  if (!away && !near) {
-    offset.stamp = stamp;
-    return;
+  HandOffset now;
+  if (away || near) {
+    impl.chain.begin(track.current);
+    impl.clearances.clear();
+    now = returning(offset, stamp, impl.chain);
+    impl.chain.place(now, rendered.hand);
   }
-
-  impl.chain.begin(track.current);
-  impl.clearances.clear();
-  const HandOffset reference = returning(offset, stamp, impl.chain);
-  HandOffset now = reference;
-  impl.chain.place(now, rendered.hand);
   const double least = near ? impl.finder.find(rendered.hand, setting, kAhead, impl.clearances) : 0.0;
-  const bool pushed = least < -kClear;
-  if (pushed) {
-    setting.moved = kAnyway;
-    if (!track.appeared) {
-      impl.before = track.previous;
-      impl.chain_before.begin(track.previous);
-      impl.chain_before.place(offset, impl.before);
-      setting.shown_before = &impl.before;
-      setting.moved = farthest_joint(track.previous, track.current) +
-                      impl.finder.fastest_body(bodies) * to_seconds(stamp - offset.stamp);
-    }
-    impl.finder.begin(setting, kFarthestPush);
-    if (least < -ClearanceFinder::kShallow) impl.begin_anew(setting, reference, now, rendered.hand);
-    impl.keep_out(setting, reference, {offset, kSwingShare * setting.moved + kSwing}, now, rendered.hand);
-    if (impl.left_behind(setting, stamp, now)) {
-      now = HandOffset();
-      rendered.hand = track.current;
-    }
+  if (least < -kClear) {
+    impl.push_out(track, stamp, offset, least, setting, now, rendered.hand);
+  } else {
+    now.left = 0.0;
   }
-  if (!pushed) now.left = 0.0;
+  if (now.zero()) rendered.hand = track.current;
   now.stamp = stamp;
   offset = now;
+}
+
+void HandRenderer::Impl::push_out(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
+                                  double least, ClearanceFinder::Setting& setting, HandOffset& offset,
+                                  Hand& placed) {
+  const HandOffset reference = offset;
+  setting.moved = kAnyway;
+  if (!track.appeared) {
+    before = track.previous;
+    chain_before.begin(track.previous);
+    chain_before.place(last, before);
+    setting.shown_before = &before;
+    setting.moved = farthest_joint(track.previous, track.current) +
+                    finder.fastest_body(setting.bodies) * to_seconds(stamp - last.stamp);
+  }
+  finder.begin(setting, kFarthestPush);
+  if (least < -ClearanceFinder::kShallow) begin_anew(setting, reference, offset, placed);
+  keep_out(setting, reference, {last, kSwingShare * setting.moved + kSwing}, offset, placed);
+  if (left_behind(setting, stamp, offset)) offset = HandOffset();
 }
 
 void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,

@@ -1,31 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-
+#include "support/count_allocations.h"
 #include "support/grips.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Every allocation of this program goes through here: operator new and Eigen's own call malloc.
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-}
 
 namespace mrhi {
 namespace {
 
+using testing::allocations;
 using testing::PinchScene;
 
 /// Allocations in the steps (not in taking and reporting frames) of two seconds of scene (a), once warm.

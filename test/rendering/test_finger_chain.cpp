@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rendering/hand_chain.h"
+#include "support/finger_angles.h"
+#include "support/posed_hand.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+Hand bent_hand(Side side = Side::right) {
+  const Pose wrist{Vector3(0.1, -0.2, 0.3),
+                   Quaternion(Eigen::AngleAxisd(0.8, Vector3(1.0, 2.0, -1.0).normalized()))};
+  return testing::posed_hand(relaxed_posture(), wrist, side);
+}
+
+class Offsets {
+ public:
+  HandOffset next() {
+    HandOffset offset;
+    for (int i = 0; i < 3; ++i) offset.shift[i] = 0.05 * spread_(random_);
+    for (FingerOffset& finger : offset.fingers)
+      for (int i = 0; i < 4; ++i) finger[i] = 0.5 * spread_(random_);
+    return offset;
+  }
+
+ private:
+  std::mt19937 random_{5};
+  std::uniform_real_distribution<double> spread_{-1.0, 1.0};
+};
+
+Hand placed(const Hand& tracked, const HandOffset& offset) {
+  HandChain chain;
+  chain.begin(tracked);
+  Hand hand = tracked;
+  chain.place(offset, hand);
+  return hand;
+}
+
+TEST(FingerChain, keeps_bone_lengths_and_joints_whatever_the_offset) {
+  Offsets offsets;
+  const Hand tracked = bent_hand();
+  for (int i = 0; i < 100; ++i) {
+    const Hand hand = placed(tracked, offsets.next());
+    for (int finger = 0; finger < kFingers; ++finger) {
+      for (int bone = finger == 0 ? 1 : 0; bone < kBonesPerFinger; ++bone) {
+        const auto c = static_cast<std::size_t>(capsule_index(finger, bone));
+        const Capsule &from = tracked.capsules[c], &to = hand.capsules[c];
+        EXPECT_NEAR((to.end - to.start).norm(), (from.end - from.start).norm(), 1e-15);
+        if (bone < 3) {
+          EXPECT_EQ(to.end, hand.capsules[c + 1].start);
+        }
+      }
+    }
+  }
+}
+
+TEST(FingerChain, turns_each_joint_by_its_offset) {
+  Offsets offsets;
+  for (const Side side : {Side::right, Side::left}) {
+    const Hand tracked = bent_hand(side);
+    for (int i = 0; i < 100; ++i) {
+      const HandOffset offset = offsets.next();
+      const Hand hand = placed(tracked, offset);
+      for (int finger = 1; finger < kFingers; ++finger) {
+        const FingerOffset turned =
+            testing::finger_angles(hand, finger) - testing::finger_angles(tracked, finger);
+        const FingerOffset wanted = offset.fingers[static_cast<std::size_t>(finger)];
+        EXPECT_LT((turned - wanted).abs().maxCoeff(), 1e-9) << finger;
+      }
+    }
+  }
+}
+
+TEST(FingerChain, its_gradient_is_the_slope) {
+  constexpr double kStep = 1e-6;
+  Offsets offsets;
+  const Hand tracked = bent_hand();
+  const Vector3 normal = Vector3(0.3, -0.5, 0.8).normalized();
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const auto f = static_cast<std::size_t>(finger);
+    const HandOffset offset = offsets.next();
+    for (int bone = 1; bone < kBonesPerFinger; ++bone) {
+      const auto height = [&](const HandOffset& at) {
+        return normal.dot(placed(tracked, at)
+                              .capsules[static_cast<std::size_t>(capsule_index(finger, bone))]
+                              .axis_point(0.7));
+      };
+      HandChain chain;
+      chain.begin(tracked);
+      Hand hand = tracked;
+      chain.place(offset, hand);
+      const Vector3 point =
+          hand.capsules[static_cast<std::size_t>(capsule_index(finger, bone))].axis_point(0.7);
+      const FingerOffset gradient = chain.finger(finger).gradient(bone, point, normal);
+      for (int i = 0; i < 4; ++i) {
+        HandOffset more = offset, less = offset;
+        more.fingers[f][i] += kStep;
+        less.fingers[f][i] -= kStep;
+        EXPECT_NEAR(gradient[i], (height(more) - height(less)) / (2.0 * kStep), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(FingerChain, stops_at_the_limits_and_where_it_was_tracked_beyond_them) {
+  HandPosture posture = relaxed_posture();
+  posture(kMiddleFlexion, 1) = 130.0 * kDegree;  // beyond 115
+  const Hand tracked = testing::posed_hand(posture, Pose());
+  const FingerChain index(tracked, 1, Vector3::Zero()), middle(tracked, 2, Vector3::Zero());
+  EXPECT_EQ(index.upper()[2], 0.0);
+  EXPECT_NEAR(index.lower()[2], -135.0 * kDegree, 3.0 * kDegree);
+  const FingerOffset angles = testing::finger_angles(tracked, 2);
+  EXPECT_NEAR(middle.upper()[0], 95.0 * kDegree - angles[0], 1e-9);
+  EXPECT_NEAR(middle.lower()[3], -20.0 * kDegree - angles[3], 1e-9);
+}
+
+TEST(FingerChain, without_a_proximal_phalanx_it_is_shifted_by_itself) {
+  Hand tracked;
+  tracked.capsules[static_cast<std::size_t>(capsule_index(1, 3))] = {Vector3::Zero(), Vector3(0.02, 0, 0),
+                                                                     0.008};
+  HandOffset offset;
+  offset.fingers[1] = {0.01, 0.02, 0.03, 0.0};
+  const Capsule distal = placed(tracked, offset).capsules[static_cast<std::size_t>(capsule_index(1, 3))];
+  EXPECT_EQ(distal.start, Vector3(0.01, 0.02, 0.03));
+  EXPECT_LT((distal.end - Vector3(0.03, 0.02, 0.03)).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace mrhi
