@@ -21,13 +21,13 @@ inline RenderedCheck render_all(const Scene& scene, const std::vector<HandFrame>
 
 /// What docs/rendered_hand.md promises. Bone lengths and joints hold to rounding by construction.
 inline void expect_one_hand(const RenderedCheck& check, const std::string& what, double jump = 0.002) {
-  constexpr double kRounding = 1e-9;             // [m]
-  constexpr double kThumb = 2.0 * M_PI / 180.0;  // its bend is measured with what it bends sideways [rad]
-  constexpr double kDeepest = 0.0002;            // [m]
+  constexpr double kRounding = 1e-9;   // [m]
+  constexpr double kAside = 0.005;     // bones are not quite in one plane [rad]
+  constexpr double kDeepest = 0.0002;  // [m]
   EXPECT_GT(check.frames, 10) << what;
   EXPECT_LE(check.length.value, kRounding) << what << " at " << check.length.time;
   EXPECT_LE(check.apart.value, kRounding) << what << " at " << check.apart.time;
-  EXPECT_LE(check.angle.value, kThumb) << what << " at " << check.angle.time;
+  EXPECT_LE(check.angle.value, kAside) << what << " at " << check.angle.time;
   EXPECT_LE(check.depth.value, kDeepest) << what << " at " << check.depth.time;
   EXPECT_LE(check.jump.value, jump) << what << " at " << check.jump.time << ", " << check.jumps << " jumps";
   EXPECT_EQ(check.late.value, 0.0) << what << " at " << check.late.time;

@@ -127,7 +127,7 @@ TEST(OneHand, returns_without_a_snap_or_going_ahead_once_the_object_is_gone) {
     EXPECT_LE(before - now, 0.002);
     before = now;
   });
-  EXPECT_GT(begun, 0.01);
+  EXPECT_GT(begun, 0.003);
   EXPECT_TRUE(hand.offset().zero());
   EXPECT_TRUE(same_bits(hand.simulation().result().tracked[0], hand.simulation().result().rendered[0].hand));
 }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "grasp.h"
+#include "support/fixtures.h"
 #include "synthetic/performance.h"
 
 namespace mrhi {

@@ -65,6 +65,7 @@ class RenderedCheck {
   Worst length;         // of a bone, against the tracked one [m]
   Worst apart;          // ends of bones that are one joint in the tracked hand [m]
   Worst angle;          // of a joint beyond its limit and beyond where it was tracked [rad]
+  Worst thumb_angle;    // the same of the thumb, whose whole bend is measured, sideways too [rad]
   Worst depth;          // in any body [m]
   Worst jump;           // of a joint in a frame beyond what hand and bodies moved [m]
   Worst away;           // of a joint from where it was tracked [m]
@@ -102,7 +103,8 @@ class RenderedCheck {
           apart.note((shown.capsules[other].start - to.start).norm(), stamp);
       }
     }
-    for (int finger = 0; finger < kFingers; ++finger)
+    thumb_angle.note(beyond_limits(tracked, shown, 0), stamp);
+    for (int finger = 1; finger < kFingers; ++finger)
       angle.note(beyond_limits(tracked, shown, finger), stamp);
   }
 
