@@ -39,7 +39,8 @@ void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours&
 
 std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,
                                                       const Pose& body_pose, double margin) const {
-  return closest(capsule, body, shape, {body_pose.orientation.toRotationMatrix(), body_pose.position}, margin);
+  return closest(capsule, body, shape, {body_pose.orientation.toRotationMatrix(), body_pose.position},
+                 margin);
 }
 
 std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,

@@ -76,11 +76,9 @@ bool ClearanceFinder::begin(const Setting& setting, double margin) {
     const Vector3 outside = (hand.min - pose.position).cwiseMax(pose.position - hand.max).cwiseMax(0.0);
     const double reach = body.bounding_radius + margin;
     if (outside.squaredNorm() > reach * reach) continue;
-    for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape) {
-      const int index = static_cast<int>(b);
-      near_.push_back(
-          {index, shape, finder_.placed(index, shape, pose), pose.position, body.bounding_radius});
-    }
+    const ContactFinder::PlacedFrame frame{pose.orientation.toRotationMatrix(), pose.position};
+    for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape)
+      near_.push_back({static_cast<int>(b), shape, frame, pose.position, body.bounding_radius});
   }
   return !near_.empty();
 }
@@ -121,9 +119,9 @@ double ClearanceFinder::find(const Hand& placed, const Setting& setting, double 
     const bool flat = found.s0 < found.s1;
     for (int end = 0; end < (flat ? 2 : 1); ++end) {
       const double s = end == 0 ? found.s0 : found.s1;
-      const ContactKey key{static_cast<std::uint16_t>(near.body), static_cast<std::uint8_t>(setting.slot),
-                           static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(near.shape),
-                           static_cast<std::uint8_t>(flat ? end : s > 0.5)};
+      const ContactKey key{static_cast<std::uint8_t>(flat ? end : s > 0.5),
+                           static_cast<std::uint8_t>(near.shape), static_cast<std::uint8_t>(c),
+                           static_cast<std::uint8_t>(setting.slot), static_cast<std::uint16_t>(near.body)};
       Clearance& clearance = entry(key, found.normal, clearances);
       clearance.s = s;
       clearance.normal = found.normal;

@@ -61,7 +61,8 @@ class OffsetProblem {
     Part& part = parts_[f];
     const FingerOffset swing = fingers_chain.swing(bounds_.swing);
     const FingerOffset &now = from.fingers[f], &before = bounds_.before.fingers[f];
-    part.upper = fingers_chain.upper().min(now + kFarthestTurn).min(before + swing);
+    part.upper =
+        fingers_chain.upper().min(now + kFarthestTurn).min(before + swing).max(fingers_chain.lower());
     part.lower = fingers_chain.lower().max(now - kFarthestTurn).max(before - swing).min(part.upper);
     part.compliance = fingers_chain.compliance();
     part.free = reference.fingers[f];
