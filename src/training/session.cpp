@@ -40,7 +40,7 @@ std::uint64_t participant_place(const std::string& participant) {
   return number > 0 ? number - 1 : 0;
 }
 
-Session::Session(Task task, SessionHeader header, std::uint64_t place, const std::string& folder,
+Session::Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
                  Nanoseconds now)
     : task_(std::make_unique<const Task>(std::move(task))),
       folder_(folder, complete_header(header, *task_, place)),

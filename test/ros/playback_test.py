@@ -2,7 +2,6 @@
 """record.launch and playback.launch: what was recorded comes again when it is played, also when it loops."""
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -17,6 +16,7 @@ from rosgraph_msgs.msg import Clock
 from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from launching import Launch  # noqa: E402
 from waiting import wait_until  # noqa: E402
 
 DEVICE = "/leap_motion/leap_device"
@@ -24,20 +24,6 @@ MOUNT = "0.01 0 0 0.7071067811865476 0 0 0.7071067811865476"  # not the default:
 PUSHED = 0.01  # m
 TOLERANCE = 1e-9  # m: positions of two runs with the same input; they should be the same to the bit
 EQUAL_FRAMES = 100  # at least, or the comparison has compared too little
-
-
-class Launch:
-    """One of the package's launch files, until the end of the block."""
-
-    def __init__(self, file, *arguments):
-        self.command = ["roslaunch", "--sigint-timeout", "5", "mr_hand_interaction", file] + list(arguments)
-
-    def __enter__(self):
-        self.process = subprocess.Popen(self.command)
-
-    def __exit__(self, *_):
-        self.process.send_signal(signal.SIGINT)
-        self.process.wait(60)
 
 
 def subscribed(node, topic):

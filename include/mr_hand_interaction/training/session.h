@@ -24,7 +24,8 @@ class Session {
  public:
   /// `header`: gravity, task and order are those of the task. `place`: see participant_place. `now`: stamps
   /// are counted from here; a session that goes on counts on from its last event.
-  Session(Task task, SessionHeader header, std::uint64_t place, const std::string& folder, Nanoseconds now);
+  Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
+          Nanoseconds now);
 
   SessionPhase phase() const { return phase_; }
   const Task& task() const { return *task_; }

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/InteractionEvent.h>
+#include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/TrainingStatus.h>
+#include <ros/ros.h>
+
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/ros/training_parameters.h"
+#include "mr_hand_interaction/ros/training_scene.h"
+#include "mr_hand_interaction/training/session.h"
+
+namespace mrhi {
+
+/// Runs a session with the objects of an interaction_node, and shows how far it is. One thread.
+class TrainingServer {
+ public:
+  /// Throws SceneError for a task that cannot be loaded, SessionError for a folder that cannot be used.
+  TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters);
+  ~TrainingServer();
+
+ private:
+  void advertise_services(ros::NodeHandle& private_node);
+  void take(const mr_hand_interaction::ObjectStateArray& message);
+  void take_event(const mr_hand_interaction::InteractionEvent& event);
+  Observation observed(const mr_hand_interaction::ObjectStateArray& message,
+                       const mr_hand_interaction::ObjectState& object);
+  void tick();
+
+  /// Empty, or what went wrong.
+  std::string begin_trial();
+  std::string pause(bool paused);
+  std::string skip();
+  std::string repeat();
+  std::string next();
+  void note_end();
+
+  mr_hand_interaction::TrainingStatus status() const;
+  void publish();
+
+  Session session_;
+  TrainingScene scene_;
+  std::string participant_, fixed_frame_ = "world";
+  double auto_next_;
+  ros::WallTime next_;  ///< when the next trial begins by itself; zero: when told to
+  bool paused_ = false;
+  bool at_start_ = false;  ///< the running trial's object has been seen where it starts
+
+  mr_hand_interaction::ContactArray contacts_;
+  int tracking_losses_ = 0;
+  bool put_back_ = false;
+
+  ros::Publisher status_, markers_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace mrhi

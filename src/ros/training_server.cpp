@@ -1,0 +1,248 @@
+#include "mr_hand_interaction/ros/training_server.h"
+
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "training_markers.h"
+
+namespace mrhi {
+namespace {
+
+constexpr int kQueue = 100;
+constexpr double kFresh = 0.1;       // contacts that are older say nothing [s]
+constexpr double kStartRoom = 0.02;  // an object this near its start has been put there [m]
+constexpr double kStartDelay = 0.5;  // it may have moved this long before it is first seen [s]
+const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
+
+Task task_of(const TrainingParameters& parameters) {
+  std::vector<std::string> folders;
+  for (const std::string& share : share_folders()) folders.push_back(share + "/config/tasks");
+  return load_task(find_task_file(parameters.task, folders));
+}
+
+SessionHeader header_of(const TrainingParameters& parameters) {
+  SessionHeader header = parameters.header;
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  header.started = text;
+  header.software = MR_HAND_INTERACTION_VERSION;
+  return header;
+}
+
+std::uint64_t place_of(const TrainingParameters& parameters) {
+  if (parameters.number) return static_cast<std::uint64_t>(*parameters.number - 1);
+  return participant_place(parameters.header.participant);
+}
+
+Nanoseconds now() {
+  return from_ros_time(ros::Time::now());
+}
+
+}  // namespace
+
+TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node,
+                               const TrainingParameters& parameters)
+    : session_(task_of(parameters), header_of(parameters), place_of(parameters), parameters.folder, now()),
+      scene_(node, parameters.simulation, session_.task()),
+      participant_(parameters.header.participant),
+      auto_next_(parameters.auto_next) {
+  for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
+  if (parameters.auto_start) next_ = ros::WallTime::now();
+  status_ = node.advertise<mr_hand_interaction::TrainingStatus>("training/status", kQueue, true);
+  markers_ = node.advertise<visualization_msgs::MarkerArray>("training/markers", 10);
+  advertise_services(private_node);
+  using Contacts = mr_hand_interaction::ContactArray;
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  subscribers_ = {node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
+                  node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
+                  node.subscribe<Contacts>(
+                      "contacts", kQueue, [this](const Contacts::ConstPtr& message) { contacts_ = *message; },
+                      nullptr, hints)};
+  timer_ = node.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { tick(); });
+}
+
+TrainingServer::~TrainingServer() {
+  try {
+    session_.abort(now());
+  } catch (const std::exception& error) {
+    ROS_ERROR("%s", error.what());
+  }
+}
+
+void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
+  using Trigger = std_srvs::Trigger;
+  using SetBool = std_srvs::SetBool;
+  const auto answer = [this](const std::string& wrong, auto& response) {
+    response.success = wrong.empty();
+    response.message = wrong;
+    publish();
+    return true;
+  };
+  const auto offer = [&](const char* name, std::string (TrainingServer::*action)()) {
+    services_.push_back(private_node.advertiseService<Trigger::Request, Trigger::Response>(
+        name, [this, answer, action](Trigger::Request&, Trigger::Response& response) {
+          return answer((this->*action)(), response);
+        }));
+  };
+  offer("skip", &TrainingServer::skip);
+  offer("repeat", &TrainingServer::repeat);
+  offer("next", &TrainingServer::next);
+  services_.push_back(private_node.advertiseService<SetBool::Request, SetBool::Response>(
+      "pause", [this, answer](SetBool::Request& request, SetBool::Response& response) {
+        return answer(pause(request.data), response);
+      }));
+}
+
+void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) {
+  std::set<std::string> names;
+  for (const auto& object : message.objects) names.insert(object.name);
+  scene_.note_objects(std::move(names));
+  fixed_frame_ = message.header.frame_id;
+  if (session_.phase() != SessionPhase::running) return;
+  for (const auto& object : message.objects) {
+    if (object.name != session_.object().name) continue;
+    const Observation seen = observed(message, object);
+    const TaskObject& asked = session_.object();
+    at_start_ |= (seen.pose.position - asked.start.position).norm() <
+                 kStartRoom + kStartDelay * asked.twist.linear.norm();
+    if (!at_start_) return;
+    session_.update(seen);
+    tracking_losses_ = 0;
+    put_back_ = false;
+    if (session_.phase() != SessionPhase::running) note_end();
+    return;
+  }
+}
+
+Observation TrainingServer::observed(const mr_hand_interaction::ObjectStateArray& message,
+                                     const mr_hand_interaction::ObjectState& object) {
+  Observation seen;
+  seen.stamp = from_ros_time(message.header.stamp);
+  seen.pose = from_message(object.pose);
+  seen.twist = {from_message(object.twist.linear), from_message(object.twist.angular)};
+  seen.held = object.held;
+  seen.tracking_losses = tracking_losses_;
+  seen.put_back = put_back_;
+  if (std::abs((message.header.stamp - contacts_.header.stamp).toSec()) > kFresh) return seen;
+  double pressing = 0.0;
+  for (const auto& contact : contacts_.contacts) {
+    if (contact.object != object.name) continue;
+    seen.touched = true;
+    pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+  }
+  seen.grip_force = 0.5 * pressing;
+  return seen;
+}
+
+void TrainingServer::take_event(const mr_hand_interaction::InteractionEvent& event) {
+  if (!at_start_) return;
+  tracking_losses_ += event.kind == event.HAND_LOST;
+  put_back_ |= event.kind == event.OUT_OF_BOUNDS && event.object == session_.object().name;
+}
+
+void TrainingServer::tick() {
+  const ros::WallTime time = ros::WallTime::now();
+  if (session_.phase() == SessionPhase::ready && !paused_ && !next_.isZero() && time >= next_) {
+    const std::string wrong = begin_trial();
+    if (!wrong.empty()) ROS_WARN_THROTTLE(10.0, "the trial cannot begin yet: %s", wrong.c_str());
+    next_ = wrong.empty() ? ros::WallTime() : time + kRetry;
+  }
+  publish();
+}
+
+std::string TrainingServer::begin_trial() {
+  const std::string wrong = scene_.prepare(session_.object());
+  if (!wrong.empty()) return wrong;
+  tracking_losses_ = 0;
+  put_back_ = at_start_ = false;
+  session_.begin(now());
+  return "";
+}
+
+std::string TrainingServer::pause(bool paused) {
+  const std::string wrong = scene_.pause(paused);
+  if (!wrong.empty()) return wrong;
+  paused_ = paused;
+  session_.pause(paused, now());
+  return "";
+}
+
+std::string TrainingServer::skip() {
+  if (session_.phase() == SessionPhase::finished) return "all trials are done; allowed: repeat";
+  session_.skip(now());
+  note_end();
+  return "";
+}
+
+std::string TrainingServer::repeat() {
+  session_.repeat(now());
+  note_end();
+  return next();
+}
+
+std::string TrainingServer::next() {
+  if (paused_) return "the session is paused; allowed: pause with false, then next";
+  if (session_.phase() == SessionPhase::running) return "a trial is running; allowed: pause, skip, repeat";
+  if (session_.phase() == SessionPhase::finished) return "all trials are done; allowed: repeat";
+  next_ = ros::WallTime::now();
+  return "";
+}
+
+void TrainingServer::note_end() {
+  at_start_ = false;
+  next_ = auto_next_ < 0.0 ? ros::WallTime() : ros::WallTime::now() + ros::WallDuration(auto_next_);
+  const std::optional<TrialRow>& last = session_.last();
+  if (last)
+    ROS_INFO("trial %d, %s: %s after %.1f s, grasped %d times, dropped %d times", last->trial,
+             last->object.c_str(), to_string(last->result), last->measures.completion_time,
+             last->measures.attempts, last->measures.drops);
+  if (session_.phase() == SessionPhase::finished)
+    ROS_INFO("All trials are done. The questions: rosrun mr_hand_interaction ask_ratings %s",
+             session_.folder().path().c_str());
+}
+
+mr_hand_interaction::TrainingStatus TrainingServer::status() const {
+  const Task& task = session_.task();
+  const Trial& trial = session_.trial();
+  mr_hand_interaction::TrainingStatus status;
+  status.header.stamp = ros::Time::now();
+  status.header.frame_id = fixed_frame_;
+  status.phase = static_cast<std::uint8_t>(paused_ ? SessionPhase::paused : session_.phase());
+  status.stage = static_cast<std::uint8_t>(trial.stage());
+  status.participant = participant_;
+  status.task = task.name;
+  status.object = session_.object().name;
+  status.trials = static_cast<std::uint32_t>(session_.trials());
+  status.trial = std::min(static_cast<std::uint32_t>(session_.position() + 1), status.trials);
+  status.repetition = static_cast<std::uint32_t>(session_.position() / task.objects.size() + 1);
+  status.goal = static_cast<std::uint32_t>(trial.goal() + 1);
+  status.goals = static_cast<std::uint32_t>(task.goals.size());
+  status.place = static_cast<std::uint32_t>(task.place_number(trial.goal()));
+  status.places = static_cast<std::uint32_t>(task.places());
+  status.inside = trial.inside();
+  status.progress = trial.progress();
+  status.remaining = trial.remaining();
+  status.elapsed = trial.elapsed();
+  status.attempts = static_cast<std::uint32_t>(trial.measures().attempts);
+  status.drops = static_cast<std::uint32_t>(trial.measures().drops);
+  status.instruction = instruction_now(session_, paused_, !next_.isZero());
+  if (session_.last()) status.result = to_string(session_.last()->result);
+  return status;
+}
+
+void TrainingServer::publish() {
+  const mr_hand_interaction::TrainingStatus message = status();
+  status_.publish(message);
+  if (markers_.getNumSubscribers() > 0)
+    markers_.publish(training_markers(session_, scene_.body(session_.object().name), message));
+}
+
+}  // namespace mrhi

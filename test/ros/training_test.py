@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""training.launch: a trial through the real nodes, its log, and what the experimenter does."""
+import csv
+import glob
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import roslib.packages
+import rospy
+import rostest
+from std_srvs.srv import SetBool, Trigger
+from visualization_msgs.msg import MarkerArray
+
+from mr_hand_interaction.msg import ObjectStateArray, TrainingStatus
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+from launching import Launch  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+SCRIPTS = os.path.join(HERE, "..", "..", "scripts")
+RUN = 150.0  # s; a run of the scripted hand lasts 9, and the first is without a trial
+
+
+def trials(folder):
+    with open(os.path.join(folder, "trials.csv"), newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def has_pandas():
+    return subprocess.call([sys.executable, "-c", "import pandas, scipy, matplotlib"], stderr=subprocess.DEVNULL) == 0
+
+
+class TrainingTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("training_test")
+        cls.subscribers = [rospy.Subscriber("training/status", TrainingStatus, cls.take_status),
+                           rospy.Subscriber("training/markers", MarkerArray, cls.take_markers),
+                           rospy.Subscriber("objects", ObjectStateArray, cls.take_objects)]
+
+    def setUp(self):
+        self.parent = tempfile.mkdtemp()
+        self.folder = os.path.join(self.parent, "session")
+        self.clear()
+
+    def tearDown(self):
+        shutil.rmtree(self.parent)
+
+    @classmethod
+    def clear(cls):
+        cls.status, cls.seen, cls.layers, cls.objects = None, set(), set(), []
+
+    @classmethod
+    def take_status(cls, message):
+        cls.status = message
+        cls.seen.add((message.phase, message.stage, message.place, message.inside))
+
+    @classmethod
+    def take_markers(cls, message):
+        cls.layers.update(marker.ns for marker in message.markers)
+
+    @classmethod
+    def take_objects(cls, message):
+        cls.objects = [thing.name for thing in message.objects]
+
+    def training(self, *arguments):
+        return Launch("training.launch", "participant:=P01", "rviz:=false", "folder:=" + self.folder, *arguments)
+
+    def test_scripted_hand_completes_a_trial_and_the_session_can_be_analysed(self):
+        with self.training("hands:=demo", "task:=" + os.path.join(HERE, "training_carry.yaml")):
+            wait_until(lambda: self.status and self.status.result, "the end of a trial", RUN)
+            self.assertEqual(self.status.result, "completed")
+            self.assertEqual(self.status.phase, TrainingStatus.FINISHED)
+            wait_until(lambda: glob.glob(self.folder + "/hands_*.bag*"), "the bag")
+        for place in (1, 2, 3):
+            self.assertIn((TrainingStatus.RUNNING, TrainingStatus.MAINTENANCE, place, True), self.seen)
+        self.assertLessEqual({"target", "places", "path", "instructions", "result"}, self.layers)
+        (row,) = trials(self.folder)
+        self.assertEqual((row["object"], row["result"], row["drops"]), ("cube", "completed", "0"))
+        self.assertEqual(row["attempts"], "1")
+        # From the grasp on the hand carries the cube 8 cm up, and turns it.
+        self.assertAlmostEqual(float(row["path_length"]), 0.08, delta=0.02)
+        self.assertGreater(float(row["grip_force_max"]), float(row["grip_force_mean"]))
+        self.assertGreater(float(row["grip_force_mean"]), 0.05)
+        self.assertLess(float(row["release_drift"]), 0.05)
+        self.check_analysis()
+
+    def check_analysis(self):
+        if not has_pandas():
+            print("analyse_study is not tried: python3-pandas, -scipy or -matplotlib is absent")
+            return
+        results = os.path.join(self.parent, "results")
+        subprocess.check_call([sys.executable, os.path.join(SCRIPTS, "analyse_study"), self.folder,
+                               "--output", results])
+        with open(os.path.join(results, "trials.csv")) as file:
+            self.assertIn("cube", file.read())
+
+    def call(self, name, *values):
+        kind = SetBool if values else Trigger
+        rospy.wait_for_service("training_node/" + name, 30.0)
+        return rospy.ServiceProxy("training_node/" + name, kind)(*values)
+
+    def begin(self):
+        self.assertTrue(self.call("next").success)
+        self.wait_for(TrainingStatus.RUNNING)
+        wait_until(lambda: self.status.elapsed > 0.0, "the trial's clock")
+
+    def wait_for(self, phase):
+        wait_until(lambda: self.status and self.status.phase == phase, "phase %d" % phase)
+
+    def test_next_pause_skip_and_repeat(self):
+        with self.training("record:=false", "auto_next:=-1"):
+            self.wait_for(TrainingStatus.READY)
+            self.begin()
+            self.assertFalse(self.call("next").success, "a trial is running")
+            self.assertEqual(self.objects, [self.status.object])
+            self.assertTrue(self.call("pause", True).success)
+            self.wait_for(TrainingStatus.PAUSED)
+            elapsed, count = self.status.elapsed, len(self.seen)
+            self.assertTrue(self.call("pause", False).success)
+            wait_until(lambda: self.status.elapsed > elapsed, "time that goes on")
+            first = self.status.object
+            self.assertTrue(self.call("repeat").success)
+            wait_until(lambda: self.status.result == "aborted" and self.status.elapsed > 0.0, "the trial anew")
+            self.assertEqual(self.status.object, first)
+            self.press("s")
+            wait_until(lambda: self.status.trial == 2, "the next trial")
+            self.begin()
+            wait_until(lambda: self.objects == [self.status.object], "its object alone")
+            self.assertNotEqual(self.status.object, first)
+            self.assertGreaterEqual(len(self.seen), count)
+        results = [(row["trial"], row["result"]) for row in trials(self.folder)]
+        self.assertEqual(results, [("1", "aborted"), ("2", "skipped"), ("3", "aborted")])
+
+    def press(self, key):
+        subprocess.run([sys.executable, os.path.join(SCRIPTS, "training_keys")], input=key.encode(), check=True,
+                       stdout=subprocess.DEVNULL, timeout=60)
+
+    def test_goes_on_after_it_was_killed(self):
+        with self.training("record:=false", "auto_next:=-1"):
+            self.wait_for(TrainingStatus.READY)
+            self.assertTrue(self.call("skip").success)
+            self.begin()
+            self.kill("training_node")
+        self.clear()
+        self.assertEqual([row["result"] for row in trials(self.folder)], ["skipped"])
+        with self.training("record:=false", "auto_next:=-1"):
+            self.wait_for(TrainingStatus.READY)
+            self.assertEqual(self.status.trial, 2)
+            self.begin()
+            self.assertTrue(self.call("skip").success)
+            wait_until(lambda: self.status.trial == 3, "the last trial")
+        self.assertEqual([row["trial"] for row in trials(self.folder)], ["1", "3"], "2 was killed")
+
+    @staticmethod
+    def kill(name):
+        uri = rosgraph.Master("/training_test").lookupNode("/" + name)
+        os.kill(ServerProxy(uri).getPid("/training_test")[2], signal.SIGKILL)
+
+    def test_refuses_the_folder_of_another_participant(self):
+        with self.training("record:=false"):
+            self.wait_for(TrainingStatus.READY)
+        command = roslib.packages.find_node("mr_hand_interaction", "training_node") + [
+            "_participant:=P02", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
+            "_folder:=" + self.folder, "__name:=refused"]
+        answer = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn(b"participant", answer.stdout)
+        self.assertIn(b"'P02'", answer.stdout)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "training", TrainingTest)
