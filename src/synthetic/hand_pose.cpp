@@ -12,6 +12,10 @@ Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dors
   return {wrist, Quaternion(axes)};
 }
 
+Quaternion turn(double degrees, const Vector3& axis) {
+  return Quaternion(Eigen::AngleAxisd(degrees * M_PI / 180.0, axis));
+}
+
 HandPosture posture_of_degrees(const HandPosture& degrees) {
   return (M_PI / 180.0) * degrees;
 }

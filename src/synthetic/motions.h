@@ -13,6 +13,9 @@ inline Vector3 scene_object() {
 /// Hand frame at `wrist` whose x is along `fingers` and whose z is as near to `dorsal` as that allows.
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal);
 
+/// Turn about a unit axis.
+Quaternion turn(double degrees, const Vector3& axis);
+
 /// Angles in degrees, a row per joint.
 HandPosture posture_of_degrees(const HandPosture& degrees);
 

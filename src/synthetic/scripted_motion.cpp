@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "motions.h"
 #include "mr_hand_interaction/synthetic/minimum_jerk.h"
@@ -33,8 +32,17 @@ HandPosture posture_between(const Keyframe& from, const Keyframe& to, double sha
   return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
 }
 
-std::pair<Pose, HandPosture> hand_at(const ScriptedMotion& motion, double time) {
-  const auto& keys = motion.keyframes;
+/// Left hand's frame for what a right hand does, mirrored in world's x.
+Pose mirrored(const Pose& wrist) {
+  const Quaternion& q = wrist.orientation;
+  const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
+  return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
+          Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
+}
+
+}  // namespace
+
+HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {
   const auto after = [](double t, const Keyframe& key) { return t < key.time; };
   const auto next = std::upper_bound(keys.begin(), keys.end(), time, after);
   if (next == keys.end()) return {keys.back().wrist, keys.back().posture};
@@ -48,16 +56,6 @@ std::pair<Pose, HandPosture> hand_at(const ScriptedMotion& motion, double time) 
       from.wrist.orientation.slerp(share, to.wrist.orientation).normalized()};
   return {wrist, posture_between(from, to, share)};
 }
-
-/// Left hand's frame for what a right hand does, mirrored in world's x.
-Pose mirrored(const Pose& wrist) {
-  const Quaternion& q = wrist.orientation;
-  const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
-  return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
-          Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
-}
-
-}  // namespace
 
 std::vector<std::string> motion_names() {
   std::vector<std::string> names;
@@ -89,7 +87,7 @@ JointsFrame sample(const ScriptedMotion& motion, Side side, Nanoseconds time, co
   const Nanoseconds run = time / period;
   const double in_run = to_seconds(time - run * period);
   if (time < 0 || in_run > motion.run_time()) return frame;
-  const auto [wrist, posture] = hand_at(motion, in_run);
+  const auto [wrist, posture] = hand_at(motion.keyframes, in_run);
   const Pose in_world = side == Side::left ? mirrored(wrist) : wrist;
   frame.hands.push_back(hand_joints(human_hand(), side, device_in_world.inverse() * in_world, posture));
   frame.hands.back().id = static_cast<std::uint32_t>(run + 1);

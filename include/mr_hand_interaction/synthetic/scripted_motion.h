@@ -18,6 +18,14 @@ struct Keyframe {
   double via_share = 0.0;
 };
 
+struct HandPlace {
+  Pose wrist;  ///< right hand's frame in world
+  HandPosture posture;
+};
+
+/// The hand at a time of the way through the keyframes; before the first and after the last it rests there.
+HandPlace hand_at(const std::vector<Keyframe>& keyframes, double time);
+
 /// A scripted motion of one right hand, made for one shipped scene. A function of time alone.
 struct ScriptedMotion {
   std::string name;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
@@ -11,18 +12,16 @@ namespace mrhi {
 /// bits.
 class TrackingNoise {
  public:
-  TrackingNoise(double amplitude, std::uint64_t seed) : amplitude_(amplitude), state_(seed) {}
+  TrackingNoise(double amplitude, std::uint64_t seed) : amplitude_(amplitude), random_(seed) {}
 
   /// Disturbs a frame; frames in the order of their stamps.
   void apply(JointsFrame& frame);
 
  private:
   void disturb(HandJoints& hand, const HandJoints* before, double elapsed);
-  double gaussian();
-  Vector3 gaussian_vector(double deviation);
 
   double amplitude_;
-  std::uint64_t state_;
+  Random random_;
   JointsFrame previous_;
 };
 

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "mr_hand_interaction/scene/body.h"
+#include "mr_hand_interaction/synthetic/operator_skill.h"
+#include "mr_hand_interaction/synthetic/random.h"
+#include "mr_hand_interaction/synthetic/scripted_grasp.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
+
+namespace mrhi {
+
+/// What there is to see at one time.
+struct Sight {
+  Pose object;                   ///< in world
+  Twist twist;                   ///< world axes
+  std::optional<Vector3> place;  ///< where the object is wanted; nothing: it is to be let go
+};
+
+/// A program in a person's place: takes an object, carries it where it is wanted and lets it go, by what it
+/// saw a reaction time ago. It feels nothing. A right hand; the same seed and sights give the same bits.
+class SimulatedOperator {
+ public:
+  enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
+
+  /// The object is one that shipped_grasp() knows. Throws std::invalid_argument otherwise.
+  SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed);
+
+  /// The hand in world at `time` [s], which increases from call to call.
+  HandPlace move(double time, const Sight& sight);
+
+  Phase phase() const { return phase_; }
+  /// Times that it noticed the object out of its hand while it meant to hold it.
+  int losses_noticed() const { return losses_noticed_; }
+
+ private:
+  struct Moment {
+    double time;
+    Sight sight;
+    Pose wrist;
+  };
+  struct Tremor {
+    double frequency, phase;
+    Vector3 amplitude;
+  };
+
+  void decide(double time, const Moment& seen);
+  void watch(double time, const Moment& seen);
+  void reach(double time, const Moment& seen);
+  void grasp(double time, const Moment& seen);
+  void carry(double time, const Moment& seen);
+  void follow_up(double time, const Moment& seen);
+  void let_go(double time);
+  void lose(double time);
+  void prepare_grasp();
+  Pose wrist_about(const Pose& object);
+  void plan(Phase phase, const Moment& seen, const Vector3& drift = Vector3::Zero());
+  void then(double duration, const Pose& wrist, const HandPosture& posture);
+  bool arrived(double time) const { return time >= began_ + way_.back().time; }
+  bool is_astray(const Moment& seen) const;
+  bool is_in_hand(const Moment& seen) const;
+  double movement_time(double distance, double width) const;
+  Vector3 trembling(double time) const;
+
+  OperatorSkill skill_;
+  Grasp usual_;                    ///< of the object as it lies in its shipped scene
+  std::vector<Quaternion> turns_;  ///< that leave the object looking as it did
+  Random random_;
+  std::vector<Tremor> tremor_;
+  double firmness_ = 1.0;  ///< closes deeper after a loss
+
+  std::optional<GraspPostures> postures_;
+  Pose misplaced_;                      ///< the grasp against where it should be, in the object's frame
+  Vector3 retreat_ = Vector3::UnitZ();  ///< in world
+  Vector3 in_hand_ = Vector3::Zero();   ///< where the object is to be in the wrist's frame
+
+  Phase phase_ = Phase::watching;
+  std::deque<Moment> past_;  ///< as long as the reaction time
+  double began_ = 0.0;       ///< the way [s]
+  std::vector<Keyframe> way_;
+  Vector3 drift_ = Vector3::Zero();  ///< of all the way, with an object that drifts [m/s]
+  Moment aim_{};                     ///< that the way was planned by
+  HandPlace now_;
+  Vector3 velocity_ = Vector3::Zero();  ///< of the wrist
+  double last_time_ = 0.0;
+  int losses_noticed_ = 0;
+};
+
+/// Turns of a body of one box about its centre that leave its outline as it is, the identity first; of others
+/// the identity alone.
+std::vector<Quaternion> box_symmetries(const Body& body);
+
+}  // namespace mrhi

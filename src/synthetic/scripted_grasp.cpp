@@ -1,0 +1,139 @@
+#include "mr_hand_interaction/synthetic/scripted_grasp.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "motions.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kNearly =
+    0.003;  // [m] mean gap from which the fingers close slowly, so that they touch gently
+
+/// All tips at `share` of their depths; below 0 they are off the surface.
+HandPosture pressed(Grasp grasp, double share) {
+  for (FingertipContact& contact : grasp.contacts) contact.depth *= share;
+  return place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred);
+}
+
+// The thumb bears against three fingers opposite it, or against four round a ball, which push obliquely.
+constexpr double kThumbDepth = 0.006, kFingerDepth = 0.002;
+constexpr double kBallThumbDepth = 0.006, kBallFingerDepth = 0.00198;
+
+/// Thumb on the near face (-y), three fingers on the far one of a body `width` thick, the hand above.
+std::vector<FingertipContact> opposed_contacts(double width, double spacing) {
+  const double y = 0.5 * width;
+  const Vector3 far(0.0, 1.0, 0.0);
+  return {{0, {0.0, -y, 0.0}, -far, kThumbDepth},
+          {1, {-spacing, y, 0.0}, far, kFingerDepth},
+          {2, {0.0, y, 0.0}, far, kFingerDepth},
+          {3, {spacing, y, 0.0}, far, kFingerDepth}};
+}
+
+FingertipContact ball_contact(int finger, double azimuth, double depth) {
+  constexpr double kRadius = 0.03;
+  const double a = azimuth * M_PI / 180.0;
+  const Vector3 normal(std::sin(a), std::cos(a), 0.0);
+  return {finger, kRadius * normal, normal, depth};
+}
+
+/// All five fingertips on the equator, so that they cannot squeeze the ball out; the palm above.
+Grasp ball_grasp() {
+  HandPosture preferred;
+  preferred << 28, 4, 0, -2, -6,  //
+      0, 40, 42, 42, 42,          //
+      15, 40, 42, 42, 40,         //
+      30, 28, 28, 28, 28,         //
+      30, 0, 0, 0, 0;
+  return {hand_pose({0.0372, -0.0292, 0.0985}, {-0.342, 0.848, -0.405}, {0.099, 0.462, 0.881}),
+          {ball_contact(0, 180.0, kBallThumbDepth), ball_contact(1, -57.0, kBallFingerDepth),
+           ball_contact(2, -17.0, kBallFingerDepth), ball_contact(3, 20.0, kBallFingerDepth),
+           ball_contact(4, 54.0, kBallFingerDepth)},
+          posture_of_degrees(preferred),
+          0.018,
+          Vector3::UnitZ()};
+}
+
+Grasp cube_grasp() {
+  HandPosture preferred;
+  preferred << 25, 0, 0, 0, -4,  //
+      0, 50, 50, 50, 55,         //
+      15, 35, 38, 38, 45,        //
+      30, 25, 25, 25, 30,        //
+      30, 0, 0, 0, 0;
+  return {hand_pose({0.0117, -0.0406, 0.1056}, {-0.122, 0.925, -0.359}, {-0.137, 0.342, 0.929}),
+          opposed_contacts(0.05, 0.0175), posture_of_degrees(preferred), 0.018, Vector3::UnitZ()};
+}
+
+Grasp long_grasp() {
+  HandPosture preferred;
+  preferred << 25, 0, 0, 0, -4,  //
+      5, 50, 50, 50, 55,         //
+      15, 38, 38, 38, 45,        //
+      30, 25, 25, 25, 30,        //
+      35, 0, 0, 0, 0;
+  const Grasp level{hand_pose({0.0186, -0.0443, 0.1067}, {-0.296, 0.878, -0.377}, {-0.246, 0.311, 0.918}),
+                    opposed_contacts(0.02, 0.018), posture_of_degrees(preferred), 0.018, Vector3::UnitZ()};
+  return level.turned(turn(90.0, Vector3::UnitY()));
+}
+
+Grasp flat_grasp() {
+  HandPosture preferred;
+  preferred << 30, 0, 0, 0, -2,  //
+      5, 60, 60, 60, 55,         //
+      15, 35, 38, 38, 40,        //
+      25, 22, 22, 22, 22,        //
+      30, 0, 0, 0, 0;
+  const Vector3 up = Vector3::UnitZ();
+  return {hand_pose({0.001, -0.0859, -0.0371}, {0.278, 0.774, -0.568}, {0.399, -0.631, -0.665}),
+          {{0, {0.0, -0.010, 0.006}, up, kThumbDepth},
+           {1, {0.018, -0.010, -0.006}, -up, kFingerDepth},
+           {2, {0.0, -0.010, -0.006}, -up, kFingerDepth},
+           {3, {-0.018, -0.010, -0.006}, -up, kFingerDepth}},
+          posture_of_degrees(preferred),
+          0.015,
+          -Vector3::UnitY()};
+}
+
+struct GraspEntry {
+  const char* object;
+  Grasp (*make)();
+};
+constexpr GraspEntry kGrasps[] = {
+    {"cube", cube_grasp}, {"ball", ball_grasp}, {"long_cuboid", long_grasp}, {"flat_cuboid", flat_grasp}};
+
+}  // namespace
+
+Grasp Grasp::turned(const Quaternion& by) const {
+  Grasp grasp = *this;
+  grasp.wrist = Pose{Vector3::Zero(), by} * wrist;
+  for (FingertipContact& contact : grasp.contacts) {
+    contact.point = by * contact.point;
+    contact.normal = by * contact.normal;
+  }
+  grasp.retreat = by * retreat;
+  return grasp;
+}
+
+GraspPostures::GraspPostures(const Grasp& grasp) {
+  double mean_depth = 0.0;
+  for (const FingertipContact& contact : grasp.contacts) mean_depth += contact.depth;
+  mean_depth /= static_cast<double>(grasp.contacts.size());
+  open = place_fingertips(human_hand(), grasp.wrist, grasp.contacts, grasp.opening, grasp.preferred);
+  near = pressed(grasp, -kNearly / mean_depth);
+  touching = pressed(grasp, 0.0);
+  pressing = pressed(grasp, 1.0);
+  touching_share = kNearly / (kNearly + mean_depth);
+}
+
+Grasp shipped_grasp(const std::string& object) {
+  std::string known;
+  for (const GraspEntry& entry : kGrasps) {
+    if (object == entry.object) return entry.make();
+    known += std::string(known.empty() ? "" : ", ") + entry.object;
+  }
+  throw std::invalid_argument("no grasp of '" + object + "' is known: use one of " + known);
+}
+
+}  // namespace mrhi
