@@ -11,7 +11,7 @@ namespace {
 constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
 constexpr double kReachWidth = 0.03, kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
 constexpr double kLeastTime = 0.3;                                            // of a movement [s]
-constexpr double kCatchable = 0.1;  // what is faster is left to go [m/s]
+constexpr double kCatchable = 0.1;   // what is faster is left to go [m/s]
 constexpr double kAstray = 0.05;     // from where the object was expected [m]
 constexpr double kOutOfHand = 0.04;  // from where the object was in the hand [m]
 constexpr double kPatience = 10.0;  // with an object that is held where it is wanted, and nothing happens [s]
@@ -73,11 +73,11 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
       if (arrived(time)) grasp(time, seen);
       return;
     case Phase::grasping:
-      if (is_astray(seen) || (arrived(time) && !is_in_hand(seen))) return lose(time);
-      if (arrived(time)) carry(time, seen);
+      if (is_astray(seen) || (arrived(time) && !is_in_hand(seen))) return lose();
+      if (arrived(time)) carry(seen);
       return;
     case Phase::carrying:
-      if (!is_in_hand(seen)) return lose(time);
+      if (!is_in_hand(seen)) return lose();
       if (arrived(seen.time)) follow_up(time, seen);
       return;
     case Phase::letting_go:
@@ -128,8 +128,8 @@ void SimulatedOperator::grasp(double time, const Moment& seen) {
   way_.back().velocity = -drift;
 }
 
-void SimulatedOperator::carry(double time, const Moment& seen) {
-  if (!seen.sight.place) return let_go(time);
+void SimulatedOperator::carry(const Moment& seen) {
+  if (!seen.sight.place) return let_go();
   in_hand_ = seen.wrist.to_local(seen.sight.object.position);
   const Vector3 wrist = *seen.sight.place - now_.wrist.orientation * in_hand_;
   const double duration = movement_time((wrist - now_.wrist.position).norm(), kPlaceWidth);
@@ -139,13 +139,13 @@ void SimulatedOperator::carry(double time, const Moment& seen) {
 
 /// The object should be where it was wanted.
 void SimulatedOperator::follow_up(double time, const Moment& seen) {
-  if (!seen.sight.place) return let_go(time);
+  if (!seen.sight.place) return let_go();
   const bool missed = (seen.sight.object.position - *seen.sight.place).norm() > skill_.precision;
-  if (missed) return carry(time, seen);
-  if (time > began_ + way_.back().time + kPatience) lose(time);
+  if (missed) return carry(seen);
+  if (time > began_ + way_.back().time + kPatience) lose();
 }
 
-void SimulatedOperator::let_go(double time) {
+void SimulatedOperator::let_go() {
   const Pose wrist = now_.wrist;
   plan(Phase::letting_go, aim_);
   then(kClose * skill_.pace, wrist, postures_->near);
@@ -157,7 +157,7 @@ void SimulatedOperator::let_go(double time) {
   then(kAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
 }
 
-void SimulatedOperator::lose(double time) {
+void SimulatedOperator::lose() {
   ++losses_noticed_;
   firmness_ = std::min(kFirmest, kFirmer * firmness_);
   plan(Phase::withdrawing, aim_);

@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "mr_hand_interaction/training/operator_trial.h"
 
 namespace mrhi::testing {
 
@@ -30,27 +31,6 @@ struct Staging {
   double gravity_from = 0.0;  // when it sets in: none of the shipped objects stands on anything [s]
   bool stand = false;         // a table under the object
 };
-
-/// A table under the body, or where the hand takes it from below (a flat body) two rails under its ends.
-inline Body stand_under(const Body& body) {
-  constexpr double kHalfHeight = 0.02, kRail = 0.006;
-  Body stand;
-  stand.name = "stand";
-  stand.fixed = true;
-  stand.material = body.material;
-  const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
-  const double below = box != nullptr ? box->half_extents.z() : body.bounding_radius;
-  if (box != nullptr && box->half_extents.z() < 0.01) {
-    const Vector3 rail(kRail, box->half_extents.y(), kHalfHeight),
-        end(box->half_extents.x() - kRail, 0.0, 0.0);
-    stand.shapes.push_back({Box{rail}, {end, Quaternion::Identity()}});
-    stand.shapes.push_back({Box{rail}, {-end, Quaternion::Identity()}});
-  } else {
-    stand.shapes.push_back({Box{Vector3(0.2, 0.2, kHalfHeight)}, {}});
-  }
-  stand.start.position = body.start.position - Vector3(0.0, 0.0, below + kHalfHeight);
-  return stand;
-}
 
 inline Scene staged_scene(const ScriptedMotion& motion, const Configuration& configuration, bool stand) {
   SceneOptions options;

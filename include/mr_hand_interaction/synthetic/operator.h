@@ -50,10 +50,10 @@ class SimulatedOperator {
   void watch(double time, const Moment& seen);
   void reach(double time, const Moment& seen);
   void grasp(double time, const Moment& seen);
-  void carry(double time, const Moment& seen);
+  void carry(const Moment& seen);
   void follow_up(double time, const Moment& seen);
-  void let_go(double time);
-  void lose(double time);
+  void let_go();
+  void lose();
   void prepare_grasp();
   Pose wrist_about(const Pose& object);
   void plan(Phase phase, const Moment& seen, const Vector3& drift = Vector3::Zero());

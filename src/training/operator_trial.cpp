@@ -1,0 +1,105 @@
+#include "mr_hand_interaction/training/operator_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mr_hand_interaction/simulation.h"
+#include "mr_hand_interaction/synthetic/operator.h"
+#include "mr_hand_interaction/synthetic/tracking_noise.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kReach = 0.35;      // of the arm, each way from where the object starts [m]
+constexpr double kFallen = 0.05;     // below the stand [m]
+constexpr double kHalfStand = 0.02;  // [m]
+
+double half_height(const Body& body) {
+  const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
+  return box != nullptr ? box->half_extents.z() : body.bounding_radius;
+}
+
+Body load_body(const std::string& name, const std::string& file, const OperatorStage& stage) {
+  Scene scene = load_scene(find_scene_file(file, stage.scene_folders), stage.scene_options);
+  return free_body(scene, name);
+}
+
+/// Where the object is wanted next; nothing: nowhere any more.
+std::optional<Vector3> next_place(const Task& task, std::size_t goal) {
+  for (; goal < task.goals.size(); ++goal) {
+    const GoalKind kind = task.goals[goal].kind;
+    if (kind == GoalKind::place || kind == GoalKind::insert) return task.goals[goal].position;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Body stand_under(const Body& body) {
+  constexpr double kRail = 0.006, kFlat = 0.01;
+  Body stand;
+  stand.name = "stand";
+  stand.fixed = true;
+  stand.material = body.material;
+  const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
+  if (box != nullptr && box->half_extents.z() < kFlat) {
+    const Vector3 rail(kRail, box->half_extents.y(), kHalfStand),
+        end(box->half_extents.x() - kRail, 0.0, 0.0);
+    stand.shapes.push_back({Box{rail}, {end, Quaternion::Identity()}});
+    stand.shapes.push_back({Box{rail}, {-end, Quaternion::Identity()}});
+  } else {
+    stand.shapes.push_back({Box{Vector3(0.2, 0.2, kHalfStand)}, {}});
+  }
+  stand.start.position = body.start.position - Vector3(0.0, 0.0, half_height(body) + kHalfStand);
+  return stand;
+}
+
+Scene operator_scene(const Task& task, const TaskObject& object, const OperatorStage& stage) {
+  Scene scene;
+  scene.name = task.name;
+  scene.gravity = task.gravity;
+  scene.bodies.push_back(load_body(object.name, object.file, stage));
+  Body& body = scene.bodies.front();
+  body.start = object.start;
+  body.start_twist = object.twist;
+  for (const Fixture& fixture : task.fixtures) {
+    scene.bodies.push_back(load_body(fixture.name, fixture.file, stage));
+    scene.bodies.back().start = fixture.pose;
+    scene.bodies.back().fixed = true;
+  }
+  scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
+  if (task.gravity != Vector3::Zero()) {
+    scene.bodies.push_back(stand_under(scene.bodies.front()));
+    const Body& stand = scene.bodies.back();
+    scene.bounds.min.z() = stand.start.position.z() - kHalfStand - kFallen;
+  }
+  return scene;
+}
+
+Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64_t seed,
+                       const OperatorStage& stage, Nanoseconds begin) {
+  const Task& task = session.task();
+  const Scene scene = operator_scene(task, session.object(), stage);
+  Configuration configuration = stage.configuration;
+  configuration.gravity = task.gravity;
+  Simulation simulation(scene, configuration);
+  Random seeds(seed);
+  SimulatedOperator person(skill, scene.bodies.front(), seeds.bits());
+  TrackingNoise noise(stage.noise, seeds.bits());
+  Nanoseconds stamp = begin;
+  session.begin(begin);
+  for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
+    stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
+    const BodyState& state = simulation.state().bodies.front();
+    const Sight sight{state.pose, twist_of(scene.bodies.front(), state),
+                      next_place(task, session.trial().goal())};
+    const HandPlace hand = person.move(to_seconds(stamp - begin), sight);
+    JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
+    noise.apply(joints);
+    simulation.advance({stamp, {complete_hand(joints.hands.front(), Pose{})}});
+    session.update(observe(simulation, 0));
+  }
+  return stamp;
+}
+
+}  // namespace mrhi

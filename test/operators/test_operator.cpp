@@ -1,0 +1,117 @@
+#include "operators_at_work.h"
+
+namespace mrhi {
+namespace {
+
+using Phase = SimulatedOperator::Phase;
+
+constexpr double kFrame = 1.0 / 115.0;
+const Vector3 kPlace(0.0, 0.1, 0.3);
+
+Sight at_rest(const Body& body) {
+  return {body.start, {}, kPlace};
+}
+
+TEST(Operator, moves_only_once_the_reaction_time_is_over) {
+  const Body cube = testing::shipped_body("cube");
+  OperatorSkill skill;
+  skill.reaction_time = 0.3;
+  SimulatedOperator person(skill, cube, 1);
+  const Vector3 rest = person.move(0.0, at_rest(cube)).wrist.position;
+  double time = 0.0;
+  while (person.phase() == Phase::watching) {
+    time += kFrame;
+    const Vector3 wrist = person.move(time, at_rest(cube)).wrist.position;
+    if (person.phase() == Phase::watching) {
+      EXPECT_EQ(wrist, rest);
+    }
+    ASSERT_LT(time, 1.0);
+  }
+  EXPECT_NEAR(time, 0.3, kFrame);
+}
+
+// Fitts' law says how long; the way ends 10 cm off the grasp along the way in, at rest.
+TEST(Operator, reach_ends_where_and_when_it_should) {
+  const Body cube = testing::shipped_body("cube");
+  const OperatorSkill skill;
+  SimulatedOperator person(skill, cube, 1);
+  const Vector3 rest = person.move(0.0, at_rest(cube)).wrist.position;
+  const Grasp grasp = shipped_grasp("cube");
+  const Vector3 held = cube.start.position + grasp.wrist.position, before = held + 0.10 * grasp.retreat;
+  const double duration =
+      skill.movement_start + skill.movement_per_bit * std::log2((held - rest).norm() / 0.03 + 1.0);
+  double time = 0.0, began = 0.0;
+  Vector3 wrist = rest, wrist_before = rest;
+  while (person.phase() == Phase::watching || person.phase() == Phase::reaching) {
+    time += kFrame;
+    wrist_before = wrist;
+    wrist = person.move(time, at_rest(cube)).wrist.position;
+    if (began == 0.0 && person.phase() == Phase::reaching) began = time;
+    ASSERT_LT(time, 3.0);
+  }
+  EXPECT_NEAR(time - began, duration, 2.0 * kFrame);
+  // The frame before is at most two frames before the end, where minimum jerk has 10 (t/T)^3 of the way left.
+  EXPECT_LT((wrist_before - before).norm(),
+            10.0 * std::pow(2.0 * kFrame / duration, 3) * (before - rest).norm());
+}
+
+TEST(Operator, learns_of_a_leap_of_the_object_a_reaction_time_later) {
+  const Body cube = testing::shipped_body("cube");
+  const OperatorSkill skill;
+  SimulatedOperator surprised(skill, cube, 1), undisturbed(skill, cube, 1);
+  const double leap = 0.5;
+  double differed = 0.0;
+  for (double time = 0.0; differed == 0.0; time += kFrame) {
+    ASSERT_LT(time, 1.5);
+    Sight sight = at_rest(cube);
+    const Vector3 expected = undisturbed.move(time, sight).wrist.position;
+    if (time >= leap) sight.object.position.x() += 0.1;
+    if (surprised.move(time, sight).wrist.position != expected) differed = time;
+  }
+  // What is planned in one frame shows in the same.
+  EXPECT_NEAR(differed - leap, skill.reaction_time, 2.0 * kFrame);
+  EXPECT_GE(differed - leap, skill.reaction_time - 1e-9);
+}
+
+TEST(Operator, same_seed_same_bits_and_another_seed_others) {
+  const Body cube = testing::shipped_body("cube");
+  const OperatorSkill skill = beginner_skill();
+  SimulatedOperator one(skill, cube, 7), same(skill, cube, 7), other(skill, cube, 8);
+  bool differs = false;
+  for (double time = 0.0; time < 2.0; time += kFrame) {
+    const HandPlace a = one.move(time, at_rest(cube)), b = same.move(time, at_rest(cube)),
+                    c = other.move(time, at_rest(cube));
+    EXPECT_EQ(a.wrist.position, b.wrist.position);
+    EXPECT_EQ(a.posture, b.posture);
+    differs |= a.wrist.position != c.wrist.position;
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Operator, knows_no_grasp_of_an_unknown_object) {
+  Body body = testing::shipped_body("cube");
+  body.name = "teapot";
+  try {
+    SimulatedOperator person(OperatorSkill{}, body, 1);
+    FAIL() << "took it";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("teapot"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("long_cuboid"), std::string::npos);
+  }
+}
+
+TEST(OperatorSkill, group_is_beginner_or_veteran) {
+  EXPECT_THROW(draw_skill("expert", 1), std::invalid_argument);
+  EXPECT_EQ(draw_skill("veteran", 3).reaction_time, draw_skill("veteran", 3).reaction_time);
+  EXPECT_NE(draw_skill("veteran", 3).reaction_time, draw_skill("veteran", 4).reaction_time);
+}
+
+TEST(BoxSymmetries, are_those_of_the_outline) {
+  EXPECT_EQ(box_symmetries(testing::shipped_body("cube")).size(), 24u);
+  EXPECT_EQ(box_symmetries(testing::shipped_body("long_cuboid")).size(), 8u);
+  EXPECT_EQ(box_symmetries(testing::shipped_body("flat_cuboid")).size(), 4u);
+  EXPECT_EQ(box_symmetries(testing::shipped_body("ball")).size(), 1u);
+}
+
+}  // namespace
+}  // namespace mrhi

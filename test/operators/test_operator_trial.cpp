@@ -1,0 +1,62 @@
+#include "operators_at_work.h"
+
+namespace mrhi {
+namespace {
+
+class OperatorTakes : public ::testing::TestWithParam<const char*> {};
+
+// Nothing disturbs it: no noise, no tremor, no error of aim.
+TEST_P(OperatorTakes, it_at_the_first_attempt_when_nothing_disturbs) {
+  const TrialRow row = testing::play(testing::task_with(GetParam()), OperatorSkill{}, 1, 0.0);
+  EXPECT_EQ(row.result, TrialResult::completed);
+  EXPECT_EQ(row.measures.attempts, 1);
+  EXPECT_EQ(row.measures.drops, 0);
+}
+INSTANTIATE_TEST_SUITE_P(All, OperatorTakes, ::testing::Values("cube", "flat_cuboid", "long_cuboid"));
+
+TEST(OperatorTrial, same_seed_same_bits) {
+  const Task task = testing::task_with("cube");
+  const TrialRow one = testing::play(task, beginner_skill(), 5, 1.0),
+                 same = testing::play(task, beginner_skill(), 5, 1.0);
+  EXPECT_EQ(one.measures.completion_time, same.measures.completion_time);
+  EXPECT_EQ(one.measures.path_length, same.measures.path_length);
+  EXPECT_NE(one.measures.path_length, testing::play(task, beginner_skill(), 6, 1.0).measures.path_length);
+}
+
+TEST(OperatorTrial, ends_when_the_time_is_out) {
+  Task task = testing::task_with("cube");
+  task.time_out = 4.0;  // less than the holding alone takes
+  const TrialRow row = testing::play(task, OperatorSkill{}, 1, 0.0);
+  EXPECT_EQ(row.result, TrialResult::timed_out);
+  EXPECT_NEAR(row.measures.completion_time, 4.0, 0.01);
+}
+
+TEST(OperatorTrial, veterans_are_faster_than_beginners_on_average) {
+  constexpr int kPeople = 4;
+  const Task task = testing::task_with("cube");
+  double beginners = 0.0, veterans = 0.0;
+  for (std::uint64_t person = 0; person < kPeople; ++person) {
+    beginners +=
+        testing::play(task, draw_skill("beginner", person), person, 1.0).measures.completion_time / kPeople;
+    veterans +=
+        testing::play(task, draw_skill("veteran", person), person, 1.0).measures.completion_time / kPeople;
+  }
+  EXPECT_LT(veterans, beginners);
+}
+
+TEST(OperatorScene, what_has_weight_stands_on_something_and_what_falls_off_is_put_back) {
+  Task task = testing::task_with("cube");
+  OperatorStage stage;
+  stage.scene_folders = {"config/scenes"};
+  EXPECT_EQ(operator_scene(task, task.objects[0], stage).bodies.size(), 1u);
+  task.gravity = Vector3(0.0, 0.0, -9.81);
+  const Scene scene = operator_scene(task, task.objects[0], stage);
+  ASSERT_EQ(scene.bodies.size(), 2u);
+  const double top = scene.bodies[1].start.position.z() + 0.02;
+  EXPECT_NEAR(top, scene.bodies[0].start.position.z() - 0.025, 1e-12);
+  EXPECT_LT(scene.bounds.min.z(), top);
+  EXPECT_EQ(scene.gravity, task.gravity);
+}
+
+}  // namespace
+}  // namespace mrhi
