@@ -73,11 +73,11 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
       if (arrived(time)) grasp(time, seen);
       return;
     case Phase::grasping:
-      if (is_astray(seen) || (arrived(time) && !is_in_hand(seen))) return lose();
+      if (is_astray(seen) || (arrived(time) && distance_from_grip(seen) > kOutOfHand)) return lose();
       if (arrived(time)) carry(seen);
       return;
     case Phase::carrying:
-      if (!is_in_hand(seen)) return lose();
+      if (distance_from_grip(seen) > kOutOfHand) return lose();
       if (arrived(seen.time)) follow_up(time, seen);
       return;
     case Phase::letting_go:
@@ -87,7 +87,11 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
       if (arrived(time)) phase_ = Phase::watching;
       return;
     case Phase::done:
-      if (seen.sight.place) phase_ = Phase::watching;
+      if (seen.sight.place) {
+        phase_ = Phase::watching;
+      } else if (seen.sight.held) {
+        shake_off();
+      }
       return;
   }
 }
@@ -157,6 +161,15 @@ void SimulatedOperator::let_go() {
   then(kAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
 }
 
+/// What it has let go still clings to its hand: turns the flat hand over.
+void SimulatedOperator::shake_off() {
+  const Quaternion over = now_.wrist.orientation * turn(120.0, Vector3::UnitX());
+  const Vector3 away = now_.wrist.position + 0.5 * kApproach * retreat_;
+  plan(Phase::letting_go, aim_);
+  then(kOpen * skill_.pace, {away, now_.wrist.orientation}, flat_posture());
+  then(kOpen * skill_.pace, {away, over}, flat_posture());
+}
+
 void SimulatedOperator::lose() {
   ++losses_noticed_;
   firmness_ = std::min(kFirmest, kFirmer * firmness_);
@@ -211,8 +224,8 @@ bool SimulatedOperator::is_astray(const Moment& seen) const {
   return (seen.sight.object.position - where.position).norm() > kAstray;
 }
 
-bool SimulatedOperator::is_in_hand(const Moment& seen) const {
-  return (seen.wrist.to_local(seen.sight.object.position) - in_hand_).norm() <= kOutOfHand;
+double SimulatedOperator::distance_from_grip(const Moment& seen) const {
+  return (seen.wrist.to_local(seen.sight.object.position) - in_hand_).norm();
 }
 
 double SimulatedOperator::movement_time(double distance, double width) const {

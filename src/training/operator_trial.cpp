@@ -92,7 +92,7 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
     const BodyState& state = simulation.state().bodies.front();
     const Sight sight{state.pose, twist_of(scene.bodies.front(), state),
-                      next_place(task, session.trial().goal())};
+                      next_place(task, session.trial().goal()), is_held(0, simulation.state())};
     const HandPlace hand = person.move(to_seconds(stamp - begin), sight);
     JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
     noise.apply(joints);

@@ -17,6 +17,7 @@ struct Sight {
   Pose object;                   ///< in world
   Twist twist;                   ///< world axes
   std::optional<Vector3> place;  ///< where the object is wanted; nothing: it is to be let go
+  bool held = false;             ///< the system shows it as grasped
 };
 
 /// A program in a person's place: takes an object, carries it where it is wanted and lets it go, by what it
@@ -53,6 +54,7 @@ class SimulatedOperator {
   void carry(const Moment& seen);
   void follow_up(double time, const Moment& seen);
   void let_go();
+  void shake_off();
   void lose();
   void prepare_grasp();
   Pose wrist_about(const Pose& object);
@@ -60,7 +62,7 @@ class SimulatedOperator {
   void then(double duration, const Pose& wrist, const HandPosture& posture);
   bool arrived(double time) const { return time >= began_ + way_.back().time; }
   bool is_astray(const Moment& seen) const;
-  bool is_in_hand(const Moment& seen) const;
+  double distance_from_grip(const Moment& seen) const;
   double movement_time(double distance, double width) const;
   Vector3 trembling(double time) const;
 
