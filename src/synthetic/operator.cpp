@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "motions.h"
+#include "mr_hand_interaction/synthetic/box_symmetries.h"
 
 namespace mrhi {
 namespace {
@@ -238,24 +239,6 @@ Vector3 SimulatedOperator::trembling(double time) const {
   for (const Tremor& wave : tremor_)
     sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
   return sum;
-}
-
-std::vector<Quaternion> box_symmetries(const Body& body) {
-  std::vector<Quaternion> turns{Quaternion::Identity()};
-  const auto* box = body.shapes.size() == 1 ? std::get_if<Box>(&body.shapes[0].shape) : nullptr;
-  if (box == nullptr) return turns;
-  constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  for (const auto& order : kOrders) {
-    for (int signs = 0; signs < 8; ++signs) {
-      Matrix3 axes = Matrix3::Zero();
-      for (int i = 0; i < 3; ++i) axes(order[i], i) = (signs >> i & 1) != 0 ? -1.0 : 1.0;
-      const Vector3 image = axes.cwiseAbs() * box->half_extents;
-      const bool identity = axes.isIdentity();
-      if (axes.determinant() > 0.0 && image.isApprox(box->half_extents, 1e-9) && !identity)
-        turns.emplace_back(axes);
-    }
-  }
-  return turns;
 }
 
 }  // namespace mrhi

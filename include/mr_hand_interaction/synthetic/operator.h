@@ -90,8 +90,4 @@ class SimulatedOperator {
   int losses_noticed_ = 0;
 };
 
-/// Turns of a body of one box about its centre that leave its outline as it is, the identity first; of others
-/// the identity alone.
-std::vector<Quaternion> box_symmetries(const Body& body);
-
 }  // namespace mrhi
