@@ -57,9 +57,10 @@ class Workflow(unittest.TestCase):
 
     def snakemake(self, *arguments):
         environment = dict(os.environ, HOME=self.root, XDG_CACHE_HOME=self.root)
-        return subprocess.run([SNAKEMAKE, '-s', os.path.join(WORKFLOW, 'Snakefile'), '--directory', self.root, '--cores', '1',
-                               '--configfile', os.path.join(self.root, 'config.json'), *arguments], env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        command = [SNAKEMAKE, '-s', os.path.join(WORKFLOW, 'Snakefile'), '--directory', self.root, '--cores', '1',
+                   '--configfile', os.path.join(self.root, 'config.json'), *arguments]
+        return subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True)
 
     def planned(self, rule):
         done = self.snakemake('--dry-run', '--quiet')
@@ -80,7 +81,8 @@ class Workflow(unittest.TestCase):
     def test_dry_run_plans_each_recording_scene_and_setting(self):
         recordings = [self.write_recording(name) for name in ('a.csv', 'b.csv', 'c.csv')]
         self.configure(study={'operators': 0}, replay={
-            'recordings': recordings, 'scenes': ['cube', 'ball'], 'settings': {'default': {}, 'raw': {'filter/type': 'none'}}})
+            'recordings': recordings, 'scenes': ['cube', 'ball'],
+            'settings': {'default': {}, 'raw': {'filter/type': 'none'}}})
         self.assertEqual(self.planned('replay'), 3 * 2 * 2)
         self.assertEqual(self.planned('replay_table'), 1)
         self.assertEqual(self.planned('operators'), 0)
@@ -104,10 +106,13 @@ class Workflow(unittest.TestCase):
         self.assertEqual({row['condition'] for row in self.rows('out', 'results', 'comparison.csv')}, {'implicit'})
         self.assertEqual({(row['recording'], row['scene'], row['setting'], row['frames'])
                           for row in self.rows('out', 'replays.csv')},
-                         {('empty', scene, setting, '100') for scene in ('cube', 'ball') for setting in ('default', 'raw')})
+                         {('empty', scene, setting, '100')
+                          for scene in ('cube', 'ball') for setting in ('default', 'raw')})
         self.assertEqual(self.planned('all'), 0)
-        shutil.rmtree(os.path.join(self.root, 'out', 'sessions', 'implicit', '0g', 'from_2'))
+        for lost in (('sessions', 'implicit', '0g', 'from_2'), ('results',)):
+            shutil.rmtree(os.path.join(self.root, 'out', *lost))
         self.assertEqual(self.planned('operators'), 1)
+        self.assertEqual(self.planned('replay'), 0)
 
 
 if __name__ == '__main__':
