@@ -5,16 +5,16 @@
 namespace mrhi {
 namespace {
 
-Triple<Wide> everywhere(const double* v) {
+inline Triple<Wide> everywhere(const double* v) {
   return {constant<Wide>(v[0]), constant<Wide>(v[1]), constant<Wide>(v[2])};
 }
 
-void write_sum(const Triple<Wide>& v, double* result) {
+inline void write_sum(const Triple<Wide>& v, double* result) {
   result[0] = sum(v.x), result[1] = sum(v.y), result[2] = sum(v.z);
 }
 
-void respond(SpringContact<Lanes>* first, SpringContact<Lanes>* last, const double* velocity,
-             bool renew_limits, SpringSum& result) {
+inline void respond(SpringContact<Lanes>* first, SpringContact<Lanes>* last, const double* velocity,
+                    bool renew_limits, SpringSum& result) {
   const Triple<Wide> linear = everywhere(velocity), angular = everywhere(velocity + 3);
   const Wide zero = constant<Wide>(0.0);
   Triple<Wide> force{zero, zero, zero}, torque = force;
@@ -44,7 +44,7 @@ struct Slope3 {
   }
 };
 
-void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>* last, SpringSlope& result) {
+inline void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>* last, SpringSlope& result) {
   const Wide zero = constant<Wide>(0.0), tiny = constant<Wide>(1e-300);
   Wide sums[21];
   for (Wide& entry : sums) entry = zero;
