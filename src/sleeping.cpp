@@ -1,7 +1,6 @@
 #include "sleeping.h"
 
 #include <algorithm>
-#include <array>
 
 namespace mrhi {
 namespace {
