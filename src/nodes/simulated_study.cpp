@@ -151,9 +151,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
 }
 
 void play(const Study& study) {
-  std::vector<std::string> task_folders;
-  for (const std::string& share : share_folders()) task_folders.push_back(share + "/config/tasks");
-  const Task task = load_task(find_task_file(study.task, task_folders));
+  const Task task = load_task(find_task_file(study.task, task_folders()));
   for (int person = study.first; person <= study.last; ++person) {
     for (const std::string& model : study.models) {
       for (const double gravity : study.gravities) play_session(study, person, model, gravity, task);

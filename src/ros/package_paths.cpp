@@ -37,10 +37,22 @@ std::vector<std::string> share_folders() {
   return folders;
 }
 
-std::vector<std::string> scene_folders() {
+namespace {
+
+std::vector<std::string> folders_of(const char* kind) {
   std::vector<std::string> folders;
-  for (const std::string& share : share_folders()) folders.push_back(share + "/config/scenes");
+  for (const std::string& share : share_folders()) folders.push_back(share + "/config/" + kind);
   return folders;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_folders() {
+  return folders_of("scenes");
+}
+
+std::vector<std::string> task_folders() {
+  return folders_of("tasks");
 }
 
 std::string resolve_package_uri(const std::string& uri) {

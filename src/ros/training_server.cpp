@@ -22,9 +22,7 @@ constexpr double kStartDelay = 0.5;  // it may have moved this long before it is
 const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Task task_of(const TrainingParameters& parameters) {
-  std::vector<std::string> folders;
-  for (const std::string& share : share_folders()) folders.push_back(share + "/config/tasks");
-  return load_task(find_task_file(parameters.task, folders));
+  return load_task(find_task_file(parameters.task, task_folders()));
 }
 
 SessionHeader header_of(const TrainingParameters& parameters) {

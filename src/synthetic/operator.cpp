@@ -145,7 +145,8 @@ void SimulatedOperator::carry(const Moment& seen) {
 /// The object should be where it was wanted.
 void SimulatedOperator::follow_up(double time, const Moment& seen) {
   if (!seen.sight.place) return let_go();
-  const bool missed = (seen.sight.object.position - *seen.sight.place).norm() > skill_.precision;
+  const double precision = std::min(skill_.precision, seen.sight.precision);
+  const bool missed = (seen.sight.object.position - *seen.sight.place).norm() > precision;
   if (missed) return carry(seen);
   if (time > began_ + way_.back().time + kPatience) lose();
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mr_hand_interaction/simulation.h"
-#include "mr_hand_interaction/synthetic/operator.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
 
 namespace mrhi {
@@ -19,18 +18,15 @@ double half_height(const Body& body) {
   return box != nullptr ? box->half_extents.z() : body.bounding_radius;
 }
 
+/// Of a scene that holds it alone.
 Body load_body(const std::string& name, const std::string& file, const OperatorStage& stage) {
-  Scene scene = load_scene(find_scene_file(file, stage.scene_folders), stage.scene_options);
-  return free_body(scene, name);
+  const Scene scene = load_scene(find_scene_file(file, stage.scene_folders), stage.scene_options);
+  if (scene.bodies.size() == 1 && scene.bodies.front().name == name) return scene.bodies.front();
+  throw SceneError(file + ": is not of one link '" + name + "' with a shape; allowed in a task: that alone");
 }
 
-/// Where the object is wanted next; nothing: nowhere any more.
-std::optional<Vector3> next_place(const Task& task, std::size_t goal) {
-  for (; goal < task.goals.size(); ++goal) {
-    const GoalKind kind = task.goals[goal].kind;
-    if (kind == GoalKind::place || kind == GoalKind::insert) return task.goals[goal].position;
-  }
-  return std::nullopt;
+bool is_place(const Goal& goal) {
+  return goal.kind == GoalKind::place || goal.kind == GoalKind::insert;
 }
 
 }  // namespace
@@ -76,6 +72,25 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
   return scene;
 }
 
+Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held) {
+  constexpr double kOutside = 0.05;  // of a hole's rim, beyond where the object is to be [m]
+  Sight sight;
+  sight.object = object;
+  sight.twist = twist;
+  sight.held = held;
+  const auto from = task.goals.begin() + static_cast<std::ptrdiff_t>(goal);
+  const auto next = std::find_if(from, task.goals.end(), is_place);
+  if (next == task.goals.end()) return sight;
+  sight.place = next->position;
+  if (next->kind != GoalKind::insert || !next->axis) return sight;
+  sight.precision = next->tolerance / 6.0;
+  const Vector3 axis = next->orientation * *next->axis, off = object.position - next->position;
+  const double along = off.dot(axis);
+  const bool beside = (off - along * axis).norm() > next->tolerance / 4.0;
+  if (beside) *sight.place += std::copysign(kOutside, along) * axis;
+  return sight;
+}
+
 Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64_t seed,
                        const OperatorStage& stage, Nanoseconds begin) {
   const Task& task = session.task();
@@ -91,8 +106,8 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
     const BodyState& state = simulation.state().bodies.front();
-    const Sight sight{state.pose, twist_of(scene.bodies.front(), state),
-                      next_place(task, session.trial().goal()), is_held(0, simulation.state())};
+    const Sight sight = sight_of(task, session.trial().goal(), state.pose,
+                                 twist_of(scene.bodies.front(), state), is_held(0, simulation.state()));
     const HandPlace hand = person.move(to_seconds(stamp - begin), sight);
     JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
     noise.apply(joints);

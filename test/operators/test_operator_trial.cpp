@@ -14,6 +14,16 @@ TEST_P(OperatorTakes, it_at_the_first_attempt_when_nothing_disturbs) {
 }
 INSTANTIATE_TEST_SUITE_P(All, OperatorTakes, ::testing::Values("cube", "flat_cuboid", "long_cuboid"));
 
+// It does not turn the bar to fit: some take several attempts.
+TEST(OperatorTrial, puts_the_bar_into_the_hole) {
+  const Task task = load_task("config/tasks/assemble.yaml");
+  EXPECT_EQ(testing::play(task, OperatorSkill{}, 1, 0.0).measures.attempts, 1);
+  for (std::uint64_t person = 1; person <= 4; ++person) {
+    const TrialRow row = testing::play(task, draw_skill("veteran", person), person, 1.0);
+    EXPECT_EQ(row.result, TrialResult::completed) << "operator " << person;
+  }
+}
+
 TEST(OperatorTrial, same_seed_same_bits) {
   const Task task = testing::task_with("cube");
   const TrialRow one = testing::play(task, beginner_skill(), 5, 1.0),

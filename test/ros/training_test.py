@@ -93,6 +93,18 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(float(row["release_drift"]), 0.05)
         self.check_analysis()
 
+    def test_an_operator_does_the_paper_s_task_to_the_end(self):
+        with self.training("hands:=operator", "group:=veteran", "auto_next:=0.5", "record:=false"):
+            wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 300.0)
+        for place in (1, 2, 3):
+            self.assertIn((TrainingStatus.RUNNING, TrainingStatus.MAINTENANCE, place, True), self.seen)
+        rows = trials(self.folder)
+        self.assertEqual({row["object"]: row["result"] for row in rows},
+                         dict.fromkeys(("cube", "flat_cuboid", "long_cuboid"), "completed"))
+        for row in rows:
+            self.assertGreaterEqual(float(row["maintenance_time"]), 9.0, "three places for 3 s each")
+            self.assertLess(float(row["release_drift"]), 0.2)
+
     def check_analysis(self):
         if not has_pandas():
             print("analyse_study is not tried: python3-pandas, -scipy or -matplotlib is absent")

@@ -39,19 +39,5 @@ TEST(ScriptedTrial, grasp_cube_goes_through_all_stages) {
       << "nothing acts on what flies";
 }
 
-TEST(ScriptedTrial, catch_ball_is_caught_and_held) {
-  Task task = load_task("config/tasks/catch.yaml");
-  task.goals[1].drift_time = 1.0;  // the script's next run is near
-  const Trial trial = perform_as("catch_ball", task);
-  EXPECT_EQ(TrialResult::completed, trial.result());
-  EXPECT_EQ(1, trial.measures().attempts);
-}
-
-TEST(ScriptedTrial, slap_is_a_slap_and_not_a_tap) {
-  const Task slap = load_task("config/tasks/slap.yaml"), tap = load_task("config/tasks/tap.yaml");
-  EXPECT_EQ(TrialResult::completed, perform_as("slap", slap).result());
-  EXPECT_EQ(TrialResult::none, perform_as("slap", tap).result());
-}
-
 }  // namespace
 }  // namespace mrhi

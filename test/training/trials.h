@@ -9,6 +9,10 @@
 
 namespace mrhi::test {
 
+inline Task shipped_task(const std::string& name) {
+  return load_task("config/tasks/" + name + ".yaml");
+}
+
 inline Goal pick() {
   return {};
 }

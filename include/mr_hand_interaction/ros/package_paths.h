@@ -15,6 +15,9 @@ std::vector<std::string> share_folders();
 /// Folders in which a scene's name is looked up.
 std::vector<std::string> scene_folders();
 
+/// Folders in which a task's name is looked up.
+std::vector<std::string> task_folders();
+
 /// "package://NAME/PATH" as the path of a file; empty if there is no such package.
 std::string resolve_package_uri(const std::string& uri);
 

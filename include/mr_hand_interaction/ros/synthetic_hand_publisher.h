@@ -1,10 +1,10 @@
 #pragma once
 
 #include <ros/ros.h>
-#include <topic_tools/shape_shifter.h>
 
 #include <string>
 
+#include "mr_hand_interaction/ros/leap_human_publisher.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
@@ -23,17 +23,13 @@ class SyntheticHandPublisher {
 
  private:
   void wait_for_listener() const;
-  void publish(JointsFrame frame, Nanoseconds start);
   void reset_scene();
 
   ros::NodeHandle node_;
   SyntheticHand hand_;
-  float rate_;
   bool loop_;
   std::string reset_service_;
-  ros::Publisher publisher_;
-  topic_tools::ShapeShifter message_;
-  std::uint32_t sequence_ = 0;
+  LeapHumanPublisher publisher_;
 };
 
 }  // namespace mrhi

@@ -18,6 +18,7 @@ struct Sight {
   Twist twist;                   ///< world axes
   std::optional<Vector3> place;  ///< where the object is wanted; nothing: it is to be let go
   bool held = false;             ///< the system shows it as grasped
+  double precision = 1.0;        ///< that the place asks for, if it is more than the skill's [m]
 };
 
 /// A program in a person's place: takes an object, carries it where it is wanted and lets it go, by what it

@@ -6,7 +6,7 @@
 
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "mr_hand_interaction/synthetic/operator_skill.h"
+#include "mr_hand_interaction/synthetic/operator.h"
 #include "mr_hand_interaction/training/session.h"
 
 namespace mrhi {
@@ -24,6 +24,10 @@ struct OperatorStage {
 /// rails, so that it can be taken from below), and what falls off is put back at once, as is what leaves the
 /// reach of the arm. Throws SceneError.
 Scene operator_scene(const Task& task, const TaskObject& object, const OperatorStage& stage);
+
+/// What there is to see of an object and of the task's goals from `goal` on. Into a hole it is wanted first
+/// outside of it on its axis, then inside.
+Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held);
 
 /// A simulated operator does the session's next trial: it sees the object, and through the noisy tracker its
 /// hand moves in a simulation. Stamps count on from `begin`; the result is the stamp of the last frame. No

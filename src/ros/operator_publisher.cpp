@@ -1,0 +1,117 @@
+#include "mr_hand_interaction/ros/operator_publisher.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "private_parameters.h"
+
+namespace mrhi {
+namespace {
+
+using Status = mr_hand_interaction::TrainingStatus;
+
+std::string text_from(const ros::NodeHandle& parameters, const char* name, const std::string& otherwise) {
+  std::string text = otherwise;
+  read_parameter(parameters, name, "a string", text);
+  return text;
+}
+
+double number_from(const ros::NodeHandle& parameters, const char* name, double otherwise, double lowest) {
+  double value = otherwise;
+  read_parameter(parameters, name, "a number", value);
+  if (value >= lowest) return value;
+  throw std::invalid_argument("parameter " + parameters.resolveName(name) + " must be at least " +
+                              std::to_string(lowest));
+}
+
+Task task_from(const ros::NodeHandle& parameters) {
+  refuse_unknown(parameters, {"group", "noise", "rate", "seed", "task"});
+  Task task = load_task(find_task_file(text_from(parameters, "task", "pick_and_place"), task_folders()));
+  for (const TaskObject& object : task.objects) shipped_grasp(object.name);
+  for (const Goal& goal : task.goals) {
+    if (goal.kind == GoalKind::pick || goal.kind == GoalKind::place || goal.kind == GoalKind::insert ||
+        goal.kind == GoalKind::release)
+      continue;
+    throw std::invalid_argument("task '" + task.name + "' has a goal '" + to_string(goal.kind) +
+                                "'; a simulated operator can do pick, place, insert, release");
+  }
+  return task;
+}
+
+OperatorSkill skill_from(const ros::NodeHandle& parameters, std::uint64_t seed) {
+  const std::string group = text_from(parameters, "group", "none");
+  return group == "none" ? OperatorSkill{} : draw_skill(group, seed);
+}
+
+Body body_of(const TaskObject& object) {
+  Scene scene = load_scene(find_scene_file(object.file, scene_folders()), {});
+  Body body = free_body(scene, object.name);
+  body.start = object.start;
+  return body;
+}
+
+}  // namespace
+
+OperatorPublisher::OperatorPublisher(ros::NodeHandle node, const ros::NodeHandle& parameters)
+    : task_(task_from(parameters)),
+      seed_(read_seed(parameters, 1)),
+      rate_(number_from(parameters, "rate", 115.0, 1.0)),
+      noise_(number_from(parameters, "noise", 1.0, 0.0), seed_),
+      publisher_(node, rate_) {
+  skill_ = skill_from(parameters, seed_);
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  subscribers_ = {node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
+                  node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
+  timer_ =
+      node.createWallTimer(ros::WallDuration(1.0 / rate_), [this](const ros::WallTimerEvent&) { tick(); });
+}
+
+void OperatorPublisher::take(const mr_hand_interaction::ObjectStateArray& message) {
+  for (const auto& object : message.objects) {
+    if (object.name == status_.object) object_ = object;
+  }
+}
+
+bool OperatorPublisher::at_work() const {
+  return status_.phase == Status::RUNNING || status_.phase == Status::PAUSED;
+}
+
+void OperatorPublisher::tick() {
+  const bool other = person_ && trial_ != status_.trial;
+  if (!at_work() || other) {
+    person_.reset();
+    hands_.clear();
+    object_.name.clear();
+  } else if (status_.phase == Status::RUNNING && object_.name == status_.object) {
+    if (!person_) begin();
+    move();
+  }
+  JointsFrame frame{from_ros_time(ros::Time::now()), hands_};
+  noise_.apply(frame);
+  publisher_.publish(frame);
+}
+
+void OperatorPublisher::begin() {
+  trial_ = status_.trial;
+  moves_ = 0;
+  const auto named = [this](const TaskObject& object) { return object.name == object_.name; };
+  const auto object = std::find_if(task_.objects.begin(), task_.objects.end(), named);
+  if (object == task_.objects.end())
+    throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
+                                "': training_node and the simulated operator must have the same task");
+  person_.emplace(skill_, body_of(*object), seed_ + trial_);
+}
+
+void OperatorPublisher::move() {
+  const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
+  const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
+  const Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+  const HandPlace hand = person_->move(static_cast<double>(moves_++) / rate_, sight);
+  hands_ = {
+      hand_joints(human_hand(), Side::right, default_device_mount().inverse() * hand.wrist, hand.posture)};
+  hands_.front().id = trial_;
+}
+
+}  // namespace mrhi
