@@ -1,0 +1,18 @@
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "mr_hand_interaction/ros/marker_relay.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "marker_relay_node");
+  const ros::NodeHandle node, parameters("~");  // outlive what may throw: without a node nothing is logged
+  try {
+    const mrhi::MarkerRelay relay(node, parameters);
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,97 @@
+#include "mr_hand_interaction/ros/marker_relay.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "private_parameters.h"
+
+namespace mrhi {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double kAfresh = 1.0;  // what was lost on the way is made up for after this long [s]
+
+std::set<std::string> left_out_from(const ros::NodeHandle& parameters) {
+  refuse_unknown(parameters, {"leave_out", "rate"});
+  std::string names, name;
+  read_parameter(parameters, "leave_out", "a string", names);
+  std::set<std::string> left_out;
+  for (std::istringstream in(names); std::getline(in, name, ',');) left_out.insert(name);
+  return left_out;
+}
+
+double rate_from(const ros::NodeHandle& parameters) {
+  double rate = 30.0;
+  read_parameter(parameters, "rate", "a number", rate);
+  if (rate >= 1.0 && rate <= 1000.0) return rate;
+  throw std::invalid_argument("rate is " + std::to_string(rate) + ": use 1 to 1000");
+}
+
+Marker deletion(const std_msgs::Header& header, int action) {
+  Marker marker;
+  marker.header = header;
+  marker.action = action;
+  marker.pose.orientation.w = 1.0;
+  return marker;
+}
+
+}  // namespace
+
+void MarkerThinner::take(const MarkerArray::ConstPtr& array) {
+  for (const Marker& marker : array->markers) {
+    if (marker.action == Marker::DELETEALL) start_afresh();
+    if (marker.action == Marker::DELETE) deleted_.emplace(marker.ns, marker.id);
+  }
+  latest_ = array;
+}
+
+MarkerArray MarkerThinner::next() {
+  MarkerArray array;
+  if (!latest_ || latest_->markers.empty()) return array;
+  const std_msgs::Header& header = latest_->markers.front().header;
+  if (afresh_) array.markers.push_back(deletion(header, Marker::DELETEALL));
+  for (const auto& [ns, id] : deleted_) {
+    if (afresh_ || left_out_.count(ns) > 0) continue;
+    array.markers.push_back(deletion(header, Marker::DELETE));
+    array.markers.back().ns = ns;
+    array.markers.back().id = id;
+  }
+  for (const Marker& marker : latest_->markers) {
+    if (marker.action == Marker::ADD && left_out_.count(marker.ns) == 0) array.markers.push_back(marker);
+  }
+  latest_.reset();
+  deleted_.clear();
+  afresh_ = false;
+  return array;
+}
+
+MarkerRelay::MarkerRelay(ros::NodeHandle node, const ros::NodeHandle& parameters)
+    : node_(node), thinner_(left_out_from(parameters)) {
+  const double rate = rate_from(parameters);
+  afresh_after_ = std::max(1, static_cast<int>(kAfresh * rate));
+  const auto changed = [this](const ros::SingleSubscriberPublisher&) { viewers_changed(); };
+  publisher_ = node_.advertise<MarkerArray>("view/markers", 1, changed, changed);
+  timer_ =
+      node_.createWallTimer(ros::WallDuration(1.0 / rate), [this](const ros::WallTimerEvent&) { send(); });
+}
+
+void MarkerRelay::viewers_changed() {
+  thinner_.start_afresh();
+  const bool wanted = publisher_.getNumSubscribers() > 0;
+  if (!wanted) subscriber_.shutdown();
+  if (wanted && !subscriber_)
+    subscriber_ =
+        node_.subscribe("markers", 10, &MarkerThinner::take, &thinner_, ros::TransportHints().tcpNoDelay());
+}
+
+void MarkerRelay::send() {
+  const MarkerArray array = thinner_.next();
+  if (array.markers.empty()) return;
+  publisher_.publish(array);
+  if (++sent_ % afresh_after_ == 0) thinner_.start_afresh();
+}
+
+}  // namespace mrhi
