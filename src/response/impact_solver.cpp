@@ -11,8 +11,9 @@ namespace {
 
 constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
 constexpr int kMaxSweeps = 500;
-constexpr double kConverged = 1e-13;  // of the approach velocity
-constexpr double kTogether = 1e-12;   // blows nearer to each other in time than this are one [s]
+constexpr double kConverged = 1e-13;   // of the approach velocity
+constexpr double kTogether = 1e-12;    // blows nearer to each other in time than this are one [s]
+constexpr std::size_t kBlowsEach = 4;  // of an island's contacts, on average, in one step; then springs act
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
 
@@ -27,55 +28,37 @@ Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm
   return partner;
 }
 
-/// Moves the arms on to where the two surfaces meet, at one point: so that the blow keeps angular momentum.
-void meet(Strike& strike) {
-  const Vector3 point = 0.5 * (strike.a.velocity() + strike.b.velocity());
-  for (Strike::Partner* partner : {&strike.a, &strike.b}) {
-    if (partner->state == nullptr) continue;
-    partner->arm += strike.time * (point - partner->inverse_mass * partner->state->linear_momentum);
+/// The radius of a body that is a ball about its centre of mass; 0 of others.
+double radius_of_ball(const Body& body) {
+  if (body.fixed || body.shapes.size() != 1 || !body.shapes[0].pose.position.isZero(0.0)) return 0.0;
+  const Sphere* ball = std::get_if<Sphere>(&body.shapes[0].shape);
+  return ball == nullptr ? 0.0 : ball->radius;
+}
+
+/// Of two bodies, as it is at the step's start.
+Strike strike_of(ContactStep& step, BodyContact& contact) {
+  Strike strike;
+  strike.a = partner(step, contact.key.a, contact.arm_a);
+  strike.b = partner(step, contact.key.b, contact.arm_b);
+  strike.normal = contact.normal;
+  // Free bodies fall together.
+  strike.acceleration = strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
+  strike.gap = -contact.depth;
+  strike.between = &contact;
+  strike.impulse = &contact.impulse;
+  strike.struck = &contact.struck;
+  strike.radius_a = radius_of_ball(step.scene.bodies[contact.key.a]);
+  strike.radius_b = radius_of_ball(step.scene.bodies[contact.key.b]);
+  if (strike.is_of_balls()) {
+    strike.a.arm = step.bodies[contact.key.b].pose.position - step.bodies[contact.key.a].pose.position;
+    strike.b.arm.setZero();
+    strike.move_to(0.0);
+  } else if (contact.first_touch >= 0.0) {
+    strike.gap = 0.0;
+    strike.time = contact.first_touch;
+    strike.move_to(0.0);
   }
-}
-
-/// Moves one impact towards its target, never pulling; returns by how much its velocity was off [m/s].
-double relax_normal(Strike& strike) {
-  const double velocity = strike.normal.dot(strike.relative_velocity());
-  const double wanted = std::max(0.0, strike.magnitude + strike.mass * (strike.target - velocity));
-  const double change = wanted - strike.magnitude;
-  strike.magnitude = wanted;
-  strike.a.push(change * strike.normal);
-  strike.b.push(-change * strike.normal);
-  return std::abs(change) / strike.mass;
-}
-
-/// Stops the sliding at one impact as far as Coulomb's law lets it; returns the change of the impulse over
-/// the normal's effective mass [m/s].
-double relax_tangential(Strike& strike) {
-  if (strike.friction <= 0.0) return 0.0;
-  const Eigen::Vector2d needed = strike.along_mass * (strike.along.transpose() * strike.relative_velocity());
-  Vector3 wanted = strike.drag + strike.along * needed;
-  const double most = strike.friction * strike.magnitude, length = wanted.norm();
-  if (length > most) wanted *= most / length;
-  const Vector3 change = wanted - strike.drag;
-  strike.drag = wanted;
-  strike.a.push(-change);
-  strike.b.push(change);
-  return change.norm() / strike.mass;
-}
-
-/// Finds impulses that together give every strike its velocity; false if there are none.
-template <typename Strikes>
-bool solve(Strikes first, Strikes last, double most) {
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    double error = 0.0, scale = 0.0, sum = 0.0;
-    for (auto strike = first; strike != last; ++strike) {
-      error = std::max({error, relax_normal(*strike), relax_tangential(*strike)});
-      scale = std::max(scale, strike->magnitude / strike->mass);
-      sum += strike->magnitude;
-    }
-    if (error <= kConverged * scale) return true;
-    if (sum > kPressed * most) return false;
-  }
-  return true;
+  return strike;
 }
 
 /// An island of one body that a hand presses.
@@ -87,77 +70,59 @@ bool is_held(const ContactStep& step, const Island& island) {
                      [](const Contact& contact) { return contact.touching() && contact.struck; });
 }
 
-template <typename Strikes>
-void undo(Strikes first, Strikes last) {
-  for (auto strike = first; strike != last; ++strike) {
-    const Vector3 impulse = strike->drag - strike->magnitude * strike->normal;
-    strike->a.push(impulse);
-    strike->b.push(-impulse);
-  }
+/// The springs look at where their ends are going from the step's start on: a gap that changes otherwise, by
+/// a blow within the step, is for them what it would have had to be then to end up the same.
+void widen(Strike strike, double step) {
+  strike.move_to(step);
+  BodyContact& contact = *strike.between;
+  strike.normal = contact.normal;
+  strike.a.arm = contact.arm_a;
+  strike.b.arm = contact.arm_b;
+  contact.depth = std::min(contact.depth, step * strike.rate() - strike.gap);
 }
 
 }  // namespace
 
-Vector3 Strike::Partner::velocity() const {
-  if (state == nullptr) return Vector3::Zero();
-  return inverse_mass * state->linear_momentum + (inverse_inertia * state->angular_momentum).cross(arm);
-}
-
-void Strike::Partner::push(const Vector3& by) {
-  if (state == nullptr) return;
-  state->linear_momentum += by;
-  state->angular_momentum += arm.cross(by);
-}
-
-Matrix3 Strike::Partner::inverse_effective_mass() const {
-  if (state == nullptr) return Matrix3::Zero();
-  return collision_matrix(inverse_mass, inverse_inertia, arm);
-}
-
-Vector3 Strike::relative_velocity() const {
-  return drive + a.velocity() - b.velocity();
-}
-
 ImpactSolver::ImpactSolver() {
   strikes_.reserve(kUsualStrikes);
+  blow_.reserve(kUsualStrikes);
+  meetings_.reserve(kUsualStrikes);
   impacts_.reserve(2 * kUsualStrikes);
 }
 
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                            const SpringMotion& springs) {
+  friction_ = friction;
   for (Contact& contact : step.contacts) contact.impulse.setZero();
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
   for (const Island& island : islands.all()) {
-    collect(step, island, friction);
+    collect(step, island);
     if (springs && by_hand_ && is_held(step, island)) spare_carried(step, springs(island));
     if (strikes_.empty()) continue;
-    order_blows();
-    for (auto blow = strikes_.begin(); blow != strikes_.end();) {
-      const auto next = std::find_if(blow, strikes_.end(), [blow](const Strike& strike) {
-        return strike.blow > blow->blow + kTogether;
-      });
-      deal(step, blow, next);
-      blow = next;
+    if (by_hand_) {
+      deal_at_once(step);
+    } else {
+      deal_in_turn(step, island);
     }
   }
 }
 
-void ImpactSolver::collect(ContactStep& step, const Island& island, ImpactFriction friction) {
+void ImpactSolver::collect(ContactStep& step, const Island& island) {
   strikes_.clear();
   by_hand_ = false;
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
       Contact& contact = step.contacts[i];
-      if (!contact.ignored && !contact.struck) add(step, contact, friction);
+      if (!contact.ignored && !contact.struck) add(step, contact);
     }
   }
   for (const Link& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
-    if (!contact.struck) add(step, contact, friction);
+    if (!contact.struck) add(step, contact);
   }
 }
 
-void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction friction) {
+void ImpactSolver::add(ContactStep& step, Contact& contact) {
   const Body& body = step.scene.bodies[contact.key.body];
   const BodyState& state = step.bodies[contact.key.body];
   const double rate = contact.normal.dot(relative_velocity(contact, body, state));
@@ -175,41 +140,21 @@ void ImpactSolver::add(ContactStep& step, Contact& contact, ImpactFriction frict
   strike.impulse = &contact.impulse;
   strike.struck = &contact.struck;
   by_hand_ = true;
-  add_strike(strike, body.material, friction);
+  add(strike, body.material);
 }
 
-void ImpactSolver::add(ContactStep& step, BodyContact& contact, ImpactFriction friction) {
-  Strike strike;
-  strike.a = partner(step, contact.key.a, contact.arm_a);
-  strike.b = partner(step, contact.key.b, contact.arm_b);
-  strike.drive.setZero();
-  strike.normal = contact.normal;
-  const double rate = contact.normal.dot(strike.relative_velocity());
-  // Free bodies fall together.
-  strike.acceleration = strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
-  strike.time = contact.first_touch;
-  if (contact.first_touch < 0.0) {
-    if (classify(rate) != Approach::colliding) return;
-    strike.time = time_to_close(-contact.depth, rate, strike.acceleration);
+void ImpactSolver::add(ContactStep& step, BodyContact& contact) {
+  const Strike strike = strike_of(step, contact);
+  if (strike.meeting() < step.step) {
+    add(strike, contact.material);
+  } else if (strike.is_of_balls() && strike.gap > 0.0) {
+    widen(strike, step.step);  // they pass each other
   }
-  if (strike.time >= step.step) return;
-  if (contact.first_touch < 0.0) meet(strike);
-  strike.impulse = &contact.impulse;
-  strike.struck = &contact.struck;
-  add_strike(strike, contact.material, friction);
 }
 
-void ImpactSolver::add_strike(Strike strike, const Material& material, ImpactFriction friction) {
-  strike.order = strikes_.size();
+void ImpactSolver::add(Strike strike, const Material& material) {
   strike.restitution = material.restitution;
-  const Matrix3 k = strike.a.inverse_effective_mass() + strike.b.inverse_effective_mass();
-  strike.mass = 1.0 / strike.normal.dot(k * strike.normal);
-  if (friction == ImpactFriction::coulomb) {
-    strike.friction = material.static_friction;
-    strike.along.col(0) = strike.normal.unitOrthogonal();
-    strike.along.col(1) = strike.normal.cross(strike.along.col(0));
-    strike.along_mass = (strike.along.transpose() * k * strike.along).inverse();
-  }
+  if (friction_ == ImpactFriction::coulomb) strike.friction = material.static_friction;
   strikes_.push_back(strike);
 }
 
@@ -222,55 +167,103 @@ void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) 
   strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), parts), strikes_.end());
 }
 
-void ImpactSolver::order_blows() {
-  if (by_hand_) return;  // all at once
+void ImpactSolver::deal_at_once(ContactStep& step) {
+  blow_.clear();
   for (Strike& strike : strikes_) {
-    strike.blow = strike.time;
-    for (const Strike& other : strikes_) {
-      const bool same_pair = other.a.state == strike.a.state && other.b.state == strike.b.state;
-      if (same_pair) strike.blow = std::min(strike.blow, other.time);
-    }
+    if (!strike.by_hand) strike.move_to(strike.meeting());
+    blow_.push_back(&strike);
   }
-  std::sort(strikes_.begin(), strikes_.end(), [](const Strike& x, const Strike& y) {
-    return x.blow != y.blow ? x.blow < y.blow : x.order < y.order;
-  });
+  deal(step);
 }
 
-/// One blow, from the velocities that the blows before it have left.
-void ImpactSolver::deal(ContactStep& step, Strikes first, Strikes last) {
+void ImpactSolver::deal_in_turn(ContactStep& step, const Island& island) {
+  strikes_.clear();
+  for (const Link& link : island.links) {
+    BodyContact& contact = step.body_contacts[link.index];
+    const Strike strike = strike_of(step, contact);
+    const bool pressed = contact.struck && classify(strike.rate()) == Approach::colliding;
+    if (!pressed) add(strike, contact.material);
+  }
+  for (std::size_t blows = 0; blows < kBlowsEach * strikes_.size(); ++blows) {
+    if (!find_blow(step.step) || !deal(step)) break;
+  }
+  for (const Strike& strike : strikes_) widen(strike, step.step);
+}
+
+/// Finds the next blow before `end`, and moves all strikes on to it.
+bool ImpactSolver::find_blow(double end) {
+  meetings_.clear();
+  for (const Strike& strike : strikes_) meetings_.push_back(strike.meeting());
+  const double first = *std::min_element(meetings_.begin(), meetings_.end());
+  if (first >= end) return false;
+  blow_.clear();
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const auto now = [&](std::size_t other) {
+      return meetings_[other] <= first + kTogether && strikes_[i].same_pair(strikes_[other]);
+    };
+    bool in_blow = false;
+    for (std::size_t other = 0; meetings_[i] < end && other < strikes_.size(); ++other)
+      in_blow = in_blow || now(other);
+    if (in_blow) blow_.push_back(&strikes_[i]);
+    strikes_[i].move_to(in_blow ? meetings_[i] : first);
+  }
+  return true;
+}
+
+/// One blow, from the velocities that the blows before it have left; false if there is none that only pushes.
+bool ImpactSolver::deal(ContactStep& step) {
   double most = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
-  for (auto strike = first; strike != last; ++strike) {
-    strike->target = strike->normal.dot(strike->relative_velocity());
+  const auto passes = [&most](Strike* strike) {
+    strike->prepare();
+    strike->target = strike->rate();
     const double speed = strike->target + strike->time * strike->acceleration;
-    const bool meets = classify(speed) == Approach::colliding;
-    if (meets) {
-      strike->target -= (1.0 + strike->restitution) * speed;
-      most += -(1.0 + strike->restitution) * speed / strike->b.inverse_mass;
-    }
-    *strike->struck = meets;
+    if (classify(speed) != Approach::colliding) return true;
+    strike->target -= (1.0 + strike->restitution) * speed;
+    most += -(1.0 + strike->restitution) * speed / strike->b.inverse_mass;
+    *strike->struck = true;
+    return false;
+  };
+  blow_.erase(std::remove_if(blow_.begin(), blow_.end(), passes), blow_.end());
+  if (blow_.empty()) return true;
+  if (solve(most)) {
+    report(step);
+    return true;
   }
-  last = std::remove_if(first, last, [](const Strike& strike) { return !*strike.struck; });
-  if (first == last) return;
-  if (solve(first, last, most)) {
-    report(step, first, last);
-  } else {
-    // Fingers that close from both sides press the body, they do not strike it: Newton's law has no
-    // solution, and the springs take over.
-    undo(first, last);
+  // Fingers that close from both sides press the body, they do not strike it: Newton's law has no solution,
+  // and the springs take over.
+  for (Strike* strike : blow_) {
+    strike->a.push(strike->given());
+    strike->b.push(-strike->given());
   }
+  return false;
 }
 
-void ImpactSolver::report(ContactStep& step, Strikes first, Strikes last) {
+/// Finds impulses that together give every strike its velocity; false if there are none.
+bool ImpactSolver::solve(double most) {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    double error = 0.0, scale = 0.0, sum = 0.0;
+    for (Strike* strike : blow_) {
+      error = std::max({error, strike->relax_normal(), strike->relax_tangential()});
+      scale = std::max(scale, strike->magnitude / strike->mass);
+      sum += strike->magnitude;
+    }
+    if (error <= kConverged * scale) return true;
+    if (sum > kPressed * most) return false;
+  }
+  return true;
+}
+
+void ImpactSolver::report(ContactStep& step) {
   impacts_.clear();
   const auto note = [&](const Strike& strike, const Strike::Partner& partner, const Vector3& impulse) {
     if (partner.state == nullptr) return;
     const auto body = static_cast<int>(partner.state - step.bodies.data());
     impacts_.push_back({body, impulse, partner.arm, strike.time});
   };
-  for (auto strike = first; strike != last; ++strike) {
-    *strike->impulse = strike->drag - strike->magnitude * strike->normal;
-    note(*strike, strike->a, -*strike->impulse);
-    note(*strike, strike->b, *strike->impulse);
+  for (const Strike* strike : blow_) {
+    *strike->impulse += strike->given();
+    note(*strike, strike->a, -strike->given());
+    note(*strike, strike->b, strike->given());
   }
   step.changes.note_impacts(impacts_, step.bodies);
 }

@@ -5,52 +5,18 @@
 
 #include "islands.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "strike.h"
 
 namespace mrhi {
 
 enum class ImpactFriction { none, coulomb };
 
-/// One surface strikes another.
-struct Strike {
-  /// A body that takes part; nothing of it is set for a hand or a fixture, which an impulse does not move.
-  struct Partner {
-    BodyState* state = nullptr;
-    double inverse_mass = 0.0;
-    Matrix3 inverse_inertia;  // world axes
-    Vector3 arm;
-
-    Vector3 velocity() const;
-    void push(const Vector3& by);  // an impulse [N s]
-    Matrix3 inverse_effective_mass() const;
-  };
-  Partner a, b;
-  Vector3 drive;          // velocity of the hand's point, which has a's part then [m/s]
-  Vector3 normal;         // from b to a
-  std::size_t order = 0;  // among the island's strikes
-  double restitution = 0.0;
-  double acceleration = 0.0;  // of the rate n.(c1' - c2'), by gravity [m/s^2]
-  bool by_hand = false;
-  double gap = 0.0;                   // to the hand at the step's start [m]
-  double time = 0.0;                  // of impact, from the step's start [s]
-  double blow = 0.0;                  // time of the first strike of its pair, which are one blow [s]
-  double target = 0.0;                // rate after the impact, as it would be at the step's start [m/s]
-  double mass = 0.0;                  // effective along n [kg]
-  double magnitude = 0.0;             // j so far [N s]
-  double friction = 0.0;              // Coulomb's coefficient
-  Eigen::Matrix<double, 3, 2> along;  // unit vectors across n
-  Eigen::Matrix2d along_mass;         // effective across n [kg]
-  Vector3 drag = Vector3::Zero();     // tangential impulse so far [N s]
-  Vector3* impulse = nullptr;         // where the contact wants it told
-  bool* struck = nullptr;             // and that it has been struck
-
-  Vector3 relative_velocity() const;
-};
-
 /// The impulse phase: Newton's impact law along the normal, once per approach. Strikes of one pair of bodies,
 /// and all on an island that a hand strikes, are one blow: each one's relative velocity becomes at least
 /// -restitution times what it was on impact, with impulses that only push. Blows between other pairs follow
-/// each other by their times. With ImpactFriction::coulomb, sliding at the point is stopped as far as static
-/// friction times the normal impulse goes.
+/// each other in time, each as the ones before it have left the bodies, up to several of one pair in a step.
+/// With ImpactFriction::coulomb, sliding at the point is stopped as far as static friction times the normal
+/// impulse goes.
 class ImpactSolver {
  public:
   ImpactSolver();
@@ -62,17 +28,22 @@ class ImpactSolver {
                const SpringMotion& springs = {});
 
  private:
-  using Strikes = std::vector<Strike>::iterator;
-  void collect(ContactStep& step, const Island& island, ImpactFriction friction);
-  void add(ContactStep& step, Contact& contact, ImpactFriction friction);
-  void add(ContactStep& step, BodyContact& contact, ImpactFriction friction);
-  void add_strike(Strike strike, const Material& material, ImpactFriction friction);
+  void collect(ContactStep& step, const Island& island);
+  void add(ContactStep& step, Contact& contact);
+  void add(ContactStep& step, BodyContact& contact);
+  void add(Strike strike, const Material& material);
   void spare_carried(const ContactStep& step, const Twist& carried);
-  void order_blows();
-  void deal(ContactStep& step, Strikes first, Strikes last);
-  void report(ContactStep& step, Strikes first, Strikes last);
+  void deal_at_once(ContactStep& step);
+  void deal_in_turn(ContactStep& step, const Island& island);
+  bool find_blow(double end);
+  bool deal(ContactStep& step);
+  bool solve(double most);
+  void report(ContactStep& step);
 
-  std::vector<Strike> strikes_;
+  ImpactFriction friction_ = ImpactFriction::none;
+  std::vector<Strike> strikes_;   // those of an island
+  std::vector<double> meetings_;  // when each of them will collide, as the bodies move now [s]
+  std::vector<Strike*> blow_;     // those dealt together
   std::vector<BodyImpact> impacts_;
   bool by_hand_ = false;  // a hand takes part in this island's strikes
 };

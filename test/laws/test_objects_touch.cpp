@@ -119,18 +119,49 @@ Scene cloud() {
   return of(balls);
 }
 
-TEST(ObjectsTouch, elastic_balls_keep_momentum_and_energy) {
-  Objects balls(cloud());
-  const Vector3 momentum = balls.momentum();
-  const double energy = balls.energy();
-  int blows = 0;
-  balls.run(1.0, [&] {
-    for (const BodyContact& contact : balls.simulation().state().body_contacts)
-      blows += contact.impulse.norm() > 0.0 ? 1 : 0;
-  });
-  EXPECT_GE(blows, 4);
-  EXPECT_NEAR((balls.momentum() - momentum).norm(), 0.0, 1e-12 * energy);
-  EXPECT_NEAR(balls.energy() / energy, 1.0, 1e-9);
+TEST(ObjectsTouch, elastic_balls_keep_momentum_energy_and_what_spin_they_have_at_any_step) {
+  for (const double step : {0.00025, 0.001, 0.004, 0.0083333333, 0.0166666667}) {
+    Objects balls(cloud(), step);
+    const Vector3 momentum = balls.momentum(), angular_momentum = balls.angular_momentum();
+    const double energy = balls.energy();
+    int blows = 0;
+    balls.run(1.0, [&] {
+      for (const BodyContact& contact : balls.simulation().state().body_contacts)
+        blows += contact.impulse.norm() > 0.0 ? 1 : 0;
+    });
+    EXPECT_GE(blows, 2) << step;  // as seen at the frames' ends
+    EXPECT_NEAR((balls.momentum() - momentum).norm(), 0.0, 1e-12 * energy) << step;
+    EXPECT_NEAR((balls.angular_momentum() - angular_momentum).norm(), 0.0, 1e-9 * energy) << step;
+    EXPECT_NEAR(balls.energy() / energy, 1.0, 1e-9) << step;
+    for (std::size_t b = 0; b < balls.simulation().scene().bodies.size(); ++b)
+      EXPECT_LT(balls.twist(b).angular.norm(), 1e-9) << step;  // [rad/s]: nothing rubs
+  }
+}
+
+TEST(ObjectsTouch, a_smooth_ball_bounces_off_at_the_angle_it_came_without_spin) {
+  for (const double step : {0.001, 0.004, 0.0083333333}) {
+    Body floor = floor_block(0.0);
+    floor.material.restitution = 1.0;
+    Objects objects(of({floor, placed(with(ball_body(0.03, 0.2), 1.0, 0.0), "ball", Vector3(-0.2, 0, 0.08),
+                                      Vector3(1.0, 0, -0.3))}),
+                    step);
+    objects.run(0.4);
+    EXPECT_NEAR((objects.twist(1).linear - Vector3(1.0, 0, 0.3)).norm(), 0.0, 1e-9) << step;
+    EXPECT_LT(objects.twist(1).angular.norm(), 1e-9) << step;
+  }
+}
+
+TEST(ObjectsTouch, a_blow_goes_through_a_row_of_balls_that_touch) {
+  const Body ball = with(ball_body(0.02, 0.1), 1.0, 0.0);
+  for (const double step : {0.001, 0.0083333333}) {
+    std::vector<Body> row{placed(ball, "striker", Vector3(-0.2, 0, 0), Vector3(1, 0, 0))};
+    for (int i = 0; i < 4; ++i)
+      row.push_back(placed(ball, "ball_" + std::to_string(i), Vector3(0.04 * i, 0, 0)));
+    Objects cradle(of(row), step);
+    cradle.run(0.5);
+    for (std::size_t b = 0; b < 4; ++b) EXPECT_NEAR(cradle.twist(b).linear.norm(), 0.0, 1e-9) << b;
+    EXPECT_NEAR(cradle.twist(4).linear.x(), 1.0, 1e-9) << step;
+  }
 }
 
 TEST(ObjectsTouch, rough_spinning_boxes_keep_linear_and_angular_momentum_and_lose_energy) {

@@ -1,0 +1,119 @@
+#include "strike.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mr_hand_interaction/collision/god_object.h"
+#include "mr_hand_interaction/response/impact.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// When two points `apart` that part by `velocity` are `distance` from each other for the first time [s].
+double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
+  const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
+  if (outside <= 0.0) return 0.0;
+  const double discriminant = closing * closing - velocity.squaredNorm() * outside;
+  if (closing <= 0.0 || discriminant < 0.0) return kNever;
+  return outside / (closing + std::sqrt(discriminant));
+}
+
+}  // namespace
+
+Vector3 Strike::Partner::velocity_of_centre() const {
+  if (state == nullptr) return Vector3::Zero();
+  return inverse_mass * state->linear_momentum;
+}
+
+Vector3 Strike::Partner::velocity() const {
+  if (state == nullptr) return Vector3::Zero();
+  return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
+}
+
+void Strike::Partner::push(const Vector3& by) {
+  if (state == nullptr) return;
+  state->linear_momentum += by;
+  state->angular_momentum += arm.cross(by);
+}
+
+Matrix3 Strike::Partner::inverse_effective_mass() const {
+  if (state == nullptr) return Matrix3::Zero();
+  return collision_matrix(inverse_mass, inverse_inertia, arm);
+}
+
+double Strike::meeting() const {
+  const double wait =
+      is_of_balls()
+          ? time_to_reach(b.arm - a.arm, a.velocity_of_centre() - b.velocity_of_centre(), radius_a + radius_b)
+          : time_to_close(gap, rate() + time * acceleration, acceleration);
+  if (wait == kNever) return kNever;
+  Strike then = *this;
+  then.move_to(time + wait);
+  const double speed = then.rate() + then.time * acceleration;
+  return classify(speed) == Approach::colliding ? then.time : kNever;
+}
+
+void Strike::move_to(double later) {
+  const double wait = later - time;
+  time = later;
+  if (!is_of_balls()) {
+    gap += wait * (rate() + acceleration * (time - 0.5 * wait));
+    move_arms(wait);
+    return;
+  }
+  const Vector3 apart = b.arm - a.arm + wait * (a.velocity_of_centre() - b.velocity_of_centre());
+  const double distance = apart.norm(), radii = radius_a + radius_b;
+  gap = distance - radii;
+  normal = apart / distance;
+  a.arm = -(radius_a / radii) * apart;
+  b.arm = (radius_b / radii) * apart;
+}
+
+void Strike::move_arms(double seconds) {
+  // Where a ball touches moves with its centre, not with its surface.
+  const Vector3 point = radius_b > 0.0   ? b.velocity_of_centre()
+                        : radius_a > 0.0 ? a.velocity_of_centre()
+                                         : Vector3(0.5 * (a.velocity() + b.velocity()));
+  for (Partner* partner : {&a, &b}) {
+    if (partner->state != nullptr) partner->arm += seconds * (point - partner->velocity_of_centre());
+  }
+}
+
+void Strike::prepare() {
+  magnitude = 0.0;
+  drag.setZero();
+  const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
+  mass = 1.0 / normal.dot(k * normal);
+  if (friction <= 0.0) return;
+  along.col(0) = normal.unitOrthogonal();
+  along.col(1) = normal.cross(along.col(0));
+  along_mass = (along.transpose() * k * along).inverse();
+}
+
+double Strike::relax_normal() {
+  const double velocity = normal.dot(relative_velocity());
+  const double wanted = std::max(0.0, magnitude + mass * (target - velocity));
+  const double change = wanted - magnitude;
+  magnitude = wanted;
+  a.push(change * normal);
+  b.push(-change * normal);
+  return std::abs(change) / mass;
+}
+
+double Strike::relax_tangential() {
+  if (friction <= 0.0) return 0.0;
+  const Eigen::Vector2d needed = along_mass * (along.transpose() * relative_velocity());
+  Vector3 wanted = drag + along * needed;
+  const double most = friction * magnitude, length = wanted.norm();
+  if (length > most) wanted *= most / length;
+  const Vector3 change = wanted - drag;
+  drag = wanted;
+  a.push(-change);
+  b.push(change);
+  return change.norm() / mass;
+}
+
+}  // namespace mrhi
