@@ -21,10 +21,11 @@ struct Setting {
   Measured measured;
 };
 
-constexpr std::array<Setting, 10> kSettings{{
+constexpr std::array<Setting, 11> kSettings{{
     {"implicit", ContactModelKind::implicit, 0.0, Measured::step},
     {"implicit; stiffness 20000", ContactModelKind::implicit, 20000.0, Measured::step},
     {"implicit; stiffness 200000", ContactModelKind::implicit, 200000.0, Measured::step},
+    {"implicit; stiffness 2000000", ContactModelKind::implicit, 2000000.0, Measured::step},
     {"implicit; with begin", ContactModelKind::implicit, 0.0, Measured::begin_and_step},
     {"implicit; whole frame", ContactModelKind::implicit, 0.0, Measured::whole_frame},
     {"seed", ContactModelKind::seed, 0.0, Measured::step},
