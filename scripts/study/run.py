@@ -33,17 +33,25 @@ def run(folders, output, pairs):
 
 
 def _read_paths(sessions, pairs):
-    """(label, source, raw, filtered) of the given pairs and of sessions that have both files; and notes."""
-    found, notes = [], []
+    """(label, source, raw, filtered) of the given pairs, and of the first session of each group, condition and gravity
+    that has both files; and notes."""
+    found, notes, drawn, passed_over = [], [], set(), 0
     for i, (raw, filtered) in enumerate(pairs):
         found.append(('given' if len(pairs) == 1 else 'given %d' % (i + 1), PEOPLE, raw, filtered))
     for session in sessions:
         raw, filtered = (os.path.join(session.folder, name) for name in ('hands_raw.csv', 'hands.csv'))
+        kind = (session.simulated, session.gravity, session.condition, session.group)
         if os.path.exists(raw) and os.path.exists(filtered):
+            if kind in drawn:
+                passed_over += 1
+                continue
+            drawn.add(kind)
             found.append(('%s %s %g g' % (session.participant, session.condition, session.gravity),
                           SIMULATED if session.simulated else PEOPLE, raw, filtered))
         elif os.path.exists(raw) or os.path.exists(filtered):
             notes.append('%s: no trajectory drawn: it needs both hands_raw.csv and hands.csv' % session.folder)
+    if passed_over:
+        notes.append('%d sessions: no trajectory drawn: one of each group, condition and gravity is' % passed_over)
     read = trajectories.read_path
     return [(label, source, read(raw), read(filtered)) for label, source, raw, filtered in found], notes
 

@@ -2,6 +2,7 @@
 
 import collections
 import itertools
+import os
 
 import numpy as np
 import pandas
@@ -31,9 +32,11 @@ def read_path(file):
 
 
 def _read_numbers(file):
-    """The columns that matter; these files have millions of lines."""
+    """The columns that matter; these files have millions of lines. A last line that a crash cut off is left out."""
     try:
         table = pandas.read_csv(file, skipinitialspace=True, index_col=False)
+        if not _ends_with_line(file):
+            table = table.iloc[:-1].copy()
     except OSError as error:
         raise StudyError('%s: cannot be read: %s' % (file, error.strerror or error)) from None
     except (ValueError, UnicodeDecodeError) as error:  # pandas names the line
@@ -48,6 +51,12 @@ def _read_numbers(file):
                              % (file, bad[0] + 2, column, table[column].iloc[bad[0]]))
         table[column] = numbers
     return table
+
+
+def _ends_with_line(file):
+    with open(file, 'rb') as opened:
+        opened.seek(-1, os.SEEK_END)
+        return opened.read(1) in b'\r\n'
 
 
 def _path(time, position):

@@ -32,6 +32,13 @@ std::uint8_t phase(const Contact& contact) {
   return contact.friction == Friction::sticking ? Message::STICKING : Message::SLIPPING;
 }
 
+mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header) {
+  mr_hand_interaction::HandFrame message;
+  message.header = header;
+  for (const Hand& hand : result.tracked) message.hands.push_back(to_message(hand));
+  return message;
+}
+
 mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header) {
   mr_hand_interaction::HandFrame message;
   message.header = header;

@@ -30,6 +30,7 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
       clock_(clock),
       haptics_(node, haptics),
       rendered_hands_(node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue)),
+      tracked_hands_(node.advertise<mr_hand_interaction::HandFrame>("tracked_hands", kQueue)),
       objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
       contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
       events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
@@ -51,6 +52,7 @@ void ResultPublisher::publish(const FrameResult& result) {
   haptics_.publish(*simulation_, result, when);
   if (rendered_hands_.getNumSubscribers() > 0)
     publish_shared(rendered_hands_, rendered_message(result, when));
+  if (tracked_hands_.getNumSubscribers() > 0) publish_shared(tracked_hands_, tracked_message(result, when));
   if (contacts_.getNumSubscribers() > 0) {
     publish_shared(contacts_, contacts_message(simulation_->scene(), result, simulation_->state(), when));
   }

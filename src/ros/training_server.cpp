@@ -19,6 +19,7 @@ constexpr int kQueue = 100;
 constexpr double kFresh = 0.1;       // contacts that are older say nothing [s]
 constexpr double kStartRoom = 0.02;  // an object this near its start has been put there [m]
 constexpr double kStartDelay = 0.5;  // it may have moved this long before it is first seen [s]
+constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than messages are ever late
 const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Task task_of(const TrainingParameters& parameters) {
@@ -58,12 +59,20 @@ TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_nod
   markers_ = node.advertise<visualization_msgs::MarkerArray>("training/markers", 10);
   advertise_services(private_node);
   using Contacts = mr_hand_interaction::ContactArray;
+  using Hands = mr_hand_interaction::HandFrame;
   const auto hints = ros::TransportHints().tcpNoDelay();
-  subscribers_ = {node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
-                  node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
-                  node.subscribe<Contacts>(
-                      "contacts", kQueue, [this](const Contacts::ConstPtr& message) { contacts_ = *message; },
-                      nullptr, hints)};
+  subscribers_ = {
+      node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
+      node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
+      node.subscribe<Contacts>(
+          "contacts", kQueue, [this](const Contacts::ConstPtr& message) { contacts_ = *message; }, nullptr,
+          hints),
+      node.subscribe<Hands>(
+          "hand_frame", kQueue, [this](const Hands::ConstPtr& message) { take_hands(*message, false); },
+          nullptr, hints),
+      node.subscribe<Hands>(
+          "tracked_hands", kQueue, [this](const Hands::ConstPtr& message) { take_hands(*message, true); },
+          nullptr, hints)};
   timer_ = node.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { tick(); });
 }
 
@@ -120,10 +129,34 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
   }
 }
 
+void TrainingServer::take_hands(const mr_hand_interaction::HandFrame& message, bool filtered) {
+  using mr_hand_interaction::Phalanx;
+  for (const auto& hand : message.hands) {
+    for (const Phalanx& phalanx : hand.phalanges) {
+      if (phalanx.finger != Phalanx::INDEX || phalanx.bone != Phalanx::DISTAL) continue;
+      HandRow row;
+      row.filtered = filtered;
+      row.hand = hand.id;
+      row.side = hand.side;
+      row.start = from_message(phalanx.start);
+      row.end = from_message(phalanx.end);
+      row.radius = phalanx.radius;
+      session_.log_hand(row, on_our_clock(message.header.stamp));
+    }
+  }
+}
+
+/// Stamps are those of the machine that the hands come from, whose clock may be another one.
+Nanoseconds TrainingServer::on_our_clock(const ros::Time& stamp) {
+  const Nanoseconds apart = now() - from_ros_time(stamp);
+  if (std::abs(apart - clocks_apart_) > kClocksApart) clocks_apart_ = apart;
+  return from_ros_time(stamp) + clocks_apart_;
+}
+
 Observation TrainingServer::observed(const mr_hand_interaction::ObjectStateArray& message,
                                      const mr_hand_interaction::ObjectState& object) {
   Observation seen;
-  seen.stamp = from_ros_time(message.header.stamp);
+  seen.stamp = on_our_clock(message.header.stamp);
   seen.pose = from_message(object.pose);
   seen.twist = {from_message(object.twist.linear), from_message(object.twist.angular)};
   seen.held = object.held;

@@ -96,6 +96,12 @@ void Session::update(const Observation& seen) {
   if (trial_.result() != TrialResult::none) note_result();
 }
 
+void Session::log_hand(HandRow row, Nanoseconds stamp) {
+  if (phase_ != SessionPhase::running || !trial_.begun()) return;
+  row.time = time(stamp);
+  folder_.log(row);
+}
+
 void Session::pause(bool paused, Nanoseconds now) {
   if (phase_ != (paused ? SessionPhase::running : SessionPhase::paused)) return;
   trial_.pause();

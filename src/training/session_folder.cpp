@@ -18,6 +18,7 @@ const char* const kTrialColumns =
     "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
     "tracking_losses";
 const char* const kEventColumns = "time,trial,stage,event,object,detail";
+const char* const kHandColumns = "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching";
 
 /// A line of a table, of numbers with six decimals.
 class Line {
@@ -32,6 +33,7 @@ class Line {
     empty_ = false;
     return *this;
   }
+  Line& add(const Vector3& value) { return add(value.x()).add(value.y()).add(value.z()); }
   Line& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
   std::string text() const { return stream_.str() + '\n'; }
 
@@ -112,8 +114,8 @@ void SessionFolder::open_header(const SessionHeader& header) {
   fs::rename(unfinished, file);
 }
 
-std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name, const char* columns,
-                                                                std::ofstream& out) {
+/// To be written on; what is in it, in whole lines. Throws if it has other columns.
+std::string SessionFolder::open_file(const char* name, const char* columns, std::ofstream& out) {
   const fs::path file = fs::path(path_) / name;
   std::string text = read_all(file);
   const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
@@ -124,18 +126,24 @@ std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name
   }
   out.open(file, std::ios::binary | std::ios::app);
   if (text.empty()) write_now(out, std::string(columns) + '\n', file.string());
-
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(text);
-  std::string line;
-  if (std::getline(lines, line) && line != columns)
+  if (!text.empty() && text.substr(0, text.find('\n')) != columns)
     throw SessionError(file.string() + ":1: these columns are not allowed; allowed: " + columns);
+  return text;
+}
+
+std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name, const char* columns,
+                                                                std::ofstream& out) {
+  const std::string file = (fs::path(path_) / name).string();
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(open_file(name, columns, out));
+  std::string line;
+  std::getline(lines, line);
   const std::size_t fields = split(columns).size();
   for (int number = 2; std::getline(lines, line); ++number) {
     rows.push_back(split(line));
     if (rows.back().size() != fields)
-      throw SessionError(file.string() + ":" + std::to_string(number) + ": " +
-                         std::to_string(rows.back().size()) + " fields; allowed: " + std::to_string(fields));
+      throw SessionError(file + ":" + std::to_string(number) + ": " + std::to_string(rows.back().size()) +
+                         " fields; allowed: " + std::to_string(fields));
   }
   return rows;
 }
@@ -157,6 +165,17 @@ void SessionFolder::log(const TrialRow& row) {
   line.add(m.attempts).add(m.drops).add(m.path_length).add(m.grip_force_mean).add(m.grip_force_max);
   line.add(m.release_drift).add(m.release_speed).add(m.tracking_losses);
   write_now(trials_, line.text(), path_ + "/trials.csv");
+}
+
+void SessionFolder::log(const HandRow& row) {
+  constexpr int kIndex = 1, kDistal = 3, kTracked = 0, kUntouched = 0;
+  Line line;
+  line.add(row.time).add(row.hand).add(row.side).add(kIndex).add(kDistal).add(kTracked);
+  line.add(row.start).add(row.end).add(row.radius).add(kUntouched);
+  const char* const name = row.filtered ? "hands.csv" : "hands_raw.csv";
+  std::ofstream& out = row.filtered ? hands_ : hands_raw_;
+  if (!out.is_open()) open_file(name, kHandColumns, out);
+  write_now(out, line.text(), path_ + '/' + name);
 }
 
 }  // namespace mrhi

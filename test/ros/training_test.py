@@ -114,6 +114,7 @@ class TrainingTest(unittest.TestCase):
                                "--output", results])
         with open(os.path.join(results, "trials.csv")) as file:
             self.assertIn("cube", file.read())
+        self.assertTrue(os.path.exists(os.path.join(results, "figures", "trajectory_P01_implicit_0_g.png")))
 
     def call(self, name, *values):
         kind = SetBool if values else Trigger

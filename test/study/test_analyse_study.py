@@ -118,6 +118,17 @@ class Program(unittest.TestCase):
         self.assertTrue(NO_PERSON in self.read('figures', 'trajectory_one_implicit_0_g.svg'))
         self.assertIn('two: no trajectory drawn: it needs both hands_raw.csv and hands.csv', done.stderr)
 
+    def test_one_session_of_each_group_and_condition_has_its_trajectory_drawn(self):
+        for name, group in (('P01', 'beginner'), ('P02', 'veteran'), ('P03', 'beginner')):
+            made_up_study.write_session(os.path.join(self.root, name), name, group, ratings=[('efficiency', 5)])
+            self.write_hands(os.path.join(name, 'hands_raw.csv'), 0.004)
+            with open(self.write_hands(os.path.join(name, 'hands.csv'), 0.001), 'a') as file:
+                file.write('3.0,7,0,1,3,0,0.0')  # cut off by a crash
+        done = self.run_program(self.root)
+        self.assertEqual([name for name in self.figures() if name.startswith('trajectory') and name.endswith('.svg')],
+                         ['trajectory_P01_implicit_0_g.svg', 'trajectory_P02_implicit_0_g.svg'])
+        self.assertIn('1 sessions: no trajectory drawn', done.stderr)
+
     def test_a_path_across_a_tracking_loss_has_no_length_there(self):
         path = os.path.join(self.root, 'hands.csv')
         made_up_study.write_table(path, list(trajectories.COLUMNS), [

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -112,6 +113,33 @@ TEST_F(SessionTest, events_are_in_the_file_at_once) {
   for (const char* event : {"session_begun", ",1,manipulation,begun,cube,", ",1,manipulation,grasped,cube,",
                             ",1,maintenance,reached,cube,2"})
     EXPECT_NE(std::string::npos, log.find(event)) << event << "\n" << log;
+}
+
+TEST_F(SessionTest, the_fingertip_s_path_is_logged_while_a_trial_runs_and_goes_on_after_a_crash) {
+  HandRow row;
+  row.end = Vector3(0.1, 0.2, 0.3);
+  {
+    Session session = open();
+    session.log_hand(row, 0);
+    EXPECT_FALSE(std::filesystem::exists(path_ + "/hands_raw.csv")) << "no trial has begun";
+    session.begin(0);
+    play(session, 1.0);
+    session.log_hand(row, stamp_);
+    row.filtered = true;
+    session.log_hand(row, stamp_);
+  }
+  std::ofstream(path_ + "/hands.csv", std::ios::app) << "1.02,0,0,1,3,0,0.0";
+  Session session = open();
+  session.begin(0);
+  play(session, 1.0);
+  session.log_hand(row, stamp_);
+  const auto filtered = lines(path_ + "/hands.csv");
+  ASSERT_EQ(3u, filtered.size()) << "the line that was cut off is gone";
+  EXPECT_EQ("time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching", filtered[0]);
+  EXPECT_NE(std::string::npos,
+            filtered[1].find(",1,3,0,0.000000,0.000000,0.000000,0.100000,0.200000,0.300000,"));
+  EXPECT_LT(std::stod(filtered[1]), std::stod(filtered[2]));
+  EXPECT_EQ(2u, lines(path_ + "/hands_raw.csv").size());
 }
 
 TEST_F(SessionTest, skip_passes_over_the_running_trial_or_the_next) {

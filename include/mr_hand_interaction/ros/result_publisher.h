@@ -44,7 +44,7 @@ class ResultPublisher {
   const Simulation* simulation_ = nullptr;
   std::unique_ptr<Markers> markers_;
   HapticsPublisher haptics_;
-  ros::Publisher rendered_hands_, objects_, contacts_, events_, marker_publisher_;
+  ros::Publisher rendered_hands_, tracked_hands_, objects_, contacts_, events_, marker_publisher_;
   tf2_ros::TransformBroadcaster transforms_;
   ros::Time transforms_stamp_;
   ros::WallTime shown_;

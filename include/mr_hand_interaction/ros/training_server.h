@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
 #include <mr_hand_interaction/TrainingStatus.h>
@@ -26,6 +27,8 @@ class TrainingServer {
   void advertise_services(ros::NodeHandle& private_node);
   void take(const mr_hand_interaction::ObjectStateArray& message);
   void take_event(const mr_hand_interaction::InteractionEvent& event);
+  void take_hands(const mr_hand_interaction::HandFrame& message, bool filtered);
+  Nanoseconds on_our_clock(const ros::Time& stamp);
   Observation observed(const mr_hand_interaction::ObjectStateArray& message,
                        const mr_hand_interaction::ObjectState& object);
   void tick();
@@ -49,6 +52,7 @@ class TrainingServer {
   bool paused_ = false;
   bool at_start_ = false;  ///< the running trial's object has been seen where it starts
 
+  Nanoseconds clocks_apart_ = 0;  ///< this machine's ahead of that of the hands' stamps
   mr_hand_interaction::ContactArray contacts_;
   int tracking_losses_ = 0;
   bool put_back_ = false;

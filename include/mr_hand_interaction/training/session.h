@@ -40,6 +40,8 @@ class Session {
   void begin(Nanoseconds now);
   /// Phase running.
   void update(const Observation& seen);
+  /// Phase running, once the trial has begun: for the path of the fingertip. The row's time is set here.
+  void log_hand(HandRow row, Nanoseconds stamp);
   /// Running and paused only.
   void pause(bool paused, Nanoseconds now);
   /// The running trial, or the next one, is passed over.

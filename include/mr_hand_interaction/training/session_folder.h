@@ -46,7 +46,19 @@ struct EventRow {
   std::string event, object, detail;
 };
 
-/// A session's folder: session.yaml, trials.csv, events.csv. What is logged is in the file when the call
+/// A row of hands.csv (filtered) or hands_raw.csv, with the columns that replay gives them: the tip of an
+/// index finger.
+struct HandRow {
+  double time = 0.0;  ///< since the session's start [s]
+  bool filtered = false;
+  std::uint32_t hand = 0;
+  int side = 0;                                            ///< as in Hand.msg
+  Vector3 start = Vector3::Zero(), end = Vector3::Zero();  ///< of its last phalanx, in world [m]
+  double radius = 0.0;
+};
+
+/// A session's folder: session.yaml, trials.csv, events.csv, and once there are hands hands.csv and
+/// hands_raw.csv. What is logged is in the file when the call
 /// returns, whatever becomes of this program.
 class SessionFolder {
  public:
@@ -65,9 +77,11 @@ class SessionFolder {
 
   void log(const EventRow& row);
   void log(const TrialRow& row);
+  void log(const HandRow& row);
 
  private:
   void open_header(const SessionHeader& header);
+  std::string open_file(const char* name, const char* columns, std::ofstream& out);
   std::vector<std::vector<std::string>> open_table(const char* name, const char* columns, std::ofstream& out);
 
   std::string path_, condition_;
@@ -76,7 +90,7 @@ class SessionFolder {
   int last_trial_ = 0;
   double last_time_ = 0.0;
   std::vector<std::string> notes_;
-  std::ofstream trials_, events_;
+  std::ofstream trials_, events_, hands_, hands_raw_;
 };
 
 }  // namespace mrhi
