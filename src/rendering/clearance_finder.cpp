@@ -9,6 +9,7 @@ namespace {
 /// Farther than this from a body a hand was on no side of it [m].
 constexpr double kFarthest = 0.5;
 constexpr double kRound = 0.005;  // [m]
+constexpr double kFlat = 1e-4;    // [m]
 /// Normals of one side of a body differ by no more than this (cosine).
 constexpr double kSameSide = 0.5;
 
@@ -42,9 +43,19 @@ double deepest_end(const Capsule& capsule, const Vector3& normal) {
   return normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;
 }
 
+/// Of a capsule above a plane [m].
+double height(const Capsule& capsule, const Vector3& normal, const Vector3& point) {
+  return std::min(normal.dot(capsule.start - point), normal.dot(capsule.end - point)) - capsule.radius;
+}
+
 bool outside(const Capsule& capsule, const Vector3& normal, const Vector3& point) {
-  const double lowest = std::min(normal.dot(capsule.start - point), normal.dot(capsule.end - point));
-  return lowest - capsule.radius > -ClearanceFinder::kShallow;
+  return height(capsule, normal, point) > -ClearanceFinder::kShallow;
+}
+
+/// No plane that keeps a capsule out of a shape is nearer than the nearest way out; where a shape is hollow,
+/// or has turned, a plane of before may be.
+bool keeps_out(const Capsule& capsule, const Vector3& normal, const Vector3& point, double distance) {
+  return height(capsule, normal, point) <= distance + kFlat;
 }
 
 double gap(const Capsule& capsule, const Clearance& clearance) {
@@ -157,7 +168,8 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
     const bool same_side = before == nullptr || outside(*before, contact->normal, contact->point);
     if (same_side && contact->normal.dot(features.normal) >= kSameSide) return nearest;
     const double s = deepest_end(capsule, contact->normal);
-    if (same_side) return {contact->normal, contact->point, s, s};
+    const bool keeps = keeps_out(capsule, contact->normal, contact->point, features.distance);
+    if (same_side && keeps) return {contact->normal, contact->point, s, s};
   }
   if (before == nullptr || before->radius <= 0.0) return nearest;
   const auto last = finder_.closest(*before, near.body, near.shape, near.frame, kFarthest);
@@ -166,6 +178,7 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
   const double s = features.axis_parameter;
   const double way = capsule.radius - last->normal.dot(capsule.axis_point(s) - last->point);
   if (way > setting.moved + kRound) return nearest;
+  if (!keeps_out(capsule, last->normal, last->point, features.distance)) return nearest;
   return {last->normal, last->point, s, s};
 }
 

@@ -6,6 +6,7 @@
 
 #include "clearance_finder.h"
 #include "mr_hand_interaction/collision/near_bodies.h"
+#include "pace.h"
 #include "return_home.h"
 
 namespace mrhi {
@@ -19,10 +20,11 @@ constexpr double kFarthestPush = 0.1;  // bodies nearer than this may be met whi
 constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a frame, and this share of what hand
 constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
 constexpr double kAnyway = 1.0;        // for a hand that comes from nowhere [m]
+constexpr double kPace = 0.0018;       // that a joint may go beyond what hand and bodies move [m]
 constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is not looked at again [m]
 /// A hand stays this long behind a body that the tracked hand has passed through, without coming nearer by as
 /// much as this [m].
-constexpr Nanoseconds kStaysBehind = 150'000'000;
+constexpr Nanoseconds kStaysBehind = 1'000'000'000;
 constexpr double kProgress = 0.001;
 
 }  // namespace
@@ -32,14 +34,19 @@ struct HandRenderer::Impl {
     clearances.reserve(128);
   }
 
-  void push_out(const HandTrack& track, Nanoseconds stamp, const HandOffset& last, double least,
-                ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
+  void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
+                 ClearanceFinder::Setting& setting);
+  void push_out(const ClearanceFinder::Setting& setting, const HandOffset& last, double least,
+                HandOffset& offset, Hand& placed);
+  void keep_pace(const HandTrack& track, const ClearanceFinder::Setting& setting, const HandOffset& last,
+                 const HandOffset& reference, HandOffset& offset, Hand& placed);
   void keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                 const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
   double settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr);
   void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
                   Hand& placed);
+  HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last) const;
   void linearise(const Hand& placed);
   void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
   double way(const HandOffset& from, const HandOffset& to);
@@ -75,34 +82,77 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
     now = returning(offset, stamp, impl.chain);
     impl.chain.place(now, rendered.hand);
   }
+  const HandOffset reference = now;
   const double least = near ? impl.finder.find(rendered.hand, setting, kAhead, impl.clearances) : 0.0;
-  if (least < -kClear) {
-    impl.push_out(track, stamp, offset, least, setting, now, rendered.hand);
-  } else {
+  const bool pushed = least < -kClear;
+  if (pushed || away) impl.look_back(track, stamp, offset, setting);
+  if (pushed) impl.push_out(setting, offset, least, now, rendered.hand);
+  if (setting.shown_before != nullptr) impl.keep_pace(track, setting, offset, reference, now, rendered.hand);
+  if (!pushed) {
     now.left = 0.0;
+  } else if (impl.left_behind(setting, stamp, now)) {
+    now = HandOffset();
   }
   if (now.zero()) rendered.hand = track.current;
   now.stamp = stamp;
   offset = now;
 }
 
-void HandRenderer::Impl::push_out(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
-                                  double least, ClearanceFinder::Setting& setting, HandOffset& offset,
-                                  Hand& placed) {
-  const HandOffset reference = offset;
-  setting.moved = kAnyway;
-  if (!track.appeared) {
-    before = track.previous;
-    chain_before.begin(track.previous);
-    chain_before.place(last, before);
-    setting.shown_before = &before;
-    setting.moved = farthest_joint(track.previous, track.current) +
-                    finder.fastest_body(setting.bodies) * to_seconds(stamp - last.stamp);
-  }
+/// At the frame before.
+void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
+                                   ClearanceFinder::Setting& setting) {
   finder.begin(setting, kFarthestPush);
+  setting.moved = kAnyway;
+  if (track.appeared) return;
+  before = track.previous;
+  chain_before.begin(track.previous);
+  chain_before.place(last, before);
+  setting.shown_before = &before;
+  setting.moved = farthest_joint(track.previous, track.current) +
+                  finder.fastest_body(setting.bodies) * to_seconds(stamp - last.stamp);
+}
+
+void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const HandOffset& last,
+                                  double least, HandOffset& offset, Hand& placed) {
+  const HandOffset reference = offset;
   if (least < -ClearanceFinder::kShallow) begin_anew(setting, reference, offset, placed);
   keep_out(setting, reference, {last, kSwingShare * setting.moved + kSwing}, offset, placed);
-  if (left_behind(setting, stamp, offset)) offset = HandOffset();
+}
+
+/// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
+/// leave room, it gives way.
+void HandRenderer::Impl::keep_pace(const HandTrack& track, const ClearanceFinder::Setting& setting,
+                                   const HandOffset& last, const HandOffset& reference, HandOffset& offset,
+                                   Hand& placed) {
+  const Pace pace(before, farthest_joint(track.previous, track.current) + kPace);
+  double least_beyond = pace.beyond(placed);
+  if (least_beyond <= 0.0) return;
+  HandOffset best = offset;
+  const auto in_step = [&](const HandOffset& nearest_to, double swing) {
+    pace.keep(placed, clearances);
+    settle(setting, nearest_to, {last, swing}, offset, placed, &pace);
+    Pace::forget(clearances);
+    const double beyond = pace.beyond(placed);
+    if (beyond >= least_beyond || finder.find(placed, setting, kAhead, clearances) < -kTolerated) return;
+    least_beyond = beyond;
+    best = offset;
+  };
+  in_step(reference, kSwingShare * setting.moved + kSwing);
+  if (least_beyond > kTolerated) {
+    const HandOffset stay = staying(setting, last);
+    begin_anew(setting, stay, offset, placed);
+    in_step(stay, kAnyway);
+  }
+  offset = best;
+  chain.place(offset, placed);
+}
+
+/// The hand does not move from where it was shown.
+HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting,
+                                       const HandOffset& last) const {
+  HandOffset stay = last;
+  stay.shift = before.palm.position - setting.tracked.palm.position;
+  return stay;
 }
 
 void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
@@ -110,6 +160,11 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
   if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
   begin_anew(setting, reference, offset, placed);
   if (settle(setting, reference, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+  if (setting.shown_before != nullptr) {
+    const HandOffset stay = staying(setting, bounds.before);
+    begin_anew(setting, stay, offset, placed);
+    if (settle(setting, stay, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+  }
   begin_anew(setting, reference, offset, placed);
   shift_out(setting, offset, placed);
 }
@@ -117,7 +172,8 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 /// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
 /// [m].
 double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
+                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
+                                  const Pace* pace) {
   double least = 0.0;
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     linearise(placed);
@@ -126,6 +182,7 @@ double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const
     chain.place(offset, placed);
     if (expected > -kClear && way(from, offset) < kSmallStep) return expected;
     least = finder.find(placed, setting, kAhead, clearances);
+    if (pace != nullptr) least = std::min(least, pace->keep(placed, clearances));
     if (least > -kClear) return least;
   }
   return least;
