@@ -65,10 +65,7 @@ void FingerChain::find_axes(const Hand& tracked) {
   const RootFrame frame = root_frame(tracked, finger_);
   const Vector3 along = direction(tracked.capsules[proximal]);
   root_ = frame.hinge;
-  const double onward = along.dot(frame.along), upward = along.dot(frame.along.cross(frame.hinge));
-  const double aside = along.dot(frame.hinge);
-  flexion_ = std::atan2(-upward, onward);
-  abduction_ = std::atan2(aside, std::hypot(onward, upward));
+  onward_ = frame.along;
   swing_ = along.cross(root_).normalized();
   hinge_ = swing_.cross(along);
   if (finger_ != 0 || !has(tracked, 2) || !has(tracked, 3)) return;
@@ -87,17 +84,15 @@ void FingerChain::find_limits(const Hand& tracked) {
   const auto bone = [&](int index) -> const Capsule& {
     return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
   };
-  lower_.setZero(), upper_.setZero(), reach_.setZero();
+  lower_.setZero(), upper_.setZero(), reach_.setZero(), angles_.setZero();
   if (!tied_) {
     lower_.head<3>().setConstant(-1.0), upper_.head<3>().setConstant(1.0);
     return;
   }
-  FingerOffset tracked_angles(flexion_, abduction_, 0.0, 0.0);
+  angles_ = angles(tracked, hinge_);
   std::array<bool, 4> free{{true, true, false, false}};
   reach_[0] = (bone(1).end - bone(1).start).norm();
   for (int joint = 2; joint < kBonesPerFinger && has(tracked, joint) && has(tracked, joint - 1); ++joint) {
-    const Vector3 before = direction(bone(joint - 1)), after = direction(bone(joint));
-    tracked_angles[joint] = std::atan2(before.cross(after).dot(hinge_), before.dot(after));
     free[static_cast<std::size_t>(joint)] = true;
     reach_.head(joint + 1) += (bone(joint).end - bone(joint).start).norm();
   }
@@ -105,9 +100,28 @@ void FingerChain::find_limits(const Hand& tracked) {
   const JointLimits limits = joint_limits(finger_);
   for (int i = 0; i < 4; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
-    lower_[i] = std::min(0.0, limits.lower[i] - tracked_angles[i]);
-    upper_[i] = std::max(0.0, limits.upper[i] - tracked_angles[i]);
+    lower_[i] = std::min(0.0, limits.lower[i] - angles_[i]);
+    upper_[i] = std::max(0.0, limits.upper[i] - angles_[i]);
   }
+}
+
+FingerOffset FingerChain::angles(const Hand& hand, const Vector3& hinge) const {
+  const auto bone = [&](int index) {
+    return direction(hand.capsules[static_cast<std::size_t>(capsule_index(finger_, index))]);
+  };
+  const Vector3 along = bone(1);
+  const double onward = along.dot(onward_), upward = along.dot(onward_.cross(root_)), aside = along.dot(root_);
+  FingerOffset angles(std::atan2(-upward, onward), std::atan2(aside, std::hypot(onward, upward)), 0.0, 0.0);
+  for (int joint = 2; joint < kBonesPerFinger && has(hand, joint) && has(hand, joint - 1); ++joint) {
+    const Vector3 before = bone(joint - 1), after = bone(joint);
+    angles[joint] = std::atan2(before.cross(after).dot(hinge), before.dot(after));
+  }
+  return angles;
+}
+
+FingerOffset FingerChain::like(const Hand& shown, const FingerChain& chain) const {
+  if (!tied_ || !chain.tied_) return FingerOffset::Zero();
+  return (angles(shown, chain.placed_hinge_) - angles_).max(lower_).min(upper_);
 }
 
 void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed) {

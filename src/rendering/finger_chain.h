@@ -15,6 +15,9 @@ class FingerChain {
 
   /// Places the finger's phalanges, its joints turned by `offset` and all shifted by `shift`.
   void place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed);
+  /// The offset that lets the finger point as it does in `shown`, which `chain` placed, as far as its limits
+  /// allow. Of a finger that nothing ties to the palm: none.
+  FingerOffset like(const Hand& shown, const FingerChain& chain) const;
   /// By how much n.x grows with each component of the offset, x a point of bone 1 to 3 as last placed.
   FingerOffset gradient(int bone, const Vector3& x, const Vector3& n) const;
   /// No joint of the finger moves farther than this for a change of the offset [m].
@@ -33,16 +36,18 @@ class FingerChain {
  private:
   void find_axes(const Hand& tracked);
   void find_limits(const Hand& tracked);
+  FingerOffset angles(const Hand& hand, const Vector3& hinge) const;
   bool has(const Hand& hand, int bone) const { return hand.has(capsule_index(finger_, bone)); }
 
   int finger_ = 0;
   bool tied_ = false;                            // to the palm: it has a proximal phalanx
+  Vector3 onward_;                               // from where the root's angles count; unit
   Vector3 root_, swing_, hinge_;                 // axes of root flexion, abduction and the hinges; unit
   Vector3 placed_swing_, placed_hinge_;          // the same as last placed
   std::array<Vector3, kBonesPerFinger> joints_;  // start of each bone as last placed
   FingerOffset lower_, upper_;                   // see lower()
   FingerOffset reach_;                           // from each joint to the tip [m]
-  double flexion_ = 0.0, abduction_ = 0.0;       // of the root as tracked [rad]
+  FingerOffset angles_;                          // of the joints as tracked [rad]
 };
 
 }  // namespace mrhi

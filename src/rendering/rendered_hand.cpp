@@ -46,7 +46,7 @@ struct HandRenderer::Impl {
                 const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr);
   void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
                   Hand& placed);
-  HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last) const;
+  HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last);
   void linearise(const Hand& placed);
   void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
   double way(const HandOffset& from, const HandOffset& to);
@@ -149,9 +149,11 @@ void HandRenderer::Impl::keep_pace(const HandTrack& track, const ClearanceFinder
 
 /// The hand does not move from where it was shown.
 HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting,
-                                       const HandOffset& last) const {
+                                       const HandOffset& last) {
   HandOffset stay = last;
   stay.shift = before.palm.position - setting.tracked.palm.position;
+  for (int f = 0; f < kFingers; ++f)
+    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, chain_before.finger(f));
   return stay;
 }
 
