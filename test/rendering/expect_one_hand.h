@@ -19,8 +19,9 @@ inline RenderedCheck render_all(const Scene& scene, const std::vector<HandFrame>
   return check;
 }
 
-/// What docs/rendered_hand.md promises. Bone lengths and joints hold to rounding by construction.
-inline void expect_one_hand(const RenderedCheck& check, const std::string& what, double jump = 0.002) {
+/// What docs/rendered_hand.md promises, but for jumps. Bone lengths and joints hold to rounding by
+/// construction.
+inline void expect_one_hand_outside(const RenderedCheck& check, const std::string& what) {
   constexpr double kRounding = 1e-9;   // [m]
   constexpr double kAside = 0.005;     // bones are not quite in one plane [rad]
   constexpr double kDeepest = 0.0002;  // [m]
@@ -28,9 +29,16 @@ inline void expect_one_hand(const RenderedCheck& check, const std::string& what,
   EXPECT_LE(check.length.value, kRounding) << what << " at " << check.length.time;
   EXPECT_LE(check.apart.value, kRounding) << what << " at " << check.apart.time;
   EXPECT_LE(check.angle.value, kAside) << what << " at " << check.angle.time;
+  EXPECT_LE(check.thumb_angle.value, kAside) << what << " at " << check.thumb_angle.time;
   EXPECT_LE(check.depth.value, kDeepest) << what << " at " << check.depth.time;
-  EXPECT_LE(check.jump.value, jump) << what << " at " << check.jump.time << ", " << check.jumps << " jumps";
   EXPECT_EQ(check.late.value, 0.0) << what << " at " << check.late.time;
+}
+
+inline void expect_one_hand(const RenderedCheck& check, const std::string& what, int passed = 0) {
+  constexpr double kJump = 0.002;  // [m]
+  EXPECT_EQ(check.passed, passed) << what;
+  expect_one_hand_outside(check, what);
+  EXPECT_LE(check.jump.value, kJump) << what << " at " << check.jump.time << ", " << check.jumps << " jumps";
 }
 
 }  // namespace mrhi::testing

@@ -77,6 +77,46 @@ TEST(FingerChain, turns_each_joint_by_its_offset) {
   }
 }
 
+// The root of a thumb counts from its rest pose, of which its own bend is no part.
+TEST(FingerChain, a_thumb_turned_to_its_limits_is_there_sideways_too) {
+  const JointLimits limits = joint_limits(0);
+  for (const Side side : {Side::right, Side::left}) {
+    const Hand tracked = bent_hand(side);
+    const FingerChain thumb(tracked, 0, Vector3::Zero());
+    for (int corner = 0; corner < 4; ++corner) {
+      HandOffset offset;
+      for (int i = 0; i < 2; ++i)
+        offset.fingers[0][i] = (corner >> i & 1) != 0 ? thumb.upper()[i] : thumb.lower()[i];
+      const FingerOffset angles = testing::finger_angles(placed(tracked, offset), 0);
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(angles[i], (corner >> i & 1) != 0 ? limits.upper[i] : limits.lower[i], 1e-9);
+    }
+  }
+}
+
+TEST(FingerChain, points_as_it_was_shown_where_the_palm_has_turned_since) {
+  Offsets offsets;
+  const Hand tracked = bent_hand();
+  Hand turned = tracked;
+  turned.palm.orientation = turned.palm.orientation * Quaternion(Eigen::AngleAxisd(0.1, Vector3(1, 0, 0)));
+  for (int i = 0; i < 100; ++i) {
+    const HandOffset wanted = offsets.next();
+    for (int finger = 0; finger < kFingers; ++finger) {
+      const auto f = static_cast<std::size_t>(finger);
+      FingerChain before(tracked, finger, Vector3::Zero()), now(turned, finger, Vector3::Zero());
+      const FingerOffset kept = wanted.fingers[f].max(before.lower()).min(before.upper());
+      Hand shown = tracked, again = turned;
+      before.place(tracked, kept, wanted.shift, shown);
+      const FingerOffset like = now.like(shown, before);
+      if ((like == now.lower()).any() || (like == now.upper()).any()) continue;
+      now.place(turned, like, Vector3::Zero(), again);
+      EXPECT_LT(
+          (testing::bone_direction(again, finger, 1) - testing::bone_direction(shown, finger, 1)).norm(),
+          1e-9);
+    }
+  }
+}
+
 TEST(FingerChain, its_gradient_is_the_slope) {
   constexpr double kStep = 1e-6;
   Offsets offsets;

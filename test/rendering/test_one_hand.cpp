@@ -106,6 +106,17 @@ TEST(OneHand, a_hand_that_hits_a_wall_fast_is_stopped_by_it) {
   testing::expect_one_hand(hand.check(), "fast");
 }
 
+// The way out of each slab leads into another one.
+TEST(OneHand, a_hand_that_appears_in_several_bodies_is_outside_at_once) {
+  Scene scene = testing::scene_of(wall(Vector3(0.02, 0.2, 0.2), Vector3(0.05, 0, 0)));
+  scene.bodies.push_back(wall(Vector3(0.2, 0.02, 0.2), Vector3(0.05, 0, 0)));
+  scene.bodies.push_back(wall(Vector3(0.2, 0.2, 0.02), Vector3(0.05, 0, 0)));
+  MovingFlatHand hand(scene, [](double) { return Vector3::Zero(); });
+  hand.play(0.1);
+  EXPECT_GT(hand.offset().shift.norm(), 0.02);
+  EXPECT_LE(hand.check().depth.value, 0.0002);
+}
+
 TEST(OneHand, returns_without_a_snap_or_going_ahead_once_the_object_is_gone) {
   Scene scene = testing::scene_of(testing::placed_body(
       "block", Box{Vector3(0.3, 0.3, 0.05)}, {Vector3(0, 0, -0.08), Quaternion::Identity()}, false));

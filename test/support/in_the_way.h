@@ -35,9 +35,11 @@ inline Body placed_body(const char* name, Shape shape, const Pose& at, bool fixe
 }
 
 /// Bodies where the hand of these frames will be: a thin wall before its fingertips, a rail under its palm, a
-/// free ball at the index finger's tip and a free cube between thumb and index finger.
-inline Scene scene_in_the_way(const std::vector<HandFrame>& frames) {
-  const Hand &early = hand_at(frames, 0.3), &middle = hand_at(frames, 0.5), &late = hand_at(frames, 0.7);
+/// free ball at the index finger's tip and a free cube between thumb and index finger. `later` moves them by
+/// this share of the frames.
+inline Scene scene_in_the_way(const std::vector<HandFrame>& frames, double later = 0.0) {
+  const Hand &early = hand_at(frames, 0.3 + later), &middle = hand_at(frames, 0.5 + later),
+             &late = hand_at(frames, 0.7 + later), &end = hand_at(frames, 0.85 + later);
   Scene scene;
   scene.name = "in_the_way";
   scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};
@@ -48,7 +50,6 @@ inline Scene scene_in_the_way(const std::vector<HandFrame>& frames) {
       placed_body("rail", Cylinder{0.012, 0.1}, {late.palm * Vector3(0.02, 0.0, -0.03), across}, true));
   scene.bodies.push_back(
       placed_body("ball", Sphere{0.025}, {tip_of(middle, 1), Quaternion::Identity()}, false));
-  const Hand& end = hand_at(frames, 0.85);
   scene.bodies.push_back(placed_body("cube", Box{Vector3::Constant(0.02)},
                                      {0.5 * (tip_of(end, 0) + tip_of(end, 1)), end.palm.orientation}, false));
   return scene;

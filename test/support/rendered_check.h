@@ -22,9 +22,7 @@ struct Worst {
 /// Looks at the rendered hands after each frame, by other means than they are made by, and keeps the worst.
 class RenderedCheck {
  public:
-  /// `scene` and its `finder` serve to look for bodies in the way.
-  explicit RenderedCheck(const Scene& scene)
-      : scene_(scene), geometry_(scene), finder_(scene, geometry_, Vector3::Zero()) {}
+  explicit RenderedCheck(const Scene& scene) : scene_(scene) {}
 
   void see(const Simulation& simulation) {
     const FrameResult& result = simulation.result();
@@ -61,23 +59,19 @@ class RenderedCheck {
   int touched = 0;      // of them with a phalanx that touches
   int moved_aside = 0;  // of them not where they were tracked
   int jumps = 0;        // of them that jumped
-  int passed = 0;       // of them that did because a body was in the way, or had held the hand back
-  Worst length;         // of a bone, against the tracked one [m]
-  Worst apart;          // ends of bones that are one joint in the tracked hand [m]
-  Worst angle;          // of a joint beyond its limit and beyond where it was tracked [rad]
-  Worst thumb_angle;    // the same of the thumb, whose whole bend is measured, sideways too [rad]
-  Worst depth;          // in any body [m]
-  Worst jump;           // of a joint in a frame beyond what hand and bodies moved [m]
-  Worst away;           // of a joint from where it was tracked [m]
-  Worst late;           // the same though nothing has been near for long [m]
+  int passed = 0;     // of them that were held back by a body and then given up to the tracked hand behind it
+  Worst length;       // of a bone, against the tracked one [m]
+  Worst apart;        // ends of bones that are one joint in the tracked hand [m]
+  Worst angle;        // of a joint beyond its limit and beyond where it was tracked [rad]
+  Worst thumb_angle;  // the same of the thumb, whose whole bend is measured, sideways too [rad]
+  Worst depth;        // in any body [m]
+  Worst jump;         // of a joint in a frame beyond what the farthest tracked one and bodies moved [m]
+  Worst away;         // of a joint from where it was tracked [m]
+  Worst late;         // the same though nothing has been near for long [m]
 
  private:
   static constexpr double kReturns = 1.5;  // [s]
-  static constexpr int kParts = 8;
-  /// A finger that is held away is farther from the axis about which the hand turns.
-  static constexpr double kTurning = 1.3;
-  static constexpr double kJump = 0.002;       // [m]
-  static constexpr double kInTheWay = 0.0005;  // [m]
+  static constexpr double kJump = 0.002;   // [m]
   struct Before {
     Nanoseconds stamp;
     Hand tracked, shown;
@@ -110,15 +104,14 @@ class RenderedCheck {
 
   void see_way(const Before& before, const Hand& tracked, const Hand& shown,
                const std::vector<BodyState>& bodies, Nanoseconds stamp) {
-    const double beyond = farthest_joint(before.shown, shown) -
-                          kTurning * farthest_joint(before.tracked, tracked) - fastest_body(shown, bodies);
-    if (beyond <= kJump) return jump.note(beyond, stamp);
-    if (before.held_back || body_in_the_way(before.shown, shown, bodies)) {
+    const double beyond = farthest_joint(before.shown, shown) - farthest_joint(before.tracked, tracked) -
+                          fastest_body(shown, bodies);
+    if (beyond > kJump && before.held_back && farthest_joint(tracked, shown) == 0.0) {
       ++passed;
-    } else {
-      ++jumps;
-      jump.note(beyond, stamp);
+      return;
     }
+    jump.note(beyond, stamp);
+    jumps += beyond > kJump;
   }
 
   /// Longest way of a surface of the bodies near the hand since the frame before.
@@ -134,18 +127,7 @@ class RenderedCheck {
     return fastest;
   }
 
-  /// True if the hand cannot have gone straight from how it was shown to how it is.
-  bool body_in_the_way(const Hand& from, const Hand& to, const std::vector<BodyState>& bodies) const {
-    for (int part = 1; part < kParts; ++part) {
-      const Hand between = blend(from, to, static_cast<double>(part) / kParts);
-      if (deepest_penetration(between, finder_, scene_, bodies) > kInTheWay) return true;
-    }
-    return false;
-  }
-
   const Scene& scene_;
-  SceneGeometry geometry_;
-  ContactFinder finder_;
   std::map<std::uint32_t, Before> before_;
   std::vector<BodyState> bodies_before_;
 };

@@ -1,0 +1,122 @@
+#include <algorithm>
+
+#include "renderer.h"
+
+namespace mrhi {
+namespace {
+
+constexpr int kMaxPasses = 12;
+constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a frame, and this share of what hand
+constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
+constexpr double kAnyway = 1.0;        // no bound [m]
+constexpr double kPace = 0.0018;       // that a joint may go beyond what the farthest tracked one does [m]
+constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is not looked at again [m]
+
+}  // namespace
+
+void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const HandOffset& last,
+                                  double least, HandOffset& offset, Hand& placed) {
+  const HandOffset reference = offset;
+  if (least < -ClearanceFinder::kShallow) begin_anew(setting, reference, offset, placed);
+  keep_out(setting, reference, {last, kSwingShare * setting.moved + kSwing}, offset, placed);
+}
+
+/// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
+/// leave room, it gives way.
+void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
+                                   const HandOffset& reference, HandOffset& offset, Hand& placed) {
+  const Pace pace(before, tracked_way + kPace);
+  double least_beyond = pace.beyond(placed);
+  if (least_beyond <= 0.0) return;
+  HandOffset best = offset;
+  const auto in_step = [&](const HandOffset& nearest_to, double swing) {
+    pace.keep(placed, clearances);
+    settle(setting, nearest_to, {last, swing}, offset, placed, &pace);
+    Pace::forget(clearances);
+    const double beyond = pace.beyond(placed);
+    if (beyond >= least_beyond || finder.find(placed, setting, kAhead, clearances) < -kTolerated) return;
+    least_beyond = beyond;
+    best = offset;
+  };
+  in_step(reference, kSwingShare * setting.moved + kSwing);
+  if (least_beyond > kTolerated) {
+    const HandOffset stay = staying(setting, last);
+    begin_anew(setting, stay, offset, placed);
+    in_step(stay, kAnyway);
+  }
+  offset = best;
+  chain.place(offset, placed);
+}
+
+/// The hand does not move from where it was shown.
+HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const HandOffset& last) {
+  HandOffset stay = last;
+  stay.shift = before.palm.position - setting.tracked.palm.position;
+  for (int f = 0; f < kFingers; ++f)
+    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, chain_before.finger(f));
+  return stay;
+}
+
+void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
+  if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
+  begin_anew(setting, reference, offset, placed);
+  if (settle(setting, reference, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+  if (setting.shown_before != nullptr) {
+    const HandOffset stay = staying(setting, bounds.before);
+    begin_anew(setting, stay, offset, placed);
+    if (settle(setting, stay, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+  }
+  begin_anew(setting, reference, offset, placed);
+  shift_out(setting, offset, placed);
+}
+
+/// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
+/// [m].
+double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
+                                  const Pace* pace) {
+  double least = 0.0;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    linearise(placed);
+    const HandOffset from = offset;
+    const double expected = solve_offset(reference, bounds, chain, clearances, offset);
+    chain.place(offset, placed);
+    if (expected > -kClear && way(from, offset) < kSmallStep) return expected;
+    least = finder.find(placed, setting, kAhead, clearances);
+    if (pace != nullptr) least = std::min(least, pace->keep(placed, clearances));
+    if (least > -kClear) return least;
+  }
+  return least;
+}
+
+void HandRenderer::Impl::begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                                    HandOffset& offset, Hand& placed) {
+  offset = reference;
+  chain.place(offset, placed);
+  clearances.clear();
+  finder.find(placed, setting, kAhead, clearances);
+}
+
+void HandRenderer::Impl::linearise(const Hand& placed) {
+  for (Clearance& clearance : clearances) {
+    const int capsule = clearance.key.capsule;
+    const int finger_index = HandChain::finger_that_moves(capsule);
+    clearance.by_shift << clearance.normal.array(), 0.0;
+    if (finger_index < 0) continue;
+    const Vector3 point = placed.capsules[clearance.key.capsule].axis_point(clearance.s);
+    clearance.by_finger = chain.finger(finger_index).gradient(bone_of(capsule), point, clearance.normal);
+  }
+}
+
+double HandRenderer::Impl::way(const HandOffset& from, const HandOffset& to) {
+  double farthest = 0.0;
+  for (int f = 0; f < kFingers; ++f) {
+    const auto i = static_cast<std::size_t>(f);
+    const FingerOffset change = to.fingers[i] - from.fingers[i];
+    if (!(change == 0.0).all()) farthest = std::max(farthest, chain.finger(f).way(change));
+  }
+  return farthest + (to.shift - from.shift).norm();
+}
+
+}  // namespace mrhi

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "clearance_finder.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "pace.h"
+
+namespace mrhi {
+
+constexpr double kClear = 2e-5;      ///< gaps of more than -this are clear [m]
+constexpr double kTolerated = 1e-4;  ///< a gap of less than -this is too deep once all is done [m]
+constexpr double kAhead = 0.0015;    ///< surfaces nearer than this are kept off before they are met [m]
+
+/// What one hand's frame is made with. `setting` is the frame's, `offset` what is looked for, `placed` the
+/// hand with it, `last` the offset of the frame before and `reference` the same on its way home.
+struct HandRenderer::Impl {
+  Impl(const Scene& scene, const ContactFinder& contact_finder) : finder(scene, contact_finder) {
+    clearances.reserve(256);
+  }
+
+  void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
+                 ClearanceFinder::Setting& setting);
+  void push_out(const ClearanceFinder::Setting& setting, const HandOffset& last, double least,
+                HandOffset& offset, Hand& placed);
+  void keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last, const HandOffset& reference,
+                 HandOffset& offset, Hand& placed);
+  void keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
+  double settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr);
+  void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
+                  Hand& placed);
+  HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last);
+  void linearise(const Hand& placed);
+  void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
+  void lead_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
+  double way(const HandOffset& from, const HandOffset& to);
+  bool left_behind(const ClearanceFinder::Setting& setting, Nanoseconds stamp, HandOffset& offset);
+
+  ClearanceFinder finder;
+  HandChain chain, chain_before;
+  std::vector<Clearance> clearances;
+  Hand before;               // as it was shown at the frame before
+  double tracked_way = 0.0;  // of the farthest joint since then [m]
+};
+
+}  // namespace mrhi
