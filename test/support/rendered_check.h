@@ -105,7 +105,7 @@ class RenderedCheck {
   void see_way(const Before& before, const Hand& tracked, const Hand& shown,
                const std::vector<BodyState>& bodies, Nanoseconds stamp) {
     const double beyond = farthest_joint(before.shown, shown) - farthest_joint(before.tracked, tracked) -
-                          fastest_body(shown, bodies);
+                          std::max(fastest_body(before.shown, bodies), fastest_body(shown, bodies));
     if (beyond > kJump && before.held_back && farthest_joint(tracked, shown) == 0.0) {
       ++passed;
       return;
