@@ -110,7 +110,8 @@ FingerOffset FingerChain::angles(const Hand& hand, const Vector3& hinge) const {
     return direction(hand.capsules[static_cast<std::size_t>(capsule_index(finger_, index))]);
   };
   const Vector3 along = bone(1);
-  const double onward = along.dot(onward_), upward = along.dot(onward_.cross(root_)), aside = along.dot(root_);
+  const double onward = along.dot(onward_), upward = along.dot(onward_.cross(root_)),
+               aside = along.dot(root_);
   FingerOffset angles(std::atan2(-upward, onward), std::atan2(aside, std::hypot(onward, upward)), 0.0, 0.0);
   for (int joint = 2; joint < kBonesPerFinger && has(hand, joint) && has(hand, joint - 1); ++joint) {
     const Vector3 before = bone(joint - 1), after = bone(joint);

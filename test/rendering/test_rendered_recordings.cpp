@@ -29,8 +29,8 @@ Scene shipped_scene(const std::string& name) {
   return load_scene("config/scenes/" + name + ".urdf", options);
 }
 
-// These hands know nothing of the bodies and are flung through them, at up to 100 mm a frame. Where bodies are
-// moved along the hand's way, it may once in a while be caught so that only a jump brings it out.
+// These hands know nothing of the bodies and are flung through them, at up to 100 mm a frame. Where bodies
+// are moved along the hand's way, it may once in a while be caught so that only a jump brings it out.
 constexpr int kFramesPerJump = 1000;  // with the hand held aside
 
 struct Placing {
