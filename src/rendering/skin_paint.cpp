@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mr_hand_interaction/rendering/light.h"
 #include "skin_rig.h"
 #include "smooth_step.h"
 
@@ -11,11 +12,6 @@ namespace {
 
 const Rgb kSkin(0.93f, 0.75f, 0.64f), kBlush(0.93f, 0.62f, 0.53f), kNail(0.96f, 0.82f, 0.75f);
 const Rgb kSleeve(0.29f, 0.33f, 0.40f);
-const Eigen::Vector3f kLight = Eigen::Vector3f(0.35f, -0.45f, 0.82f).normalized();
-const Eigen::Vector3f kFill = Eigen::Vector3f(-0.55f, -0.45f, -0.70f).normalized();
-const Rgb kLightColour(0.40f, 0.39f, 0.37f), kFillColour(0.20f, 0.19f, 0.18f);
-const Rgb kAbove(0.62f, 0.63f, 0.65f), kBelow(0.55f, 0.51f, 0.49f);
-const Rgb kWrap(0.45f, 0.30f, 0.25f);  // light that goes on in the skin past where it would end
 constexpr float kOcclusion = 0.7f, kDarkest = 0.4f;
 
 /// A sphere for each phalanx, as large as the phalanx is seen from its side, in arrays that vector
@@ -84,13 +80,6 @@ Rgb finger_colour(int finger, const Vector3& vertex) {
   return colour + static_cast<float>(nail) * (kNail - colour);
 }
 
-Rgb light_on(const Eigen::Vector3f& normal, float around) {
-  const Rgb direct = (normal.dot(kLight) + kWrap) / (1.0f + kWrap);
-  const Rgb ambient = kBelow + (0.5f + 0.5f * normal.z()) * (kAbove - kBelow);
-  const float fill = 0.6f * std::max(0.0f, normal.dot(kFill) + 0.4f);
-  return kLightColour * direct.max(0.0f) * (0.4f + 0.6f * around) + (ambient + kFillColour * fill) * around;
-}
-
 }  // namespace
 
 SkinPaint::SkinPaint(const Skin& skin) : skin_(skin) {
@@ -113,12 +102,15 @@ void SkinPaint::paint(const Hand& hand, const SkinSurface& surface,
                       const std::array<bool, kCapsules>& touching, std::vector<Rgb>& colours) const {
   static const std::array<Floats, kCapsules> counts = make_counts();
   const Occluders occluders(hand);
+  std::array<int, kCapsules> touched_ones{};
+  std::size_t touches = 0;
+  for (int c = 0; c < kCapsules; ++c) {
+    if (touching[static_cast<std::size_t>(c)]) touched_ones[touches++] = c;
+  }
   colours.resize(surface.vertices.size());
   for (std::size_t v = 0; v < colours.size(); ++v) {
     double touch = 0.0;
-    for (int c = 0; c < kCapsules; ++c) {
-      if (touching[static_cast<std::size_t>(c)]) touch += skin_.share(v, c);
-    }
+    for (std::size_t i = 0; i < touches; ++i) touch += skin_.share(v, touched_ones[i]);
     const auto touched = static_cast<float>(smooth_step(0.35, 0.75, touch));
     const Rgb colour = tints_[v].colour + touched * (touching_colour() - tints_[v].colour);
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();

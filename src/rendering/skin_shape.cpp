@@ -9,9 +9,10 @@
 namespace mrhi {
 namespace {
 
-constexpr double kWeb = 0.005;    // how far two fingers' skins are rounded into each other [m]
-constexpr double kFlesh = 0.010;  // two parts of the palm [m]
-constexpr double kStump = 0.036;  // from the wrist to where the sleeve ends [m]
+constexpr double kWeb = 0.005;         // how far two fingers' skins are rounded into each other [m]
+constexpr double kFlesh = 0.010;       // two parts of the palm [m]
+constexpr double kBetweenWebs = 0.92;  // of a finger's width
+constexpr double kStump = 0.036;       // from the wrist to where the sleeve ends [m]
 
 double smooth_min(double a, double b, double width) {
   const double overlap = std::max(0.0, 1.0 - std::abs(a - b) / width);
@@ -38,40 +39,45 @@ Vector3 on(int finger, int index, double share) {
   return b.start + share * b.length * b.axes.col(0);
 }
 
-/// A finger from its knuckle on, straight; thickest at the joints.
+/// A finger from its knuckle on, straight. The half on the palm's side, tip included, is the capsules'
+/// surface but for the webs, between which a finger is narrower; the other half is flatter, thickest at the
+/// joints.
 class Finger {
  public:
   explicit Finger(int finger) : frame_(bone(finger, 1)) {
-    const double joint[] = {1.02, 1.02, 0.97}, middle[] = {0.97, 0.93, 0.95};
+    const double joint[] = {1.0, 0.98, 0.92}, middle[] = {0.93, 0.87, 0.86};
     double begin = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double length = bone(finger, static_cast<int>(i) + 1).length;
-      stations_[2 * i] = {begin, joint[i]};
-      stations_[2 * i + 1] = {begin + 0.5 * length, middle[i]};
+      const double narrow = i == 0 && finger > 0 ? kBetweenWebs : 1.0;
+      stations_[2 * i] = {begin, joint[i], narrow};
+      stations_[2 * i + 1] = {begin + 0.5 * length, middle[i], narrow};
       begin += length;
     }
-    stations_[6] = {begin, 0.86};
+    stations_[6] = {begin, 0.72, 1.0};
   }
 
   double distance(const Vector3& p) const {
     Vector3 q = frame_.axes.transpose() * (p - frame_.start);
-    const double s = std::clamp(q.x(), 0.0, stations_[6].s), radius = frame_.radius * share(s);
+    const double s = std::clamp(q.x(), 0.0, stations_[6].s);
     q.x() -= s;
-    if (q.x() > 0.0) q.x() *= radius / frame_.radius;
-    q.z() += frame_.radius - radius;
-    return q.norm() - radius;
+    const Station here = at(s);
+    q.y() /= here.side;
+    if (q.z() > 0.0) q.z() /= here.back;
+    return q.norm() - frame_.radius;
   }
 
  private:
   struct Station {
-    double s, share;  // from the knuckle [m], of the capsule's radius
+    double s;           // from the knuckle [m]
+    double back, side;  // height over the bone, and half the width, of the capsule's radius
   };
-  double share(double s) const {
+  Station at(double s) const {
     std::size_t i = 1;
     while (i < 6 && s > stations_[i].s) ++i;
     const Station &a = stations_[i - 1], &b = stations_[i];
-    const double t = (s - a.s) / (b.s - a.s);
-    return a.share + (b.share - a.share) * 0.5 * (1.0 - std::cos(M_PI * t));
+    const double t = 0.5 * (1.0 - std::cos(M_PI * (s - a.s) / (b.s - a.s)));
+    return {s, a.back + t * (b.back - a.back), a.side + t * (b.side - a.side)};
   }
 
   SkinBone frame_;

@@ -5,8 +5,8 @@
 namespace mrhi {
 
 /// Signed distance, roughly, from the rest hand's skin [m], negative inside: rounded cones smoothly united
-/// (Quilez's polynomial minimum). Fingers reach the capsules' surface on the side of the palm and are slimmer
-/// elsewhere.
+/// (Quilez's polynomial minimum). Fingers have the capsules' surface on the side of the palm and are flatter
+/// at the back.
 double skin_distance(const Vector3& point);
 
 /// A box around it.

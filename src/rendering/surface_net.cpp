@@ -99,16 +99,6 @@ TriangleMesh net(const Grid& grid) {
   return mesh;
 }
 
-Vector3 gradient(const DistanceField& distance, const Vector3& point) {
-  constexpr double kStep = 1e-4;  // [m]
-  Vector3 g;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector3 step = kStep * Vector3::Unit(axis);
-    g[axis] = (distance(point + step) - distance(point - step)) / (2.0 * kStep);
-  }
-  return g;
-}
-
 /// Vertices go half of the way to the middle of their neighbours, and back onto the surface.
 void even_out(const DistanceField& distance, TriangleMesh& mesh) {
   std::vector<Vector3> sums(mesh.vertices.size());
@@ -134,6 +124,16 @@ void even_out(const DistanceField& distance, TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+Vector3 gradient(const DistanceField& distance, const Vector3& point) {
+  constexpr double kStep = 1e-4;  // [m]
+  Vector3 g;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 step = kStep * Vector3::Unit(axis);
+    g[axis] = (distance(point + step) - distance(point - step)) / (2.0 * kStep);
+  }
+  return g;
+}
 
 TriangleMesh surface_net(const DistanceField& distance, const Vector3& lowest, const Vector3& highest,
                          double cell) {

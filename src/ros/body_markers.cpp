@@ -1,6 +1,13 @@
+#include "body_markers.h"
+
 #include <visualization_msgs/Marker.h>
 
-#include "marker_layers.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mr_hand_interaction/rendering/light.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 namespace {
@@ -31,6 +38,45 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
+constexpr double kUnseen = 0.003, kDeep = 0.020;  // depths of a finger that makes a body translucent [m]
+constexpr double kLeastOpacity = 0.6;
+
+double opacity_around(double depth) {
+  const double seen = std::clamp((depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
+  return 1.0 - (1.0 - kLeastOpacity) * seen;
+}
+
+bool same(const Pose& a, const Pose& b) {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+/// A box in the light that hands are in: rviz's leaves the sides that it does not reach almost black.
+Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
+                MarkerLayer& layer) {
+  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, 2.0 * box.half_extents, paint);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-0.5, 0.5}) {
+      const Vector3 out = side * Vector3::Unit(axis), u = 0.5 * Vector3::Unit((axis + 1) % 3),
+                    v = std::copysign(0.5, side) * Vector3::Unit((axis + 2) % 3);
+      const Rgb light = light_on((pose.orientation * (2.0 * out)).cast<float>()).min(1.0f);
+      std_msgs::ColorRGBA lit = paint;
+      lit.r *= light[0], lit.g *= light[1], lit.b *= light[2];
+      const std::array<Vector3, 6> corners{-u - v, u - v, u + v, -u - v, u + v, -u + v};
+      for (const Vector3& corner : corners) {
+        marker.points.push_back(to_message(Vector3(out + corner)));
+        marker.colors.push_back(lit);
+      }
+    }
+  }
+  return marker;
+}
+
+Marker& add_solid(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
+                  MarkerLayer& layer) {
+  const Box* box = std::get_if<Box>(&shape);
+  return box ? add_box(*box, pose, paint, id, layer) : add_shape(shape, pose, paint, id, layer);
+}
+
 }  // namespace
 
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
@@ -41,26 +87,40 @@ visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, cons
   return marker;
 }
 
-void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, MarkerLayer& layer) {
-  int id = 0;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
-    if (body.fixed != fixed) continue;
-    const Pose& pose = state.bodies[i].pose;
-    for (const Visual& visual : body.visuals) {
-      const auto& c = visual.rgba;
-      Marker& marker =
-          add_shape(visual.shape, pose * visual.pose, color(c[0], c[1], c[2], c[3]), id++, layer);
-      if (!visual.has_color && has_materials(marker.mesh_resource)) {
-        marker.mesh_use_embedded_materials = true;
-        marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
-      }
-    }
-    if (!body.visuals.empty()) continue;
-    for (const PlacedShape& placed : body.shapes) {
-      add_shape(placed.shape, pose * placed.pose, color(0.7, 0.7, 0.7), id++, layer);
+void BodyMarkers::add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
+                      BodyLayers layers) {
+  now_.resize(scene_.bodies.size());
+  for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
+  for (const Contact& contact : contacts) {
+    double& opacity = now_[contact.key.body].opacity;
+    opacity = std::min(opacity, opacity_around(contact.depth));
+  }
+  all = all || added_.size() != now_.size();
+  int object_id = 0, fixture_id = 0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const Body& body = scene_.bodies[i];
+    int& id = body.fixed ? fixture_id : object_id;
+    const bool changed = all || !same(now_[i].pose, added_[i].pose) || now_[i].opacity != added_[i].opacity;
+    if (changed) add_body(body, now_[i], id, body.fixed ? layers.fixtures : layers.objects);
+    id += static_cast<int>(body.visuals.empty() ? body.shapes.size() : body.visuals.size());
+  }
+  added_.swap(now_);
+}
+
+void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const {
+  int id = first_id;
+  for (const Visual& visual : body.visuals) {
+    const auto& c = visual.rgba;
+    Marker& marker = add_solid(visual.shape, look.pose * visual.pose,
+                               color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
+    if (!visual.has_color && has_materials(marker.mesh_resource)) {
+      marker.mesh_use_embedded_materials = true;
+      marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
     }
   }
+  if (!body.visuals.empty()) return;
+  for (const PlacedShape& placed : body.shapes)
+    add_solid(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer);
 }
 
 }  // namespace mrhi

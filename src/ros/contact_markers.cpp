@@ -14,6 +14,7 @@ constexpr double kHalfOfLongest = 1.0;  // the force whose arrow is half as long
 constexpr double kShortest = 0.004;     // [m]
 constexpr double kGap = 0.002;          // between the arrow and the back of the finger [m]
 constexpr double kPointSize = 0.005;    // [m]
+constexpr double kPieces = 16.0;        // of a ring
 constexpr double kLift = 0.0006;        // of a ring off the surface [m]
 
 std_msgs::ColorRGBA friction_color(const Contact& contact) {
@@ -44,7 +45,8 @@ void add_contacts(const FrameResult& result, ContactLayers layers) {
   for (const Contact& contact : result.contacts) {
     const Pose place{contact.point + kLift * contact.normal,
                      Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
-    add_ring({0.9 * contact.radius, 1.15 * contact.radius}, place, friction_color(contact), rings);
+    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces}, place, friction_color(contact),
+             rings);
   }
   int id = 0;
   for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers.forces);

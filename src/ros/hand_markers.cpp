@@ -3,6 +3,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace mrhi {
 namespace {
@@ -12,6 +13,7 @@ using visualization_msgs::Marker;
 constexpr double kUnseen = 0.001;  // a ghost nearer to the hand than this is not drawn [m]
 constexpr double kFull = 0.010;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.5f;
+constexpr int kSpare = 2 * kMaxHands;
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
 HandStyle capsule_style() {
@@ -37,16 +39,25 @@ std_msgs::ColorRGBA to_message(const Rgb& rgb, float alpha) {
   return message;
 }
 
-/// Corners in an order that is counter-clockwise from outside for the hand's side.
-std::array<std::size_t, 3> corners(const std::array<int, 3>& triangle, Side side) {
-  const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
-             c = static_cast<std::size_t>(triangle[2]);
-  return side == Side::left ? std::array<std::size_t, 3>{a, c, b} : std::array<std::size_t, 3>{a, b, c};
-}
-
 }  // namespace
 
-HandMarkers::HandMarkers() : skin_(Skin::human()), paint_(skin_) {}
+HandMarkers::HandMarkers(const Skin& skin)
+    : skin_(skin),
+      outline_(Skin::outline()),
+      paint_(skin_),
+      skin_corners_(corners_of(skin_)),
+      outline_corners_(corners_of(outline_)) {}
+
+HandMarkers::Corners HandMarkers::corners_of(const Skin& skin) {
+  Corners corners;
+  for (const auto& triangle : skin.triangles()) {
+    for (const std::size_t i : {0, 1, 2}) {
+      corners[static_cast<std::size_t>(Side::right)].push_back(static_cast<std::uint32_t>(triangle[i]));
+      corners[static_cast<std::size_t>(Side::left)].push_back(static_cast<std::uint32_t>(triangle[2 - i]));
+    }
+  }
+  return corners;
+}
 
 void HandMarkers::add(const RenderedHand& rendered, const Hand& tracked, int first_id, HandLayers layers) {
   const bool apart = farthest_apart(rendered.hand, tracked) > kUnseen;
@@ -58,37 +69,59 @@ void HandMarkers::add(const RenderedHand& rendered, const Hand& tracked, int fir
   }
   paint_.paint(rendered.hand, surface_, rendered.touching, colours_);
   add_skin(rendered.hand.side, first_id, layers.hand);
-  if (apart) add_ghost(tracked, first_id, layers.ghost);
+  if (apart) add_ghost(rendered.hand, tracked, first_id, layers.ghost);
 }
 
-void HandMarkers::add_skin(Side side, int id, MarkerLayer& layer) const {
+void HandMarkers::recycle(std::vector<Marker>& markers) {
+  for (Marker& marker : markers) {
+    if (marker.type == Marker::TRIANGLE_LIST && !marker.colors.empty()) spare_.push_back(std::move(marker));
+  }
+  const auto smaller = [](const Marker& a, const Marker& b) {
+    return a.points.capacity() < b.points.capacity();
+  };
+  std::sort(spare_.begin(), spare_.end(), smaller);
+  if (spare_.size() > kSpare) spare_.erase(spare_.begin(), spare_.end() - kSpare);
+}
+
+Marker& HandMarkers::add_triangles(int id, MarkerLayer& layer) {
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
-  marker.points.reserve(3 * skin_.triangles().size());
-  marker.colors.reserve(3 * skin_.triangles().size());
-  for (const auto& triangle : skin_.triangles()) {
-    for (const std::size_t corner : corners(triangle, side)) {
-      marker.points.push_back(mrhi::to_message(surface_.vertices[corner]));
-      marker.colors.push_back(to_message(colours_[corner], 1.0f));
-    }
+  if (spare_.empty()) return marker;
+  marker.points.swap(spare_.back().points);
+  marker.colors.swap(spare_.back().colors);
+  spare_.pop_back();
+  return marker;
+}
+
+void HandMarkers::add_skin(Side side, int id, MarkerLayer& layer) {
+  Marker& marker = add_triangles(id, layer);
+  const auto& corners = skin_corners_[static_cast<std::size_t>(side)];
+  marker.points.resize(corners.size());
+  marker.colors.resize(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    marker.points[i] = mrhi::to_message(surface_.vertices[corners[i]]);
+    marker.colors[i] = to_message(colours_[corners[i]], 1.0f);
   }
 }
 
-void HandMarkers::add_ghost(const Hand& tracked, int id, MarkerLayer& layer) {
-  if (!skin_.pose(tracked, ghost_)) return;
-  alphas_.resize(skin_.size());
-  for (std::size_t v = 0; v < skin_.size(); ++v) {
-    const double distance = (ghost_.vertices[v] - surface_.vertices[v]).norm();
+void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer) {
+  if (!outline_.pose(tracked, ghost_) || !outline_.pose(rendered, beneath_)) return;
+  alphas_.resize(outline_.size());
+  for (std::size_t v = 0; v < outline_.size(); ++v) {
+    const double distance = (ghost_.vertices[v] - beneath_.vertices[v]).norm();
     const double seen = std::clamp((distance - kUnseen) / (kFull - kUnseen), 0.0, 1.0);
     alphas_[v] = kGreatestAlpha * static_cast<float>(seen);
   }
-  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
-  for (const auto& triangle : skin_.triangles()) {
-    const auto at = corners(triangle, tracked.side);
-    if (alphas_[at[0]] + alphas_[at[1]] + alphas_[at[2]] <= 0.0f) continue;
-    for (const std::size_t corner : at) {
-      const auto light = static_cast<float>(0.85 + 0.15 * ghost_.normals[corner].z());
-      marker.points.push_back(mrhi::to_message(ghost_.vertices[corner]));
-      marker.colors.push_back(to_message(light * kGhost, alphas_[corner]));
+  Marker& marker = add_triangles(id, layer);
+  marker.points.clear();
+  marker.colors.clear();
+  const auto& corners = outline_corners_[static_cast<std::size_t>(tracked.side)];
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    if (alphas_[corners[i]] + alphas_[corners[i + 1]] + alphas_[corners[i + 2]] <= 0.0f) continue;
+    for (std::size_t corner = i; corner < i + 3; ++corner) {
+      const std::uint32_t v = corners[corner];
+      const auto light = static_cast<float>(0.85 + 0.15 * ghost_.normals[v].z());
+      marker.points.push_back(mrhi::to_message(ghost_.vertices[v]));
+      marker.colors.push_back(to_message(light * kGhost, alphas_[v]));
     }
   }
   if (marker.points.empty()) marker.action = Marker::DELETE;

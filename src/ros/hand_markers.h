@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "marker_layers.h"
@@ -17,19 +19,28 @@ struct HandLayers {
 /// Draws hands. One with bones missing has no skin: its capsules take the skin's place.
 class HandMarkers {
  public:
-  HandMarkers();
+  explicit HandMarkers(const Skin& skin);  ///< keeps a reference
   /// Ids from `first_id`, less than kIdsPerHand in each layer.
   void add(const RenderedHand& rendered, const Hand& tracked, int first_id, HandLayers layers);
+  /// Takes the memory of markers that are done with, for the next ones.
+  void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
-  void add_skin(Side side, int id, MarkerLayer& layer) const;
-  void add_ghost(const Hand& tracked, int id, MarkerLayer& layer);
+  visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
+  void add_skin(Side side, int id, MarkerLayer& layer);
+  void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
-  const Skin& skin_;
-  SkinPaint paint_;
-  SkinSurface surface_, ghost_;  // kept for their memory
+  /// Three for each triangle, in an order that is counter-clockwise from outside for either side.
+  using Corners = std::array<std::vector<std::uint32_t>, 2>;
+  static Corners corners_of(const Skin& skin);
+
+  const Skin &skin_, &outline_;
+  const SkinPaint paint_;
+  const Corners skin_corners_, outline_corners_;
+  SkinSurface surface_, ghost_, beneath_;  // kept for their memory, as are the rest
   std::vector<Rgb> colours_;
   std::vector<float> alphas_;
+  std::vector<visualization_msgs::Marker> spare_;
 };
 
 }  // namespace mrhi

@@ -47,8 +47,6 @@ void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& s
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, MarkerLayer& layer);
 
-void add_bodies(const Scene& scene, const SimulationState& state, bool fixed, MarkerLayer& layer);
-
 /// Where a body is touched, and by what force.
 struct ContactLayers {
   MarkerLayer& points;    ///< a dot at each contact
@@ -62,6 +60,7 @@ void add_contacts(const FrameResult& result, ContactLayers layers);
 struct Ring {
   double inner, outer;  // radii [m]
   double begin = 0.0, end = 1.0;
+  double pieces = 36.0;  // of a full turn
 };
 void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
               visualization_msgs::Marker& marker);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "body_markers.h"
 #include "hand_markers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/result_conversion.h"
@@ -15,7 +16,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kPassing = 0.5;  // hands and contacts go if the node does [s]
+constexpr double kPassing = 0.5;  // hands and contacts go if the node does; the rest is sent again [s]
 constexpr double kForEver = 0.0;
 
 /// Under all that is there at the start, where no hand comes between.
@@ -38,6 +39,16 @@ std::string heads_up(const Scene& scene, const Configuration& configuration, con
   std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
   return "holding: " + (held.empty() ? "nothing" : held) + "  |  " + to_string(configuration.contact_model) +
          "  |  gravity: " + (g > 0.0 ? gravity : "none");
+}
+
+void add_deleting(int action, const std::pair<std::string, int>& key, const std_msgs::Header& header,
+                  MarkerArray& array) {
+  array.markers.emplace_back();
+  Marker& marker = array.markers.back();
+  marker.header = header;
+  marker.ns = key.first;
+  marker.id = key.second;
+  marker.action = action;
 }
 
 }  // namespace
@@ -70,54 +81,65 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
 }
 
 Markers::Markers(const Scene& scene, const Configuration& configuration)
+    : Markers(scene, configuration, Skin::human()) {}
+Markers::Markers(const Scene& scene, const Configuration& configuration, const Skin& skin)
     : scene_(scene),
       configuration_(configuration),
       text_place_(below(scene)),
-      hands_(std::make_unique<HandMarkers>()) {}
+      hands_(std::make_unique<HandMarkers>(skin)),
+      bodies_(std::make_unique<BodyMarkers>(scene)) {}
 Markers::~Markers() = default;
 
-MarkerArray Markers::update(const FrameResult& result, const SimulationState& state,
-                            const std_msgs::Header& header) {
-  MarkerArray array;
+void Markers::update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
+                     MarkerArray& array) {
+  hands_->recycle(array.markers);
+  array.markers.clear();
+  const bool all = all_due(header.stamp);
+  if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
   MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing),
       capsules(array, header, "capsules", kPassing);
   MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
   MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
-      forces(array, header, "forces", kPassing), text(array, header, "text", kForEver);
+      forces(array, header, "forces", kPassing);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
     hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts, capsules});
   }
-  add_bodies(scene_, state, false, objects);
-  add_bodies(scene_, state, true, fixtures);
   add_contacts(result, {points, friction, forces});
-  text.add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
-           color(0.9, 0.9, 0.9))
-      .text = heads_up(scene_, configuration_, state);
-  delete_stale(header, array);
-  return array;
+  delete_gone(header, array);
+  bodies_->add(state, result.contacts, all, {objects, fixtures});
+  add_text(state, all, header, array);
 }
 
-void Markers::delete_stale(const std_msgs::Header& header, MarkerArray& array) {
-  std::set<std::pair<std::string, int>> now;
-  for (const Marker& marker : array.markers) now.emplace(marker.ns, marker.id);
-  std::vector<Marker> deleted;
-  if (cleared_) {
-    deleted.emplace_back();
-    deleted.back().header = header;
-    deleted.back().action = Marker::DELETEALL;
-    cleared_ = false;
+/// Twice a second, for a viewer that came later or has lost an array.
+bool Markers::all_due(const ros::Time& stamp) {
+  const double since = (stamp - all_sent_).toSec();
+  const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;
+  if (due) all_sent_ = stamp;
+  all_ = false;
+  return due;
+}
+
+void Markers::add_text(const SimulationState& state, bool all, const std_msgs::Header& header,
+                       MarkerArray& array) {
+  std::string text = heads_up(scene_, configuration_, state);
+  if (!all && text == text_) return;
+  text_ = std::move(text);
+  MarkerLayer layer(array, header, "text", kForEver);
+  layer
+      .add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
+           color(0.9, 0.9, 0.9))
+      .text = text_;
+}
+
+void Markers::delete_gone(const std_msgs::Header& header, MarkerArray& array) {
+  now_.clear();
+  for (const Marker& marker : array.markers) now_.emplace_back(marker.ns, marker.id);
+  std::sort(now_.begin(), now_.end());
+  for (const Key& key : shown_) {
+    if (!std::binary_search(now_.begin(), now_.end(), key)) add_deleting(Marker::DELETE, key, header, array);
   }
-  for (const auto& [layer, id] : shown_) {
-    if (now.count({layer, id}) > 0) continue;
-    deleted.emplace_back();
-    deleted.back().header = header;
-    deleted.back().ns = layer;
-    deleted.back().id = id;
-    deleted.back().action = Marker::DELETE;
-  }
-  array.markers.insert(array.markers.begin(), deleted.begin(), deleted.end());
-  shown_.swap(now);
+  shown_.swap(now_);
 }
 
 }  // namespace mrhi

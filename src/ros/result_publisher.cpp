@@ -9,6 +9,7 @@
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/result_conversion.h"
+#include "plain_messages.h"
 
 namespace mrhi {
 namespace {
@@ -34,7 +35,12 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
       objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
       contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
       events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
-      marker_publisher_(node.advertise<visualization_msgs::MarkerArray>("markers", kQueue)) {}
+      marker_publisher_(
+          node.advertise<visualization_msgs::MarkerArray>("markers", kQueue,
+                                                          [this](const ros::SingleSubscriberPublisher&) {
+                                                            if (markers_) markers_->send_all();
+                                                          })),
+      picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
 
 void ResultPublisher::show(const Simulation& simulation) {
   simulation_ = &simulation;
@@ -80,8 +86,12 @@ std_msgs::Header ResultPublisher::header(const ros::Time& stamp) const {
 }
 
 void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs::Header& header) {
-  if (marker_publisher_.getNumSubscribers() > 0)
-    publish_shared(marker_publisher_, markers_->update(result, simulation_->state(), header));
+  if (marker_publisher_.getNumSubscribers() > 0) {
+    // Nobody in this process still has the one before: its memory serves again.
+    if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
+    markers_->update(result, simulation_->state(), header, *picture_);
+    marker_publisher_.publish(picture_);
+  }
   shown_ = ros::WallTime::now();
 }
 

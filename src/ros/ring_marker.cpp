@@ -9,9 +9,8 @@ namespace mrhi {
 
 void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
               visualization_msgs::Marker& marker) {
-  constexpr double kPieces = 36.0;  // of a full turn
   const double turn = ring.end - ring.begin;
-  const int pieces = std::max(0, static_cast<int>(std::ceil(kPieces * turn)));
+  const int pieces = std::max(0, static_cast<int>(std::ceil(ring.pieces * turn)));
   const auto at = [&](double radius, int piece) {
     const double angle = -2.0 * M_PI * (ring.begin + turn * piece / pieces);
     return to_message(place * (radius * Vector3(std::cos(angle), std::sin(angle), 0.0)));

@@ -47,4 +47,22 @@ inline int flipped_triangles(Side side, const SkinSurface& surface) {
   return flipped;
 }
 
+/// How far a point is outside a right hand's skin: of the triangles that it is over, over the nearest [m].
+inline double height_over(const SkinSurface& surface, const Vector3& point) {
+  double nearest = 1e9;
+  for (const auto& triangle : Skin::human().triangles()) {
+    const Vector3 &p = surface.vertices[static_cast<std::size_t>(triangle[0])],
+                  &q = surface.vertices[static_cast<std::size_t>(triangle[1])],
+                  &r = surface.vertices[static_cast<std::size_t>(triangle[2])];
+    const Vector3 normal = (q - p).cross(r - p).normalized();
+    const double height = normal.dot(point - p);
+    const Vector3 foot = point - height * normal;
+    const bool over = normal.dot((q - p).cross(foot - p)) >= 0.0 &&
+                      normal.dot((r - q).cross(foot - q)) >= 0.0 &&
+                      normal.dot((p - r).cross(foot - r)) >= 0.0;
+    if (over && std::abs(height) < std::abs(nearest)) nearest = height;
+  }
+  return nearest;
+}
+
 }  // namespace mrhi::testing

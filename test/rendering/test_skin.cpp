@@ -34,9 +34,9 @@ HandJoints scaled(HandJoints hand, double factor) {
   return hand;
 }
 
-TEST(Skin, is_closed_every_edge_between_two_triangles_that_pass_it_in_opposite_ways) {
+void expect_closed(const Skin& skin) {
   std::map<std::pair<int, int>, int> edges;
-  for (const auto& triangle : Skin::human().triangles()) {
+  for (const auto& triangle : skin.triangles()) {
     for (std::size_t i = 0; i < 3; ++i) ++edges[{triangle[i], triangle[(i + 1) % 3]}];
   }
   for (const auto& [edge, count] : edges) {
@@ -45,10 +45,29 @@ TEST(Skin, is_closed_every_edge_between_two_triangles_that_pass_it_in_opposite_w
   }
 }
 
+TEST(Skin, is_closed_every_edge_between_two_triangles_that_pass_it_in_opposite_ways) {
+  expect_closed(Skin::human());
+  expect_closed(Skin::outline());
+}
+
 TEST(Skin, is_one_piece_without_a_hole) {
-  const auto vertices = static_cast<long>(Skin::human().size());
-  const auto triangles = static_cast<long>(Skin::human().triangles().size());
-  EXPECT_EQ(vertices - triangles * 3 / 2 + triangles, 2);  // Euler's formula for a sphere
+  for (const Skin* skin : {&Skin::human(), &Skin::outline()}) {
+    const auto vertices = static_cast<long>(skin->size()),
+               triangles = static_cast<long>(skin->triangles().size());
+    EXPECT_EQ(vertices - triangles * 3 / 2 + triangles, 2);  // Euler's formula for a sphere
+  }
+}
+
+TEST(Skin, is_as_fine_as_it_is_asked_to_be_and_finer_where_it_is_looked_at) {
+  EXPECT_NEAR(static_cast<double>(Skin(1000).triangles().size()), 1000.0, 20.0);
+  const Skin& skin = Skin::human();
+  int tips = 0, rest = 0;
+  for (std::size_t v = 0; v < skin.size(); ++v) {
+    double tip = 0.0;
+    for (int finger = 0; finger < kFingers; ++finger) tip += skin.share(v, capsule_index(finger, 3));
+    ++(tip > 0.5 ? tips : rest);
+  }
+  EXPECT_GT(5 * tips, rest);  // of an eighth of the surface
 }
 
 TEST(Skin, rest_hand_posed_is_the_rest_hand) {
@@ -77,6 +96,29 @@ TEST(Skin, fingers_are_as_thick_as_their_capsules_and_no_thicker) {
         EXPECT_GT(radii, 0.70);  // the back of the fingertip is slimmer
       }
     }
+  }
+}
+
+TEST(Skin, what_touches_is_seen_to_touch) {
+  const Hand hand = hand_in(open_posture());
+  const SkinSurface surface = skin_of(hand);
+  for (int finger = 1; finger < kFingers; ++finger) {  // the thumb's palm side is not below
+    const Capsule& tip = hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))];
+    const Vector3 along = (tip.end - tip.start).normalized();
+    const Vector3 down = (-Vector3::UnitZ() + along.z() * along).normalized();
+    double sum = 0.0;
+    int count = 0;
+    for (const double forward : {-1.0, -0.5, 0.0, 0.3, 0.6, 0.9}) {  // along the pad, then round the end
+      const double angle = std::max(0.0, forward);
+      const Vector3 on_axis = forward < 0.0 ? tip.axis_point(1.0 + 0.5 * forward) : tip.end;
+      const Vector3 pad = on_axis + tip.radius * (std::cos(angle) * down + std::sin(angle) * along);
+      const double outside = testing::height_over(surface, pad);
+      EXPECT_LT(outside, 0.0009);   // a gap as narrow is not seen
+      EXPECT_GT(outside, -0.0004);  // nor is as much of the skin in what it touches
+      sum += outside;
+      ++count;
+    }
+    EXPECT_NEAR(sum / count, 0.0, 0.0003);
   }
 }
 

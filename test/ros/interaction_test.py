@@ -177,13 +177,19 @@ class InteractionTest(unittest.TestCase):
             # Half a millimetre is what a rendered phalanx may be in an object anywhere.
             self.assertLess(tip, self.objects[stamp].pose.position.x + FACE + 5e-4)
 
+    def squeeze(self, depth=0.008):
+        """Two fingers close on the cube from either side until each is that deep inside."""
+        for tip in push_tips(FACE - 0.02, FACE + depth):
+            self.answer(hand(tip), hand(-tip, hand_id=8, way=-1.0))
+
     def test_every_layer_of_markers_is_published(self):
-        # The ghost is there only where the hand is shown elsewhere than it is tracked, which a light push is not.
-        wanted = {"hand", "objects", "fixtures", "contacts", "text"}
+        # The ghost is there only where the hand is shown elsewhere than it is tracked: one finger alone drives the
+        # cube off before it is a millimetre inside, two cannot.
+        wanted = {"hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "text"}
         end = time.monotonic() + 60.0
         while not wanted <= self.layers and time.monotonic() < end:
-            self.setUp()  # a strike is short, and not every frame is shown
-            self.push()
+            self.setUp()  # not every frame is shown
+            self.squeeze()
         self.assertLessEqual(wanted, self.layers)
 
     def test_object_has_a_frame_in_world(self):

@@ -8,14 +8,14 @@ RADIUS = 0.009  # of the fingertip [m]
 HEIGHT = 0.22  # of the cube's centre [m]
 
 
-def hand(tip, hand_id=7):
-    """Pointing along +x with its end at x = tip."""
+def hand(tip, hand_id=7, way=1.0):
+    """Pointing along +x, or with way = -1 along -x, with its end at x = tip."""
     message = Hand(id=hand_id, side=Hand.RIGHT, confidence=1.0, palm_width=0.06)
-    message.palm.position.x, message.palm.position.z = tip - 0.15, HEIGHT
-    message.palm.orientation.w = 1.0
-    message.wrist.x, message.wrist.z = tip - 0.2, HEIGHT
+    message.palm.position.x, message.palm.position.z = tip - way * 0.15, HEIGHT
+    message.palm.orientation.w, message.palm.orientation.z = (1.0, 0.0) if way > 0.0 else (0.0, 1.0)
+    message.wrist.x, message.wrist.z = tip - way * 0.2, HEIGHT
     phalanx = Phalanx(finger=Phalanx.INDEX, bone=Phalanx.DISTAL, radius=RADIUS)
-    phalanx.start.x, phalanx.end.x = tip - RADIUS - 0.03, tip - RADIUS
+    phalanx.start.x, phalanx.end.x = tip - way * (RADIUS + 0.03), tip - way * RADIUS
     phalanx.start.z = phalanx.end.z = HEIGHT
     message.phalanges = [phalanx]
     return message

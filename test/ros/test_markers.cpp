@@ -39,7 +39,8 @@ struct Shown {
   std::map<std::string, int> update() {
     std_msgs::Header header;
     header.frame_id = "world";
-    array = markers.update(result, state, header);
+    header.stamp = ros::Time(now);
+    markers.update(result, state, header, array);
     std::map<std::string, int> added;
     for (const Marker& marker : array.markers) added[marker.ns] += marker.action == Marker::ADD;
     return added;
@@ -61,6 +62,7 @@ struct Shown {
     });
   }
 
+  double now = 100.0;  // [s]
   Configuration configuration;
   Scene scene;
   SimulationState state;
@@ -77,6 +79,7 @@ TEST(Markers, the_first_array_deletes_everything_before_it_and_later_ones_do_not
   Shown shown;
   shown.update();
   EXPECT_EQ(shown.array.markers.front().action, Marker::DELETEALL);
+  shown.see_hands(1);
   shown.update();
   EXPECT_EQ(shown.array.markers.front().action, Marker::ADD);
   shown.markers.clear();
@@ -95,6 +98,86 @@ TEST(Markers, bodies_are_in_their_layers_also_without_visuals) {
                                  [](const Marker& marker) { return marker.type == Marker::MESH_RESOURCE; });
   ASSERT_NE(mesh, shown.array.markers.end());
   EXPECT_EQ(mesh->mesh_resource, "package://some/mesh.stl");
+}
+
+TEST(Markers, what_stays_as_it_is_is_sent_again_twice_a_second_and_to_who_comes_later) {
+  Shown shown;
+  EXPECT_EQ(shown.update()["objects"], 1);
+  shown.now += 0.1;
+  auto added = shown.update();
+  EXPECT_EQ(added["objects"] + added["fixtures"] + added["text"], 0);
+  for (const bool later : {true, false}) {
+    if (later) shown.markers.send_all();
+    shown.now += later ? 0.1 : 0.5;
+    added = shown.update();
+    EXPECT_EQ(added["objects"], 1);
+    EXPECT_EQ(added["fixtures"], 1);
+    EXPECT_EQ(added["text"], 1);
+  }
+  EXPECT_EQ(shown.array.markers.front().action, Marker::ADD);
+}
+
+TEST(Markers, what_moves_is_sent_at_once_and_alone) {
+  Shown shown;
+  shown.scene.bodies.push_back(testing::ball_body(0.02, 0.1));
+  shown.state.bodies.push_back(start_state(shown.scene.bodies.back()));
+  shown.update();
+  shown.state.bodies[2].pose.position.x() += 1e-6;
+  EXPECT_EQ(shown.update()["objects"], 1);
+  EXPECT_EQ(shown.first("objects").id, 1);
+  EXPECT_EQ(shown.first("objects").pose.position.x, shown.state.bodies[2].pose.position.x());
+  EXPECT_EQ(shown.update()["objects"], 0);
+}
+
+TEST(Markers, an_object_with_a_finger_deep_inside_lets_the_ghost_be_seen) {
+  Shown shown;
+  shown.update();
+  float before = 1.0f;
+  for (const double depth : {0.002, 0.008, 0.016, 0.1}) {
+    Contact contact;
+    contact.key.body = 0;
+    contact.depth = depth;
+    shown.result.contacts = {contact};
+    const bool deep = depth > 0.003;
+    EXPECT_EQ(shown.update()["objects"], deep);
+    if (!deep) continue;
+    const float opacity = shown.first("objects").colors.at(0).a;
+    EXPECT_LT(opacity, before);
+    EXPECT_GT(opacity, 0.5f);
+    before = opacity;
+  }
+  shown.result.contacts.clear();
+  EXPECT_EQ(shown.update()["objects"], 1);
+  EXPECT_EQ(shown.first("objects").colors.at(0).a, 1.0f);
+}
+
+TEST(Markers, no_side_of_a_box_is_dark_and_its_top_is_lightest) {
+  Shown shown;
+  shown.update();
+  const Marker& box = shown.first("objects");
+  ASSERT_EQ(box.points.size(), 36u);
+  ASSERT_EQ(box.colors.size(), 36u);
+  double top = 0.0, others = 0.0;
+  for (std::size_t i = 0; i < 36; i += 6) {
+    Vector3 middle = Vector3::Zero();
+    for (std::size_t corner = i; corner < i + 6; ++corner) middle += from_message(box.points[corner]) / 6.0;
+    EXPECT_GT(box.colors[i].g, 0.35f);  // of 0.7
+    (middle.z() > 0.4 ? top : others) = std::max<double>(middle.z() > 0.4 ? top : others, box.colors[i].g);
+    const Vector3 a = from_message(box.points[i]), b = from_message(box.points[i + 1]),
+                  c = from_message(box.points[i + 2]);
+    EXPECT_GT((b - a).cross(c - a).dot(middle), 0.0);  // counter-clockwise from outside
+  }
+  EXPECT_GT(top, others);
+}
+
+TEST(Markers, memory_serves_again) {
+  Shown shown;
+  shown.see_hands(1);
+  shown.update();
+  shown.update();
+  const auto* points = shown.first("hand").points.data();
+  shown.update();
+  EXPECT_EQ(shown.first("hand").points.data(), points);
 }
 
 TEST(Markers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
@@ -294,7 +377,8 @@ TEST(Markers, the_text_is_under_everything) {
   Shown shown;
   shown.scene.bodies[1].start.position.z() = -0.5;
   Markers markers(shown.scene, shown.configuration);
-  const auto array = markers.update(shown.result, shown.state, std_msgs::Header());
+  MarkerArray array;
+  markers.update(shown.result, shown.state, std_msgs::Header(), array);
   for (const Marker& marker : array.markers) {
     if (marker.ns != "text") continue;
     EXPECT_LT(marker.pose.position.z, -0.53);

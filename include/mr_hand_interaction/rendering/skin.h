@@ -18,9 +18,11 @@ struct SkinSurface {
 /// each hand, left or right and of any size, has the same ones, bent over its bones. Immutable.
 class Skin {
  public:
-  Skin();
-  /// The one that all share.
+  Skin();                                ///< as fine as it is made
+  explicit Skin(std::size_t triangles);  ///< with about as many, small where it bends
+  /// What all share: a hand's, and a coarser one for what is only to be made out.
   static const Skin& human();
+  static const Skin& outline();
 
   /// Counter-clockwise seen from outside, for a right hand; for a left one clockwise.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -38,17 +40,18 @@ class Skin {
 
  private:
   /// A bone that carries a vertex, and where it is on that bone: along it as a share of its length, what is
-  /// beyond its ends, and to the sides in radii.
+  /// beyond its ends, and to the sides in radii; and its normal, times the weight.
   struct Influence {
     int bone;
     double weight, along;
-    Vector3 beyond;
+    Vector3 beyond, normal;
   };
   struct Part {
     std::size_t first, last;  ///< of the influences
     std::array<float, kCapsules> share;
   };
-  static Influence influence(int bone, double weight, const Vector3& vertex);
+  explicit Skin(TriangleMesh rest);
+  static Influence influence(int bone, double weight, const Vector3& vertex, const Vector3& normal);
 
   std::vector<Vector3> rest_;
   std::vector<std::array<int, 3>> triangles_;

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "mr_hand_interaction/rendering/light.h"
 #include "mr_hand_interaction/rendering/skin.h"
 
 namespace mrhi {
 
-using Rgb = Eigen::Array3f;  ///< 0 to 1
-
-/// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. One light from above,
-/// light from all around, less of it where fingers cover each other or the palm (spheres as occluders). Fixed
-/// in world, so that a still hand keeps its colours while the view turns. Immutable.
+/// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. Less light comes from
+/// around where fingers cover each other or the palm (spheres as occluders). Immutable.
 class SkinPaint {
  public:
   explicit SkinPaint(const Skin& skin);  ///< keeps a reference

@@ -4,39 +4,52 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <memory>
-#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
 
+class BodyMarkers;
 class HandMarkers;
+class Skin;
 
 /// What rviz shows, a namespace for each layer: `hand` (rendered, as a skin), `ghost` (tracked, where it is
 /// elsewhere), `capsules` (rendered, as simulated), `objects`, `fixtures`, `contacts` (points), `friction`
-/// (rings), `forces` (arrows) and `text`. An array replaces the one before: what is in it no longer is
-/// deleted.
+/// (rings), `forces` (arrows) and `text`. What passes (hands, contacts) is in each array, and deleted by the
+/// first one that it is not in; the rest is sent when it changes, and again twice a second.
 class Markers {
  public:
   Markers(const Scene& scene, const Configuration& configuration);  ///< keeps references
+  Markers(const Scene& scene, const Configuration& configuration, const Skin& skin);
   ~Markers();
 
-  visualization_msgs::MarkerArray update(const FrameResult& result, const SimulationState& state,
-                                         const std_msgs::Header& header);
-  /// The next array begins by deleting everything.
+  /// `array` may be one that is done with: its memory is used again.
+  void update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
+              visualization_msgs::MarkerArray& array);
+  /// The next array has everything, and begins by deleting what was there before.
   void clear() { shown_.clear(), cleared_ = true; }
+  /// The next array has everything.
+  void send_all() { all_ = true; }
 
  private:
-  void delete_stale(const std_msgs::Header& header, visualization_msgs::MarkerArray& array);
+  using Key = std::pair<std::string, int>;
+  bool all_due(const ros::Time& stamp);
+  void add_text(const SimulationState& state, bool all, const std_msgs::Header& header,
+                visualization_msgs::MarkerArray& array);
+  void delete_gone(const std_msgs::Header& header, visualization_msgs::MarkerArray& array);
 
   const Scene& scene_;
   const Configuration& configuration_;
   const Vector3 text_place_;
   std::unique_ptr<HandMarkers> hands_;
-  std::set<std::pair<std::string, int>> shown_;
-  bool cleared_ = true;
+  std::unique_ptr<BodyMarkers> bodies_;
+  std::string text_;
+  std::vector<Key> shown_, now_;  // of what passes, in order
+  ros::Time all_sent_;
+  bool cleared_ = true, all_ = true;
 };
 
 }  // namespace mrhi
