@@ -13,7 +13,7 @@ namespace mrhi {
 namespace {
 
 constexpr double kCell = 0.0038;  // length of the finest triangles' sides [m]
-constexpr std::size_t kHumanTriangles = 1400, kOutlineTriangles = 500;
+constexpr std::size_t kHumanTriangles = 1200, kOutlineTriangles = 400;
 constexpr double kTipWorth = 4.0, kWebWorth = 20.0;
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
@@ -128,7 +128,7 @@ Skin::Skin(std::size_t triangles) : Skin(rest_mesh(triangles)) {}
 
 Skin::Skin(TriangleMesh rest) : rest_(std::move(rest.vertices)), triangles_(std::move(rest.triangles)) {
   for (const Vector3& vertex : rest_) {
-    Part part{influences_.size(), 0, capsule_shares(vertex)};
+    shares_.push_back(capsule_shares(vertex));
     const Vector3 normal = gradient(skin_distance, vertex).normalized();
     auto weights = skin_weights(vertex);
     double sum = 0.0;
@@ -137,22 +137,21 @@ Skin::Skin(TriangleMesh rest) : rest_(std::move(rest.vertices)), triangles_(std:
       const auto i = static_cast<std::size_t>(b);
       if (weights[i] > 0.0) influences_.push_back(influence(b, weights[i] / sum, vertex, normal));
     }
-    part.last = influences_.size();
-    parts_.push_back(part);
+    ends_.push_back(static_cast<std::uint32_t>(influences_.size()));
   }
 }
 
 Skin::Influence Skin::influence(int bone, double weight, const Vector3& vertex, const Vector3& normal) {
   const SkinBone& carrying = rest_hand().rig[static_cast<std::size_t>(bone)];
   Vector3 place = carrying.axes.transpose() * (vertex - carrying.start);
-  Influence influence{bone, weight, 0.0, Vector3::Zero(), weight * carrying.axes.transpose() * normal};
+  double along = 0.0;
   if (bone < kPhalanges) {
-    const double along = std::clamp(place.x(), 0.0, carrying.length);
-    influence.along = along / carrying.length;
+    along = std::clamp(place.x(), 0.0, carrying.length);
     place.x() -= along;
   }
-  influence.beyond = place / carrying.radius;
-  return influence;
+  return {bone, static_cast<float>(weight), static_cast<float>(along / carrying.length),
+          (place / carrying.radius).cast<float>(),
+          (weight * carrying.axes.transpose() * normal).cast<float>()};
 }
 
 const Skin& Skin::human() {
@@ -172,13 +171,15 @@ bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
   std::transform(rig.begin(), rig.end(), carriers.begin(), carrier);
   surface.vertices.resize(size());
   surface.normals.resize(size());
+  std::size_t i = 0;
   for (std::size_t v = 0; v < size(); ++v) {
     Vector3 place = Vector3::Zero(), normal = Vector3::Zero();
-    for (std::size_t i = parts_[v].first; i < parts_[v].last; ++i) {
+    for (; i < ends_[v]; ++i) {
       const Influence& influence = influences_[i];
       const Carrier& c = carriers[static_cast<std::size_t>(influence.bone)];
-      place += influence.weight * (c.start + influence.along * c.along + c.beyond * influence.beyond);
-      normal += c.axes * influence.normal;
+      place += influence.weight *
+               (c.start + influence.along * c.along + c.beyond * influence.beyond.cast<double>());
+      normal += c.axes * influence.normal.cast<double>();
     }
     surface.vertices[v] = place;
     surface.normals[v] = normal;

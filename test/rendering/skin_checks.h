@@ -47,20 +47,17 @@ inline int flipped_triangles(Side side, const SkinSurface& surface) {
   return flipped;
 }
 
-/// How far a point is outside a right hand's skin: of the triangles that it is over, over the nearest [m].
-inline double height_over(const SkinSurface& surface, const Vector3& point) {
+/// How far the skin is from a point inside it, in a direction (unit) [m].
+inline double reach(const SkinSurface& surface, const Vector3& from, const Vector3& direction) {
   double nearest = 1e9;
   for (const auto& triangle : Skin::human().triangles()) {
-    const Vector3 &p = surface.vertices[static_cast<std::size_t>(triangle[0])],
-                  &q = surface.vertices[static_cast<std::size_t>(triangle[1])],
-                  &r = surface.vertices[static_cast<std::size_t>(triangle[2])];
-    const Vector3 normal = (q - p).cross(r - p).normalized();
-    const double height = normal.dot(point - p);
-    const Vector3 foot = point - height * normal;
-    const bool over = normal.dot((q - p).cross(foot - p)) >= 0.0 &&
-                      normal.dot((r - q).cross(foot - q)) >= 0.0 &&
-                      normal.dot((p - r).cross(foot - r)) >= 0.0;
-    if (over && std::abs(height) < std::abs(nearest)) nearest = height;
+    const Vector3& corner = surface.vertices[static_cast<std::size_t>(triangle[0])];
+    Matrix3 basis;
+    basis << surface.vertices[static_cast<std::size_t>(triangle[1])] - corner,
+        surface.vertices[static_cast<std::size_t>(triangle[2])] - corner, -direction;
+    const Vector3 at = basis.inverse() * (from - corner);
+    if (at.x() >= 0.0 && at.y() >= 0.0 && at.x() + at.y() <= 1.0 && at.z() > 0.0)
+      nearest = std::min(nearest, at.z());
   }
   return nearest;
 }

@@ -78,7 +78,7 @@ TEST(Skin, rest_hand_posed_is_the_rest_hand) {
   }());
   const SkinSurface surface = skin_of(rest);
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-    EXPECT_LT((surface.vertices[v] - Skin::human().rest()[v]).norm(), 1e-9);
+    EXPECT_LT((surface.vertices[v] - Skin::human().rest()[v]).norm(), 1e-7);  // float32 places on bones
   }
 }
 
@@ -111,14 +111,14 @@ TEST(Skin, what_touches_is_seen_to_touch) {
     for (const double forward : {-1.0, -0.5, 0.0, 0.3, 0.6, 0.9}) {  // along the pad, then round the end
       const double angle = std::max(0.0, forward);
       const Vector3 on_axis = forward < 0.0 ? tip.axis_point(1.0 + 0.5 * forward) : tip.end;
-      const Vector3 pad = on_axis + tip.radius * (std::cos(angle) * down + std::sin(angle) * along);
-      const double outside = testing::height_over(surface, pad);
+      const Vector3 out = std::cos(angle) * down + std::sin(angle) * along;
+      const double outside = tip.radius - testing::reach(surface, on_axis, out);
       EXPECT_LT(outside, 0.0009);   // a gap as narrow is not seen
       EXPECT_GT(outside, -0.0004);  // nor is as much of the skin in what it touches
       sum += outside;
       ++count;
     }
-    EXPECT_NEAR(sum / count, 0.0, 0.0003);
+    EXPECT_NEAR(sum / count, 0.0, 0.0004);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "mr_hand_interaction/scene/shape.h"
@@ -28,27 +29,24 @@ class Skin {
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
   /// The vertices of the rest hand: right, stretched, fingers along x, back up, wrist at the origin [m].
   const std::vector<Vector3>& rest() const { return rest_; }
-  std::size_t size() const { return parts_.size(); }
+  std::size_t size() const { return rest_.size(); }
 
   /// False, and the surface as it was, if a bone of the hand is missing (the thumb's metacarpal may be).
   bool pose(const Hand& hand, SkinSurface& surface) const;
 
   /// How far vertex i belongs to each capsule, 0 to 1.
   double share(std::size_t vertex, int capsule) const {
-    return parts_[vertex].share[static_cast<std::size_t>(capsule)];
+    return shares_[vertex][static_cast<std::size_t>(capsule)];
   }
 
  private:
   /// A bone that carries a vertex, and where it is on that bone: along it as a share of its length, what is
-  /// beyond its ends, and to the sides in radii; and its normal, times the weight.
+  /// beyond its ends, and to the sides in radii; and its normal, times the weight. Small, as each frame reads
+  /// them all.
   struct Influence {
     int bone;
-    double weight, along;
-    Vector3 beyond, normal;
-  };
-  struct Part {
-    std::size_t first, last;  ///< of the influences
-    std::array<float, kCapsules> share;
+    float weight, along;
+    Eigen::Vector3f beyond, normal;
   };
   explicit Skin(TriangleMesh rest);
   static Influence influence(int bone, double weight, const Vector3& vertex, const Vector3& normal);
@@ -56,7 +54,8 @@ class Skin {
   std::vector<Vector3> rest_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Influence> influences_;
-  std::vector<Part> parts_;
+  std::vector<std::uint32_t> ends_;  // of each vertex's influences
+  std::vector<std::array<float, kCapsules>> shares_;
 };
 
 }  // namespace mrhi
