@@ -15,6 +15,7 @@ namespace {
 constexpr double kCell = 0.0038;  // length of the finest triangles' sides [m]
 constexpr std::size_t kHumanTriangles = 1200, kOutlineTriangles = 400;
 constexpr double kTipWorth = 4.0, kWebWorth = 20.0;
+constexpr double kSleeveEdge = 0.005;  // [m]
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
 /// Columns that map an influence's place on its bone to world.
@@ -84,7 +85,8 @@ void settle(TriangleMesh& mesh) {
   }
 }
 
-/// What is looked at, fingers and most of all their ends, and what folds, the webs between two of them.
+/// What is looked at, fingers and most of all their ends and the sleeve's edge, and what folds, the webs
+/// between two fingers.
 double worth_of(const Skin& skin, std::size_t vertex) {
   double worth = 1.0, all = 0.0, most = 0.0;
   for (int finger = 0; finger < kFingers; ++finger) {
@@ -95,6 +97,7 @@ double worth_of(const Skin& skin, std::size_t vertex) {
     all += of_finger;
     most = std::max(most, of_finger);
   }
+  if (std::abs(skin.rest()[vertex].x() - kSleeveBegins) < kSleeveEdge) worth += kTipWorth;
   return worth + kWebWorth * (all - most);
 }
 

@@ -38,7 +38,7 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
-constexpr double kUnseen = 0.003, kDeep = 0.020;  // depths of a finger that makes a body translucent [m]
+constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger that makes a body translucent [m]
 constexpr double kLeastOpacity = 0.6;
 
 double opacity_around(double depth) {

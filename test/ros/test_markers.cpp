@@ -133,12 +133,12 @@ TEST(Markers, an_object_with_a_finger_deep_inside_lets_the_ghost_be_seen) {
   Shown shown;
   shown.update();
   float before = 1.0f;
-  for (const double depth : {0.002, 0.008, 0.016, 0.1}) {
+  for (const double depth : {0.0015, 0.004, 0.006, 0.1}) {
     Contact contact;
     contact.key.body = 0;
     contact.depth = depth;
     shown.result.contacts = {contact};
-    const bool deep = depth > 0.003;
+    const bool deep = depth > 0.002;
     EXPECT_EQ(shown.update()["objects"], deep);
     if (!deep) continue;
     const float opacity = shown.first("objects").colors.at(0).a;
