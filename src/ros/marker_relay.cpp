@@ -42,30 +42,45 @@ Marker deletion(const std_msgs::Header& header, int action) {
 
 void MarkerThinner::take(const MarkerArray::ConstPtr& array) {
   for (const Marker& marker : array->markers) {
-    if (marker.action == Marker::DELETEALL) start_afresh();
-    if (marker.action == Marker::DELETE) deleted_.emplace(marker.ns, marker.id);
+    header_ = marker.header;
+    came_ = true;
+    if (marker.action == Marker::DELETEALL) {
+      shown_.clear();
+      changed_.clear();
+      start_afresh();
+      continue;
+    }
+    if (left_out_.count(marker.ns) > 0) continue;
+    const Key key{marker.ns, marker.id};
+    if (marker.action == Marker::DELETE) shown_.erase(key);
+    if (marker.action == Marker::ADD) shown_[key] = marker;
+    changed_.insert(key);
   }
-  latest_ = array;
 }
 
 MarkerArray MarkerThinner::next() {
   MarkerArray array;
-  if (!latest_ || latest_->markers.empty()) return array;
-  const std_msgs::Header& header = latest_->markers.front().header;
-  if (afresh_) array.markers.push_back(deletion(header, Marker::DELETEALL));
-  for (const auto& [ns, id] : deleted_) {
-    if (afresh_ || left_out_.count(ns) > 0) continue;
-    array.markers.push_back(deletion(header, Marker::DELETE));
-    array.markers.back().ns = ns;
-    array.markers.back().id = id;
+  if (!came_) return array;
+  if (afresh_) {
+    array.markers.push_back(deletion(header_, Marker::DELETEALL));
+    for (const auto& [key, marker] : shown_) array.markers.push_back(marker);
+  } else {
+    for (const Key& key : changed_) add_change(key, array);
   }
-  for (const Marker& marker : latest_->markers) {
-    if (marker.action == Marker::ADD && left_out_.count(marker.ns) == 0) array.markers.push_back(marker);
-  }
-  latest_.reset();
-  deleted_.clear();
-  afresh_ = false;
+  changed_.clear();
+  came_ = afresh_ = false;
   return array;
+}
+
+void MarkerThinner::add_change(const Key& key, MarkerArray& array) const {
+  const auto shown = shown_.find(key);
+  if (shown != shown_.end()) {
+    array.markers.push_back(shown->second);
+    return;
+  }
+  array.markers.push_back(deletion(header_, Marker::DELETE));
+  array.markers.back().ns = key.first;
+  array.markers.back().id = key.second;
 }
 
 MarkerRelay::MarkerRelay(ros::NodeHandle node, const ros::NodeHandle& parameters)
