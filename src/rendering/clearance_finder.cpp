@@ -105,6 +105,14 @@ double ClearanceFinder::fastest_body(const std::vector<BodyState>& bodies) const
   return fastest;
 }
 
+Vector3 ClearanceFinder::velocity(int body, const Vector3& point,
+                                  const std::vector<BodyState>& bodies) const {
+  const auto b = static_cast<std::size_t>(body);
+  if (scene_.bodies[b].fixed) return Vector3::Zero();
+  const Twist twist = twist_of(scene_.bodies[b], bodies[b]);
+  return twist.linear + twist.angular.cross(point - bodies[b].pose.position);
+}
+
 template <typename See>
 void ClearanceFinder::each_near(const Hand& hand, double margin, const See& see) const {
   for (int c = 0; c < kCapsules; ++c) {

@@ -29,6 +29,9 @@ class ClearanceFinder {
   /// Of any point of the bodies near the hand [m/s].
   double fastest_body(const std::vector<BodyState>& bodies) const;
 
+  /// Of a point of a body [m/s].
+  Vector3 velocity(int body, const Vector3& point, const std::vector<BodyState>& bodies) const;
+
   /// Looks at the hand as placed: adds what is nearer than `margin` to `clearances`, and what is there
   /// already is measured anew. Returns the least gap [m], at most `margin`.
   double find(const Hand& placed, const Setting& setting, double margin,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "renderer.h"
 
@@ -6,6 +7,8 @@ namespace mrhi {
 namespace {
 
 constexpr int kMaxPasses = 12;
+constexpr int kMostInVain = 2;         // passes on end that bring a hand no better into step
+constexpr double kBetter = 0.9;        // a gap of this share of the best one is better
 constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a frame, and this share of what hand
 constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
 constexpr double kAnyway = 1.0;        // no bound [m]
@@ -25,7 +28,7 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 /// leave room, it gives way.
 void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
-  const Pace pace(before, tracked_way + kPace);
+  const Pace pace(before, tracked_way + pushed_way(setting, placed) + kPace);
   double least_beyond = pace.beyond(placed);
   if (least_beyond <= 0.0) return;
   HandOffset best = offset;
@@ -46,6 +49,19 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
   }
   offset = best;
   chain.place(offset, placed);
+}
+
+/// The longest way by which a body that the hand leans on has come towards it since the frame before [m].
+double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const {
+  double fastest = 0.0;
+  for (const Clearance& clearance : clearances) {
+    if (clearance.pressure <= 0.0) continue;
+    const Capsule& capsule = placed.capsules[clearance.key.capsule];
+    const Vector3 point = capsule.axis_point(clearance.s) - capsule.radius * clearance.normal;
+    fastest =
+        std::max(fastest, clearance.normal.dot(finder.velocity(clearance.key.body, point, setting.bodies)));
+  }
+  return fastest * elapsed;
 }
 
 /// The hand does not move from where it was shown.
@@ -76,8 +92,9 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
                                   const Pace* pace) {
-  double least = 0.0;
-  for (int pass = 0; pass < kMaxPasses; ++pass) {
+  double least = 0.0, best = std::numeric_limits<double>::lowest();
+  int in_vain = 0;
+  for (int pass = 0; pass < kMaxPasses && in_vain < kMostInVain; ++pass) {
     linearise(placed);
     const HandOffset from = offset;
     const double expected = solve_offset(reference, bounds, chain, clearances, offset);
@@ -86,6 +103,8 @@ double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const
     least = finder.find(placed, setting, kAhead, clearances);
     if (pace != nullptr) least = std::min(least, pace->keep(placed, clearances));
     if (least > -kClear) return least;
+    in_vain = pace != nullptr && least < kBetter * best ? in_vain + 1 : 0;
+    best = std::max(best, least);
   }
   return least;
 }

@@ -69,7 +69,8 @@ void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, co
   chain_before.place(last, before);
   setting.shown_before = &before;
   tracked_way = farthest_joint(track.previous, track.current);
-  setting.moved = tracked_way + finder.fastest_body(setting.bodies) * to_seconds(stamp - last.stamp);
+  elapsed = to_seconds(stamp - last.stamp);
+  setting.moved = tracked_way + finder.fastest_body(setting.bodies) * elapsed;
 }
 
 /// True once the tracked hand has been clear of everything for a while and the rendered one has not come any

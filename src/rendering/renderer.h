@@ -31,6 +31,7 @@ struct HandRenderer::Impl {
                 const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr);
   void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
                   Hand& placed);
+  double pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const;
   HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last);
   void linearise(const Hand& placed);
   void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
@@ -43,6 +44,7 @@ struct HandRenderer::Impl {
   std::vector<Clearance> clearances;
   Hand before;               // as it was shown at the frame before
   double tracked_way = 0.0;  // of the farthest joint since then [m]
+  double elapsed = 0.0;      // since then [s]
 };
 
 }  // namespace mrhi
