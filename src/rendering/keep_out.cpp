@@ -28,6 +28,7 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 /// leave room, it gives way.
 void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
+  if (farthest_joint(before, placed) <= tracked_way + kPace) return;
   const Pace pace(before, tracked_way + pushed_way(setting, placed) + kPace);
   double least_beyond = pace.beyond(placed);
   if (least_beyond <= 0.0) return;
