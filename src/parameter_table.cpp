@@ -102,12 +102,16 @@ ParameterEntry stiffness(const MaterialField& field) {
 /// Refinements of contact, on or off.
 std::vector<ParameterEntry> refinements() {
   using C = ContactConfiguration;
-  const std::vector<std::pair<std::string, bool C::*>> members{
-      {"anchors", &C::anchors},       {"damping", &C::damping},
-      {"entry_face", &C::entry_face}, {"impact_friction", &C::impact_friction},
-      {"sleep", &C::sleep},           {"sweep", &C::sweep},
-      {"swing_back", &C::swing_back}, {"torsion", &C::torsion},
-      {"two_points", &C::two_points}};
+  const std::vector<std::pair<std::string, bool C::*>> members{{"anchors", &C::anchors},
+                                                               {"damping", &C::damping},
+                                                               {"edge_grip", &C::edge_grip},
+                                                               {"entry_face", &C::entry_face},
+                                                               {"impact_friction", &C::impact_friction},
+                                                               {"sleep", &C::sleep},
+                                                               {"sweep", &C::sweep},
+                                                               {"swing_back", &C::swing_back},
+                                                               {"torsion", &C::torsion},
+                                                               {"two_points", &C::two_points}};
   std::vector<ParameterEntry> entries;
   for (const auto& refinement : members) {
     const auto member = refinement.second;

@@ -1,5 +1,6 @@
 #include "support/bar_by_its_end.h"
 #include "support/deep_squeeze.h"
+#include "support/edge_pinch.h"
 #include "support/noisy_pinch.h"
 #include "support/pinch_ride.h"
 #include "support/slap.h"
@@ -129,6 +130,8 @@ const std::vector<Measure>& measures() {
       {"damping", "(a) in raw noise: jitter of the cube", "µm",
        [](V v) { return 1e6 * in_raw_noise(v).cube.rms(); }},
       {"damping", "(a) in raw noise: true slip", "mm", [](V v) { return 1e3 * in_raw_noise(v).true_slip; }},
+      {"edge_grip", "bar pinched by its edges and shaken: off its place", "mm",
+       [](V v) { return 1e3 * testing::squeezed_out(v.configuration); }},
       {"entry_face", "plate squeezed 15 mm deep: off its place", "mm",
        [](V v) { return 1e3 * squeezed_plate(v).off; }},
       {"swing_back", "plate squeezed 15 mm deep: turn", "°",

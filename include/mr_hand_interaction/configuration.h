@@ -30,15 +30,16 @@ struct TrackingConfiguration {
 
 /// The switches are refinements: on, unless one is turned off to see what it is worth (docs/contact.md).
 struct ContactConfiguration {
-  bool sweep = true;              ///< a phalanx is followed through the step to where it first touches
-  bool anchors = true;            ///< friction remembers where a phalanx sticks; off: it only damps
-  bool entry_face = true;         ///< a phalanx pushes from the face by which it entered; off: by the nearest
-  bool two_points = true;         ///< a phalanx that lies flat touches at two points; off: at one
-  bool swing_back = true;         ///< a phalanx pressed in deep holds as if pushed back the way it came
-  bool impact_friction = true;    ///< a blow may also stop the sliding (`implicit`)
-  bool damping = true;            ///< a pressed spring has a dashpot beside it (`implicit`)
-  bool torsion = true;            ///< a fingertip resists twisting about its contact normal (`implicit`)
-  bool sleep = true;              ///< bodies that lie still on others cost nothing until something comes near
+  bool sweep = true;            ///< a phalanx is followed through the step to where it first touches
+  bool anchors = true;          ///< friction remembers where a phalanx sticks; off: it only damps
+  bool entry_face = true;       ///< a phalanx pushes from the face by which it entered; off: by the nearest
+  bool two_points = true;       ///< a phalanx that lies flat touches at two points; off: at one
+  bool swing_back = true;       ///< a phalanx pressed in deep holds as if pushed back the way it came
+  bool impact_friction = true;  ///< a blow may also stop the sliding (`implicit`)
+  bool damping = true;          ///< a pressed spring has a dashpot beside it (`implicit`)
+  bool torsion = true;          ///< a fingertip resists twisting about its contact normal (`implicit`)
+  bool edge_grip = true;        ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
+  bool sleep = true;            ///< bodies that lie still on others cost nothing until something comes near
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
 };
 

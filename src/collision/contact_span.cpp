@@ -15,6 +15,7 @@ struct FlatPart {
   const ClosestFeatures& features;
 
   AxisSpan at_point() const { return {features.axis_parameter, features.axis_parameter}; }
+  AxisSpan at_edge() const { return {features.axis_parameter, features.axis_parameter, true}; }
   AxisSpan over(const Stretch& stretch) const {
     return {std::min(std::max(stretch.s0, 0.0), features.axis_parameter),
             std::max(std::min(stretch.s1, 1.0), features.axis_parameter)};
@@ -32,7 +33,7 @@ struct FlatPart {
         stretch.clip_to_slab(axis.start[i], axis.along[i], box.half_extents[i]);
       }
     }
-    if (across != 1) return at_point();
+    if (across != 1) return at_edge();
     return over(stretch);
   }
   AxisSpan operator()(const Cylinder& cylinder) const {
@@ -41,7 +42,7 @@ struct FlatPart {
       stretch.clip_to_disc(axis, cylinder.radius);
       return over(stretch);
     }
-    if (std::abs(features.normal.z()) > kSameNormal) return at_point();
+    if (std::abs(features.normal.z()) > kSameNormal) return at_edge();
     stretch.clip_to_slab(axis.start.z(), axis.along.z(), cylinder.half_length);
     const AxisSpan beside = over(stretch);
     // The line of touch shrinks to a point while the capsule turns across the side.

@@ -84,15 +84,27 @@ Vector3 god_object(const Press& press, double s, const Contact* pressed) {
 }
 
 /// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
-/// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm.
-void swing_back(const Matrix3& palm, bool held, Contact& contact) {
-  if (!held) {
-    contact.touched_from = palm.transpose() * contact.normal;
-    contact.lever.setZero();
-    return;
-  }
+/// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm. Over
+/// an edge the nearest point stays while the skin rolls past it: there it is the axis that has moved, about
+/// the edge, from the way it came.
+Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
   const Vector3 way_back = palm * contact.touched_from;
-  contact.lever = contact.depth * (way_back - contact.normal.dot(way_back) * contact.normal);
+  const double length = at_edge ? contact.depth - contact.radius : contact.depth;
+  return length * (way_back - contact.normal.dot(way_back) * contact.normal);
+}
+
+void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact) {
+  const Matrix3& palm = pair.hand.palm;
+  contact.lever.setZero();
+  if (held != nullptr) {
+    contact.lever = lever(palm, held->at_edge, contact);
+    if (held->at_edge == contact.at_edge) return;
+    // What has been stored on a face counts on at the edge, and the other way round.
+    contact.point -= contact.lever;
+    contact.god_object = pair.moving.to_local(contact.point);
+    contact.lever.setZero();
+  }
+  contact.touched_from = palm.transpose() * contact.normal;
 }
 
 /// Where the point at s is. `memory` is the contact that it goes on from, or null.
@@ -116,11 +128,11 @@ void place(const Press& press, double s, const Contact* memory, Contact& contact
   contact.axis = press.motion.axis;
   contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
-  contact.share = 1.0;
+  contact.share = contact.grip = 1.0;
   contact.impulse.setZero();
   contact.time_of_impact = 0.0;
   const bool held = pressed && refinements.swing_back && contact.friction == Friction::sticking;
-  swing_back(press.pair.hand.palm, held, contact);
+  swing_back(press.pair, held ? memory : nullptr, contact);
 }
 
 /// Contact `point` of the pair, going on from its memory, or beginning. `nearest` tells what the pair did.
@@ -156,12 +168,14 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
     begin_contact(pair, point, nearest, nullptr, now[0]);
+    if (!plane.entry) now[0].at_edge = span.at_edge && pair.refinements.edge_grip;
     place(press, plane.entry ? press.deepest_end() : features.axis_parameter, nearest, now[0]);
     return 1;
   }
   for (const int point : {0, 1}) {
     const Contact* memory = memory_of_point(before, count, point);
     begin_contact(pair, point, memory, nearest, now[point]);
+    now[point].at_edge = false;
     place(press, point == 0 ? span.s0 : span.s1, memory, now[point]);
   }
   share_load(now[0], now[1]);

@@ -1,10 +1,12 @@
 #include "implicit_model.h"
 
+#include "edge_grip.h"
 #include "newton.h"
 
 namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
+  if (configuration_.edge_grip) grip_edges(step);
   islands_.build(step);
   const auto springs = [&](const Island& island) {
     one_.begin(step, island, configuration_);

@@ -45,7 +45,8 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
   const double twisting = configuration.torsion ? kTwistLever * kTwistLever : 0.0;
   spring.twist_stiffness = spring.stiffness * constant<Real>(twisting);
-  spring.friction = each([&](const Contact& contact) { return friction_of(material, contact.friction); });
+  spring.friction =
+      each([&](const Contact& contact) { return contact.grip * friction_of(material, contact.friction); });
   spring.patch_friction = constant<Real>(kPatchTorque) * spring.friction * each(&Contact::patch);
   result.arm = point - everywhere<Real>(step.bodies[first.key.body].pose.position);
   result.drive = each(&Contact::hand_velocity);
@@ -98,6 +99,12 @@ void follow(const ContactStep& step, const Vector3& slide, BodyContact& contact)
   contact.anchor_b = pose.to_local(pose * contact.anchor_b + slide);
 }
 
+double grip_of(const Contact& contact) {
+  return contact.grip;
+}
+double grip_of(const BodyContact&) {
+  return 1.0;
+}
 const Material& material_of(const ContactStep& step, const Contact& contact) {
   return step.scene.bodies[contact.key.body].material;
 }
@@ -129,7 +136,7 @@ void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, i
   const bool sticks = of(solved.response.wanted_squared) <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
   if (sticks || of(solved.response.push) <= 0.0) return;
-  const double friction = material_of(step, touch).dynamic_friction;
+  const double friction = grip_of(touch) * material_of(step, touch).dynamic_friction;
   follow(step, slide(contact_in(lane, solved), friction, step.step), touch);
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kGravity = -9.81;  // [m/s^2]
 
-/// A recording whose hand closes on nothing, and an object put where it closes. Times from the recording's
+/// A recording whose hand closes on nothing, and an object put where it closes, clear of the hand at first: a
+/// phalanx that begins inside it touches nothing until it is out. Times from the recording's
 /// start [s].
 struct HeldObject {
   const char* recording;
@@ -59,7 +60,7 @@ const HeldObject kHeld[] = {
     {"ljp_close_open_10s",
      "config/scenes/long_cuboid.urdf",
      "long_cuboid",
-     {{0.0152, 0.0209, 0.0870}, {0.68469, 0.03015, -0.69499, 0.21745}},
+     {{0.0436, 0.0321, 0.0942}, {0.68469, 0.03015, -0.69499, 0.21745}},
      4.95,
      5.6,
      6.2,

@@ -61,6 +61,7 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.tracking.max_speed, c.tracking.max_speed);
   EXPECT_EQ(d.contact.anchors, c.contact.anchors);
   EXPECT_EQ(d.contact.damping, c.contact.damping);
+  EXPECT_EQ(d.contact.edge_grip, c.contact.edge_grip);
   EXPECT_EQ(d.contact.entry_face, c.contact.entry_face);
   EXPECT_EQ(d.contact.impact_friction, c.contact.impact_friction);
   EXPECT_EQ(d.contact.object_stiffness, c.contact.object_stiffness);
@@ -80,7 +81,7 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
-  c.contact = {false, false, false, false, false, false, false, false, false, 1};
+  c.contact = {false, false, false, false, false, false, false, false, false, false, 1};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -109,6 +110,7 @@ TEST(Parameters, DefaultFileHoldsTheDefaultOfEveryParameter) {
 TEST(Parameters, NamesAreTheContracts) {
   const std::vector<std::string> contract{"contact/anchors",
                                           "contact/damping",
+                                          "contact/edge_grip",
                                           "contact/entry_face",
                                           "contact/impact_friction",
                                           "contact/object_stiffness",
@@ -146,6 +148,7 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(ContactModelKind::soft_pad, set("contact_model", "soft_pad").contact_model);
   EXPECT_FALSE(set("contact/anchors", "false").contact.anchors);
   EXPECT_FALSE(set("contact/damping", "false").contact.damping);
+  EXPECT_FALSE(set("contact/edge_grip", "false").contact.edge_grip);
   EXPECT_FALSE(set("contact/entry_face", "false").contact.entry_face);
   EXPECT_FALSE(set("contact/impact_friction", "false").contact.impact_friction);
   EXPECT_EQ(3e4, set("contact/object_stiffness", "3e4").contact.object_stiffness);

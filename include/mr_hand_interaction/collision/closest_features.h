@@ -26,6 +26,7 @@ ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinde
 /// that a finger lying along a face touches with two points. s0 == s1 where it touches at a point.
 struct AxisSpan {
   double s0, s1;
+  bool at_edge = false;  ///< of a box or cylinder
 };
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
 

@@ -39,6 +39,7 @@ struct ContactMemory {
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
   Vector3 touched_from = Vector3::UnitZ();  ///< n as the touch began, palm frame
   double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
+  bool at_edge = false;                     ///< where faces of the object meet
   double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
   /// Turn of the phalanx about n against the object since the touch, as far as it is held [rad].
   double twist = 0.0;
@@ -60,6 +61,7 @@ struct Contact : ContactMemory {
   Vector3 axis = Vector3::Zero();           ///< of the phalanx, from start to end [m]
   double radius = 0.0;                      ///< of the phalanx [m]
   double patch = 0.0;                       ///< radius of the touching patch [m]
+  double grip = 1.0;                        ///< friction over that of a face, for the way that it is drawn
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
   Vector3 impulse = Vector3::Zero();        ///< of an impact in this step [N s]
   double time_of_impact = 0.0;              ///< of that impact, from the step's start [s]
