@@ -9,6 +9,7 @@ namespace mrhi {
 namespace {
 
 constexpr Nanoseconds kTouchOver = 100'000'000;  // without contact this long
+constexpr Nanoseconds kDropped = 100'000'000;    // not held this long
 
 Nanoseconds nanoseconds(double seconds) {
   return static_cast<Nanoseconds>(std::llround(1e9 * seconds));
@@ -68,16 +69,23 @@ void Trial::measure(const Observation& seen, Nanoseconds passed) {
   measures_.grip_force_max = std::max(measures_.grip_force_max.value_or(0.0), *seen.grip_force);
 }
 
+/// A grasp that breaks off and is there again at once has lost nothing.
 void Trial::note_grasp(const Observation& seen) {
   const bool held_before = last_ && last_->held;
-  if (seen.held && !held_before) {
-    add(TrialEventKind::grasped);
-    measures_.attempts += !asks_to_touch(now().kind);
+  if (!asks_to_hold(now().kind)) loose_.reset();
+  if (seen.held) {
+    if (!held_before && !loose_) {
+      add(TrialEventKind::grasped);
+      measures_.attempts += !asks_to_touch(now().kind);
+    }
+    loose_.reset();
+  } else if (held_before && asks_to_hold(now().kind)) {
+    loose_ = elapsed_;
   }
-  if (!seen.held && held_before && asks_to_hold(now().kind)) {
-    add(TrialEventKind::dropped);
-    ++measures_.drops;
-  }
+  if (!loose_ || (elapsed_ - *loose_ < kDropped && !seen.put_back)) return;
+  loose_.reset();
+  add(TrialEventKind::dropped);
+  ++measures_.drops;
 }
 
 void Trial::note_touch(const Observation& seen, Nanoseconds passed) {

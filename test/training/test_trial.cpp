@@ -93,13 +93,33 @@ TEST(Trial, tolerance_is_met_to_its_rim) {
 TEST(Trial, every_drop_before_the_release_counts_and_the_release_does_not) {
   const Task task = test::two_places();
   Feeder feeder(task);
-  feeder.held(false).held(true).held(false).held(true).at({0.06, 0, 0}).held(false).held(true);
+  feeder.held(false).held(true).held(false).stay(0.1).held(true).at({0.06, 0, 0}).held(false).stay(0.1);
+  feeder.held(true);
   feeder.at(kFirst).stay(3.0).at(kSecond).stay(3.0).held(false).stay(2.0);
   EXPECT_EQ(TrialResult::completed, feeder.trial.result());
   EXPECT_EQ(3, feeder.trial.measures().attempts);
   EXPECT_EQ(2, feeder.trial.measures().drops);
   EXPECT_EQ(2, feeder.count(TrialEventKind::dropped));
   EXPECT_EQ(1, feeder.count(TrialEventKind::released));
+}
+
+TEST(Trial, a_grasp_that_is_there_again_within_a_tenth_of_a_second_has_dropped_nothing) {
+  const Task task = test::two_places();
+  for (const double gap : {0.09, 0.11}) {
+    Feeder feeder(task);
+    feeder.held(false).held(true).at({0.06, 0, 0}).held(false).stay(gap - 0.01).held(true).stay(1.0);
+    EXPECT_EQ(gap < 0.1 ? 0 : 1, feeder.trial.measures().drops) << gap;
+    EXPECT_EQ(gap < 0.1 ? 1 : 2, feeder.trial.measures().attempts) << gap;
+  }
+}
+
+TEST(Trial, what_is_put_back_was_dropped) {
+  const Task task = test::two_places();
+  Feeder feeder(task);
+  feeder.held(false).held(true).at({0.06, 0, 0});
+  feeder.seen.put_back = true;
+  feeder.held(false);
+  EXPECT_EQ(1, feeder.trial.measures().drops);
 }
 
 Feeder at_the_release(const Task& task) {

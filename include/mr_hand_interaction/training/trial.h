@@ -17,9 +17,10 @@ const char* to_string(TrialResult result);  ///< as in trials.csv
 struct TrialMeasures {
   double completion_time = 0.0;                                    ///< [s] until the object was let go
   std::array<std::optional<double>, kTrainingStages> stage_times;  ///< [s]; empty: never got there
-  int attempts = 0;          ///< times grasped (nudge_into, strike: touched)
-  int drops = 0;             ///< times lost while it should have been held (strike: left at another speed)
-  double path_length = 0.0;  ///< way of the object while held [m]
+  int attempts = 0;  ///< times grasped (nudge_into, strike: touched)
+  int drops =
+      0;  ///< times lost, for 0.1 s at least, while it should have been held (strike: left at another speed)
+  double path_length = 0.0;                               ///< way of the object while held [m]
   std::optional<double> grip_force_mean, grip_force_max;  ///< while held [N]; the mean over time
   std::optional<double> release_drift;                    ///< from where it was let go, drift_time later [m]
   std::optional<double> release_speed;                    ///< as it was let go [m/s]
@@ -106,7 +107,8 @@ class Trial {
   bool inside_ = false;    ///< of the goal's condition
   bool touching_ = false;  ///< or it is not long ago
   Nanoseconds timer_ = 0, untouched_ = 0, gripped_ = 0;
-  double grip_impulse_ = 0.0;  ///< over gripped_ [N s]
+  double grip_impulse_ = 0.0;         ///< over gripped_ [N s]
+  std::optional<Nanoseconds> loose_;  ///< not held since, while it should be
   std::optional<LettingGo> let_go_;
   TrialMeasures measures_;
   std::vector<TrialEvent> events_;
