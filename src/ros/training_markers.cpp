@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
+#include <vector>
 
+#include "../scene/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -12,12 +15,14 @@ namespace {
 using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
-constexpr double kPassing = 0.5;  // [s]
-constexpr double kText = 0.014;   // height of letters [m]
-constexpr double kMark = 0.012;   // of a place's number [m]
+constexpr double kPassing = 0.5;                     // [s]
+constexpr double kText = 0.016, kSmallText = 0.013;  // height of letters [m]
+constexpr double kMark = 0.014;                      // of a place's number [m]
+constexpr double kLine = 1.5;                        // from line to line, of the letters' height
+constexpr std::size_t kLongest = 56;                 // letters in a line
 
-/// Behind and above what hands reach.
-const Vector3 kInstructionPlace(0.0, 0.16, 0.45), kResultPlace(0.0, 0.16, 0.42);
+/// Behind and above what hands reach: the last line of the instruction, and what is below it.
+const Vector3 kInstructionPlace(0.0, 0.16, 0.45), kResultPlace(0.0, 0.16, 0.425);
 
 std_msgs::ColorRGBA waiting() {
   return color(0.337, 0.706, 0.914, 0.35);
@@ -36,6 +41,30 @@ Pose upright(const Vector3& position) {
 void write(MarkerLayer& layer, int id, const Vector3& place, const std::string& text, double height = kText) {
   if (text.empty()) return;
   layer.add(id, Marker::TEXT_VIEW_FACING, upright(place), Vector3::Constant(height), white()).text = text;
+}
+
+/// In lines of at most kLongest letters, broken between words.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (lines.empty() || lines.back().size() + 1 + word.size() > kLongest) {
+      lines.push_back(word);
+    } else {
+      lines.back() += ' ' + word;
+    }
+  }
+  return lines;
+}
+
+/// The text's lines upward from the place, and the heading above them.
+void write_instruction(MarkerLayer& layer, const std::string& heading, const std::string& text) {
+  std::vector<std::string> lines = lines_of(text);
+  Vector3 place = kInstructionPlace;
+  int id = 0;
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line, place.z() += kLine * kText)
+    write(layer, id++, place, *line);
+  write(layer, id, place, heading, kSmallText);
 }
 
 /// Where the object is to be for a goal, if it is to be somewhere.
@@ -66,41 +95,43 @@ void add_places(const Session& session, MarkerLayer& places, MarkerLayer& path) 
 }
 
 std::string heading(const Status& status) {
-  char text[160];
-  std::snprintf(text, sizeof text, "trial %u of %u: %s", status.trial, status.trials, status.object.c_str());
-  return text;
+  char buffer[160];
+  std::snprintf(buffer, sizeof buffer, "trial %u of %u: %s", status.trial, status.trials,
+                text::with_spaces(status.object).c_str());
+  return buffer;
 }
 
 std::string timer_text(const Goal& goal, const Status& status) {
-  char text[64] = "";
+  char buffer[64] = "";
   const bool runs = status.progress > 0.0 && status.progress < 1.0;
   if (status.phase == Status::RUNNING && runs && goal.kind != GoalKind::release)
-    std::snprintf(text, sizeof text, "%.1f s", status.remaining);
-  return text;
+    std::snprintf(buffer, sizeof buffer, "%.1f s", status.remaining);
+  return buffer;
 }
 
 std::string result_text(const Session& session, const Status& status) {
-  char text[160] = "";
+  char buffer[160] = "";
   if (status.phase == Status::RUNNING || status.phase == Status::PAUSED) {
-    std::snprintf(text, sizeof text, "%.0f s, dropped: %u", status.elapsed, status.drops);
+    std::snprintf(buffer, sizeof buffer, "%.0f s, dropped: %u", status.elapsed, status.drops);
   } else if (session.last()) {
     const TrialRow& last = *session.last();
-    std::snprintf(text, sizeof text, "%s: %s, %.1f s, dropped: %d", last.object.c_str(),
-                  to_string(last.result), last.measures.completion_time, last.measures.drops);
-    std::string line = text;
+    std::snprintf(buffer, sizeof buffer, "%s: %s, %.1f s, dropped: %d",
+                  text::with_spaces(last.object).c_str(), to_string(last.result),
+                  last.measures.completion_time, last.measures.drops);
+    std::string line = buffer;
     if (last.measures.release_drift) {
-      std::snprintf(text, sizeof text, ", drifted %.0f mm", 1e3 * *last.measures.release_drift);
-      line += text;
+      std::snprintf(buffer, sizeof buffer, ", drifted %.0f mm", 1e3 * *last.measures.release_drift);
+      line += buffer;
     }
     return line;
   }
-  return text;
+  return buffer;
 }
 
 }  // namespace
 
 std::string instruction_now(const Session& session, bool paused, bool begins_by_itself) {
-  if (session.phase() == SessionPhase::finished) return "All trials are done. Thank you!";
+  if (session.phase() == SessionPhase::finished) return "All trials are done: two questions remain.";
   if (paused) return "Pause";
   if (session.phase() == SessionPhase::ready)
     return begins_by_itself ? "Get ready: " + session.task().instructions : session.task().instructions;
@@ -118,13 +149,12 @@ visualization_msgs::MarkerArray training_markers(const Session& session, const B
   const bool somewhere = goal.kind == GoalKind::nudge_into || goal.stage == TrainingStage::maintenance;
   if (active && somewhere) {
     add_goal(session, body, status, target);
-    const Vector3 above = goal.position + (1.3 * body.bounding_radius + kText) * Vector3::UnitZ();
-    write(timer, 0, above, timer_text(goal, status));
+    const Vector3 beside = goal.position + (1.4 * body.bounding_radius + 2.0 * kText) * Vector3::UnitX();
+    write(timer, 0, beside, timer_text(goal, status));
   }
   if (status.phase != Status::FINISHED) add_places(session, places, path);
-  write(instructions, 0, kInstructionPlace, status.instruction);
-  write(instructions, 1, kInstructionPlace + 1.5 * kText * Vector3::UnitZ(), heading(status));
-  write(result, 0, kResultPlace, result_text(session, status));
+  write_instruction(instructions, heading(status), status.instruction);
+  write(result, 0, kResultPlace, result_text(session, status), kSmallText);
   return array;
 }
 

@@ -1,5 +1,6 @@
 #include "text.h"
 
+#include <algorithm>
 #include <locale>
 #include <sstream>
 
@@ -55,6 +56,11 @@ std::string one_line(const std::string& text, std::size_t longest) {
   }
   if (!line.empty() && line.back() == ' ') line.pop_back();
   return line.size() <= longest ? line : line.substr(0, longest) + "...";
+}
+
+std::string with_spaces(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 }  // namespace mrhi::text

@@ -17,4 +17,7 @@ std::string joined(const std::vector<std::string>& names);
 /// Line breaks become spaces; what is longer than `longest` characters is cut.
 std::string one_line(const std::string& text, std::size_t longest = 300);
 
+/// A name as people write it: without underscores.
+std::string with_spaces(std::string name);
+
 }  // namespace mrhi::text

@@ -31,7 +31,7 @@ std::size_t Task::place_number(std::size_t goal) const {
 std::string instruction(const Task& task, std::size_t index, const std::string& object) {
   const Goal& goal = task.goals[index];
   if (!goal.instruction.empty()) return goal.instruction;
-  const std::string thing = "the " + object, seconds = text::number(goal.hold) + " s";
+  const std::string thing = "the " + text::with_spaces(object), seconds = text::number(goal.hold) + " s";
   switch (goal.kind) {
     case GoalKind::pick:
       return "Pick up " + thing;
