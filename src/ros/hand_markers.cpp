@@ -41,6 +41,10 @@ std_msgs::ColorRGBA to_message(const Rgb& rgb, float alpha) {
 
 }  // namespace
 
+void add_simulated(const RenderedHand& rendered, int first_id, MarkerLayer& layer) {
+  add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, layer);
+}
+
 HandMarkers::HandMarkers(const Skin& skin)
     : skin_(skin),
       outline_(Skin::outline()),
@@ -61,9 +65,8 @@ HandMarkers::Corners HandMarkers::corners_of(const Skin& skin) {
 
 void HandMarkers::add(const RenderedHand& rendered, const Hand& tracked, int first_id, HandLayers layers) {
   const bool apart = farthest_apart(rendered.hand, tracked) > kUnseen;
-  add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, layers.capsules);
   if (!skin_.pose(rendered.hand, surface_)) {
-    add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, layers.hand);
+    add_simulated(rendered, first_id, layers.hand);
     if (apart) add_capsules(tracked, {}, capsule_ghost_style(), first_id, layers.ghost);
     return;
   }

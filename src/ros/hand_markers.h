@@ -11,10 +11,12 @@ namespace mrhi {
 
 /// Where hands are drawn.
 struct HandLayers {
-  MarkerLayer& hand;      ///< the rendered hand's skin, a triangle list per hand
-  MarkerLayer& ghost;     ///< the tracked hand's skin where it is elsewhere
-  MarkerLayer& capsules;  ///< the rendered hand as the simulation has it
+  MarkerLayer& hand;   ///< the rendered hand's skin, a triangle list per hand
+  MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
 };
+
+/// The rendered hand as the simulation has it. Ids from `first_id`, less than kIdsPerHand.
+void add_simulated(const RenderedHand& rendered, int first_id, MarkerLayer& layer);
 
 /// Draws hands. One with bones missing has no skin: its capsules take the skin's place.
 class HandMarkers {

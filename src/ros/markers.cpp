@@ -18,6 +18,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kPassing = 0.5;  // hands and contacts go if the node does; the rest is sent again [s]
 constexpr double kForEver = 0.0;
+constexpr double kRestPeriod = 1.0 / 30;  // [s]
 
 /// Under all that is there at the start, where no hand comes between.
 Vector3 below(const Scene& scene) {
@@ -90,56 +91,69 @@ Markers::Markers(const Scene& scene, const Configuration& configuration, const S
       bodies_(std::make_unique<BodyMarkers>(scene)) {}
 Markers::~Markers() = default;
 
+void Markers::clear() {
+  picture_.shown.clear();
+  rest_.shown.clear();
+  cleared_ = true;
+}
+
 void Markers::update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
                      MarkerArray& array) {
   hands_->recycle(array.markers);
   array.markers.clear();
   const bool all = all_due(header.stamp);
   if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
-  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing),
-      capsules(array, header, "capsules", kPassing);
+  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing);
   MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
   MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
       forces(array, header, "forces", kPassing);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
-    hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts, capsules});
+    hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts});
   }
   add_contacts(result, {points, friction, forces});
-  delete_gone(header, array);
+  picture_.delete_gone(header, array);
   bodies_->add(state, result.contacts, all, {objects, fixtures});
-  add_text(state, all, header, array);
+}
+
+void Markers::update_rest(const FrameResult& result, const SimulationState& state,
+                          const std_msgs::Header& header, MarkerArray& array) {
+  array.markers.clear();
+  const bool all = std::exchange(all_of_rest_, false);
+  const double since = (header.stamp - rest_sent_).toSec();
+  if (!all && since >= 0.0 && since < kRestPeriod) return;
+  rest_sent_ = header.stamp;
+  MarkerLayer capsules(array, header, "capsules", kPassing), texts(array, header, "text", kForEver);
+  int first_id = 0;
+  for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
+    add_simulated(result.rendered[i], first_id, capsules);
+  }
+  rest_.delete_gone(header, array);
+  std::string text = heads_up(scene_, configuration_, state);
+  if (!all && text == text_) return;
+  text_ = std::move(text);
+  Marker& marker = texts.add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()},
+                             Vector3::Constant(0.011), color(0.9, 0.9, 0.9));
+  marker.text = text_;
 }
 
 /// Twice a second, for a viewer that came later or has lost an array.
 bool Markers::all_due(const ros::Time& stamp) {
   const double since = (stamp - all_sent_).toSec();
   const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;
-  if (due) all_sent_ = stamp;
+  if (due) all_sent_ = stamp, all_of_rest_ = true;
   all_ = false;
   return due;
 }
 
-void Markers::add_text(const SimulationState& state, bool all, const std_msgs::Header& header,
-                       MarkerArray& array) {
-  std::string text = heads_up(scene_, configuration_, state);
-  if (!all && text == text_) return;
-  text_ = std::move(text);
-  MarkerLayer layer(array, header, "text", kForEver);
-  layer
-      .add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
-           color(0.9, 0.9, 0.9))
-      .text = text_;
-}
-
-void Markers::delete_gone(const std_msgs::Header& header, MarkerArray& array) {
-  now_.clear();
-  for (const Marker& marker : array.markers) now_.emplace_back(marker.ns, marker.id);
-  std::sort(now_.begin(), now_.end());
-  for (const Key& key : shown_) {
-    if (!std::binary_search(now_.begin(), now_.end(), key)) add_deleting(Marker::DELETE, key, header, array);
+void Markers::Passing::delete_gone(const std_msgs::Header& header, MarkerArray& array) {
+  now.clear();
+  for (const Marker& marker : array.markers) now.emplace_back(marker.ns, marker.id);
+  std::sort(now.begin(), now.end());
+  for (const Key& key : shown) {
+    if (!std::binary_search(now.begin(), now.end(), key)) add_deleting(Marker::DELETE, key, header, array);
   }
-  shown_.swap(now_);
+  shown.swap(now);
 }
 
 }  // namespace mrhi

@@ -91,6 +91,9 @@ void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs:
     if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
     markers_->update(result, simulation_->state(), header, *picture_);
     marker_publisher_.publish(picture_);
+    visualization_msgs::MarkerArray rest;
+    markers_->update_rest(result, simulation_->state(), header, rest);
+    if (!rest.markers.empty()) publish_shared(marker_publisher_, std::move(rest));
   }
   shown_ = ros::WallTime::now();
 }

@@ -39,8 +39,11 @@ struct Shown {
   std::map<std::string, int> update() {
     std_msgs::Header header;
     header.frame_id = "world";
-    header.stamp = ros::Time(now);
+    header.stamp = ros::Time(now += 0.04);  // enough for what is not in a hurry
     markers.update(result, state, header, array);
+    MarkerArray rest;
+    markers.update_rest(result, state, header, rest);
+    array.markers.insert(array.markers.end(), rest.markers.begin(), rest.markers.end());
     std::map<std::string, int> added;
     for (const Marker& marker : array.markers) added[marker.ns] += marker.action == Marker::ADD;
     return added;
@@ -115,6 +118,21 @@ TEST(Markers, what_stays_as_it_is_is_sent_again_twice_a_second_and_to_who_comes_
     EXPECT_EQ(added["text"], 1);
   }
   EXPECT_EQ(shown.array.markers.front().action, Marker::ADD);
+}
+
+TEST(Markers, capsules_and_text_come_thirty_times_a_second) {
+  Shown shown;
+  shown.see_hands(1);
+  shown.update();
+  std_msgs::Header header;
+  MarkerArray rest;
+  int arrays = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    header.stamp = ros::Time(shown.now + (frame + 1) / 120.0);
+    shown.markers.update_rest(shown.result, shown.state, header, rest);
+    arrays += !rest.markers.empty();
+  }
+  EXPECT_NEAR(arrays, 30, 6);
 }
 
 TEST(Markers, what_moves_is_sent_at_once_and_alone) {
@@ -378,7 +396,7 @@ TEST(Markers, the_text_is_under_everything) {
   shown.scene.bodies[1].start.position.z() = -0.5;
   Markers markers(shown.scene, shown.configuration);
   MarkerArray array;
-  markers.update(shown.result, shown.state, std_msgs::Header(), array);
+  markers.update_rest(shown.result, shown.state, std_msgs::Header(), array);
   for (const Marker& marker : array.markers) {
     if (marker.ns != "text") continue;
     EXPECT_LT(marker.pose.position.z, -0.53);

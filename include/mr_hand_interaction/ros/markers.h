@@ -19,7 +19,7 @@ class Skin;
 /// What rviz shows, a namespace for each layer: `hand` (rendered, as a skin), `ghost` (tracked, where it is
 /// elsewhere), `capsules` (rendered, as simulated), `objects`, `fixtures`, `contacts` (points), `friction`
 /// (rings), `forces` (arrows) and `text`. What passes (hands, contacts) is in each array, and deleted by the
-/// first one that it is not in; the rest is sent when it changes, and again twice a second.
+/// first one that it is not in; what stays is sent when it changes, and again twice a second.
 class Markers {
  public:
   Markers(const Scene& scene, const Configuration& configuration);  ///< keeps references
@@ -29,17 +29,22 @@ class Markers {
   /// `array` may be one that is done with: its memory is used again.
   void update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
               visualization_msgs::MarkerArray& array);
+  /// What need not hurry, `capsules` and `text`: 30 times a second, after the picture. Empty in between.
+  void update_rest(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
+                   visualization_msgs::MarkerArray& array);
   /// The next array has everything, and begins by deleting what was there before.
-  void clear() { shown_.clear(), cleared_ = true; }
+  void clear();
   /// The next array has everything.
   void send_all() { all_ = true; }
 
  private:
-  using Key = std::pair<std::string, int>;
+  /// Markers that are deleted when an array no longer has them.
+  struct Passing {
+    using Key = std::pair<std::string, int>;
+    std::vector<Key> shown, now;  // in order
+    void delete_gone(const std_msgs::Header& header, visualization_msgs::MarkerArray& array);
+  };
   bool all_due(const ros::Time& stamp);
-  void add_text(const SimulationState& state, bool all, const std_msgs::Header& header,
-                visualization_msgs::MarkerArray& array);
-  void delete_gone(const std_msgs::Header& header, visualization_msgs::MarkerArray& array);
 
   const Scene& scene_;
   const Configuration& configuration_;
@@ -47,9 +52,9 @@ class Markers {
   std::unique_ptr<HandMarkers> hands_;
   std::unique_ptr<BodyMarkers> bodies_;
   std::string text_;
-  std::vector<Key> shown_, now_;  // of what passes, in order
-  ros::Time all_sent_;
-  bool cleared_ = true, all_ = true;
+  Passing picture_, rest_;
+  ros::Time all_sent_, rest_sent_;
+  bool cleared_ = true, all_ = true, all_of_rest_ = true;
 };
 
 }  // namespace mrhi
