@@ -65,13 +65,14 @@ HandMarkers::Corners HandMarkers::corners_of(const Skin& skin) {
 
 void HandMarkers::add(const RenderedHand& rendered, const Hand& tracked, int first_id, HandLayers layers) {
   const bool apart = farthest_apart(rendered.hand, tracked) > kUnseen;
-  if (!skin_.pose(rendered.hand, surface_)) {
+  const auto place = static_cast<std::size_t>(first_id / kIdsPerHand);
+  if (drawn_.size() <= place) drawn_.resize(place + 1);
+  if (!skin_.pose(rendered.hand, drawn_[place].surface)) {
     add_simulated(rendered, first_id, layers.hand);
     if (apart) add_capsules(tracked, {}, capsule_ghost_style(), first_id, layers.ghost);
     return;
   }
-  paint_.paint(rendered.hand, surface_, rendered.touching, colours_);
-  add_skin(rendered.hand.side, first_id, layers.hand);
+  add_skin(rendered, drawn_[place], first_id, layers.hand);
   if (apart) add_ghost(rendered.hand, tracked, first_id, layers.ghost);
 }
 
@@ -95,14 +96,29 @@ Marker& HandMarkers::add_triangles(int id, MarkerLayer& layer) {
   return marker;
 }
 
-void HandMarkers::add_skin(Side side, int id, MarkerLayer& layer) {
+void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer) {
+  const Hand& hand = rendered.hand;
+  drawn.new_paint = drawn.colours.empty() || drawn.hand != hand.id || drawn.side != hand.side ||
+                    drawn.touching != rendered.touching;
+  if (drawn.new_paint) {
+    drawn.hand = hand.id, drawn.side = hand.side, drawn.touching = rendered.touching;
+    paint_.paint(hand, drawn.surface, drawn.touching, drawn.colours);
+  }
   Marker& marker = add_triangles(id, layer);
-  const auto& corners = skin_corners_[static_cast<std::size_t>(side)];
+  const auto& corners = skin_corners_[static_cast<std::size_t>(hand.side)];
   marker.points.resize(corners.size());
   marker.colors.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    marker.points[i] = mrhi::to_message(surface_.vertices[corners[i]]);
-    marker.colors[i] = to_message(colours_[corners[i]], 1.0f);
+    marker.points[i] = mrhi::to_message(drawn.surface.vertices[corners[i]]);
+    marker.colors[i] = to_message(drawn.colours[corners[i]], 1.0f);
+  }
+}
+
+void HandMarkers::repaint(const std::vector<RenderedHand>& rendered) {
+  for (std::size_t i = 0; i < rendered.size() && i < drawn_.size(); ++i) {
+    const bool is_drawn = drawn_[i].hand == rendered[i].hand.id && !drawn_[i].colours.empty();
+    if (is_drawn && !std::exchange(drawn_[i].new_paint, false))
+      paint_.paint(rendered[i].hand, drawn_[i].surface, drawn_[i].touching, drawn_[i].colours);
   }
 }
 

@@ -24,12 +24,24 @@ class HandMarkers {
   explicit HandMarkers(const Skin& skin);  ///< keeps a reference
   /// Ids from `first_id`, less than kIdsPerHand in each layer.
   void add(const RenderedHand& rendered, const Hand& tracked, int first_id, HandLayers layers);
+  /// Light for the next time, after the picture of now has gone: a hand's shading is a frame old, where it
+  /// touches is not.
+  void repaint(const std::vector<RenderedHand>& rendered);
   /// Takes the memory of markers that are done with, for the next ones.
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
+  /// A hand as it was last drawn.
+  struct Drawn {
+    std::uint32_t hand = 0;
+    Side side = Side::right;
+    Touching touching{};
+    bool new_paint = false;
+    SkinSurface surface;
+    std::vector<Rgb> colours;
+  };
   visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
-  void add_skin(Side side, int id, MarkerLayer& layer);
+  void add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
   /// Three for each triangle, in an order that is counter-clockwise from outside for either side.
@@ -39,8 +51,8 @@ class HandMarkers {
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
   const Corners skin_corners_, outline_corners_;
-  SkinSurface surface_, ghost_, beneath_;  // kept for their memory, as are the rest
-  std::vector<Rgb> colours_;
+  std::vector<Drawn> drawn_;     // by their place in the result
+  SkinSurface ghost_, beneath_;  // kept for their memory, as are the rest
   std::vector<float> alphas_;
   std::vector<visualization_msgs::Marker> spare_;
 };

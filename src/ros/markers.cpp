@@ -118,6 +118,7 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
 
 void Markers::update_rest(const FrameResult& result, const SimulationState& state,
                           const std_msgs::Header& header, MarkerArray& array) {
+  hands_->repaint(result.rendered);
   array.markers.clear();
   const bool all = std::exchange(all_of_rest_, false);
   const double since = (header.stamp - rest_sent_).toSec();

@@ -299,6 +299,24 @@ TEST(Markers, what_touches_is_highlighted) {
   EXPECT_GT(changed, 100);
 }
 
+TEST(Markers, the_light_on_a_hand_is_that_of_the_frame_before_and_a_still_hand_keeps_it) {
+  Shown shown;
+  shown.see_hands(1);
+  const auto colours = [&] {
+    shown.update();
+    return shown.first("hand").colors;
+  };
+  const auto open = colours();
+  EXPECT_EQ(colours(), open);
+  const Pose turned{Vector3::Zero(), Quaternion(Eigen::AngleAxisd(M_PI, Vector3::UnitX()))};
+  shown.result.rendered[0].hand = complete_hand(adult_hand(Side::right), turned);
+  shown.result.tracked[0] = shown.result.rendered[0].hand;
+  EXPECT_EQ(colours(), open);
+  const auto over = colours();
+  EXPECT_NE(over, open);
+  EXPECT_EQ(colours(), over);
+}
+
 TEST(Markers, arrows_push_as_the_force_does_behind_the_finger_and_are_longer_for_more) {
   Shown shown;
   Contact contact;
