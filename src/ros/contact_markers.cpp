@@ -14,12 +14,32 @@ constexpr double kHalfOfLongest = 1.0;  // the force whose arrow is half as long
 constexpr double kShortest = 0.004;     // [m]
 constexpr double kGap = 0.002;          // between the arrow and the back of the finger [m]
 constexpr double kPointSize = 0.005;    // [m]
-constexpr double kPieces = 16.0;        // of a ring
+constexpr double kPieces = 14.0;        // of a ring
 constexpr double kLift = 0.0006;        // of a ring off the surface [m]
 
-std_msgs::ColorRGBA friction_color(const Contact& contact) {
-  if (!contact.impulse.isZero(0.0)) return color(1.0, 1.0, 1.0);
-  return contact.friction == Friction::sticking ? color(0.000, 0.620, 0.451) : color(0.941, 0.894, 0.259);
+enum FrictionState { kSticks, kSlips, kStruck, kFrictionStates };
+
+FrictionState friction_state(const Contact& contact) {
+  if (!contact.impulse.isZero(0.0)) return kStruck;
+  return contact.friction == Friction::sticking ? kSticks : kSlips;
+}
+
+std_msgs::ColorRGBA friction_color(FrictionState state) {
+  if (state == kStruck) return color(1.0, 1.0, 1.0);
+  return state == kSticks ? color(0.000, 0.620, 0.451) : color(0.941, 0.894, 0.259);
+}
+
+/// One marker for the rings of one colour: with a colour at each corner they would be twice as large.
+void add_rings(const std::vector<Contact>& contacts, FrictionState state, MarkerLayer& layer) {
+  Marker* rings = nullptr;
+  for (const Contact& contact : contacts) {
+    if (friction_state(contact) != state) continue;
+    if (!rings)
+      rings = &layer.add(state, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), friction_color(state));
+    const Pose place{contact.point + kLift * contact.normal,
+                     Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
+    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces}, place, *rings);
+  }
 }
 
 void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {
@@ -40,14 +60,8 @@ void add_contacts(const FrameResult& result, ContactLayers layers) {
   Marker& points =
       layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), color(1.0, 1.0, 1.0));
   for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
-  Marker& rings =
-      layers.friction.add(0, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
-  for (const Contact& contact : result.contacts) {
-    const Pose place{contact.point + kLift * contact.normal,
-                     Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
-    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces}, place, friction_color(contact),
-             rings);
-  }
+  for (int state = 0; state < kFrictionStates; ++state)
+    add_rings(result.contacts, static_cast<FrictionState>(state), layers.friction);
   int id = 0;
   for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers.forces);
 }

@@ -62,8 +62,7 @@ struct Ring {
   double begin = 0.0, end = 1.0;
   double pieces = 36.0;  // of a full turn
 };
-void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
-              visualization_msgs::Marker& marker);
+void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& marker);
 
 /// A place that an object is to be brought to.
 struct TargetMark {

@@ -6,6 +6,8 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <boost/make_shared.hpp>
+#include <chrono>
+#include <thread>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/result_conversion.h"
@@ -16,6 +18,7 @@ namespace {
 
 constexpr int kQueue = 10;
 constexpr int kEventQueue = 100;
+constexpr std::chrono::microseconds kWayOfPicture(250);
 
 /// Shared, so that a subscriber in the same process gets it without a copy.
 template <class Message>
@@ -55,6 +58,7 @@ void ResultPublisher::publish(const FrameResult& result) {
   const ros::Time stamp = to_ros_time(clock_.to_stamp(result.stamp));
   const std_msgs::Header when = header(stamp);
   publish_markers(result, when);
+  let_picture_go();
   haptics_.publish(*simulation_, result, when);
   if (rendered_hands_.getNumSubscribers() > 0)
     publish_shared(rendered_hands_, rendered_message(result, when));
@@ -64,11 +68,13 @@ void ResultPublisher::publish(const FrameResult& result) {
   }
   publish_events(result.events);
   publish_objects(when);
+  publish_rest(result, when);
 }
 
 void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& stamp) {
   publish_markers(result, header(stamp));
   publish_objects(header(stamp));
+  publish_rest(result, header(stamp));
 }
 
 void ResultPublisher::publish_events(const std::vector<Event>& events) {
@@ -91,11 +97,22 @@ void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs:
     if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
     markers_->update(result, simulation_->state(), header, *picture_);
     marker_publisher_.publish(picture_);
-    visualization_msgs::MarkerArray rest;
-    markers_->update_rest(result, simulation_->state(), header, rest);
-    if (!rest.markers.empty()) publish_shared(marker_publisher_, std::move(rest));
   }
   shown_ = ros::WallTime::now();
+}
+
+/// roscpp's thread sends the picture and the viewer's takes it: on few cores all that is left to do would be
+/// in their way.
+void ResultPublisher::let_picture_go() const {
+  static const bool few_cores = std::thread::hardware_concurrency() < 4;
+  if (few_cores && marker_publisher_.getNumSubscribers() > 0) std::this_thread::sleep_for(kWayOfPicture);
+}
+
+void ResultPublisher::publish_rest(const FrameResult& result, const std_msgs::Header& header) {
+  if (marker_publisher_.getNumSubscribers() == 0) return;
+  visualization_msgs::MarkerArray rest;
+  markers_->update_rest(result, simulation_->state(), header, rest);
+  if (!rest.markers.empty()) publish_shared(marker_publisher_, std::move(rest));
 }
 
 void ResultPublisher::publish_objects(const std_msgs::Header& header) {

@@ -7,8 +7,7 @@
 
 namespace mrhi {
 
-void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& paint,
-              visualization_msgs::Marker& marker) {
+void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& marker) {
   const double turn = ring.end - ring.begin;
   const int pieces = std::max(0, static_cast<int>(std::ceil(ring.pieces * turn)));
   const auto at = [&](double radius, int piece) {
@@ -18,10 +17,7 @@ void add_ring(const Ring& ring, const Pose& place, const std_msgs::ColorRGBA& pa
   for (int i = 0; i < pieces; ++i) {
     const auto a = at(ring.inner, i), b = at(ring.outer, i), c = at(ring.outer, i + 1),
                d = at(ring.inner, i + 1);
-    for (const auto& corner : {a, b, c, a, c, d}) {
-      marker.points.push_back(corner);
-      marker.colors.push_back(paint);
-    }
+    for (const auto& corner : {a, b, c, a, c, d}) marker.points.push_back(corner);
   }
 }
 

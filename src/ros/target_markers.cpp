@@ -32,8 +32,10 @@ void add_target(const TargetMark& target, int first_id, MarkerLayer& layer) {
   Marker& ring = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
   const double inner = kRingRoom * target.body.bounding_radius, outer = (1.0 + kRingWidth) * inner;
   const double progress = std::min(1.0, std::max(0.0, target.progress));
-  add_ring({inner, outer, 0.0, progress}, level_at(target.pose.position), paint(1.0), ring);
-  add_ring({inner, outer, progress, 1.0}, level_at(target.pose.position), color(0.9, 0.9, 0.9, 0.3), ring);
+  add_ring({inner, outer, 0.0, progress}, level_at(target.pose.position), ring);
+  ring.colors.resize(ring.points.size(), paint(1.0));
+  add_ring({inner, outer, progress, 1.0}, level_at(target.pose.position), ring);
+  ring.colors.resize(ring.points.size(), color(0.9, 0.9, 0.9, 0.3));
 }
 
 }  // namespace mrhi

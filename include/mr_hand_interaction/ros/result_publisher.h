@@ -37,6 +37,8 @@ class ResultPublisher {
  private:
   std_msgs::Header header(const ros::Time& stamp) const;
   void publish_markers(const FrameResult& result, const std_msgs::Header& header);
+  void let_picture_go() const;
+  void publish_rest(const FrameResult& result, const std_msgs::Header& header);
   void publish_objects(const std_msgs::Header& header);
 
   std::string fixed_frame_;
