@@ -32,6 +32,13 @@ Scene completed(Scene scene) {
   return scene;
 }
 
+/// Edges grip under `implicit` alone: other models do not look at what is stored there.
+ContactConfiguration refinements(const Configuration& configuration) {
+  ContactConfiguration result = configuration.contact;
+  result.edge_grip &= configuration.contact_model == ContactModelKind::implicit;
+  return result;
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -43,7 +50,7 @@ struct Simulation::Impl {
         model(make_contact_model(configuration)),
         geometry(scene),
         neighbours(scene),
-        finder(scene, geometry, gravity, configuration.contact),
+        finder(scene, geometry, gravity, refinements(configuration)),
         body_finder(scene, geometry, gravity),
         sleeping(scene, configuration.contact.sleep),
         renderer(scene, finder) {
