@@ -29,7 +29,7 @@ std_msgs::ColorRGBA friction_color(FrictionState state) {
   return state == kSticks ? color(0.000, 0.620, 0.451) : color(0.941, 0.894, 0.259);
 }
 
-/// One marker for the rings of one colour: with a colour at each corner they would be twice as large.
+/// The rings of one colour. It is also each corner's, or rviz would light them and leave their sides black.
 void add_rings(const std::vector<Contact>& contacts, FrictionState state, MarkerLayer& layer) {
   Marker* rings = nullptr;
   for (const Contact& contact : contacts) {
@@ -40,6 +40,7 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, Marker
                      Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
     add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces}, place, *rings);
   }
+  if (rings) rings->colors.resize(rings->points.size(), friction_color(state));
 }
 
 void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {

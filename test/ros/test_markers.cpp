@@ -345,7 +345,7 @@ TEST(Markers, sticking_slipping_and_striking_differ_in_colour) {
     shown.result.contacts = {contact};
     shown.update();
     EXPECT_EQ(shown.first("contacts").points.size(), 1u);
-    const auto c = shown.first("friction").color;
+    const auto c = shown.first("friction").colors.at(0);
     return std::array<float, 3>{c.r, c.g, c.b};
   };
   const auto sticking = ring();
