@@ -41,14 +41,15 @@ int outside_dimension(const Capsule& capsule, const Vector3& half) {
 }
 
 /// The frequent case: the whole axis is over one face.
-ClosestFeatures over_face(const Capsule& capsule, const Vector3& half, int i) {
+template <int i>
+ClosestFeatures over_face(const Capsule& capsule, const Vector3& half) {
   const double side = capsule.start[i] > 0.0 ? 1.0 : -1.0;
   const double rise = side * (capsule.end[i] - capsule.start[i]);
   const double s = std::abs(rise) < kParallel ? 0.5 : rise > 0.0 ? 0.0 : 1.0;
   Vector3 point = capsule.axis_point(s);
   const double distance = side * point[i] - half[i] - capsule.radius;
   point[i] = side * half[i];
-  return {distance, side * Vector3::Unit(i), point, s};
+  return {distance, Vector3(i == 0 ? side : 0.0, i == 1 ? side : 0.0, i == 2 ? side : 0.0), point, s};
 }
 
 /// A direction in which the axis can leave the box: `separation` < 0 is how far it has to go.
@@ -112,7 +113,9 @@ ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const Wa
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
   const Vector3& half = box.half_extents;
   const int outside = outside_dimension(capsule, half);
-  if (outside >= 0) return over_face(capsule, half, outside);
+  if (outside == 0) return over_face<0>(capsule, half);
+  if (outside == 1) return over_face<1>(capsule, half);
+  if (outside == 2) return over_face<2>(capsule, half);
   const Segment axis(capsule);
   const double s = nearest(axis, half);
   const Vector3 axis_point = axis.at(s);

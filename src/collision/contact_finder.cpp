@@ -51,12 +51,12 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
   const Capsule in_body{frame.rotation.transpose() * (capsule.start - frame.position),
                         frame.rotation.transpose() * (capsule.end - frame.position), capsule.radius};
   const Capsule in_shape = collider.to_shape(in_body);
-  auto features = collider.closest(in_shape, margin);
-  if (!features) return features;
-  if (span != nullptr) *span = collider.span(in_shape, *features);
-  features = collider.to_body(*features);
-  features->normal = frame.rotation * features->normal;
-  features->point = frame.rotation * features->point + frame.position;
+  ClosestFeatures features = collider.closest(in_shape, margin);
+  if (features.distance > margin) return std::nullopt;
+  if (span != nullptr) *span = collider.span(in_shape, features);
+  features = collider.to_body(features);
+  features.normal = frame.rotation * features.normal;
+  features.point = frame.rotation * features.point + frame.position;
   return features;
 }
 
@@ -71,10 +71,13 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
   memory_ = std::lower_bound(before.data(), before.data() + before.size(), first,
                              [](const Contact& contact, const ContactKey& key) { return contact.key < key; });
   const int shapes = static_cast<int>(body.shapes.size());
-  for (const int c : near) {
-    const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);
+  const double moved = near.moved(state.pose, body.bounding_radius);
+  for (int i = 0; i < near.count; ++i) {
+    const int c = near.capsules[static_cast<std::size_t>(i)];
     const double speed = hand.speed[static_cast<std::size_t>(c)] + body_speed;
     const double margin = refinements_.sweep ? kMargin + speed * step : kMargin;
+    if (near.clearances[static_cast<std::size_t>(i)] - moved > margin) continue;
+    const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);
     for (int shape = 0; shape < shapes; ++shape)
       find_touch({hand, c, in_world, in_body, near.body, shape, moving, refinements_}, step, margin, before);
   }
@@ -85,17 +88,19 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
   const PlacedCollider& collider =
       geometry_.colliders[static_cast<std::size_t>(pair.body)][static_cast<std::size_t>(pair.shape)];
   const Capsule in_shape = collider.to_shape(pair.in_body);
-  auto features = collider.closest(in_shape, margin);
-  if (!features) return;
-  if (features->distance > kMargin) {
-    features = swept(pair, collider, step, margin);
-    if (!features) return;
+  ClosestFeatures features = collider.closest(in_shape, margin);
+  if (features.distance > margin) return;
+  if (features.distance > kMargin) {
+    const auto met = swept(pair, collider, step, margin);
+    if (!met) return;
+    features = *met;
     // Told as the capsule is now: the place on the surface that will be met.
-    features->distance =
-        features->normal.dot(in_shape.axis_point(features->axis_parameter) - features->point) -
-        in_shape.radius;
+    features.distance =
+        features.normal.dot(in_shape.axis_point(features.axis_parameter) - features.point) - in_shape.radius;
   }
-  touch(pair, collider.to_body(*features), collider.span(in_shape, *features), before);
+  const AxisSpan span = collider.span(in_shape, features);
+  if (!collider.has_bodys_frame()) features = collider.to_body(features);
+  touch(pair, features, span, before);
 }
 
 std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const PlacedCollider& collider,
@@ -104,14 +109,14 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
   const auto separation = [&](double time) -> std::optional<Separation<ClosestFeatures>> {
     const Capsule then = pair.hand.capsule(pair.capsule, time);
     const Pose pose = moving.at(time);
-    const auto features = collider.closest(collider.to_shape(to_local(pose, then)), margin);
-    if (!features) return std::nullopt;
-    const ClosestFeatures in_body = collider.to_body(*features);
+    const ClosestFeatures features = collider.closest(collider.to_shape(to_local(pose, then)), margin);
+    if (features.distance > margin) return std::nullopt;
+    const ClosestFeatures in_body = collider.to_body(features);
     const Vector3 normal = pose.orientation * in_body.normal;
     const Vector3 hand_velocity =
         pair.hand.motion(pair.capsule, then).of_surface(in_body.axis_parameter, -then.radius * normal);
     const Vector3 relative = hand_velocity - moving.velocity(time, pose.orientation * in_body.point);
-    return Separation<ClosestFeatures>{*features, features->distance, normal.dot(relative)};
+    return Separation<ClosestFeatures>{features, features.distance, normal.dot(relative)};
   };
   const auto touch = first_touch<ClosestFeatures>(separation, step);
   if (!touch) return std::nullopt;

@@ -14,8 +14,8 @@ constexpr double kRestingSpeed = 1e-9;
 
 /// The plane of the face that the phalanx pushes on, in the body's frame.
 struct Plane {
-  Vector3 point;
-  Vector3 normal;
+  const Vector3& point;
+  const Vector3& normal;
   bool entry;  // the face that the phalanx entered by, which is not the nearest any more
 };
 
@@ -26,23 +26,18 @@ Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, c
   return {memory->god_object, memory->entry_normal, true};
 }
 
-const Contact* nearest_memory(const Contact* before, int count, double s) {
-  const Contact* nearest = nullptr;
-  for (int i = 0; i < count; ++i) {
-    if (nearest == nullptr ||
-        std::abs(before[i].axis_parameter - s) < std::abs(nearest->axis_parameter - s)) {
-      nearest = before + i;
-    }
+/// The contacts of a pair in the last step.
+struct PairMemory {
+  PairMemory(const Contact* before, int count, double s) {
+    for (int i = 0; i < count; ++i) of_point[before[i].key.point] = before + i;
+    nearest = of_point[0] != nullptr ? of_point[0] : of_point[1];
+    if (count > 1 && distance(of_point[1], s) < distance(of_point[0], s)) nearest = of_point[1];
   }
-  return nearest;
-}
+  static double distance(const Contact* contact, double s) { return std::abs(contact->axis_parameter - s); }
 
-const Contact* memory_of_point(const Contact* before, int count, int point) {
-  for (int i = 0; i < count; ++i) {
-    if (before[i].key.point == point) return before + i;
-  }
-  return nullptr;
-}
+  const Contact* of_point[2] = {nullptr, nullptr};
+  const Contact* nearest;  // to s; null if there is none
+};
 
 /// A phalanx on a plane, with what all its points share.
 struct Press {
@@ -160,7 +155,8 @@ void share_load(Contact& a, Contact& b) {
 
 int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                        const Contact* before, int count, Contact* now) {
-  const Contact* nearest = nearest_memory(before, count, features.axis_parameter);
+  const PairMemory memory(before, count, features.axis_parameter);
+  const Contact* nearest = memory.nearest;
   const Plane plane = contact_plane(pair, features, nearest);
   const Press press(pair, plane);
   const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 && press.reaches_surface(span.s0) &&
@@ -173,10 +169,10 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
     return 1;
   }
   for (const int point : {0, 1}) {
-    const Contact* memory = memory_of_point(before, count, point);
-    begin_contact(pair, point, memory, nearest, now[point]);
+    const Contact* from = memory.of_point[point];
+    begin_contact(pair, point, from, nearest, now[point]);
     now[point].at_edge = false;
-    place(press, point == 0 ? span.s0 : span.s1, memory, now[point]);
+    place(press, point == 0 ? span.s0 : span.s1, from, now[point]);
   }
   share_load(now[0], now[1]);
   return 2;

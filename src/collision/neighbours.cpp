@@ -22,6 +22,7 @@ Neighbours::Neighbours(const Scene& scene)
       rooms_(scene.bodies.size()),
       reaches_(kMaxHands),
       near_hand_(kMaxHands) {
+  for (const Body& body : scene.bodies) boxes_.push_back(box_around(body));
   for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
   for (Reach& reach : reaches_) reach.ways.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
@@ -30,7 +31,7 @@ Neighbours::Neighbours(const Scene& scene)
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies) {
   for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], reaches_[slot]);
   if (place_those_leaving(bodies, 0.0)) list_pairs();
-  list_near_hands();
+  list_near_hands(bodies);
 }
 
 void Neighbours::measure(const HandTrack& hand, Reach& reach) {
@@ -55,7 +56,7 @@ void Neighbours::measure(const HandTrack& hand, Reach& reach) {
 void Neighbours::begin_step(const std::vector<BodyState>& bodies, double step) {
   if (!place_those_leaving(bodies, step)) return;
   list_pairs();
-  list_near_hands();
+  list_near_hands(bodies);
 }
 
 double Neighbours::reach_of(std::size_t body, const BodyState& state, double seconds) const {
@@ -68,6 +69,14 @@ bool Neighbours::Way::comes_near(const Vector3& centre, double radius) const {
   const double length_squared = along.squaredNorm(), foot = along.dot(centre - start);
   const double s = foot <= 0.0 ? 0.0 : foot >= length_squared ? 1.0 : foot / length_squared;
   return (start + s * along - centre).squaredNorm() <= (reach + radius) * (reach + radius);
+}
+
+/// By the planes of the box's faces.
+double Neighbours::Way::clearance(const BodyBox& box, const Pose& pose, const Matrix3& rotation) const {
+  const Vector3 half_along = 0.5 * along;
+  const Vector3 middle = rotation.transpose() * (start + half_along - pose.position) - box.centre;
+  const Vector3 half_length = (rotation.transpose() * half_along).cwiseAbs();
+  return (middle.cwiseAbs() - half_length - box.half).maxCoeff() - reach;
 }
 
 bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double seconds) const {
@@ -105,16 +114,19 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
   return any;
 }
 
-void Neighbours::list_near_hands() {
+void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
   for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
     const Reach& reach = reaches_[slot];
     near_hand_[slot].clear();
     if (reach.ways.empty()) continue;
     for (const int body : broad_phase_.query(reach.min, reach.max)) {
       const Room& room = rooms_[static_cast<std::size_t>(body)];
-      NearBody near{body, 0, {}};
+      const Pose& pose = bodies[static_cast<std::size_t>(body)].pose;
+      const Matrix3 rotation = pose.orientation.toRotationMatrix();
+      NearBody near{body, 0, pose, {}, {}};
       for (const Way& way : reach.ways) {
-        if (way.comes_near(room.centre, room.radius)) near.add(way.capsule);
+        if (!way.comes_near(room.centre, room.radius)) continue;
+        near.add(way.capsule, way.clearance(boxes_[static_cast<std::size_t>(body)], pose, rotation));
       }
       if (near.count > 0) near_hand_[slot].push_back(near);
     }

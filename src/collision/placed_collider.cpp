@@ -1,5 +1,7 @@
 #include "mr_hand_interaction/collision/placed_collider.h"
 
+#include <limits>
+
 namespace mrhi {
 namespace {
 
@@ -10,18 +12,24 @@ bool beside(const Capsule& capsule, const Box& box, double margin) {
   return gap.maxCoeff() > margin + capsule.radius;
 }
 
+ClosestFeatures far_away() {
+  return {std::numeric_limits<double>::infinity(), Vector3::UnitZ(), Vector3::Zero(), 0.0};
+}
+
 struct Closest {
   const Capsule& capsule;
   const MeshCollider* mesh;
   double margin;
 
-  std::optional<ClosestFeatures> operator()(const Sphere& s) const { return capsule_sphere(capsule, s); }
-  std::optional<ClosestFeatures> operator()(const Box& b) const {
-    if (beside(capsule, b, margin)) return std::nullopt;
-    return capsule_box(capsule, b);
+  ClosestFeatures operator()(const Sphere& s) const { return capsule_sphere(capsule, s); }
+  ClosestFeatures operator()(const Box& b) const {
+    return beside(capsule, b, margin) ? far_away() : capsule_box(capsule, b);
   }
-  std::optional<ClosestFeatures> operator()(const Cylinder& c) const { return capsule_cylinder(capsule, c); }
-  std::optional<ClosestFeatures> operator()(const Mesh&) const { return mesh->closest(capsule, margin); }
+  ClosestFeatures operator()(const Cylinder& c) const { return capsule_cylinder(capsule, c); }
+  ClosestFeatures operator()(const Mesh&) const {
+    const auto features = mesh->closest(capsule, margin);
+    return features ? *features : far_away();
+  }
 };
 
 }  // namespace
@@ -33,10 +41,8 @@ PlacedCollider::PlacedCollider(const PlacedShape& placed, const MeshCollider* me
       rotation_(placed.pose.orientation.toRotationMatrix()),
       position_(placed.pose.position) {}
 
-std::optional<ClosestFeatures> PlacedCollider::closest(const Capsule& capsule, double margin) const {
-  auto features = std::visit(Closest{capsule, mesh_, margin}, shape_);
-  if (features && features->distance > margin) features.reset();
-  return features;
+ClosestFeatures PlacedCollider::closest(const Capsule& capsule, double margin) const {
+  return std::visit(Closest{capsule, mesh_, margin}, shape_);
 }
 
 }  // namespace mrhi

@@ -73,5 +73,46 @@ TEST(Neighbours, list_every_capsule_that_touches_a_body_on_its_way_and_not_all) 
   EXPECT_LT(2 * listed, all);
 }
 
+TEST(Neighbours, tell_no_more_clearance_than_there_is_wherever_hand_and_body_are_in_the_frame) {
+  Random random(12);
+  int apart = 0;
+  for (int round = 0; round < 300; ++round) {
+    Body body = testing::box_body(Vector3(0.05, 0.02, 0.08), 0.1);
+    body.start = {random.in_box({0.15, 0.15, 0.15}), Quaternion(Eigen::AngleAxisd(1.0, random.direction()))};
+    const Scene scene = testing::scene_of(body);
+    const Box& box = std::get<Box>(scene.bodies[0].shapes[0].shape);
+    const std::vector<BodyState> bodies{start_state(scene.bodies[0])};
+    std::vector<HandTrack> hands(kMaxHands);
+    hands[0] = moving_hand(random);
+    Neighbours neighbours(scene);
+    neighbours.begin_frame(hands, bodies);
+    Pose pose = bodies[0].pose;
+    pose.position += 0.001 * random.direction();
+    pose.orientation = Quaternion(Eigen::AngleAxisd(0.02, random.direction())) * pose.orientation;
+    for (const NearBody& near : neighbours.near_hand(0)) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(near.count); ++i) {
+        const double told = near.clearances[i] - near.moved(pose, scene.bodies[0].bounding_radius);
+        apart += told > 0.0;
+        for (double fraction = 0.0; fraction <= 1.0; fraction += 0.125) {
+          const Capsule now = blend(hands[0].previous, hands[0].current, fraction).capsules[near.capsules[i]];
+          const Capsule local{pose.to_local(now.start), pose.to_local(now.end), now.radius};
+          ASSERT_GE(capsule_box(local, box).distance, told - 1e-12) << round << " " << fraction;
+        }
+      }
+    }
+  }
+  EXPECT_GT(apart, 100);
+}
+
+TEST(BodyBox, holds_all_shapes_of_a_body_and_no_more) {
+  Body body = testing::box_body(Vector3(0.02, 0.04, 0.06), 0.1);
+  const Quaternion quarter_about_x(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitX()));
+  body.shapes.push_back({Cylinder{0.01, 0.05}, {Vector3(0.1, 0, 0), quarter_about_x}});
+  body.shapes.push_back({Sphere{0.01}, {Vector3(0, 0, 0.05), quarter_about_x}});
+  const BodyBox box = box_around(body);
+  EXPECT_LE((box.centre - box.half - Vector3(-0.01, -0.05, -0.03)).norm(), 1e-15);
+  EXPECT_LE((box.centre + box.half - Vector3(0.11, 0.05, 0.06)).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "mr_hand_interaction/collision/body_box.h"
 #include "mr_hand_interaction/collision/broad_phase.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
@@ -15,9 +16,20 @@ namespace mrhi {
 struct NearBody {
   int body;
   int count = 0;
+  Pose pose;  ///< of the body as they were listed
   std::array<std::uint8_t, kCapsules> capsules;
+  /// By which each stays off the body in this frame, were it to stay at that pose; < 0 may touch it [m].
+  std::array<double, kCapsules> clearances;
 
-  void add(int capsule) { capsules[static_cast<std::size_t>(count++)] = static_cast<std::uint8_t>(capsule); }
+  void add(int capsule, double clearance) {
+    capsules[static_cast<std::size_t>(count)] = static_cast<std::uint8_t>(capsule);
+    clearances[static_cast<std::size_t>(count++)] = clearance;
+  }
+  /// At most how far a point of the body, within `radius` of its frame's origin, is from where it was [m].
+  double moved(const Pose& now, double radius) const {
+    return (now.position - pose.position).norm() +
+           2.0 * radius * (now.orientation.coeffs() - pose.orientation.coeffs()).norm();
+  }
   const std::uint8_t* begin() const { return capsules.data(); }
   const std::uint8_t* end() const { return capsules.data() + count; }
 };
@@ -58,6 +70,7 @@ class Neighbours {
   /// A capsule's axis half-way through the frame, and how far from it the capsule reaches in the frame.
   struct Way {
     bool comes_near(const Vector3& centre, double radius) const;
+    double clearance(const BodyBox& box, const Pose& pose, const Matrix3& rotation) const;
 
     int capsule;
     Vector3 start, along;
@@ -72,11 +85,12 @@ class Neighbours {
   /// followed.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;
   bool place_those_leaving(const std::vector<BodyState>& bodies, double step);
-  void list_near_hands();
+  void list_near_hands(const std::vector<BodyState>& bodies);
   void list_pairs();
 
   const Scene& scene_;
   BroadPhase broad_phase_;
+  std::vector<BodyBox> boxes_;
   std::vector<Room> rooms_;
   std::vector<Reach> reaches_;
   std::vector<std::vector<NearBody>> near_hand_;

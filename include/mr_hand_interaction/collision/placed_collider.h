@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/collision/mesh_collision.h"
 
@@ -13,8 +11,10 @@ class PlacedCollider {
   /// Keeps references; `mesh` is null unless the shape is one.
   PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh);
 
-  /// Closest features, if nearer than `margin` [m]. Capsule and features in the shape's frame.
-  std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
+  /// Closest features, in whose place anything of a distance beyond `margin` may stand where nothing is
+  /// nearer than that [m]. Capsule and features in the shape's frame.
+  ClosestFeatures closest(const Capsule& capsule, double margin) const;
+  bool has_bodys_frame() const { return has_bodys_frame_; }
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
     return contact_span(capsule, shape_, features);
   }
