@@ -16,9 +16,12 @@ def test_cases(file):
     """Results of a file as (name, outcome, what was said of it)."""
     suite = os.path.splitext(os.path.basename(file))[0]
     try:
-        cases = list(ElementTree.parse(file).getroot().iter("testcase"))
+        root = ElementTree.parse(file).getroot()
     except ElementTree.ParseError as error:
         return [(suite, "failed", f"unreadable result: {error}")]
+    cases = list(root.iter("testcase"))
+    if not cases and any(int(part.get("errors") or 0) for part in root.iter("testsuite")):
+        return [(suite, "failed", "an error before its first test")]
     named = [(f"{case.get('classname') or suite}.{case.get('name')}", *outcome(case)) for case in cases]
     if suite.startswith("rostest-"):
         # rostest's account of tests that have results of their own; it matters where they have none, after a

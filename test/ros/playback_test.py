@@ -79,7 +79,7 @@ class PlaybackTest(unittest.TestCase):
         with Launch("record.launch", "bag:=" + cls.bag):
             wait_until(lambda: subscribed("/rosbag_record", DEVICE), "rosbag record")
             with Launch("leap.launch", "scene:=cube", "rviz:=false", "mount:=" + MOUNT):
-                wait_until(lambda: subscribed("/interaction_node", "/hand_frame"), "the pipeline")
+                wait_until(lambda: subscribed("/interaction_node", DEVICE), "the pipeline")
                 hand = subprocess.Popen(["rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=nudge",
                                          "_loop:=false"])
                 wait_until(cls.pushed, "the cube pushed")
