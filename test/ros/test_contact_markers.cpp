@@ -1,0 +1,49 @@
+#include "shown_markers.h"
+
+namespace mrhi {
+namespace {
+
+TEST(ContactMarkers, arrows_push_as_the_force_does_behind_the_finger_and_are_longer_for_more) {
+  Shown shown;
+  Contact contact;
+  contact.point = {0.1, 0.2, 0.3};
+  contact.radius = 0.01;
+  double before = 0.0;
+  for (const double newtons : {0.2, 1.0, 5.0, 100.0}) {
+    contact.force = {0, 0, -newtons};
+    shown.result.contacts = {contact};
+    shown.update();
+    const Marker& arrow = shown.first("forces");
+    ASSERT_EQ(arrow.points.size(), 2u);
+    EXPECT_GT(arrow.points[1].z, contact.point.z() + 2.0 * contact.radius);
+    const double length = arrow.points[0].z - arrow.points[1].z;
+    EXPECT_GT(length, before);
+    EXPECT_LT(length, 0.1);
+    before = length;
+  }
+}
+
+TEST(ContactMarkers, sticking_slipping_and_striking_differ_in_colour) {
+  Shown shown;
+  Contact contact;
+  contact.radius = 0.01;
+  const auto ring = [&] {
+    shown.result.contacts = {contact};
+    shown.update();
+    EXPECT_EQ(shown.first("contacts").points.size(), 1u);
+    const auto c = shown.first("friction").colors.at(0);
+    return std::array<float, 3>{c.r, c.g, c.b};
+  };
+  const auto sticking = ring();
+  contact.friction = Friction::slipping;
+  const auto slipping = ring();
+  contact.impulse = Vector3::UnitX();
+  const auto striking = ring();
+  EXPECT_NE(sticking, slipping);
+  EXPECT_NE(slipping, striking);
+  EXPECT_GT(slipping[0] + slipping[1],
+            sticking[0] + sticking[1] + 0.5f);  // also where hues are not told apart
+}
+
+}  // namespace
+}  // namespace mrhi
