@@ -1,0 +1,98 @@
+#include <algorithm>
+
+#include "frame_report.h"
+#include "mr_hand_interaction/tracking/tracker.h"
+#include "simulation_impl.h"
+
+namespace mrhi {
+namespace {
+
+/// A step back in time of more than this may be a stream that begins anew; less is a frame out of order.
+constexpr Nanoseconds kRestart = 500'000'000;
+constexpr int kRestartFrames = 3;
+/// A step may be this much longer than asked for, so that a frame of one step does not become two by
+/// rounding.
+constexpr Nanoseconds kStepSlack = 1000;
+/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more.
+constexpr Nanoseconds kQuietFrame = 20'000'000;
+/// A longer silence is not simulated: bodies wait for the next frame.
+constexpr Nanoseconds kLongestSilence = 60'000'000'000;
+
+}  // namespace
+
+/// Refuses a stamp that does not increase, unless it is the third of a stream that goes on from an earlier
+/// time.
+Rejection Simulation::Impl::judge(Nanoseconds stamp) {
+  if (!state.started || stamp > state.time) {
+    state.restart_frames = 0;
+    return Rejection::none;
+  }
+  if (state.time - stamp <= kRestart) return Rejection::stamp_not_increasing;
+  const bool follows =
+      state.restart_frames > 0 && stamp > state.restart_stamp && stamp - state.restart_stamp < kRestart;
+  state.restart_frames = follows ? state.restart_frames + 1 : 1;
+  state.restart_stamp = stamp;
+  if (state.restart_frames < kRestartFrames) return Rejection::stamp_not_increasing;
+  reset();
+  result.restarted = true;
+  return Rejection::none;
+}
+
+void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
+  frame_from = from;
+  frame_to = to;
+  steps_done = 0;
+  begin_hands(to_seconds(to - from));
+  steps = steps_needed(to - from);
+}
+
+int Simulation::Impl::steps_needed(Nanoseconds frame) {
+  if (frame <= 0) return 0;
+  if (frame <= kQuietFrame) {
+    neighbours.begin_step(state.bodies, to_seconds(frame));
+    if (quiet(to_seconds(frame))) return 1;
+  }
+  return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
+}
+
+void Simulation::Impl::begin_hands(double seconds) {
+  hands.clear();
+  for (int slot = 0; slot < kMaxHands; ++slot) {
+    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
+    if (track.active && !track.appeared) hands.emplace_back(track, slot, seconds);
+  }
+  neighbours.begin_frame(state.hands, state.bodies);
+}
+
+/// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
+/// frame.
+void Simulation::Impl::silence(Nanoseconds until) {
+  if (until - state.time > kLongestSilence) state.time = until;
+  for (HandTrack& track : state.hands) {
+    track.held = track.active;
+    track.previous = track.current;
+    track.appeared = track.emerged = false;
+  }
+  while (state.time + step_length <= until) {
+    lose_hands(state.time);
+    begin_hands(0.0);
+    advance_step(0.0, to_seconds(step_length));
+    state.time += step_length;
+  }
+}
+
+void Simulation::Impl::lose_hands(Nanoseconds now) {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    const bool unseen = to_seconds(now - track.last_seen) > configuration.tracking.hold_time;
+    if (track.active && unseen) end_interactions(slot, now, state, result.events);
+  }
+  lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
+}
+
+void Simulation::Impl::finish(Nanoseconds stamp) {
+  result.stamp = stamp;
+  report_frame({scene, hands, neighbours, finder, renderer, strikes, state}, result);
+}
+
+}  // namespace mrhi

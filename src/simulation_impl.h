@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "mr_hand_interaction/collision/body_contact_finder.h"
+#include "mr_hand_interaction/collision/contact_finder.h"
+#include "mr_hand_interaction/collision/neighbours.h"
+#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/simulation.h"
+#include "sleeping.h"
+
+namespace mrhi {
+
+/// Frames come in and are divided into steps (simulation_frames.cpp); a step runs through the stages
+/// (simulation_step.cpp).
+struct Simulation::Impl {
+  Impl(Scene scene_in, const Configuration& configuration_in);
+
+  void reset();
+  void clear_result();
+
+  // Frames.
+  Rejection judge(Nanoseconds stamp);
+  void plan(Nanoseconds from, Nanoseconds to);
+  int steps_needed(Nanoseconds frame);
+  void begin_hands(double seconds);
+  void silence(Nanoseconds until);
+  void lose_hands(Nanoseconds now);
+  void finish(Nanoseconds stamp);
+
+  // A step.
+  bool quiet(double seconds) const;
+  void advance_step(double fraction, double step);
+  void keep_in_bounds();
+
+  const Scene scene;
+  const Configuration configuration;
+  const Vector3 gravity;
+  const Nanoseconds step_length;
+  const std::unique_ptr<ContactModel> model;
+  const SceneGeometry geometry;
+  Neighbours neighbours;
+  ContactFinder finder;
+  BodyContactFinder body_finder;
+  Sleeping sleeping;
+  HandRenderer renderer;
+
+  SimulationState state;
+  FrameResult result;
+
+  // The way from the last frame to this one.
+  Nanoseconds frame_from = 0, frame_to = 0;
+  int steps = 0, steps_done = 0;
+
+  std::vector<HandMotion> hands;  // those that can touch
+  std::vector<Contact> strikes;
+  StepChanges changes;
+  std::function<void(Stage)> ended;
+  void end_stage(Stage stage) const {
+    if (ended) ended(stage);
+  }
+};
+
+}  // namespace mrhi

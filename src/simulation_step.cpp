@@ -1,0 +1,61 @@
+#include "frame_report.h"
+#include "mr_hand_interaction/integration/free_flight.h"
+#include "simulation_impl.h"
+
+namespace mrhi {
+
+/// True if nothing that is awake may come near a hand or a body within `seconds`.
+bool Simulation::Impl::quiet(double seconds) const {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
+      const auto b = static_cast<std::size_t>(near.body);
+      if (neighbours.may_meet_hand(b, state.bodies[b], seconds)) return false;
+    }
+  }
+  for (const auto& [first, second] : neighbours.pairs()) {
+    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+    const bool asleep = state.asleep[b] && (state.asleep[a] || scene.bodies[a].fixed);
+    if (!asleep && neighbours.may_meet(a, b, state.bodies, seconds)) return false;
+  }
+  return true;
+}
+
+/// One step, `fraction` of the way into the frame.
+void Simulation::Impl::advance_step(double fraction, double step) {
+  for (HandMotion& hand : hands) hand.move_to(fraction);
+  neighbours.begin_step(state.bodies, step);
+  sleeping.wake(neighbours, step, state);
+  end_stage(Stage::neighbours);
+  finder.find(hands, neighbours, state.bodies, step, state.contacts);
+  end_stage(Stage::hand_contacts);
+  body_finder.find(neighbours, state.bodies, state.asleep, step, state.body_contacts);
+  end_stage(Stage::body_contacts);
+  changes.reset(scene.bodies.size());
+  ContactStep contact_step{scene, gravity, step, state.contacts, state.body_contacts, state.bodies, changes};
+  model->respond(contact_step);
+  note_strikes(state.contacts, strikes);
+  end_stage(Stage::response);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    if (state.asleep[b]) continue;
+    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
+  }
+  changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
+  sleeping.settle(neighbours, step, state);
+  keep_in_bounds();
+  end_stage(Stage::flight);
+}
+
+void Simulation::Impl::keep_in_bounds() {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.fixed) continue;
+    const Vector3& p = state.bodies[b].pose.position;
+    if ((p.array() >= scene.bounds.min.array()).all() && (p.array() <= scene.bounds.max.array()).all())
+      continue;
+    state.bodies[b] = start_state(body);
+    forget_contacts(b, state);
+    result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
+  }
+}
+
+}  // namespace mrhi
