@@ -7,10 +7,11 @@ import unittest
 import rospy
 import rostest
 
-from mr_hand_interaction.msg import Hand, HandFrame, HapticsArray, Phalanx, PhalanxHaptics
+from mr_hand_interaction.msg import Hand, HandFrame, HapticsArray, ObjectStateArray, Phalanx, PhalanxHaptics
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pointing_hand import PERIOD, SPEED, frame, hand, push_tips  # noqa: E402
+from standing_clock import StandingClock  # noqa: E402
 from waiting import wait_until  # noqa: E402
 
 STEP = 0.002  # s, of the node that tells by step
@@ -20,19 +21,27 @@ MASS = 0.1  # kg, of the cube
 class HapticsTest(unittest.TestCase):
     def test_a_glove_is_told_of_the_blow_by_frame_and_by_step(self):
         rospy.init_node("haptics_test")
-        frames, steps, done = [], [], {}
+        frames, steps, shown = [], [], {}
         by_frame = rospy.Subscriber("haptics", HapticsArray, frames.append)
         by_step = rospy.Subscriber("by_step/haptics", HapticsArray, steps.append)
-        rendered = [rospy.Subscriber(topic, HandFrame, lambda m, topic=topic: done.update({topic: m.header.stamp}))
-                    for topic in ("rendered_hands", "by_step/rendered_hands")]
+        objects = [rospy.Subscriber(topic, ObjectStateArray, lambda m, topic=topic: shown.update({topic: m.header.stamp}))
+                   for topic in ("objects", "by_step/objects")]
         hands = rospy.Publisher("hand_frame", HandFrame, queue_size=10)
         wait_until(lambda: hands.get_num_connections() == 2, "the two nodes")
-        wait_until(lambda: all(s.get_num_connections() > 0 for s in [by_frame, by_step] + rendered), "publishers")
-        begin = stamp = rospy.Time.now()
+        wait_until(lambda: all(s.get_num_connections() > 0 for s in [by_frame, by_step] + objects), "publishers")
+        clock = StandingClock(lambda: min(shown.values()) if len(shown) == 2 else rospy.Time())
+        clock.keep_up()
+
+        def greeted():
+            hands.publish(frame(clock.next_stamp(PERIOD)))
+            return frames and steps
+        wait_until(greeted, "all that is published")
+        clock.keep_up()
+        begin = clock.stamp
         for tip in push_tips():
-            stamp += rospy.Duration(PERIOD)
+            stamp = clock.next_stamp(PERIOD)
             hands.publish(frame(stamp, hand(tip)))
-            wait_until(lambda: set(done.values()) == {stamp} and len(done) == 2, "the frame taken")
+            clock.keep_up()
         wait_until(lambda: frames[-1].header.stamp >= stamp and steps[-1].header.stamp >= stamp, "haptics")
         count = int(round((stamp - begin).to_sec() / PERIOD))
         frames = [m for m in frames if m.hands and m.header.stamp <= stamp]

@@ -3,7 +3,7 @@ import time
 
 import rospy
 
-TIMEOUT = 30.0  # s; far beyond what is needed, so that only a real failure meets it
+TIMEOUT = 60.0  # s; far beyond what is needed, so that only a real failure meets it
 
 
 def wait_until(condition, what, timeout=TIMEOUT):
