@@ -40,8 +40,13 @@ class SyntheticHandTest(unittest.TestCase):
         cls.resets = 0
         cls.service = rospy.Service("reset_scene", Trigger, cls.reset)
         cls.listener = Listener()
+        # Not before there is one who listens: it does not wait for one for long.
+        node = subprocess.Popen(["rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=tap",
+                                 "_rate:=%g" % RATE, "_side:=left", "_loop:=true", "_reset:=reset_scene"])
+        cls.addClassCleanup(node.wait)
+        cls.addClassCleanup(node.terminate)
         # One run of the tap and its pause take under six seconds.
-        cls.looped = cls.listener.wait_for(lambda it: cls.resets > 0 and len(it.frames) > 8 * RATE, 30.0)
+        cls.looped = cls.listener.wait_for(lambda it: cls.resets > 0 and len(it.frames) > 8 * RATE, 60.0)
         header = cls.listener.headers[0]
         classes = genpy.dynamic.generate_dynamic(header["type"], header["message_definition"])
         cls.human = classes[header["type"]]
@@ -87,7 +92,7 @@ class SyntheticHandTest(unittest.TestCase):
     def refusal(self, *arguments):
         command = ["rosrun", "mr_hand_interaction", "synthetic_hand_node", "__name:=refused", *arguments]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              universal_newlines=True, timeout=30)
+                              universal_newlines=True, timeout=120)
         self.assertEqual(done.returncode, 1)
         return done.stdout
 
