@@ -88,35 +88,43 @@ def write_config(options, focus, file):
     file.flush()
 
 
-def drawn_picture(size, output, deadline):
-    """Whether rviz has drawn the scene and no longer changes it; its picture, at half the screen's size, is then in
-    the file."""
+def has_scene(file):
+    return colours_of(file) >= COLOURS
+
+
+def drawn_picture(rviz, size, output, complete, deadline):
+    """Whether rviz has drawn all that makes the picture complete and no longer changes it; its picture, at half the
+    screen's size, is then in the file."""
     with tempfile.TemporaryDirectory() as folder:
         before, now = os.path.join(folder, "before.png"), os.path.join(folder, "now.png")
         grab(before)
-        while time.monotonic() < deadline:
+        while time.monotonic() < deadline and rviz.poll() is None:
             time.sleep(0.5)
             grab(now)
             same = subprocess.run(["compare", "-metric", "AE", before, now, "null:"], stderr=subprocess.DEVNULL,
                                   check=False).returncode == 0
-            if same and colours_of(now) >= COLOURS:
+            if same and complete(now):
                 subprocess.run(["convert", now, "-resize", size, "-strip", output], check=True)
                 return True
             os.replace(now, before)
     return False
 
 
-def draw(options, focus, deadline):
-    """Starts rviz on the scene as it is, and ends it when its picture is taken."""
+def draw(options, focus, deadline, complete=has_scene):
+    """Starts rviz on the scene as it is, and ends it when its picture is taken. Once in many times rviz crashes as it
+    starts: then once more."""
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
         write_config(options, focus, config)
-        rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
-                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        try:
-            return drawn_picture(options.size, options.output, deadline)
-        finally:
-            rviz.terminate()
-            rviz.wait()
+        while time.monotonic() < deadline:
+            rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                if drawn_picture(rviz, options.size, options.output, complete, deadline):
+                    return True
+            finally:
+                rviz.terminate()
+                rviz.wait()
+    return False
 
 
 def stop_at_moment(demo, options, deadline):
