@@ -12,6 +12,9 @@ namespace {
 
 using Status = mr_hand_interaction::TrainingStatus;
 
+/// A person whom the machine has kept waiting goes on from where he was [periods].
+constexpr double kLongestMove = 2.0;
+
 std::string text_from(const ros::NodeHandle& parameters, const char* name, const std::string& otherwise) {
   std::string text = otherwise;
   read_parameter(parameters, name, "a string", text);
@@ -79,23 +82,30 @@ bool OperatorPublisher::at_work() const {
 }
 
 void OperatorPublisher::tick() {
+  const ros::Time now = ros::Time::now();
+  const double since = std::clamp((now - ticked_).toSec(), 0.0, kLongestMove / rate_);
+  ticked_ = now;
   const bool other = person_ && trial_ != status_.trial;
   if (!at_work() || other) {
     person_.reset();
     hands_.clear();
     object_.name.clear();
   } else if (status_.phase == Status::RUNNING && object_.name == status_.object) {
-    if (!person_) begin();
+    if (person_) {
+      time_ += since;
+    } else {
+      begin();
+    }
     move();
   }
-  JointsFrame frame{from_ros_time(ros::Time::now()), hands_};
+  JointsFrame frame{from_ros_time(now), hands_};
   noise_.apply(frame);
   publisher_.publish(frame);
 }
 
 void OperatorPublisher::begin() {
   trial_ = status_.trial;
-  moves_ = 0;
+  time_ = 0.0;
   const auto named = [this](const TaskObject& object) { return object.name == object_.name; };
   const auto object = std::find_if(task_.objects.begin(), task_.objects.end(), named);
   if (object == task_.objects.end())
@@ -108,7 +118,7 @@ void OperatorPublisher::move() {
   const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
   const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
   const Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
-  const HandPlace hand = person_->move(static_cast<double>(moves_++) / rate_, sight);
+  const HandPlace hand = person_->move(time_, sight);
   hands_ = {
       hand_joints(human_hand(), Side::right, default_device_mount().inverse() * hand.wrist, hand.posture)};
   hands_.front().id = trial_;

@@ -125,6 +125,7 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
     tracking_losses_ = 0;
     put_back_ = false;
     if (session_.phase() != SessionPhase::running) note_end();
+    if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
     return;
   }
 }

@@ -39,7 +39,8 @@ class OperatorPublisher {
   mr_hand_interaction::ObjectState object_;  ///< of the trial; without a name: not seen yet
   std::optional<SimulatedOperator> person_;
   std::uint32_t trial_ = 0;
-  std::int64_t moves_ = 0;  ///< since the trial's begin
+  ros::Time ticked_;
+  double time_ = 0.0;  ///< that the person has moved since the trial's begin, by the frames' stamps [s]
   std::vector<HandJoints> hands_;
 
   LeapHumanPublisher publisher_;
