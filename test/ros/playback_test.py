@@ -24,6 +24,7 @@ MOUNT = "0.01 0 0 0.7071067811865476 0 0 0.7071067811865476"  # not the default:
 PUSHED = 0.01  # m
 TOLERANCE = 1e-9  # m: positions of two runs with the same input; they should be the same to the bit
 EQUAL_FRAMES = 100  # at least, or the comparison has compared too little
+RUNS = 5  # where the machine keeps the nodes waiting they lose frames, and what comes of another input is another thing
 
 
 def subscribed(node, topic):
@@ -42,7 +43,10 @@ class PlaybackTest(unittest.TestCase):
                            rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
                            rospy.Subscriber("interaction_events", InteractionEvent, cls.take_event),
                            rospy.Subscriber("/clock", Clock, cls.take_clock)]
-        cls.record()
+        for _ in range(RUNS):
+            cls.record()
+            if cls.is_whole(cls.recorded("/objects")):
+                break
 
     @classmethod
     def tearDownClass(cls):
@@ -76,6 +80,7 @@ class PlaybackTest(unittest.TestCase):
 
     @classmethod
     def record(cls):
+        cls.clear()
         with Launch("record.launch", "bag:=" + cls.bag):
             wait_until(lambda: subscribed("/rosbag_record", DEVICE), "rosbag record")
             with Launch("leap.launch", "scene:=cube", "rviz:=false", "mount:=" + MOUNT):
@@ -86,33 +91,46 @@ class PlaybackTest(unittest.TestCase):
                 wait_until(lambda: InteractionEvent.HAND_LOST in cls.kinds, "the end of the run")
                 hand.wait(60)
         wait_until(lambda: os.path.exists(cls.bag), "the bag")
-        cls.clear()
+
+    @classmethod
+    def recorded(cls, topic):
+        with rosbag.Bag(cls.bag) as bag:
+            return {message.header.stamp: message for _, message, _ in bag.read_messages([topic])}
+
+    @classmethod
+    def is_whole(cls, objects):
+        """Whether the simulation took every frame of the device from the first to the last that these show. As the nodes
+        find each other, the first few may be lost; nothing hangs on them."""
+        sent = cls.recorded(DEVICE)
+        taken = [stamp for stamp in sent if stamp in objects]
+        return bool(taken) and all(stamp in objects for stamp in sent if min(taken) <= stamp <= max(objects))
 
     def play(self, *arguments):
         self.clear()
         return Launch("playback.launch", "bag:=" + self.bag, "scene:=cube", "rviz:=false", *arguments)
 
-    def recorded(self, topic):
-        with rosbag.Bag(self.bag) as bag:
-            return {message.header.stamp: message for _, message, _ in bag.read_messages([topic])}
+    def difference(self):
+        """What is not as it was recorded; empty: nothing."""
+        recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/objects")
+        both = set(self.frames) & set(self.objects) & set(recorded_frames) & set(recorded_objects)
+        for stamp in sorted(both):
+            if str(self.frames[stamp].hands) != str(recorded_frames[stamp].hands):
+                return "other hands at %s" % stamp
+            now, then = self.objects[stamp].pose.position, recorded_objects[stamp].objects[0].pose.position
+            if max(abs(now.x - then.x), abs(now.y - then.y), abs(now.z - then.z)) > TOLERANCE:
+                return "the cube is elsewhere at %s" % stamp
+        return "" if len(both) > EQUAL_FRAMES else "only %d frames are in both" % len(both)
 
     def test_playing_gives_what_was_recorded(self):
-        with self.play():
-            wait_until(self.pushed, "the cube pushed")
-            wait_until(lambda: InteractionEvent.HAND_LOST in self.kinds, "the end of the run")
-        self.assertTrue(rospy.get_param("/use_sim_time"))
-        recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/objects")
-        compared = 0
-        for stamp, frame in self.frames.items():
-            if stamp not in recorded_frames or stamp not in recorded_objects or stamp not in self.objects:
-                continue
-            self.assertEqual(str(frame.hands), str(recorded_frames[stamp].hands))
-            for axis in "xyz":
-                now, then = (getattr(thing.pose.position, axis)
-                             for thing in (self.objects[stamp], recorded_objects[stamp].objects[0]))
-                self.assertAlmostEqual(now, then, delta=TOLERANCE)
-            compared += 1
-        self.assertGreater(compared, EQUAL_FRAMES)
+        for _ in range(RUNS):
+            with self.play():
+                wait_until(lambda: InteractionEvent.HAND_LOST in self.kinds, "the end of the run")
+            self.assertTrue(rospy.get_param("/use_sim_time"))
+            difference = self.difference()
+            if not difference or self.is_whole(self.objects):
+                break
+        self.assertEqual(difference, "")
+        self.assertTrue(self.pushed())
 
     def test_a_looping_bag_begins_anew_each_time(self):
         with self.play("loop:=true", "rate:=2"):
