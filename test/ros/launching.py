@@ -7,7 +7,7 @@ class Launch:
     """One of the package's launch files, until the end of the block."""
 
     def __init__(self, file, *arguments):
-        self.command = ["roslaunch", "--sigint-timeout", "5", "mr_hand_interaction", file] + list(arguments)
+        self.command = ["roslaunch", "--sigint-timeout", "30", "mr_hand_interaction", file] + list(arguments)
 
     def __enter__(self):
         self.process = subprocess.Popen(self.command)
@@ -15,4 +15,4 @@ class Launch:
 
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
-        self.process.wait(60)
+        self.process.wait(120)

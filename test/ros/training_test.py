@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 from xmlrpc.client import ServerProxy
 
@@ -20,7 +21,7 @@ import rostest
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
 
-from mr_hand_interaction.msg import ObjectStateArray, TrainingStatus
+from mr_hand_interaction.msg import HandFrame, ObjectStateArray, TrainingStatus
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -29,6 +30,8 @@ from waiting import wait_until  # noqa: E402
 
 SCRIPTS = os.path.join(HERE, "..", "..", "scripts")
 RUN = 150.0  # s; a run of the scripted hand lasts 9, and the first is without a trial
+RUNS = 3  # where the machine keeps the nodes waiting they lose frames, and the hand what it cannot follow with
+LOST = 0.015  # s between two stamps: of two frames at 115 Hz there are 0.0087
 
 
 def trials(folder):
@@ -46,6 +49,7 @@ class TrainingTest(unittest.TestCase):
         rospy.init_node("training_test")
         cls.subscribers = [rospy.Subscriber("training/status", TrainingStatus, cls.take_status),
                            rospy.Subscriber("training/markers", MarkerArray, cls.take_markers),
+                           rospy.Subscriber("rendered_hands", HandFrame, cls.take_rendered),
                            rospy.Subscriber("objects", ObjectStateArray, cls.take_objects)]
 
     def setUp(self):
@@ -59,6 +63,7 @@ class TrainingTest(unittest.TestCase):
     @classmethod
     def clear(cls):
         cls.status, cls.seen, cls.layers, cls.objects = None, set(), set(), []
+        cls.rendered, cls.longest_break = None, 0.0
 
     @classmethod
     def take_status(cls, message):
@@ -70,22 +75,35 @@ class TrainingTest(unittest.TestCase):
         cls.layers.update(marker.ns for marker in message.markers)
 
     @classmethod
+    def take_rendered(cls, message):
+        before, cls.rendered = cls.rendered, message.header.stamp
+        if before is not None:
+            cls.longest_break = max(cls.longest_break, (cls.rendered - before).to_sec())
+
+    @classmethod
     def take_objects(cls, message):
         cls.objects = [thing.name for thing in message.objects]
 
     def training(self, *arguments):
         return Launch("training.launch", "participant:=P01", "rviz:=false", "folder:=" + self.folder, *arguments)
 
-    def test_scripted_hand_completes_a_trial_and_the_session_can_be_analysed(self):
+    def scripted_trial(self):
         with self.training("hands:=demo", "task:=" + os.path.join(HERE, "training_carry.yaml")):
             wait_until(lambda: self.status and self.status.result, "the end of a trial", RUN)
-            self.assertEqual(self.status.result, "completed")
             self.assertEqual(self.status.phase, TrainingStatus.FINISHED)
             wait_until(lambda: glob.glob(self.folder + "/hands_*.bag*"), "the bag")
+        return trials(self.folder)
+
+    def test_scripted_hand_completes_a_trial_and_the_session_can_be_analysed(self):
+        for run in range(RUNS):
+            self.clear()
+            self.folder = os.path.join(self.parent, "session%d" % run)
+            (row,) = self.scripted_trial()
+            if (row["result"], row["attempts"], row["drops"]) == ("completed", "1", "0") or self.longest_break < LOST:
+                break
         for place in (1, 2, 3):
             self.assertIn((TrainingStatus.RUNNING, TrainingStatus.MAINTENANCE, place, True), self.seen)
         self.assertLessEqual({"target", "places", "path", "instructions", "result"}, self.layers)
-        (row,) = trials(self.folder)
         self.assertEqual((row["object"], row["result"], row["drops"]), ("cube", "completed", "0"))
         self.assertEqual(row["attempts"], "1")
         # From the grasp on the hand carries the cube 8 cm up, and turns it.
@@ -120,7 +138,7 @@ class TrainingTest(unittest.TestCase):
 
     def call(self, name, *values):
         kind = SetBool if values else Trigger
-        rospy.wait_for_service("training_node/" + name, 30.0)
+        rospy.wait_for_service("training_node/" + name, 60.0)
         return rospy.ServiceProxy("training_node/" + name, kind)(*values)
 
     def begin(self):
@@ -136,7 +154,7 @@ class TrainingTest(unittest.TestCase):
             self.wait_for(TrainingStatus.READY)
             self.begin()
             self.assertFalse(self.call("next").success, "a trial is running")
-            self.assertEqual(self.objects, [self.status.object])
+            wait_until(lambda: self.objects == [self.status.object], "its object alone")
             self.assertTrue(self.call("pause", True).success)
             self.wait_for(TrainingStatus.PAUSED)
             elapsed = self.status.elapsed
@@ -162,12 +180,16 @@ class TrainingTest(unittest.TestCase):
             ours, theirs = pty.openpty()
             keys = subprocess.Popen([sys.executable, os.path.join(SCRIPTS, "training_keys")], stdin=theirs,
                                     stdout=subprocess.PIPE)
-            self.assertIn(b"n: next", keys.stdout.readline())
+            said = []
+            listener = threading.Thread(target=lambda: [said.append(line) for line in keys.stdout], daemon=True)
+            listener.start()
+            wait_until(lambda: any(b"n: next" in line for line in said), "the keys")
             press = functools.partial(os.write, ours)
             press(b"n")
             wait_until(lambda: self.status.elapsed > 0.0, "the trial that n begins")
             press(b"p")
-            self.wait_for(TrainingStatus.PAUSED)
+            # What p does next hangs on what the keys have been told of.
+            wait_until(lambda: any(b": Pause" in line for line in said), "the pause on the keys' screen")
             press(b"p")
             self.wait_for(TrainingStatus.RUNNING)
             press(b"r")
@@ -176,10 +198,11 @@ class TrainingTest(unittest.TestCase):
             wait_until(lambda: self.status.trial == 2, "the next trial")
             press(b"sss?")  # typed ahead; the last s is refused
             questions = b"ask_ratings " + self.folder.encode()
-            self.assertTrue(any(questions in line for line in keys.stdout), "it ended without a word of the questions")
+            wait_until(lambda: any(questions in line for line in said), "a word of the questions")
             press(b"q")
             self.assertEqual(keys.wait(60), 0)
-            self.assertEqual(self.status.phase, TrainingStatus.FINISHED)
+            self.wait_for(TrainingStatus.FINISHED)
+            listener.join()
             keys.stdout.close()
             os.close(ours)
             os.close(theirs)
@@ -212,7 +235,7 @@ class TrainingTest(unittest.TestCase):
         command = roslib.packages.find_node("mr_hand_interaction", "training_node") + [
             "_participant:=P02", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
             "_folder:=" + self.folder, "__name:=refused"]
-        answer = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+        answer = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"participant", answer.stdout)
         self.assertIn(b"'P02'", answer.stdout)
