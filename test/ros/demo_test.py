@@ -16,7 +16,7 @@ from waiting import wait_until  # noqa: E402
 START = (0.0, 0.0, 0.22)  # of the cube's centre [m]
 CARRIED = 0.04  # m: half of the way that the hand carries it
 NEAR_START = 0.005  # m
-TIMEOUT = 200.0  # s; a run lasts 9, and on a slow machine the hand may lose the cube with the frames that the nodes lose
+TIMEOUT = 200.0  # s; a run lasts 9; where the nodes lose frames on a slow machine, the hand may lose the cube
 
 
 class Run:

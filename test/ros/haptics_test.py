@@ -24,7 +24,7 @@ class HapticsTest(unittest.TestCase):
         frames, steps, shown = [], [], {}
         by_frame = rospy.Subscriber("haptics", HapticsArray, frames.append)
         by_step = rospy.Subscriber("by_step/haptics", HapticsArray, steps.append)
-        objects = [rospy.Subscriber(topic, ObjectStateArray, lambda m, topic=topic: shown.update({topic: m.header.stamp}))
+        objects = [rospy.Subscriber(topic, ObjectStateArray, lambda m, of=topic: shown.update({of: m.header.stamp}))
                    for topic in ("objects", "by_step/objects")]
         hands = rospy.Publisher("hand_frame", HandFrame, queue_size=10)
         wait_until(lambda: hands.get_num_connections() == 2, "the two nodes")

@@ -194,8 +194,8 @@ class LiveChangesTest(unittest.TestCase):
 
     def test_who_comes_late_sees_everything(self):
         self.assertTrue(self.spawn_box("box").success)
-        # All subscribers of a topic in this process share one connection: it takes an end of it for a new one. As no time
-        # passes, nothing is repeated.
+        # All subscribers of a topic in this process share one connection: it takes an end of it for a new one. As no
+        # time passes, nothing is repeated.
         self.viewer.subscriber.unregister()
         type(self).viewer = Viewer()
         wait_until(lambda: self.viewer.objects() == 2, "a picture of both")

@@ -99,8 +99,8 @@ class PlaybackTest(unittest.TestCase):
 
     @classmethod
     def is_whole(cls, objects):
-        """Whether the simulation took every frame of the device from the first to the last that these show. As the nodes
-        find each other, the first few may be lost; nothing hangs on them."""
+        """Whether the simulation took every frame of the device from the first to the last that these show. As the
+        nodes find each other, the first few may be lost; nothing hangs on them."""
         sent = cls.recorded(DEVICE)
         taken = [stamp for stamp in sent if stamp in objects]
         return bool(taken) and all(stamp in objects for stamp in sent if min(taken) <= stamp <= max(objects))

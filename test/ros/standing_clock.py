@@ -1,5 +1,6 @@
-"""ROS's time where /use_sim_time is set: it stands still until a test lets it go on, so that nothing hangs on how long
-the machine takes. interaction_node goes on by itself after some time without a frame: here only when a test wants it."""
+"""ROS's time where /use_sim_time is set: it stands still until a test lets it go on, so that nothing hangs on how
+long the machine takes. interaction_node goes on by itself after some time without a frame: here only when a test
+wants it."""
 import rospy
 from rosgraph_msgs.msg import Clock
 
