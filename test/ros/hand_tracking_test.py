@@ -5,7 +5,6 @@ import math
 import os
 import subprocess
 import sys
-import time
 import unittest
 
 import rospy
@@ -18,8 +17,8 @@ from mr_hand_interaction.msg import Hand, HandFrame
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import leap_messages  # noqa: E402
+from waiting import wait_until  # noqa: E402
 
-TIMEOUT = 20.0  # s; far beyond what is needed, so that only a real failure meets it
 LEAP_TOPIC = "/leap_motion/leap_device"
 
 
@@ -41,7 +40,7 @@ class HandTrackingTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("hand_tracking_test")
-        cls.frames, cls.counts, cls.reports = [], {}, 0
+        cls.frames, cls.counts, cls.reported = [], {}, rospy.Time()
         cls.next_stamp = 1000.0
         cls.transforms = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
         cls.transforms.publish(mount())
@@ -50,7 +49,7 @@ class HandTrackingTest(unittest.TestCase):
         cls.types = leap_messages.classes("head")
         cls.leap = cls.connected_leap()
         cls.pose_arrays = rospy.Publisher("hands/pose_array", PoseArray, queue_size=10)
-        cls.wait_until(lambda: cls.counts, "diagnostics")
+        wait_until(lambda: cls.counts, "diagnostics")
         cls.send_until_placed()
 
     @classmethod
@@ -58,32 +57,23 @@ class HandTrackingTest(unittest.TestCase):
         for status in message.status:
             if "hand input" in status.name:
                 cls.counts.update({value.key: float(value.value) for value in status.values})
-                cls.reports += 1
-
-    @classmethod
-    def wait_until(cls, condition, what):
-        end = time.monotonic() + TIMEOUT
-        while not condition():
-            if time.monotonic() > end or rospy.is_shutdown():
-                raise AssertionError("waited in vain for " + what)
-            time.sleep(0.01)
+                cls.reported = message.header.stamp
 
     @classmethod
     def connected_leap(cls):
         publisher = rospy.Publisher(LEAP_TOPIC, cls.types["leap_motion/Human"], queue_size=10)
-        cls.wait_until(lambda: publisher.get_num_connections() > 0, "a subscriber of " + LEAP_TOPIC)
+        wait_until(lambda: publisher.get_num_connections() > 0, "a subscriber of " + LEAP_TOPIC)
         return publisher
 
     @classmethod
     def send_until_placed(cls):
         """The mount and the connections take a moment to arrive."""
-        end = time.monotonic() + TIMEOUT
-        while not cls.frames and time.monotonic() < end:
+        def placed():
             cls.leap.publish(cls.human())
-            time.sleep(0.05)
-        if not cls.frames:
-            raise AssertionError("no hand_frame")
-        cls.wait_until(lambda: cls.pose_arrays.get_num_connections() > 0, "a subscriber of hands/pose_array")
+            return cls.frames
+        wait_until(placed, "a hand_frame")
+        cls.answer(cls.human())
+        wait_until(lambda: cls.pose_arrays.get_num_connections() > 0, "a subscriber of hands/pose_array")
 
     @contextlib.contextmanager
     def driver(self, version):
@@ -113,16 +103,18 @@ class HandTrackingTest(unittest.TestCase):
         cls.step_stamp()
         return leap_messages.human(cls.types, cls.next_stamp, sides, frame_id)
 
-    def frame_at(self, stamp):
+    @classmethod
+    def frame_at(cls, stamp):
         def found():
-            return [frame for frame in list(self.frames) if frame.header.stamp == stamp]
-        self.wait_until(found, "the hand_frame at %s" % stamp.to_sec())
+            return [frame for frame in list(cls.frames) if frame.header.stamp == stamp]
+        wait_until(found, "the hand_frame at %s" % stamp.to_sec())
         return found()[-1]
 
-    def answer(self, message, publisher=None):
+    @classmethod
+    def answer(cls, message, publisher=None):
         """The hand_frame with the message's stamp."""
-        (publisher or self.leap).publish(message)
-        return self.frame_at(message.header.stamp)
+        (publisher or cls.leap).publish(message)
+        return cls.frame_at(message.header.stamp)
 
     @contextlib.contextmanager
     def expect_rejected(self, reason):
@@ -130,11 +122,11 @@ class HandTrackingTest(unittest.TestCase):
         key = "rejected: " + reason
         self.assertIn(key, self.counts)
         # Counts come once a second: those of earlier tests must be in.
-        reports = self.reports
-        self.wait_until(lambda: type(self).reports > reports + 1, "diagnostics")
+        now = rospy.Time.now()
+        wait_until(lambda: self.reported >= now, "diagnostics")
         before, frames = self.counts[key], len(self.frames)
         yield
-        self.wait_until(lambda: self.counts[key] > before, key)
+        wait_until(lambda: self.counts[key] > before, key)
         self.assertEqual(self.counts[key], before + 1)
         self.answer(self.human())
         self.assertEqual(len(self.frames), frames + 1)
@@ -229,7 +221,7 @@ class HandTrackingTest(unittest.TestCase):
 
     def test_unknown_version_is_rejected(self):
         with self.expect_rejected("unknown message version"), self.without_own_driver(), self.driver("text"):
-            self.wait_until(lambda: self.counts["rejected: unknown message version"] > 0, "the count")
+            wait_until(lambda: self.counts["rejected: unknown message version"] > 0, "the count")
 
     def test_unknown_frame_is_rejected(self):
         with self.expect_rejected("no transform"):
@@ -240,7 +232,7 @@ class HandTrackingTest(unittest.TestCase):
         message = self.human()
         message.header.stamp = rospy.Time()
         self.leap.publish(message)
-        self.wait_until(lambda: len(self.frames) > frames, "a hand_frame")
+        wait_until(lambda: len(self.frames) > frames, "a hand_frame")
         self.assertGreaterEqual(self.frames[-1].header.stamp, before)
         self.answer(self.human())  # back to recorded time: a restart
 
