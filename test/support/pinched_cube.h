@@ -6,6 +6,11 @@
 
 namespace mrhi::testing {
 
+/// A fingertip that lies on the plane z along x, 20 mm from end to end of its axis.
+inline Hand lying(double x, double z, double radius = 0.008) {
+  return finger(Vector3(x - 0.01, 0, z + radius), Vector3(x + 0.01, 0, z + radius), radius);
+}
+
 /// The pinch of scene (a) with the stiffness that `model` has by default, and what it does under that model.
 /// A frame per step, so that every step can be looked at.
 class PinchedCube {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -40,6 +42,23 @@ inline std::vector<JointsFrame> sample_frames() {
           {1000024000000, {sample_hand(Side::right)}},
           no_wrist,
           {7, {}}};
+}
+
+inline void expect_same_bits(const Hand& a, const Hand& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.side, b.side);
+  EXPECT_EQ(a.confidence, b.confidence);
+  EXPECT_EQ(a.grab_strength, b.grab_strength);
+  EXPECT_EQ(a.pinch_strength, b.pinch_strength);
+  EXPECT_EQ(a.palm.position, b.palm.position);
+  EXPECT_EQ(a.palm.orientation.coeffs(), b.palm.orientation.coeffs());
+  EXPECT_EQ(a.palm_width, b.palm_width);
+  EXPECT_EQ(a.wrist, b.wrist);
+  for (std::size_t i = 0; i < kCapsules; ++i) {
+    EXPECT_EQ(a.capsules[i].start, b.capsules[i].start);
+    EXPECT_EQ(a.capsules[i].end, b.capsules[i].end);
+    EXPECT_EQ(a.capsules[i].radius, b.capsules[i].radius);
+  }
 }
 
 }  // namespace mrhi

@@ -17,23 +17,6 @@ LeapHumanDecoder::Frame decode(LeapVersion version, const JointsFrame& frame) {
   return LeapHumanDecoder(leap_definition(version)).decode(bytes.data(), bytes.size());
 }
 
-void expect_same_bits(const Hand& a, const Hand& b) {
-  EXPECT_EQ(a.id, b.id);
-  EXPECT_EQ(a.side, b.side);
-  EXPECT_EQ(a.confidence, b.confidence);
-  EXPECT_EQ(a.grab_strength, b.grab_strength);
-  EXPECT_EQ(a.pinch_strength, b.pinch_strength);
-  EXPECT_EQ(a.palm.position, b.palm.position);
-  EXPECT_EQ(a.palm.orientation.coeffs(), b.palm.orientation.coeffs());
-  EXPECT_EQ(a.palm_width, b.palm_width);
-  EXPECT_EQ(a.wrist, b.wrist);
-  for (std::size_t i = 0; i < kCapsules; ++i) {
-    EXPECT_EQ(a.capsules[i].start, b.capsules[i].start);
-    EXPECT_EQ(a.capsules[i].end, b.capsules[i].end);
-    EXPECT_EQ(a.capsules[i].radius, b.capsules[i].radius);
-  }
-}
-
 TEST(LeapHuman, EveryVersionGivesTheSameBits) {
   const Pose device{Vector3(0.1, 0.2, 0.3), Quaternion(0.7, 0.7, 0.1, -0.1).normalized()};
   for (const JointsFrame& sent : sample_frames()) {
