@@ -11,7 +11,6 @@ namespace {
 using testing::finger;
 using testing::fixed_block;
 using testing::lying;
-using testing::object_twist;
 using testing::PinchedCube;
 using testing::smooth;
 using testing::total_force;

@@ -6,17 +6,13 @@
 namespace mrhi {
 namespace {
 
-using testing::finger;
 using testing::fixed_block;
 using testing::lying;
-using testing::object_twist;
 using testing::PinchedCube;
-using testing::smooth;
 using testing::total_force;
 
 constexpr ContactModelKind kModel = ContactModelKind::virtual_spring;
 constexpr double kStiffness = VirtualSpringModel::kStiffness;
-constexpr double kRadius = 0.008;
 const double kDamping = 2.0 * std::sqrt(kStiffness * VirtualSpringModel::kPhalanxMass);
 
 TEST(VirtualSpring, force_at_rest_is_stiffness_times_overlap) {
