@@ -32,6 +32,8 @@ SCRIPTS = os.path.join(HERE, "..", "..", "scripts")
 RUN = 150.0  # s; a run of the scripted hand lasts 9, and the first is without a trial
 RUNS = 3  # where the machine keeps the nodes waiting they lose frames, and the hand what it cannot follow with
 LOST = 0.015  # s between two stamps: of two frames at 115 Hz there are 0.0087
+DRIFT = 0.2  # m, of what an operator has let go
+HELD_UP = 0.1  # s between two stamps: longer than the frames of an operator wait in the nodes' queues
 
 
 def trials(folder):
@@ -113,17 +115,26 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(float(row["release_drift"]), 0.05)
         self.check_analysis()
 
-    def test_an_operator_does_the_paper_s_task_to_the_end(self):
+    def operator_s_trials(self):
         with self.training("hands:=operator", "group:=veteran", "auto_next:=0.5", "record:=false"):
-            wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 300.0)
+            wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 400.0)
+        return trials(self.folder)
+
+    def test_an_operator_does_the_paper_s_task_to_the_end(self):
+        for run in range(RUNS):
+            self.clear()
+            self.folder = os.path.join(self.parent, "session%d" % run)
+            rows = self.operator_s_trials()
+            good = all(row["result"] == "completed" and float(row["release_drift"]) < DRIFT for row in rows)
+            if good or self.longest_break < HELD_UP:
+                break
         for place in (1, 2, 3):
             self.assertIn((TrainingStatus.RUNNING, TrainingStatus.MAINTENANCE, place, True), self.seen)
-        rows = trials(self.folder)
         self.assertEqual({row["object"]: row["result"] for row in rows},
                          dict.fromkeys(("cube", "flat_cuboid", "long_cuboid"), "completed"))
         for row in rows:
             self.assertGreaterEqual(float(row["maintenance_time"]), 9.0, "three places for 3 s each")
-            self.assertLess(float(row["release_drift"]), 0.2)
+            self.assertLess(float(row["release_drift"]), DRIFT)
 
     def check_analysis(self):
         if not has_pandas():
