@@ -16,19 +16,16 @@ namespace {
 using namespace mrhi;
 
 const char* const kHelp =
-    "simulated_study --output DIR [--operators FIRST-LAST] [--group-size N] [--model NAME]... [--gravity "
-    "G]...\n"
-    "                [--task NAME|FILE] [--set KEY=VALUE]... [--seed N]\n"
-    "Lets simulated operators (no person takes part) do a task, and writes a session's folder for each of "
-    "them,\n"
-    "contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with.\n"
-    "  --operators   of those with these numbers; default 1-30\n"
-    "  --group-size  the first N operators are beginners, all others veterans; default 15\n"
-    "  --model       contact model; default: all six\n"
-    "  --gravity     in g, from 0 to 10; default: 0 and 1\n"
-    "  --task        default: pick_and_place\n"
-    "  --set         a parameter, as in config/default.yaml\n"
-    "  --seed        a whole number; default 1\n";
+    "usage: simulated_study --output DIR [options]\n\n"
+    "Lets simulated operators (no person takes part) do a task, and writes a session's folder for each of\n"
+    "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with.\n\n"
+    "  --operators FIRST-LAST   of those with these numbers; default 1-30\n"
+    "  --group-size N           the first N operators are beginners, all others veterans; default 15\n"
+    "  --model NAME             contact model; again for more; default: all six\n"
+    "  --gravity G              in g, from 0 to 10; again for more; default: 0 and 1\n"
+    "  --task NAME|FILE         default: pick_and_place\n"
+    "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
+    "  --seed N                 a whole number; default 1\n";
 
 constexpr double kStandardGravity = 9.80665;  // [m/s^2]
 
