@@ -14,22 +14,6 @@ namespace {
 
 using visualization_msgs::Marker;
 
-/// Marker type and scale of a shape.
-struct Look {
-  int type;
-  Vector3 scale;
-  std::string mesh;
-};
-
-struct LookOf {
-  Look operator()(const Sphere& s) const { return {Marker::SPHERE, Vector3::Constant(2.0 * s.radius), ""}; }
-  Look operator()(const Box& b) const { return {Marker::CUBE, 2.0 * b.half_extents, ""}; }
-  Look operator()(const Cylinder& c) const {
-    return {Marker::CYLINDER, {2.0 * c.radius, 2.0 * c.radius, 2.0 * c.half_length}, ""};
-  }
-  Look operator()(const Mesh& m) const { return {Marker::MESH_RESOURCE, m.scale, m.uri}; }
-};
-
 /// STL knows none.
 bool has_materials(const std::string& mesh) {
   const std::size_t dot = mesh.rfind('.');
@@ -71,20 +55,32 @@ Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& pai
   return marker;
 }
 
-Marker& add_solid(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                  MarkerLayer& layer) {
-  const Box* box = std::get_if<Box>(&shape);
-  return box ? add_box(*box, pose, paint, id, layer) : add_shape(shape, pose, paint, id, layer);
-}
+struct AddShape {
+  const Pose& pose;
+  const std_msgs::ColorRGBA& paint;
+  int id;
+  MarkerLayer& layer;
+
+  Marker& operator()(const Sphere& s) const { return add(Marker::SPHERE, Vector3::Constant(2.0 * s.radius)); }
+  Marker& operator()(const Box& b) const { return add_box(b, pose, paint, id, layer); }
+  Marker& operator()(const Cylinder& c) const {
+    return add(Marker::CYLINDER, {2.0 * c.radius, 2.0 * c.radius, 2.0 * c.half_length});
+  }
+  Marker& operator()(const Mesh& m) const {
+    Marker& marker = add(Marker::MESH_RESOURCE, m.scale);
+    marker.mesh_resource = m.uri;
+    return marker;
+  }
+
+ private:
+  Marker& add(int type, const Vector3& scale) const { return layer.add(id, type, pose, scale, paint); }
+};
 
 }  // namespace
 
-visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
-                                      int id, MarkerLayer& layer) {
-  const Look look = std::visit(LookOf{}, shape);
-  Marker& marker = layer.add(id, look.type, pose, look.scale, paint);
-  marker.mesh_resource = look.mesh;
-  return marker;
+Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
+                  MarkerLayer& layer) {
+  return std::visit(AddShape{pose, paint, id, layer}, shape);
 }
 
 void BodyMarkers::add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
@@ -111,7 +107,7 @@ void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, Mar
   int id = first_id;
   for (const Visual& visual : body.visuals) {
     const auto& c = visual.rgba;
-    Marker& marker = add_solid(visual.shape, look.pose * visual.pose,
+    Marker& marker = add_shape(visual.shape, look.pose * visual.pose,
                                color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
     if (!visual.has_color && has_materials(marker.mesh_resource)) {
       marker.mesh_use_embedded_materials = true;
@@ -120,7 +116,7 @@ void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, Mar
   }
   if (!body.visuals.empty()) return;
   for (const PlacedShape& placed : body.shapes)
-    add_solid(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer);
+    add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer);
 }
 
 }  // namespace mrhi

@@ -43,7 +43,7 @@ struct HandStyle {
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
                   MarkerLayer& layer);
 
-/// A shape as a marker; valid until the layer's next call.
+/// A shape as a marker, a box in the light that hands are in; valid until the layer's next call.
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, MarkerLayer& layer);
 
