@@ -13,6 +13,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int kSettle = 1000, kMeasured = 10000;
+constexpr double kSway = 0.1;  // [m]
+
+Vector3 sway_at(double t, double amplitude) {
+  return testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, amplitude, 0.5);
+}
 
 double nanoseconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double, std::nano>(to - from).count();
@@ -54,7 +59,7 @@ void measure(int far) {
   const double overhead = clock_cost();
   const auto advance = [&](int frame) {
     const double t = frame / 1000.0;
-    const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, 0.1, 0.5);
+    const Vector3 sway = sway_at(t, kSway);
     simulation.begin({testing::at(t), {pinch.hand(t, sway)}});
     const Clock::time_point from = last = Clock::now();
     while (simulation.step()) {
@@ -87,8 +92,7 @@ double step_of_pinch(double rate, double amplitude) {
   const double overhead = clock_cost();
   for (int frame = 0; steps.size() < kMeasured; ++frame) {
     const double t = frame / rate;
-    const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, amplitude, 0.5);
-    simulation.begin({testing::at(t), {pinch.hand(t, sway)}});
+    simulation.begin({testing::at(t), {pinch.hand(t, sway_at(t, amplitude))}});
     for (bool more = true; more;) {
       const Clock::time_point from = Clock::now();
       more = simulation.step();
@@ -116,7 +120,7 @@ void measure_frame() {
   const double overhead = clock_cost();
   for (int frame = 0; frame < 3000; ++frame) {
     const double t = frame / 120.0;
-    const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, 0.1, 0.5);
+    const Vector3 sway = sway_at(t, kSway);
     Hand other = pinch.hand(t, apart + sway);
     other.id = 2;
     const HandFrame input{testing::at(t), {pinch.hand(t, sway), other}};
@@ -133,7 +137,7 @@ void measure_frame() {
 int main() {
   mrhi::measure(0);
   std::printf("a step of it with the hand at rest: %.2f us; swung, tracked at 120 Hz: %.2f us\n",
-              1e-3 * mrhi::step_of_pinch(1000.0, 0.0), 1e-3 * mrhi::step_of_pinch(120.0, 0.1));
+              1e-3 * mrhi::step_of_pinch(1000.0, 0.0), 1e-3 * mrhi::step_of_pinch(120.0, mrhi::kSway));
   mrhi::measure(19);
   mrhi::measure_frame();
   return 0;
