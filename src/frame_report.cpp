@@ -53,9 +53,12 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || !end.strikes.empty();
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
+      const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(),
+                                       [&](const Grip& grip) { return grip.hand == slot && grip.body == b; });
       const InteractionLevel seen =
-          seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene, state.bodies[b].pose,
-                     result.contacts, interaction.level);
+          gripped ? InteractionLevel::grasp
+                  : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
+                               state.bodies[b].pose, result.contacts, interaction.level);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,
                          result.events);
     }
@@ -69,6 +72,7 @@ void render(const FrameEnd& end, FrameResult& result) {
     result.tracked.push_back(track.current);
     result.rendered.emplace_back();
     end.renderer.render(track, static_cast<int>(slot), end.state.time, end.state.bodies, result.contacts,
+                        end.state.interactions.data() + slot * end.state.bodies.size(),
                         end.state.offsets[slot], result.rendered.back());
   }
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "mr_hand_interaction/collision/overlap.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/scene_change.h"
 #include "mr_hand_interaction/tracking/tracker.h"
@@ -12,28 +12,10 @@
 namespace mrhi {
 namespace {
 
-/// What two bodies may overlap as one is added, as things that rest on each other do [m].
-constexpr double kOverlap = 0.001;
-
 void check_in_bounds(const std::string& name, const Vector3& place, const Bounds& bounds) {
   if ((place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all()) return;
   throw std::invalid_argument("'" + name + "': " + text::vector(place) + " m is out of bounds; allowed: " +
                               text::vector(bounds.min) + " to " + text::vector(bounds.max));
-}
-
-double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
-               std::size_t a, std::size_t b) {
-  double deepest = 0.0;
-  for (std::size_t i = 0; i < scene.bodies[a].shapes.size(); ++i) {
-    for (std::size_t j = 0; j < scene.bodies[b].shapes.size(); ++j) {
-      const Manifold manifold =
-          body_manifold(geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose,
-                        geometry.shapes[b][j], bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0);
-      for (int k = 0; k < manifold.count; ++k)
-        deepest = std::max(deepest, manifold.points[static_cast<std::size_t>(k)].depth);
-    }
-  }
-  return deepest;
 }
 
 void check_free_place(const Simulation& simulation, std::size_t added) {
@@ -124,7 +106,16 @@ void LiveSimulation::place(const std::string& name, const Pose& pose) {
   SimulationState state = simulation_->state();
   BodyState at_rest;
   at_rest.pose = pose;
-  mrhi::place(body, at_rest, scene, state);
+  mrhi::place(body, at_rest, state);
+  simulation_->set_state(state);
+}
+
+void LiveSimulation::reset() {
+  simulation_->reset();
+  SimulationState state = simulation_->state();
+  const std::vector<Body>& bodies = simulation_->scene().bodies;
+  for (std::size_t i = 0; i < state.interactions.size(); ++i)
+    state.interactions[i].shown_in = !bodies[i % bodies.size()].fixed;
   simulation_->set_state(state);
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mr_hand_interaction/tracking/filter_memory.h"
+#include "scene/body_limits.h"
 #include "scene/material_fields.h"
 #include "scene/text.h"
 #include "scene/yaml_values.h"
@@ -11,7 +12,12 @@
 namespace mrhi {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+using body_limits::kGravity;
+constexpr Range kGravitySlider{-10, 10};  // [m/s^2]
+
+ParameterLimits limits(const Range& range, const Range& slider) {
+  return {range.min, range.max, slider.min, slider.max};
+}
 
 template <class T>
 using Member = std::function<T&(Configuration&)>;
@@ -21,8 +27,10 @@ T value_of(Configuration configuration, const Member<T>& member) {
   return member(configuration);
 }
 
-ParameterEntry number(const std::string& name, const std::string& unit, Range range,
-                      const Member<double>& member) {
+/// A number in `range`, both ends of which are allowed; a slider spans `slider`, which is all of it or a
+/// part.
+ParameterEntry number(const std::string& name, const std::string& unit, const Range& range,
+                      const Range& slider, const Member<double>& member) {
   return {name, range.describe() + unit,
           [=](Configuration& configuration, const YAML::Node& node) {
             const std::optional<double> value = yaml_number(node);
@@ -30,20 +38,21 @@ ParameterEntry number(const std::string& name, const std::string& unit, Range ra
             member(configuration) = *value;
             return true;
           },
-          [=](const Configuration& configuration) { return text::exact(value_of(configuration, member)); }};
+          [=](const Configuration& configuration) { return text::exact(value_of(configuration, member)); },
+          limits(range, slider)};
 }
 
 ParameterEntry integer(const std::string& name, int min, int max, const Member<int>& member) {
   const std::string allowed = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
-  return {
-      name, allowed,
-      [=](Configuration& configuration, const YAML::Node& node) {
-        const std::optional<int> value = yaml_integer(node);
-        if (!value || *value < min || *value > max) return false;
-        member(configuration) = *value;
-        return true;
-      },
-      [=](const Configuration& configuration) { return std::to_string(value_of(configuration, member)); }};
+  return {name, allowed,
+          [=](Configuration& configuration, const YAML::Node& node) {
+            const std::optional<int> value = yaml_integer(node);
+            if (!value || *value < min || *value > max) return false;
+            member(configuration) = *value;
+            return true;
+          },
+          [=](const Configuration& configuration) { return std::to_string(value_of(configuration, member)); },
+          ParameterLimits{double(min), double(max), double(min), double(max)}};
 }
 
 template <class T>
@@ -52,7 +61,8 @@ ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::
   std::vector<std::string> words;
   words.reserve(choices.size());
   for (const auto& option : choices) words.push_back(option.first);
-  return {name, text::joined(words),
+  return {name,
+          text::joined(words),
           [=](Configuration& configuration, const YAML::Node& node) {
             for (const auto& option : choices) {
               if (!node.IsScalar() || node.Scalar() != option.first) continue;
@@ -66,13 +76,15 @@ ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::
             return std::find_if(choices.begin(), choices.end(),
                                 [&](const auto& option) { return option.second == value; })
                 ->first;
-          }};
+          },
+          {}};
 }
 
 bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
   const bool of_the_scene = node.IsScalar() && node.Scalar() == "scene";
   const std::optional<Vector3> value = yaml_vector(node);
-  if (!value && !of_the_scene) return false;
+  const bool in_limits = value && value->minCoeff() >= kGravity.min && value->maxCoeff() <= kGravity.max;
+  if (!in_limits && !of_the_scene) return false;
   configuration.gravity = value;
   return true;
 }
@@ -83,20 +95,60 @@ std::string gravity_text(const Configuration& configuration) {
   return "[" + text::exact(g.x()) + ", " + text::exact(g.y()) + ", " + text::exact(g.z()) + "]";
 }
 
-ParameterEntry stiffness(const MaterialField& field) {
-  const Range range = field.range;
-  return {std::string("material/") + field.name,
-          range.describe() + field.unit + ", or 'model' for the contact model's own",
-          [range](Configuration& configuration, const YAML::Node& node) {
-            const bool of_the_model = node.IsScalar() && node.Scalar() == "model";
+/// What a parameter is that is not a number, and what that means.
+struct Word {
+  std::string word, meaning;
+};
+
+ParameterEntry number_or(const Word& otherwise, const std::string& name, const std::string& unit,
+                         const Range& range, const Range& slider,
+                         const Member<std::optional<double>>& member) {
+  const std::string word = otherwise.word;
+  return {name, range.describe() + unit + ", or '" + word + "' " + otherwise.meaning,
+          [=](Configuration& configuration, const YAML::Node& node) {
+            const bool is_word = node.IsScalar() && node.Scalar() == word;
             const std::optional<double> value = yaml_number(node);
-            if (!of_the_model && (!value || !range.contains(*value))) return false;
-            configuration.stiffness = of_the_model ? std::nullopt : value;
+            if (!is_word && (!value || !range.contains(*value))) return false;
+            member(configuration) = is_word ? std::nullopt : value;
             return true;
           },
-          [](const Configuration& configuration) {
-            return configuration.stiffness ? text::exact(*configuration.stiffness) : "model";
-          }};
+          [=](const Configuration& configuration) {
+            const std::optional<double> value = value_of(configuration, member);
+            return value ? text::exact(*value) : word;
+          },
+          limits(range, slider)};
+}
+
+/// Of a hand's strength: a number, or none.
+ParameterEntry limit(const std::string& name, const std::string& unit, const Range& range,
+                     const Range& slider, double HandStrength::*member) {
+  return {"hand/" + name, range.describe() + unit + ", or 'unlimited'",
+          [=](Configuration& configuration, const YAML::Node& node) {
+            const bool unlimited = node.IsScalar() && node.Scalar() == "unlimited";
+            const std::optional<double> value = yaml_number(node);
+            if (!unlimited && (!value || !range.contains(*value))) return false;
+            configuration.contact.hand.*member = unlimited ? HandStrength::kUnlimited : *value;
+            return true;
+          },
+          [=](const Configuration& configuration) {
+            const double value = configuration.contact.hand.*member;
+            return value == HandStrength::kUnlimited ? "unlimited" : text::exact(value);
+          },
+          limits(range, slider)};
+}
+
+std::vector<ParameterEntry> hand_parameters() {
+  using H = HandStrength;
+  return {limit("strength", " [N]", {0.1, 1000}, {1, 100}, &H::finger),
+          limit("palm_strength", " [N]", {0.1, 1000}, {1, 200}, &H::palm),
+          limit("finger_mass", " [kg]", {0.001, 10}, {0.005, 0.5}, &H::finger_mass),
+          limit("palm_mass", " [kg]", {0.001, 10}, {0.05, 2}, &H::palm_mass),
+          number(
+              "hand/pad", " [m]", {0, 0.01}, {0, 0.005},
+              [](Configuration & c) -> auto& { return c.contact.hand.pad; }),
+          number(
+              "hand/radius_scale", "", {0.1, 10}, {0.5, 2},
+              [](Configuration & c) -> auto& { return c.hand_radius_scale; })};
 }
 
 /// Refinements of contact, on or off.
@@ -106,6 +158,7 @@ std::vector<ParameterEntry> refinements() {
                                                                {"damping", &C::damping},
                                                                {"edge_grip", &C::edge_grip},
                                                                {"entry_face", &C::entry_face},
+                                                               {"grasp_assist", &C::grasp_assist},
                                                                {"impact_friction", &C::impact_friction},
                                                                {"sleep", &C::sleep},
                                                                {"sweep", &C::sweep},
@@ -126,30 +179,32 @@ std::vector<ParameterEntry> refinements() {
 
 std::vector<ParameterEntry> filter_parameters() {
   using C = Configuration;
-  return {choice<FilterKind>(
-              "filter/type",
-              {{"none", FilterKind::none},
-               {"window", FilterKind::window},
-               {"one_euro", FilterKind::one_euro},
-               {"constant_velocity", FilterKind::constant_velocity}},
-              [](C & c) -> auto& { return c.filter.type; }),
-          integer(
-              "filter/window", 1, kMaxFilterWindow, [](C & c) -> auto& { return c.filter.window; }),
-          number(
-              "filter/min_cutoff", " [Hz]", {0, kNoLimit, false},
-              [](C & c) -> auto& { return c.filter.min_cutoff; }),
-          number(
-              "filter/beta", " [Hz per m/s]", {0}, [](C & c) -> auto& { return c.filter.beta; }),
-          number(
-              "filter/derivative_cutoff", " [Hz]", {0, kNoLimit, false},
-              [](C & c) -> auto& { return c.filter.derivative_cutoff; }),
-          number(
-              "filter/noise", " [m]", {0, kNoLimit, false}, [](C & c) -> auto& { return c.filter.noise; }),
-          number(
-              "filter/acceleration", " [m/s^2]", {0, kNoLimit, false},
-              [](C & c) -> auto& { return c.filter.acceleration; }),
-          number(
-              "filter/agility", " [1/s]", {0}, [](C & c) -> auto& { return c.filter.agility; })};
+  return {
+      choice<FilterKind>(
+          "filter/type",
+          {{"none", FilterKind::none},
+           {"window", FilterKind::window},
+           {"one_euro", FilterKind::one_euro},
+           {"constant_velocity", FilterKind::constant_velocity}},
+          [](C & c) -> auto& { return c.filter.type; }),
+      integer(
+          "filter/window", 1, kMaxFilterWindow, [](C & c) -> auto& { return c.filter.window; }),
+      number(
+          "filter/min_cutoff", " [Hz]", {0.01, 1000}, {0.1, 10},
+          [](C & c) -> auto& { return c.filter.min_cutoff; }),
+      number(
+          "filter/beta", " [Hz per m/s]", {0, 10000}, {0, 500}, [](C & c) -> auto& { return c.filter.beta; }),
+      number(
+          "filter/derivative_cutoff", " [Hz]", {0.01, 1000}, {0.1, 100},
+          [](C & c) -> auto& { return c.filter.derivative_cutoff; }),
+      number_or(
+          {"estimated", "for what the stream shows"}, "filter/noise", " [m]", {1e-6, 0.1}, {1e-5, 0.01},
+          [](C & c) -> auto& { return c.filter.noise; }),
+      number(
+          "filter/acceleration", " [m/s^2]", {0.001, 1000}, {0.01, 10},
+          [](C & c) -> auto& { return c.filter.acceleration; }),
+      number(
+          "filter/agility", " [1/s]", {0, 1000}, {0, 30}, [](C & c) -> auto& { return c.filter.agility; })};
 }
 
 std::vector<ParameterEntry> make_table() {
@@ -165,31 +220,32 @@ std::vector<ParameterEntry> make_table() {
            {"soft_pad", ContactModelKind::soft_pad}},
           [](C & c) -> auto& { return c.contact_model; }),
       number(
-          "contact/object_stiffness", " [N/m]", {0, kNoLimit, false},
+          "contact/object_stiffness", " [N/m]", {1, 1e9}, {1e4, 1e8},
           [](C & c) -> auto& { return c.contact.object_stiffness; }),
       number(
-          "step", " [s]", {0, 0.05, false}, [](C & c) -> auto& { return c.step; }),
-      {"gravity", "three finite numbers [x, y, z] in m/s^2, or 'scene' for the scene's own", assign_gravity,
-       gravity_text},
+          "step", " [s]", {1e-5, 0.05}, {0.0002, 0.01}, [](C & c) -> auto& { return c.step; }),
+      {"gravity", "three numbers [x, y, z] from -100 to 100 in m/s^2, or 'scene' for the scene's own",
+       assign_gravity, gravity_text, limits(kGravity, kGravitySlider)},
       number(
-          "hand/radius_scale", "", {0.1, 10}, [](C & c) -> auto& { return c.hand_radius_scale; }),
+          "tracking/hold_time", " [s]", {0, 10}, {0, 2}, [](C & c) -> auto& { return c.tracking.hold_time; }),
       number(
-          "tracking/hold_time", " [s]", {0, 10}, [](C & c) -> auto& { return c.tracking.hold_time; }),
-      number(
-          "tracking/max_speed", " [m/s]", {0, kNoLimit, false},
+          "tracking/max_speed", " [m/s]", {0.1, 1000}, {1, 50},
           [](C & c) -> auto& { return c.tracking.max_speed; }),
   };
+  for (ParameterEntry& entry : hand_parameters()) table.push_back(std::move(entry));
   for (ParameterEntry& entry : filter_parameters()) table.push_back(std::move(entry));
   for (ParameterEntry& entry : refinements()) table.push_back(std::move(entry));
   for (const MaterialField& field : material_fields()) {
     const auto member = field.value;
     if (member == &Material::stiffness) {
-      table.push_back(stiffness(field));
+      table.push_back(number_or(
+          {"model", "for the contact model's own"}, std::string("material/") + field.name, field.unit,
+          field.range, field.slider, [](C & c) -> auto& { return c.stiffness; }));
       continue;
     }
     table.push_back(number(
-        std::string("material/") + field.name, field.unit,
-        field.range, [member](C & c) -> auto& { return c.material.*member; }));
+        std::string("material/") + field.name, field.unit, field.range,
+        field.slider, [member](C & c) -> auto& { return c.material.*member; }));
   }
   std::sort(table.begin(), table.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return table;

@@ -3,10 +3,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
 
@@ -18,6 +19,7 @@ struct ParameterEntry {
   std::function<bool(Configuration&, const YAML::Node&)> assign;
   /// What it is now, as YAML that `assign` takes.
   std::function<std::string(const Configuration&)> text;
+  std::optional<ParameterLimits> limits;  ///< of a number, or of each of several
 };
 
 /// All parameters, sorted by name.

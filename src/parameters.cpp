@@ -4,6 +4,7 @@
 
 #include "parameter_table.h"
 #include "scene/material_fields.h"
+#include "scene/safe_yaml.h"
 #include "scene/text.h"
 #include "scene/yaml_values.h"
 
@@ -63,16 +64,17 @@ class FileReader {
 
 void set_parameter(Configuration& configuration, const std::string& name, const std::string& yaml_value) {
   try {
-    assign(configuration, name, YAML::Load(yaml_value));
-  } catch (const YAML::Exception& error) {
-    throw ParameterError("parameter '" + text::one_line(name, 60) + "': '" + text::one_line(yaml_value, 60) +
-                         "' is not YAML: " + text::one_line(error.msg));
+    const std::string what =
+        "parameter '" + text::one_line(name, 60) + "': '" + text::one_line(yaml_value, 60) + "'";
+    assign(configuration, name, load_yaml(what, yaml_value));
+  } catch (const YamlError& error) {
+    throw ParameterError(error.what());
   }
 }
 
 void load_parameters(Configuration& configuration, const std::string& yaml_file) {
   try {
-    const YAML::Node root = YAML::LoadFile(yaml_file);
+    const YAML::Node root = load_yaml_file(yaml_file);
     if (!root.IsMap() && !root.IsNull()) {
       throw ParameterError(yaml_file + ": " + yaml_text(root) +
                            " is not allowed; allowed: a map of parameters");
@@ -80,14 +82,18 @@ void load_parameters(Configuration& configuration, const std::string& yaml_file)
     Configuration changed = configuration;
     FileReader(yaml_file, changed).read(root, "");
     configuration = changed;
-  } catch (const YAML::BadFile&) {
-    throw ParameterError(yaml_file + ": cannot be read; allowed: a readable YAML file");
+  } catch (const YamlError& error) {
+    throw ParameterError(error.what());
   } catch (const YAML::Exception& error) {
     throw ParameterError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }
 }
 
 void validate(const Configuration& configuration) {
+  Configuration copy = configuration;
+  for (const ParameterEntry& entry : parameter_table()) {
+    if (entry.limits) assign(copy, entry.name, YAML::Load(entry.text(configuration)));
+  }
   if (const auto conflict = material_conflict(configuration.material)) {
     throw ParameterError("parameter 'material/dynamic_friction': " + *conflict);
   }
@@ -95,6 +101,10 @@ void validate(const Configuration& configuration) {
 
 std::string parameter_text(const Configuration& configuration, const std::string& name) {
   return entry_of(name).text(configuration);
+}
+
+std::optional<ParameterLimits> parameter_limits(const std::string& name) {
+  return entry_of(name).limits;
 }
 
 std::vector<std::string> parameter_names() {

@@ -44,6 +44,18 @@ void move(const Places& places, std::vector<BodyContact>& contacts) {
   contacts.swap(kept);
 }
 
+void move(const Places& places, std::vector<Grip>& grips) {
+  std::vector<Grip> kept;
+  kept.reserve(grips.capacity());
+  for (Grip& grip : grips) {
+    const std::optional<int> body = places[grip.body];
+    if (!body) continue;
+    grip.body = static_cast<std::uint16_t>(*body);
+    kept.push_back(grip);
+  }
+  grips.swap(kept);
+}
+
 std::vector<Interaction> moved(const Places& places, std::size_t bodies_after, const SimulationState& state) {
   std::vector<Interaction> interactions(state.hands.size() * bodies_after);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
@@ -54,30 +66,6 @@ std::vector<Interaction> moved(const Places& places, std::size_t bodies_after, c
     }
   }
   return interactions;
-}
-
-bool may_overlap(const Capsule& capsule, const Body& body, const Pose& pose) {
-  const double reach = body.bounding_radius + capsule.radius + 0.5 * (capsule.end - capsule.start).norm();
-  return capsule.radius > 0.0 && (capsule.centre() - pose.position).norm() <= reach;
-}
-
-/// The contact finder keeps the mark on those that do overlap and drops the others.
-void ignore_overlaps(std::size_t b, const Body& body, SimulationState& state) {
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    if (!state.hands[slot].active) continue;
-    for (std::size_t c = 0; c < kCapsules; ++c) {
-      if (!may_overlap(state.hands[slot].current.capsules[c], body, state.bodies[b].pose)) continue;
-      for (std::size_t shape = 0; shape < body.shapes.size(); ++shape) {
-        Contact contact;
-        contact.key = {0, static_cast<std::uint8_t>(shape), static_cast<std::uint8_t>(c),
-                       static_cast<std::uint8_t>(slot), static_cast<std::uint16_t>(b)};
-        contact.ignored = true;
-        state.contacts.push_back(contact);
-      }
-    }
-  }
-  std::sort(state.contacts.begin(), state.contacts.end(),
-            [](const Contact& x, const Contact& y) { return x.key < y.key; });
 }
 
 }  // namespace
@@ -94,9 +82,10 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
   }
   move(places, next.contacts);
   move(places, next.body_contacts);
+  move(places, next.grips);
   next.interactions = moved(places, after.bodies.size(), state);
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
-    if (!find_body(before, after.bodies[b].name)) ignore_overlaps(b, after.bodies[b], next);
+    if (!find_body(before, after.bodies[b].name)) mark_appeared(b, next);
   }
   return next;
 }
@@ -106,12 +95,6 @@ FrameResult carried_over(const FrameResult& result, const Scene& before, const S
   move(places_in(before, after), next.contacts);
   next.events.clear();
   return next;
-}
-
-void place(std::size_t body, const BodyState& placed, const Scene& scene, SimulationState& state) {
-  state.bodies[body] = placed;
-  forget_contacts(body, state);
-  ignore_overlaps(body, scene.bodies[body], state);
 }
 
 std::vector<Event> end_interactions_with(std::size_t body, SimulationState& state) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "frame_report.h"
 #include "mr_hand_interaction/scene_change.h"
 #include "mr_hand_interaction/tracking/tracker.h"
+#include "scene/text.h"
 #include "simulation_impl.h"
 
 namespace mrhi {
@@ -17,11 +19,22 @@ Scene completed(Scene scene) {
   return scene;
 }
 
-/// Edges grip under `implicit` alone: other models do not look at what is stored there.
+/// Edges grip, and hands are helped, under `implicit` alone: other models do not look at what is stored
+/// there.
 ContactConfiguration refinements(const Configuration& configuration) {
   ContactConfiguration result = configuration.contact;
-  result.edge_grip &= configuration.contact_model == ContactModelKind::implicit;
+  const bool implicit = configuration.contact_model == ContactModelKind::implicit;
+  result.edge_grip &= implicit;
+  result.grasp_assist &= implicit;
   return result;
+}
+
+/// What is set by name is within closer limits (parameters.h); this is for what is set in code.
+Nanoseconds checked_step(double step) {
+  constexpr double kShortest = 1e-6, kLongest = 1.0;
+  if (step >= kShortest && step <= kLongest) return static_cast<Nanoseconds>(std::llround(step * 1e9));
+  throw std::invalid_argument("step " + text::number(step) + " s is not allowed; allowed: " +
+                              text::number(kShortest) + " to " + text::number(kLongest));
 }
 
 }  // namespace
@@ -30,13 +43,14 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
     : scene(completed(std::move(scene_in))),
       configuration(configuration_in),
       gravity(configuration.gravity.value_or(scene.gravity)),
-      step_length(static_cast<Nanoseconds>(std::llround(configuration.step * 1e9))),
+      step_length(checked_step(configuration.step)),
       model(make_contact_model(configuration)),
       geometry(scene),
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
       sleeping(scene, configuration.contact.sleep),
+      assist(scene, finder, gravity, refinements(configuration)),
       renderer(scene, finder) {
   reset();
 }
@@ -48,6 +62,7 @@ void Simulation::Impl::reset() {
   state.hands.resize(kMaxHands);
   state.offsets.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
+  state.grips.reserve(kMaxHands * scene.bodies.size());
   state.contacts.reserve(64 * kMaxHands);
   state.body_contacts.reserve(16 * scene.bodies.size());
   state.sleeping_contacts.reserve(16 * scene.bodies.size());
@@ -63,6 +78,7 @@ void Simulation::Impl::clear_result() {
   result.rendered.clear();
   result.contacts.clear();
   result.events.clear();
+  result.not_finite.clear();
   strikes.clear();
 }
 
@@ -70,10 +86,10 @@ Simulation::Simulation(Scene scene, const Configuration& configuration)
     : impl_(std::make_unique<Impl>(std::move(scene), configuration)) {}
 Simulation::~Simulation() = default;
 
-Rejection Simulation::begin(const HandFrame& frame) {
+Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected) {
   Impl& s = *impl_;
   s.result.restarted = false;
-  const Rejection rejection = s.judge(frame.stamp);
+  const Rejection rejection = s.judge(frame.stamp, expected);
   if (rejection != Rejection::none) return rejection;
   s.clear_result();
   if (!s.state.started) {
@@ -84,6 +100,7 @@ Rejection Simulation::begin(const HandFrame& frame) {
     s.silence(frame.stamp);
   s.lose_hands(frame.stamp);
   track_hands(frame, s.configuration, s.state.hands, s.result.events);
+  s.lose_hands_that_are_not_finite(frame.stamp);
   s.state.last_frame = frame.stamp;
   s.plan(s.state.time, frame.stamp);
   return Rejection::none;
@@ -119,10 +136,15 @@ const FrameResult& Simulation::result() const {
 }
 
 double Simulation::deepest_rendered() const {
+  const Impl& s = *impl_;
   double deepest = 0.0;
-  for (const RenderedHand& rendered : impl_->result.rendered)
-    deepest = std::max(deepest,
-                       deepest_penetration(rendered.hand, impl_->finder, impl_->scene, impl_->state.bodies));
+  auto rendered = s.result.rendered.begin();
+  for (std::size_t slot = 0; slot < s.state.hands.size(); ++slot) {
+    if (!s.state.hands[slot].active || rendered == s.result.rendered.end()) continue;
+    const Interaction* interactions = s.state.interactions.data() + slot * s.state.bodies.size();
+    deepest = std::max(
+        deepest, deepest_penetration((rendered++)->hand, s.finder, s.scene, s.state.bodies, interactions));
+  }
   return deepest;
 }
 
@@ -189,7 +211,17 @@ const char* to_string(Stage stage) {
 }
 
 const char* to_string(Rejection rejection) {
-  return rejection == Rejection::none ? "none" : "stamp not increasing";
+  switch (rejection) {
+    case Rejection::stamp_not_increasing:
+      return "stamp not increasing";
+    case Rejection::stamp_ahead:
+      return "stamp far ahead";
+    case Rejection::no_stamp:
+      return "stamp out of range";
+    case Rejection::none:
+      break;
+  }
+  return "none";
 }
 
 }  // namespace mrhi

@@ -7,9 +7,6 @@
 namespace mrhi {
 namespace {
 
-/// A step back in time of more than this may be a stream that begins anew; less is a frame out of order.
-constexpr Nanoseconds kRestart = 500'000'000;
-constexpr int kRestartFrames = 3;
 /// A step may be this much longer than asked for, so that a frame of one step does not become two by
 /// rounding.
 constexpr Nanoseconds kStepSlack = 1000;
@@ -20,21 +17,25 @@ constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 
 }  // namespace
 
-/// Refuses a stamp that does not increase, unless it is the third of a stream that goes on from an earlier
-/// time.
-Rejection Simulation::Impl::judge(Nanoseconds stamp) {
-  if (!state.started || stamp > state.time) {
-    state.restart_frames = 0;
-    return Rejection::none;
+Rejection Simulation::Impl::judge(Nanoseconds stamp, const std::optional<Nanoseconds>& expected) {
+  switch (state.stamps.judge(stamp, state.time, expected)) {
+    case StampVerdict::late:
+    case StampVerdict::behind:
+      return Rejection::stamp_not_increasing;
+    case StampVerdict::ahead:
+      return Rejection::stamp_ahead;
+    case StampVerdict::no_time:
+      return Rejection::no_stamp;
+    case StampVerdict::restart: {
+      const StampJudge stamps = state.stamps;
+      reset();
+      state.stamps = stamps;
+      result.restarted = true;
+      break;
+    }
+    case StampVerdict::follows:
+      break;
   }
-  if (state.time - stamp <= kRestart) return Rejection::stamp_not_increasing;
-  const bool follows =
-      state.restart_frames > 0 && stamp > state.restart_stamp && stamp - state.restart_stamp < kRestart;
-  state.restart_frames = follows ? state.restart_frames + 1 : 1;
-  state.restart_stamp = stamp;
-  if (state.restart_frames < kRestartFrames) return Rejection::stamp_not_increasing;
-  reset();
-  result.restarted = true;
   return Rejection::none;
 }
 
@@ -43,6 +44,7 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
   frame_to = to;
   steps_done = 0;
   begin_hands(to_seconds(to - from));
+  assist.begin_frame(neighbours, to_seconds(to - from), state);
   steps = steps_needed(to - from);
 }
 
@@ -88,11 +90,13 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
     if (track.active && unseen) end_interactions(slot, now, state, result.events);
   }
   lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
+  assist.let_go(state);
 }
 
 void Simulation::Impl::finish(Nanoseconds stamp) {
   result.stamp = stamp;
   report_frame({scene, hands, neighbours, finder, renderer, strikes, state}, result);
+  report_what_is_finite();
 }
 
 }  // namespace mrhi

@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "grasp_assist.h"
 #include "mr_hand_interaction/collision/body_contact_finder.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/collision/neighbours.h"
@@ -24,13 +26,17 @@ struct Simulation::Impl {
   void clear_result();
 
   // Frames.
-  Rejection judge(Nanoseconds stamp);
+  Rejection judge(Nanoseconds stamp, const std::optional<Nanoseconds>& expected);
   void plan(Nanoseconds from, Nanoseconds to);
   int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
   void silence(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void finish(Nanoseconds stamp);
+
+  // What is not finite never leaves (not_finite.cpp); what it was of is named in the result.
+  void lose_hands_that_are_not_finite(Nanoseconds now);
+  void report_what_is_finite();
 
   // A step.
   bool quiet(double seconds) const;
@@ -47,6 +53,7 @@ struct Simulation::Impl {
   ContactFinder finder;
   BodyContactFinder body_finder;
   Sleeping sleeping;
+  GraspAssist assist;
   HandRenderer renderer;
 
   SimulationState state;
@@ -64,5 +71,7 @@ struct Simulation::Impl {
     if (ended) ended(stage);
   }
 };
+
+bool is_finite(const BodyState& state);
 
 }  // namespace mrhi

@@ -40,20 +40,34 @@ void add_hand(const Hand& hand, Fnv1a& hash) {
   }
 }
 
+/// Counts also for a slot that is free: the next hand of its side takes it over.
+void add_noise(const SeenNoise& noise, Side side, Fnv1a& hash) {
+  if (noise.size == 0) return;
+  hash.add(side);
+  for (int i = 0; i < noise.size; ++i) hash.add(noise.variances[static_cast<std::size_t>(i)]);
+  hash.add(noise.variance);
+}
+
 void add_filter(const FilterMemory& memory, Fnv1a& hash) {
-  for (int i = 0; i < memory.history.size; ++i)
-    add_hand(memory.history.samples[static_cast<std::size_t>(i)], hash);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(memory.history.size); ++i) {
+    add_hand(memory.history.samples[i], hash);
+    hash.add(memory.history.elapsed[i]);
+  }
   add_hand(memory.filtered, hash);
   for (const Vector3& velocity : memory.velocity.points) hash.add(velocity);
   hash.add(memory.velocity.turn);
   hash.add(memory.variance.position);
   hash.add(memory.variance.mixed);
   hash.add(memory.variance.speed);
+  add_noise(memory.noise, memory.filtered.side, hash);
 }
 
 void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
   hash.add(track.active);
-  if (!track.active) return;
+  if (!track.active) {
+    add_noise(track.filter.noise, track.current.side, hash);
+    return;
+  }
   hash.add(track.held);
   hash.add(track.appeared);
   hash.add(track.emerged);
@@ -74,7 +88,8 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
 
 void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {
   if (offset.zero()) return;
-  hash.add(offset.shift);
+  hash.add(Pose{offset.shift, offset.lag.whole});
+  hash.add(Pose{Vector3::Zero(), offset.lag.frame});
   for (const FingerOffset& finger : offset.fingers)
     for (int i = 0; i < finger.size(); ++i) hash.add(finger[i]);
   hash.add(now - offset.stamp);
@@ -92,7 +107,21 @@ void add_contact(const Contact& contact, Fnv1a& hash) {
   hash.add(contact.twist);
   hash.add(contact.friction);
   hash.add(contact.struck);
+  hash.add(contact.given);
   hash.add(contact.ignored);
+}
+
+void add_grip(const Grip& grip, Fnv1a& hash) {
+  hash.add(grip.body);
+  hash.add(grip.hand);
+  hash.add(grip.by_palm);
+  hash.add(grip.fingers);
+  hash.add(grip.opening);
+  hash.add(grip.least);
+  hash.add(grip.bond);
+  hash.add(grip.middle);
+  for (const Vector3& point : grip.in_hand) hash.add(point);
+  for (const Vector3& point : grip.in_body) hash.add(point);
 }
 
 void add_contact(const BodyContact& contact, Fnv1a& hash) {
@@ -116,12 +145,25 @@ bool is_held(std::size_t body, const SimulationState& state) {
 
 void forget_contacts(std::size_t body, SimulationState& state) {
   wake_all(state);
-  const auto forget = [](auto& contacts, auto concerns) {
+  const auto forget = [](auto& contacts, const auto& concerns) {
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(), concerns), contacts.end());
   };
   forget(state.contacts, [body](const Contact& contact) { return contact.key.body == body; });
+  forget(state.grips, [body](const Grip& grip) { return grip.body == body; });
   forget(state.body_contacts,
          [body](const BodyContact& contact) { return contact.key.a == body || contact.key.b == body; });
+}
+
+void mark_appeared(std::size_t body, SimulationState& state) {
+  state.bodies[body].appeared = true;
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot)
+    state.interactions[slot * state.bodies.size() + body].shown_in = state.hands[slot].active;
+}
+
+void place(std::size_t body, const BodyState& placed, SimulationState& state) {
+  state.bodies[body] = placed;
+  forget_contacts(body, state);
+  mark_appeared(body, state);
 }
 
 std::uint64_t hash(const SimulationState& state) {
@@ -133,16 +175,19 @@ std::uint64_t hash(const SimulationState& state) {
     hash.add(body.angular_momentum);
     hash.add(body.pushed.linear);
     hash.add(body.pushed.angular);
+    hash.add(body.appeared);
   }
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     add_track(state.hands[slot], state.time, hash);
     if (state.hands[slot].active) add_offset(state.offsets[slot], state.time, hash);
   }
   for (const Contact& contact : state.contacts) add_contact(contact, hash);
+  for (const Grip& grip : state.grips) add_grip(grip, hash);
   for (const BodyContact& contact : state.body_contacts) add_contact(contact, hash);
   for (const BodyContact& contact : state.sleeping_contacts) add_contact(contact, hash);
   for (const Interaction& interaction : state.interactions) {
     hash.add(interaction.level);
+    hash.add(interaction.shown_in);
     if (interaction.level >= InteractionLevel::contact) hash.add(state.time - interaction.agreed);
   }
   return hash.value();

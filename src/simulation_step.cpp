@@ -27,15 +27,19 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   sleeping.wake(neighbours, step, state);
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
+  assist.begin_step(fraction, state);
   end_stage(Stage::hand_contacts);
   body_finder.find(neighbours, state.bodies, state.asleep, step, state.body_contacts);
   end_stage(Stage::body_contacts);
   changes.reset(scene.bodies.size());
-  ContactStep contact_step{scene, gravity, step, state.contacts, state.body_contacts, state.bodies, changes};
+  ContactStep contact_step{scene,        gravity, step,       state.contacts, state.body_contacts,
+                           state.bodies, changes, state.grips};
   model->respond(contact_step);
+  assist.share_force(state);
   note_strikes(state.contacts, strikes);
   end_stage(Stage::response);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.bodies[b].appeared = false;
     if (state.asleep[b]) continue;
     free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
   }
@@ -50,10 +54,12 @@ void Simulation::Impl::keep_in_bounds() {
     const Body& body = scene.bodies[b];
     if (body.fixed) continue;
     const Vector3& p = state.bodies[b].pose.position;
-    if ((p.array() >= scene.bounds.min.array()).all() && (p.array() <= scene.bounds.max.array()).all())
+    const bool sound = is_finite(state.bodies[b]);
+    if (sound && (p.array() >= scene.bounds.min.array()).all() &&
+        (p.array() <= scene.bounds.max.array()).all())
       continue;
-    state.bodies[b] = start_state(body);
-    forget_contacts(b, state);
+    if (!sound) result.not_finite.push_back("object '" + body.name + "'");
+    place(b, start_state(body), state);
     result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ class Engine {
   /// Called after step(). Not part of the measured time.
   virtual void after_step() {}
   virtual Motion motion(std::size_t body) const = 0;
+  /// Asks that pressing() be told; before the first step.
+  virtual void watch_forces() {}
+  /// How hard the hand's part is pressed, as the last step found: the sum of its contacts' forces [N].
+  virtual double pressing(std::size_t /*kinematic*/) const { return std::nan(""); }
 };
 
 /// How worlds of one engine are made. One object in each engine's module.

@@ -1,6 +1,5 @@
 #include "engine_module.h"
 
-#include <dlfcn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,15 +10,6 @@
 #include "configured.h"
 
 namespace mrhi::benchmark {
-
-const EngineMaker& load(const std::string& file) {
-  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (module == nullptr) throw std::runtime_error(dlerror());
-  using Export = const EngineMaker* (*)();
-  const auto entry = reinterpret_cast<Export>(dlsym(module, "speed_accuracy_engine"));
-  if (entry == nullptr) throw std::runtime_error(file + ": exports no engine");
-  return *entry();
-}
 
 std::vector<EngineModule> engine_modules() {
   return {SPEED_ACCURACY_ENGINES};

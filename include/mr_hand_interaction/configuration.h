@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -11,13 +12,15 @@ namespace mrhi {
 enum class ContactModelKind { implicit, seed, penetration, impulse, virtual_spring, soft_pad };
 enum class FilterKind { none, window, one_euro, constant_velocity };
 
+constexpr double kUsualNoise = 0.0004;  ///< of a good tracker's sample, rms on an axis [m]
+
 struct FilterConfiguration {
   FilterKind type = FilterKind::constant_velocity;
   int window = 3;                   ///< F of Eq. 1, frames
   double min_cutoff = 2.0;          ///< one_euro: cutoff of a hand at rest [Hz]
   double beta = 100.0;              ///< one_euro: what the cutoff gains with speed [Hz per m/s]
   double derivative_cutoff = 10.0;  ///< one_euro: cutoff of the speed that beta multiplies [Hz]
-  double noise = 0.0004;            ///< constant_velocity: of a sample, rms on an axis [m]
+  std::optional<double> noise;      ///< constant_velocity: of a sample, rms on an axis [m]; unset: estimated
   double acceleration = 0.1;        ///< constant_velocity: of a hand at rest, rms [m/s^2]
   double agility = 4.0;             ///< constant_velocity: what the acceleration gains with speed [1/s]
 };
@@ -26,6 +29,20 @@ struct TrackingConfiguration {
   double hold_time = 0.2;  ///< a lost hand keeps its last pose this long [s]
   double max_speed =
       12.0;  ///< a joint faster than this has jumped: the hand touches nothing until clear [m/s]
+};
+
+/// What a hand can bring to bear under `implicit`. The paper's hand goes where it is tracked whatever stands
+/// against it; a person's gives way. Where a person's figures come from is told in docs/contact.md.
+struct HandStrength {
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+  double finger = kUnlimited;  ///< most that a finger pushes with [N]
+  double palm = kUnlimited;    ///< most that the palm pushes with [N]
+  double pad = 0.0;            ///< depth over which pulp stiffens to the material's stiffness; 0: none [m]
+  double finger_mass = kUnlimited;  ///< effective, of a phalanx that strikes; people's: 0.01 to 0.03 [kg]
+  double palm_mass = kUnlimited;    ///< the same of a palm; people's: 0.3 to 0.5 [kg]
+
+  static HandStrength of_a_person() { return {20.0, 40.0, 0.002, kUnlimited, kUnlimited}; }
 };
 
 /// The switches are refinements: on, unless one is turned off to see what it is worth (docs/contact.md).
@@ -39,8 +56,10 @@ struct ContactConfiguration {
   bool damping = true;          ///< a pressed spring has a dashpot beside it (`implicit`)
   bool torsion = true;          ///< a fingertip resists twisting about its contact normal (`implicit`)
   bool edge_grip = true;        ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
+  bool grasp_assist = false;    ///< a hand that closes round a body and through it holds it (`implicit`)
   bool sleep = true;            ///< bodies that lie still on others cost nothing until something comes near
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
+  HandStrength hand;
 };
 
 /// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.

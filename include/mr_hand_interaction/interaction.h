@@ -14,6 +14,7 @@ enum class InteractionLevel : std::uint8_t { none, hover, contact, grasp };
 struct Interaction {
   InteractionLevel level = InteractionLevel::none;
   Nanoseconds agreed = 0;  ///< when the level last was what the contacts say
+  bool shown_in = false;   ///< the body appeared: the hand is shown in it until it is once clear of it
 };
 
 /// Numbers are those of InteractionEvent.msg.

@@ -32,6 +32,9 @@ class LiveSimulation {
   /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
   /// place out of bounds.
   void place(const std::string& name, const Pose& pose);
+  /// Everything back to its start. Hands are found anew; of one that a free body comes back in neither is
+  /// pushed aside until they have separated.
+  void reset();
 
  private:
   void go_on_with(const Scene& scene, const Configuration& configuration);

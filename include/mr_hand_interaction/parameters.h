@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,11 +23,22 @@ void set_parameter(Configuration& configuration, const std::string& name, const 
 /// Sets every parameter of a YAML file; nested maps and slashes both work. Throws ParameterError.
 void load_parameters(Configuration& configuration, const std::string& yaml_file);
 
-/// Checks what only shows when all are set (dynamic friction at most static). Throws ParameterError.
+/// Checks every value against its limits, for those that were set in code, and what only shows when all are
+/// set (dynamic friction at most static). Throws ParameterError.
 void validate(const Configuration& configuration);
 
 /// What a parameter is now, as YAML that set_parameter takes. Throws ParameterError for an unknown name.
 std::string parameter_text(const Configuration& configuration, const std::string& name);
+
+/// Ends of what a number may be, and of the part of it that a slider spans.
+struct ParameterLimits {
+  double min, max;  ///< both allowed
+  double slider_min, slider_max;
+};
+
+/// Limits of a number, of each number of a vector; nothing for other parameters. Throws ParameterError for an
+/// unknown name.
+std::optional<ParameterLimits> parameter_limits(const std::string& name);
 
 /// All public names, sorted.
 std::vector<std::string> parameter_names();

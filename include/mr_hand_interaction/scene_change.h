@@ -10,15 +10,11 @@ namespace mrhi {
 
 /// The state of a simulation of `before` as that of one of `after`. A body that both have by name keeps its
 /// pose, momentum, contacts with their memory, and interactions to the bit; bodies that both have must be in
-/// the same order. All are awake. A body that only `after` has is at its start, as by place().
+/// the same order. All are awake. A body that only `after` has is at its start and has appeared there.
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after);
 
 /// The same for what was shown last, without its events.
 FrameResult carried_over(const FrameResult& result, const Scene& before, const Scene& after);
-
-/// Puts a body somewhere: its contacts are forgotten, and a phalanx that it now overlaps does not push it
-/// until they have separated.
-void place(std::size_t body, const BodyState& placed, const Scene& scene, SimulationState& state);
 
 /// Ends what hands do with a body, in the fixed order of events.
 std::vector<Event> end_interactions_with(std::size_t body, SimulationState& state);

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "mr_hand_interaction/configuration.h"
@@ -13,11 +15,13 @@
 
 namespace mrhi {
 
-/// What a frame of input led to. `none` means that it was taken.
+/// What a frame of input led to. `none` means that it was taken. See StampJudge.
 enum class Rejection : std::uint8_t {
   none,
   stamp_not_increasing,  ///< repeats or goes back; a stream that has really restarted is taken from its third
                          ///< frame
+  stamp_ahead,           ///< far ahead of its stream; after a real gap, frames are taken from the second
+  no_stamp               ///< beyond what a stamp can be
 };
 const char* to_string(Rejection rejection);
 
@@ -28,6 +32,9 @@ struct FrameResult {
   std::vector<RenderedHand> rendered;  ///< same order
   std::vector<Contact> contacts;       ///< touching at the frame's end, or struck since the frame before
   std::vector<Event> events;
+  /// What came out as no number, and was left out or put back at its start: "object 'cube'". Empty, if all is
+  /// well.
+  std::vector<std::string> not_finite;
   bool restarted = false;  ///< time went back (a looping bag): everything is at its start
 };
 
@@ -41,12 +48,15 @@ const char* to_string(Stage stage);
 /// or advance(), which does just that. Copyable by copying state().
 class Simulation {
  public:
-  /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)).
+  /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)), or for a step
+  /// that is not from a microsecond to a second.
   Simulation(Scene scene, const Configuration& configuration);
   ~Simulation();
 
-  /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one.
-  Rejection begin(const HandFrame& frame);
+  /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one. `expected`: the
+  /// stamp that a frame of now should have, where a clock of the input tells; so a gap is known from a stray
+  /// stamp.
+  Rejection begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected = {});
   /// Advances by one step of at most Configuration::step, or over the whole of a short frame in which nothing
   /// comes near anything; false, without a step, once the frame's stamp is reached.
   bool step();
@@ -55,7 +65,8 @@ class Simulation {
 
   Rejection advance(const HandFrame& frame);
   const FrameResult& result() const;
-  /// Deepest penetration of a rendered capsule in any body, fixtures too, as the frame ended [m], >= 0.
+  /// Deepest penetration of a rendered capsule in any body, fixtures too, as the frame ended [m], >= 0. Left
+  /// out are bodies that have appeared in the hand, until it is clear of them.
   double deepest_rendered() const;
 
   /// With no frames coming: moves on to `time`, which the next frame then continues from with the same bits

@@ -8,24 +8,26 @@
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/rendering/hand_offset.h"
+#include "mr_hand_interaction/response/grip.h"
+#include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
 /// All that changes. A copy of it is a checkpoint: continuing from a copy gives the same bits.
 struct SimulationState {
-  bool started = false;                    ///< a frame has been taken
-  Nanoseconds time = 0;                    ///< stamp up to which bodies have been advanced
-  Nanoseconds last_frame = 0;              ///< stamp of the last frame taken
-  Nanoseconds restart_stamp = 0;           ///< newest of the frames that went back in time and were refused
-  int restart_frames = 0;                  ///< how many in a row followed on from each other
-  std::vector<BodyState> bodies;           ///< one per Scene::bodies, fixtures too
-  std::vector<char> asleep;                ///< likewise: lies still, and is not looked at until disturbed
-  std::vector<HandTrack> hands;            ///< slots; see HandTrack::active
-  std::vector<Contact> contacts;           ///< of hands with bodies, sorted by key
-  std::vector<BodyContact> body_contacts;  ///< of bodies with each other, sorted by key
+  bool started = false;                        ///< a frame has been taken
+  Nanoseconds time = 0;                        ///< stamp up to which bodies have been advanced
+  Nanoseconds last_frame = 0;                  ///< stamp of the last frame taken
+  StampJudge stamps;                           ///< of the frames taken, and of those that were refused
+  std::vector<BodyState> bodies;               ///< one per Scene::bodies, fixtures too
+  std::vector<char> asleep;                    ///< likewise: lies still, and is not looked at until disturbed
+  std::vector<HandTrack> hands;                ///< slots; see HandTrack::active
+  std::vector<Contact> contacts;               ///< of hands with bodies, sorted by key
+  std::vector<BodyContact> body_contacts;      ///< of bodies with each other, sorted by key
   std::vector<BodyContact> sleeping_contacts;  ///< likewise, of bodies that are asleep
   std::vector<HandOffset> offsets;             ///< of the rendered hands, by slot
+  std::vector<Grip> grips;                     ///< what hands hold, by hand and body
   std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };
 
@@ -36,6 +38,12 @@ void wake_all(SimulationState& state);
 bool is_held(std::size_t body, const SimulationState& state);
 /// Takes all contacts of a body away. Wakes all bodies.
 void forget_contacts(std::size_t body, SimulationState& state);
+
+/// The body is where it was not before: a hand that it overlaps there neither pushes it nor is shown pushed
+/// aside until they have separated.
+void mark_appeared(std::size_t body, SimulationState& state);
+/// Puts a body somewhere: its contacts are forgotten, and it has appeared there.
+void place(std::size_t body, const BodyState& placed, SimulationState& state);
 
 /// FNV-1a over the bits of everything that matters to the future. Stamps count relative to `time`: the same
 /// motion at another time of day has the same hash.

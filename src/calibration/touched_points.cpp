@@ -6,6 +6,7 @@
 #include <locale>
 #include <sstream>
 
+#include "../scene/safe_yaml.h"
 #include "../scene/text.h"
 #include "../scene/yaml_values.h"
 
@@ -85,14 +86,14 @@ std::string list(const Vector3& v) {
 
 std::vector<TouchedPoint> read_points(const std::string& file) {
   try {
-    const YAML::Node root = YAML::LoadFile(file);
+    const YAML::Node root = load_yaml_file(file);
     const YAML::Node list = root.IsMap() ? root["points"] : YAML::Node();
     if (!list || !list.IsSequence()) throw PointsError(file + ": no list named points");
     std::vector<TouchedPoint> points;
     for (const auto& node : list) points.push_back(PointReader(file, node).read(points.size() + 1));
     return points;
-  } catch (const YAML::BadFile&) {
-    throw PointsError(file + ": cannot be read");
+  } catch (const YamlError& error) {
+    throw PointsError(error.what());
   } catch (const YAML::Exception& error) {
     throw PointsError(yaml_place(file, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }
@@ -130,13 +131,49 @@ void check_places(const std::vector<TouchedPoint>& points) {
   fit_rigid(pairs);
 }
 
+namespace {
+
+constexpr double kClearly = 0.5;  // of the rms with all points
+
+struct OddOne {
+  const TouchedPoint* point;
+  double rms_without;
+};
+
+/// The point without which the others fit best. It draws the fit towards itself, so that the largest residual
+/// may be at another one. Nothing for fewer than five points: four of them would tell too little.
+std::optional<OddOne> odd_one_out(const std::vector<TouchedPoint>& points) {
+  constexpr std::size_t kFewest = 5;
+  if (points.size() < kFewest) return {};
+  std::optional<OddOne> odd;
+  for (const TouchedPoint& point : points) {
+    std::vector<TouchedPoint> others;
+    for (const TouchedPoint& other : points)
+      if (&other != &point) others.push_back(other);
+    try {
+      const double rms = fit_mount(others).rms;
+      if (!odd || rms < odd->rms_without) odd = OddOne{&point, rms};
+    } catch (const FitError&) {
+      // On one line without it: it is needed, and nothing is known of it.
+    }
+  }
+  return odd;
+}
+
+}  // namespace
+
 void check_residual(const std::vector<TouchedPoint>& points, const RigidFit& fit, double largest) {
   if (fit.rms <= largest) return;
   const auto worst = std::max_element(fit.residuals.begin(), fit.residuals.end());
   const TouchedPoint& point = points[static_cast<std::size_t>(worst - fit.residuals.begin())];
   auto stream = plain_stream(1);
-  stream << "the residual is too large: rms " << 1e3 * fit.rms << " mm, " << 1e3 * *worst << " mm at "
-         << point.name << "; allowed: rms " << 1e3 * largest
+  stream << "the residual is too large: rms " << 1e3 * fit.rms << " mm, ";
+  if (const auto odd = odd_one_out(points); odd && odd->rms_without < kClearly * fit.rms) {
+    stream << "but " << 1e3 * odd->rms_without << " mm without " << odd->point->name;
+  } else {
+    stream << 1e3 * *worst << " mm at " << point.name;
+  }
+  stream << "; allowed: rms " << 1e3 * largest
          << " mm (are the points in metres, and touched in their order?)";
   throw FitError(stream.str());
 }

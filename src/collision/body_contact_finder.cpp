@@ -147,8 +147,6 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
     const Vector3 apart = (of_a.centre - of_b.centre).cwiseAbs() - of_a.half - of_b.half;
     if (apart.maxCoeff() <= 0.0) find_pair(ia, ib, bodies, step, contacts);
   }
-  std::sort(found_.begin(), found_.end(),
-            [](const BodyContact& x, const BodyContact& y) { return x.key < y.key; });
   contacts.swap(found_);
 }
 
@@ -188,6 +186,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
       const auto touch = find_touch(pair, step, margin);
       if (!touch) continue;
+      const std::size_t first = found_.size();
       for (int p = 0; p < touch->manifold.count; ++p) {
         const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
         if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
@@ -195,6 +194,9 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
         found_.push_back(make_contact(key, pair, *touch, point, memory_of(key, before)));
       }
+      // Pairs come sorted, so that only the points of one need to be.
+      std::sort(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(),
+                [](const BodyContact& x, const BodyContact& y) { return x.key < y.key; });
     }
   }
 }

@@ -140,7 +140,8 @@ void begin_contact(const TouchingPair& pair, int point, const ContactMemory* mem
   contact = ContactMemory();
   contact.key = pair.key(point);
   contact.struck = nearest != nullptr && nearest->struck;
-  contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged;
+  contact.given = nearest != nullptr ? nearest->given : 0.0;
+  contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged || pair.moving.appeared;
 }
 
 /// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a

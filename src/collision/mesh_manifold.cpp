@@ -6,18 +6,30 @@
 #include "contact_region.h"
 #include "disc_overlap.h"
 #include "line_contact.h"
+#include "mesh_shape.h"
 #include "sphere_manifold.h"
 
 namespace mrhi {
 namespace {
 
-constexpr int kMostTouches = 128;
 /// Touches whose normals are within 20 degrees of the deepest's belong to it.
 constexpr double kAgrees = 0.94;
 constexpr double kSameDepth = 1e-6;
 constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
 /// An edge that touches with its end leaves that to the corner there.
 constexpr double kAtEnd = 1e-6;
+constexpr std::size_t kDirections = 8;
+
+/// What may stick out of a shape: a corner (both ends the same) or an edge, in world.
+struct Probe {
+  Vector3 start, end;
+  int name;
+
+  static Probe corner(const Vector3& place, int number) { return {place, place, number % kCornerNames}; }
+  static Probe edge(const Vector3& start, const Vector3& end, int number) {
+    return {start, end, kCornerNames + number % kEdgeNames};
+  }
+};
 
 struct Touch {
   Vector3 point, normal;
@@ -25,153 +37,226 @@ struct Touch {
   std::uint8_t feature;
 };
 
-struct Touches {
-  std::array<Touch, kMostTouches> found;
-  int count = 0;
-
-  const Touch& operator[](int i) const { return found[static_cast<std::size_t>(i)]; }
-};
-
 /// Measures what sticks out of one shape in the other.
-struct Probes {
+struct Probing {
+  const ManifoldShape& of;
   const Pose& pose;
   const ManifoldShape& other;
   const Pose& other_pose;
   bool other_is_b;
   double margin;
-  Touches& touches;
 
-  void corner(const Vector3& point, int number) const { add(point, point, number % kCornerNames); }
-  void edge(const Vector3& start, const Vector3& end, int number) const {
-    add(start, end, kCornerNames + number % kEdgeNames);
-  }
-  void add(const Vector3& start, const Vector3& end, int name) const {
-    if (touches.count == kMostTouches) return;
-    const double reach = other.bounding_radius + margin + 0.5 * (end - start).norm();
-    if ((0.5 * (start + end) - other_pose.position).squaredNorm() > reach * reach) return;
+  std::optional<Touch> touch(const Probe& probe) const {
+    const Vector3 middle = 0.5 * (probe.start + probe.end);
+    const double reach = other.bounding_radius + margin + 0.5 * (probe.end - probe.start).norm();
+    if ((middle - other_pose.position).squaredNorm() > reach * reach) return std::nullopt;
     const auto features =
-        closest_on(other, {other_pose.to_local(start), other_pose.to_local(end), 0.0}, margin);
-    if (!features) return;
+        closest_on(other, {other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
+    if (!features) return std::nullopt;
     const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
-    if (start != end && at_end) return;
+    if (probe.start != probe.end && at_end) return std::nullopt;
     const Vector3 normal = other_pose.orientation * features->normal;
     const Vector3 midway = features->point + 0.5 * features->distance * features->normal;
-    touches.found[static_cast<std::size_t>(touches.count++)] = {
-        other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
-        static_cast<std::uint8_t>(other_is_b ? name : kSecond + name)};
+    return Touch{other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
+                 static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name)};
+  }
+
+  /// No part of a node is deeper in the other shape than this.
+  double most(const MeshTree::Node& node) const {
+    const Vector3 centre = pose * node.centre;
+    const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
+    if (apart > margin) return -1e300;
+    const Vector3 local = other_pose.to_local(centre);
+    const auto features = closest_on(other, {local, local, 0.0}, margin + node.radius);
+    return features ? node.radius - features->distance : -1e300;
   }
 };
 
-struct Corners {
-  const Probes& probes;
+/// The corners and edges of a shape, always in the same order; of a mesh those in nodes that are wanted.
+template <typename Wanted, typename See>
+struct Probes {
+  const Probing& probing;
+  const Wanted& wanted;
+  const See& see;
 
   void operator()(const Sphere&) const {}
   void operator()(const Box& shape) const {
-    const OrientedBox box(shape, probes.pose);
-    for (int i = 0; i < kBoxCorners; ++i) probes.corner(box.corner(i), i);
-  }
-  void operator()(const Cylinder& shape) const {
-    const OrientedCylinder cylinder(shape, probes.pose);
-    for (const double side : {-1.0, 1.0}) {
-      const Disc cap(cylinder, side * cylinder.axis);
-      int number = 4 * cap.cap;
-      for (const double angle : rim_angles(cap.radius, {{0.0, 0.0}})) probes.corner(cap.at(angle), number++);
-    }
-  }
-  void operator()(const Mesh& mesh) const {
-    int number = 0;
-    for (const Vector3& vertex : mesh.triangles->vertices) probes.corner(probes.pose * vertex, number++);
-  }
-};
-
-struct Edges {
-  const Probes& probes;
-
-  void operator()(const Sphere&) const {}
-  void operator()(const Box& shape) const {
-    const OrientedBox box(shape, probes.pose);
+    const OrientedBox box(shape, probing.pose);
+    for (int i = 0; i < kBoxCorners; ++i) see(Probe::corner(box.corner(i), i));
     for (int i = 0; i < kBoxEdges; ++i) {
       const int direction = i / 4, first = (direction + 1) % 3, second = (direction + 2) % 3;
       const int low = (i & 1) << first | (i >> 1 & 1) << second;
-      probes.edge(box.corner(low), box.corner(low | 1 << direction), i);
+      see(Probe::edge(box.corner(low), box.corner(low | 1 << direction), i));
     }
   }
-  /// The side line that faces the mesh, and with it the lowest point of a rim.
-  void operator()(const Cylinder& shape) const;
-  void operator()(const Mesh& mesh) const {
-    const std::vector<Vector3>& vertices = mesh.triangles->vertices;
-    int number = 0;
-    for (const std::array<int, 3>& triangle : mesh.triangles->triangles) {
-      for (std::size_t i = 0; i < 3; ++i, ++number) {
-        const int from = triangle[i], to = triangle[(i + 1) % 3];
-        if (from > to) continue;
-        probes.edge(probes.pose * vertices[static_cast<std::size_t>(from)],
-                    probes.pose * vertices[static_cast<std::size_t>(to)], number);
-      }
+  void operator()(const Cylinder& shape) const {
+    const OrientedCylinder cylinder(shape, probing.pose);
+    for (const double side : {-1.0, 1.0}) {
+      const Disc cap(cylinder, side * cylinder.axis);
+      int number = 4 * cap.cap;
+      for (const double angle : rim_angles(cap.radius, {{0.0, 0.0}}))
+        see(Probe::corner(cap.at(angle), number++));
     }
+    side_line_of(cylinder);
+  }
+  void operator()(const Mesh&) const {
+    const MeshShape& mesh = probing.of.mesh->shape();
+    mesh.tree.visit(wanted, [&](int part) { of_mesh(mesh.surface, part); });
+  }
+  void of_mesh(const MeshSurface& surface, int part) const {
+    const int index = part - static_cast<int>(surface.faces().size());
+    if (index < 0) return;
+    const MeshSurface::Edge& edge = surface.edges()[static_cast<std::size_t>(index)];
+    const Vector3 start = probing.pose * edge.start, end = probing.pose * Vector3(edge.start + edge.along);
+    if (surface.is_first_edge(index, edge.corners[0])) see(Probe::corner(start, edge.corners[0]));
+    if (surface.is_first_edge(index, edge.corners[1])) see(Probe::corner(end, edge.corners[1]));
+    see(Probe::edge(start, end, index));
+  }
+
+ private:
+  /// The side line that faces the mesh, and with it the lowest point of a rim.
+  void side_line_of(const OrientedCylinder& cylinder) const {
+    const Pose& mesh_pose = probing.other_pose;
+    const double inner = std::max(0.0, cylinder.half_length - cylinder.radius);
+    const double radius = std::min(cylinder.radius, cylinder.half_length);
+    const Capsule inside{mesh_pose.to_local(cylinder.centre - inner * cylinder.axis),
+                         mesh_pose.to_local(cylinder.centre + inner * cylinder.axis), radius};
+    const auto features =
+        closest_on(probing.other, inside, probing.margin + cylinder.radius + cylinder.half_length);
+    if (!features) return;
+    const Vector3 facing = -(mesh_pose.orientation * features->normal);
+    if (cylinder.across(facing).norm() < 0.01) return;
+    const Line line = side_line(cylinder, facing);
+    see(Probe::corner(line.at(-line.half), 8));
+    see(Probe::corner(line.at(line.half), 9));
+    see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
 };
 
-void Edges::operator()(const Cylinder& shape) const {
-  const OrientedCylinder cylinder(shape, probes.pose);
-  const Pose& mesh_pose = probes.other_pose;
-  const double inner = std::max(0.0, shape.half_length - shape.radius);
-  const double radius = std::min(shape.radius, shape.half_length);
-  const Capsule inside{mesh_pose.to_local(cylinder.centre - inner * cylinder.axis),
-                       mesh_pose.to_local(cylinder.centre + inner * cylinder.axis), radius};
-  const auto features = closest_on(probes.other, inside, probes.margin + shape.radius + shape.half_length);
-  if (!features) return;
-  const Vector3 facing = -(mesh_pose.orientation * features->normal);
-  if (cylinder.across(facing).norm() < 0.01) return;
-  const Line line = side_line(cylinder, facing);
-  probes.corner(line.at(-line.half), 8);
-  probes.corner(line.at(line.half), 9);
-  probes.edge(line.at(-line.half), line.at(line.half), 0);
-}
-
-/// The points farthest out in eight directions: not more than these reach the final choice.
-ContactRegion spread(const Touches& touches, const Touch& deepest, const Vector3& u, const Vector3& v) {
-  ContactRegion region;
-  std::array<bool, kMostTouches> taken{};
-  const auto take = [&](int i) {
-    const Touch& touch = touches[i];
-    if (taken[static_cast<std::size_t>(i)]) return;
-    taken[static_cast<std::size_t>(i)] = true;
-    const Vector3 offset = touch.point - deepest.point;
-    region.add({u.dot(offset), v.dot(offset), touch.depth, static_cast<std::uint8_t>(i)});
-  };
-  take(static_cast<int>(&deepest - touches.found.data()));
-  for (int k = 0; k < 8; ++k) {
-    const Vector3 out =
-        std::cos(0.1 + 0.25 * 3.141592653589793 * k) * u + std::sin(0.1 + 0.25 * 3.141592653589793 * k) * v;
-    int best = -1;
-    double farthest = -1e300;
-    for (int i = 0; i < touches.count; ++i) {
-      if (touches[i].normal.dot(deepest.normal) < kAgrees) continue;
-      const double far = out.dot(touches[i].point - deepest.point);
-      if (far > farthest + kSameDepth) best = i, farthest = far;
-    }
-    if (best >= 0) take(best);
+/// Calls `see(touch)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
+/// `wanted(probing, node)`.
+class Touches {
+ public:
+  Touches(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
+    const auto touches = [this](const Probing& probing, const MeshTree::Node& node) {
+      return count_ <= kRemembered && probing.most(node) >= -probing.margin;
+    };
+    measure(touches, [this](const Touch& touch) {
+      if (count_ < kRemembered) remembered_[count_] = touch;
+      ++count_;
+    });
   }
-  return region;
-}
+
+  /// Few are measured once, many each time.
+  template <typename Wanted, typename See>
+  void each(const Wanted& wanted, const See& see) const {
+    if (count_ > kRemembered) return measure(wanted, see);
+    for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
+  }
+  double greatest_depth() const {
+    double depth = -1e300;
+    each([&](const Probing& probing, const MeshTree::Node& node) { return probing.most(node) > depth; },
+         [&](const Touch& touch) { depth = std::max(depth, touch.depth); });
+    return depth;
+  }
+  /// The first of those that are as deep.
+  std::optional<Touch> deepest() const {
+    const double depth = greatest_depth() - kSameDepth;
+    std::optional<Touch> found;
+    each([&](const Probing& probing,
+             const MeshTree::Node& node) { return !found && probing.most(node) >= depth; },
+         [&](const Touch& touch) {
+           if (!found && touch.depth >= depth) found = touch;
+         });
+    return found;
+  }
+
+ private:
+  static constexpr std::size_t kRemembered = 320;
+
+  template <typename Wanted, typename See>
+  void measure(const Wanted& wanted, const See& see) const {
+    for (const Probing& probing : both_) {
+      const auto wanted_here = [&](const MeshTree::Node& node) { return wanted(probing, node); };
+      const auto try_out = [&](const Probe& probe) {
+        if (const auto touch = probing.touch(probe)) see(*touch);
+      };
+      std::visit(Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out},
+                 probing.of.shape);
+    }
+  }
+
+  std::array<Probing, 2> both_;
+  std::array<Touch, kRemembered> remembered_;
+  std::size_t count_ = 0;
+};
+
+/// Of the touches that agree with the deepest those farthest out in eight directions across its normal.
+class Spread {
+ public:
+  Spread(const Touches& touches, const Touch& deepest) : deepest_(deepest) {
+    const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      const double angle = 0.1 + 0.25 * 3.141592653589793 * static_cast<double>(k);
+      out_[k] = std::cos(angle) * u + std::sin(angle) * v;
+    }
+    farthest_.fill(-1e300);
+    touches.each([&](const Probing& probing, const MeshTree::Node& node) { return may_be(probing, node); },
+                 [&](const Touch& touch) { see(touch); });
+  }
+
+  const std::array<Touch, kDirections>& outermost() const { return outermost_; }
+
+ private:
+  bool may_be(const Probing& probing, const MeshTree::Node& node) const {
+    const Vector3 offset = probing.pose * node.centre - deepest_.point;
+    // A touch is midway between the surfaces: half the margin from the part.
+    const double around = node.radius + 0.5 * probing.margin + std::max(0.0, 0.5 * deepest_.depth);
+    bool farther = false;
+    for (std::size_t k = 0; k < kDirections && !farther; ++k)
+      farther = out_[k].dot(offset) + around > farthest_[k] + kSameDepth;
+    return farther && probing.most(node) >= -probing.margin;
+  }
+  void see(const Touch& touch) {
+    if (touch.normal.dot(deepest_.normal) < kAgrees) return;
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      const double far = out_[k].dot(touch.point - deepest_.point);
+      if (far > farthest_[k] + kSameDepth) farthest_[k] = far, outermost_[k] = touch;
+    }
+  }
+
+  const Touch& deepest_;
+  std::array<Vector3, kDirections> out_;
+  std::array<double, kDirections> farthest_;
+  std::array<Touch, kDirections> outermost_;
+};
 
 Manifold chosen(const Touches& touches) {
   Manifold manifold;
-  if (touches.count == 0) return manifold;
-  int deepest = 0;
-  for (int i = 1; i < touches.count; ++i) {
-    if (touches[i].depth > touches[deepest].depth + kSameDepth) deepest = i;
-  }
-  manifold.normal = touches[deepest].normal;
+  const auto deepest = touches.deepest();
+  if (!deepest) return manifold;
+  manifold.normal = deepest->normal;
+  const Spread spread(touches, *deepest);
   const Vector3 u = manifold.normal.unitOrthogonal(), v = manifold.normal.cross(u);
-  ContactRegion region = spread(touches, touches[deepest], u, v);
+  std::array<const Touch*, kDirections + 1> taken{};
+  ContactRegion region;
+  const auto take = [&](const Touch& touch) {
+    for (int i = 0; i < region.count; ++i)
+      if (taken[static_cast<std::size_t>(i)]->feature == touch.feature &&
+          taken[static_cast<std::size_t>(i)]->point == touch.point)
+        return;
+    taken[static_cast<std::size_t>(region.count)] = &touch;
+    const Vector3 offset = touch.point - deepest->point;
+    region.add({u.dot(offset), v.dot(offset), touch.depth, static_cast<std::uint8_t>(region.count)});
+  };
+  take(*deepest);
+  for (const Touch& touch : spread.outermost()) take(touch);
   region.sort_around();
   region.reduce();
   region.straighten();
   std::array<bool, 256> named{};
   for (int i = 0; i < region.count; ++i) {
-    const Touch& touch = touches[region[i].feature];
+    const Touch& touch = *taken[region[i].feature];
     std::uint8_t name = touch.feature;
     while (named[name]) ++name;
     named[name] = true;
@@ -184,14 +269,7 @@ Manifold chosen(const Touches& touches) {
 
 Manifold mesh_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin) {
-  Touches touches;
-  const Probes of_a{pose_a, b, pose_b, true, margin, touches},
-      of_b{pose_b, a, pose_a, false, margin, touches};
-  std::visit(Corners{of_a}, a.shape);
-  std::visit(Corners{of_b}, b.shape);
-  std::visit(Edges{of_a}, a.shape);
-  std::visit(Edges{of_b}, b.shape);
-  return chosen(touches);
+  return chosen({{a, pose_a, b, pose_b, true, margin}, {b, pose_b, a, pose_a, false, margin}});
 }
 
 }  // namespace mrhi

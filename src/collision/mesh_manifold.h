@@ -4,15 +4,17 @@
 
 namespace mrhi {
 
-/// A mesh against a box, a cylinder or a mesh: every corner and edge of each is measured in the other, the
-/// deepest gives the normal, and those that agree with it the further points.
-/// Exact across a gap, and where a corner overlaps a face; an edge or a corner that overlaps another's by
-/// itself counts as deep as it is itself, which may be less than what the bodies have to move. Meshes of
-/// boxes at random poses with up to 2 mm of overlap: right to 0.1 % in nine of ten, up to 70 % too shallow in
-/// one of a hundred. Where an edge lies along a face, its middle and its corners stand for it: a mesh that
-/// overhangs a table touches with the corners that are on it and the middle of the table's edge. A cylinder
-/// touches with eight points of its rims and the side line that faces the mesh. Names are numbers of corners
-/// modulo 100 and of edges modulo 28.
+/// A mesh against a box, a cylinder or a mesh: corners and edges of each are measured in the other, the
+/// deepest gives the normal, and of those that agree with it the farthest out in eight directions are the
+/// further points. A mesh's tree leaves out what cannot be one of these. Corners and edges are those of its
+/// flat faces: how many triangles a file has for them, and in which order, changes nothing. Exact across a
+/// gap, and where a corner overlaps a face; an edge or a corner that overlaps another's by itself counts as
+/// deep as it is itself, which may be less than what the bodies have to move. Meshes of boxes at random poses
+/// with up to 2 mm of overlap: right to 0.1 % in nine of ten, up to 70 % too shallow in one of a hundred.
+/// Where an edge lies along a face, its middle and its corners stand for it: a mesh that overhangs a table
+/// touches with the corners that are on it and the middle of the table's edge. A cylinder touches with eight
+/// points of its rims and the side line that faces the mesh. Names are numbers of corners modulo 100 and of
+/// edges modulo 28.
 Manifold mesh_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin);
 

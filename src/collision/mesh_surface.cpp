@@ -1,93 +1,244 @@
 #include "mesh_surface.h"
 
-#include <map>
-
 namespace mrhi {
 namespace {
 
-/// Edges that bend by less are part of a flat face [rad].
-constexpr double kFlat = 1e-7;
+/// Edges that bend by less are as good as flat [rad].
+constexpr double kFlat = 1e-6;
+/// A place counts as within a border if it is beyond it by no more than this part of the border's length.
+constexpr double kClear = 1e-5;
 
-double corner_angle(const Triangle& triangle, std::size_t i) {
-  const Vector3 a = triangle.corners[(i + 1) % 3] - triangle.corners[i];
-  const Vector3 b = triangle.corners[(i + 2) % 3] - triangle.corners[i];
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+double clamp_unit(double x) {
+  return std::max(0.0, std::min(x, 1.0));
+}
+
+struct EdgeNearest {
+  Stretch stretch;
+  double t;  // along the edge, facing the stretch's middle
+};
+
+/// Nearest stretch of the segment to the edge from `corner` along `edge` (Ericson, Real-Time Collision
+/// Detection, 5.1.9).
+EdgeNearest nearest_stretch(const Segment& segment, const Vector3& corner, const Vector3& edge) {
+  const Vector3 offset = segment.start - corner, &along = segment.along;
+  const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);
+  const double c = along.dot(offset), f = edge.dot(offset);
+  if (a == 0.0) return {{0.5, 0.5}, clamp_unit(f / e)};
+  const bool parallel = along.cross(edge).squaredNorm() <= kParallel * kParallel * e;
+  if (parallel) {
+    const double at_start = -c / a, at_end = (b - c) / a;
+    const double s0 = clamp_unit(std::min(at_start, at_end)), s1 = clamp_unit(std::max(at_start, at_end));
+    return {{s0, s1}, clamp_unit((0.5 * (s0 + s1) * b + f) / e)};
+  }
+  double s = clamp_unit((b * f - c * e) / (a * e - b * b));
+  const double t = clamp_unit((b * s + f) / e);
+  s = clamp_unit((b * t - c) / a);
+  return {{s, s}, clamp_unit((b * s + f) / e)};
+}
+
+double nearest_to(const Vector3& place, const Segment& segment) {
+  const double squared = segment.along.squaredNorm();
+  return squared == 0.0 ? 0.5 : clamp_unit(segment.along.dot(place - segment.start) / squared);
+}
+
+/// Where the segment, seen along the face, crosses an edge of it; nothing (2) if it passes it by.
+double crossing(const Segment& segment, const Vector3& normal, const MeshSurface::Edge& edge) {
+  const Vector3 across = segment.along.cross(normal);
+  const double from = across.dot(edge.start - segment.start), rise = across.dot(edge.along);
+  if ((from < 0.0) == (from + rise < 0.0)) return 2.0;
+  const Vector3 place = edge.start - from / rise * edge.along;
+  return segment.along.dot(place - segment.start) / segment.along.squaredNorm();
 }
 
 }  // namespace
 
 MeshSurface::MeshSurface(const TriangleMesh& mesh) {
+  FlatFaces flat = flat_faces(mesh);
+  corners_ = std::move(flat.corners);
+  corner_normals_ = std::move(flat.corner_normals);
+  closed_ = flat.closed;
   min_ = Vector3::Constant(1e300), max_ = -min_;
-  for (const std::array<int, 3>& indices : mesh.triangles) {
-    Triangle triangle;
-    for (std::size_t i = 0; i < 3; ++i) {
-      triangle.corners[i] = mesh.vertices[static_cast<std::size_t>(indices[i])];
-    }
-    const Vector3 area =
-        (triangle.corners[1] - triangle.corners[0]).cross(Vector3(triangle.corners[2] - triangle.corners[0]));
-    if (area.norm() == 0.0) continue;
-    triangle.normal = area.normalized();
-    triangles_.push_back(triangle);
-    corners_.push_back(indices);
-    for (const Vector3& corner : triangle.corners) min_ = min_.cwiseMin(corner), max_ = max_.cwiseMax(corner);
+  for (const Vector3& corner : corners_) min_ = min_.cwiseMin(corner), max_ = max_.cwiseMax(corner);
+  for (const FlatFaces::Face& face : flat.faces) faces_.push_back({face.normal, face.height, 0, 0, true});
+  for (const FlatFaces::Edge& edge : flat.edges) {
+    const Vector3& start = corners_[at(edge.from)];
+    const int other = edge.other < 0 ? edge.face : edge.other;
+    edges_.push_back(
+        {start, corners_[at(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
   }
-  find_normals(mesh);
-  find_edges();
+  add_sides(flat.edges);
+  find_bends(flat.one_piece);
 }
 
-void MeshSurface::find_normals(const TriangleMesh& mesh) {
-  vertex_normals_.assign(mesh.vertices.size(), Vector3::Zero());
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      vertex_normals_[static_cast<std::size_t>(corners_[t][i])] +=
-          corner_angle(triangles_[t], i) * triangles_[t].normal;
-    }
+void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
+  first_edge_.assign(corners_.size() + 1, 0);
+  for (const FlatFaces::Edge& edge : edges) {
+    ++faces_[at(edge.face)].count;
+    if (edge.other >= 0) ++faces_[at(edge.other)].count;
+    ++first_edge_[at(edge.from) + 1], ++first_edge_[at(edge.to) + 1];
+  }
+  int first = 0;
+  for (Face& face : faces_) face.first = first, first += face.count, face.count = 0;
+  for (std::size_t c = 0; c < corners_.size(); ++c) first_edge_[c + 1] += first_edge_[c];
+  sides_.resize(at(first));
+  edges_at_.resize(2 * edges.size());
+  std::vector<std::size_t> next(first_edge_);
+  for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
+    const auto add = [&](int of, const Vector3& along) {
+      Face& face = faces_[at(of)];
+      const Vector3 outward = along.cross(face.normal);
+      sides_[at(face.first + face.count++)] = {outward, outward.dot(edges_[at(e)].start), e};
+    };
+    const FlatFaces::Edge& edge = edges[at(e)];
+    add(edge.face, edges_[at(e)].along);
+    if (edge.other >= 0) add(edge.other, -edges_[at(e)].along);
+    for (const int corner : {edge.from, edge.to}) edges_at_[next[at(corner)]++] = e;
+  }
+  for (Face& face : faces_) face.convex = is_convex(face);
+}
+
+void MeshSurface::find_bends(bool one_piece) {
+  convex_ = closed_ && one_piece;
+  for (Edge& edge : edges_) {
+    const std::array<Vector3, 2> normal = normals(edge);
+    const double bend = normal[0].cross(normal[1]).dot(edge.along.normalized());
+    edge.bulges = bend > kFlat;
+    convex_ = convex_ && bend > -kFlat;
   }
 }
 
-void MeshSurface::find_edges() {
-  struct Side {
-    std::size_t triangle, edge;
-  };
-  std::map<std::pair<int, int>, Side> sides;  // by the edge's direction
-  edge_normals_.resize(triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      edge_normals_[t][i] = triangles_[t].normal;
-      closed_ &= sides.insert({{corners_[t][i], corners_[t][(i + 1) % 3]}, {t, i}}).second;
-    }
+bool MeshSurface::is_convex(const Face& face) const {
+  if (face.count <= 3) return true;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const Side& side = sides_[at(i)];
+    const double slack = 2.0 * kFlatness * (max_ - min_).maxCoeff() * side.outward.norm();
+    bool behind = true;
+    each_corner(face,
+                [&](const Vector3& c) { behind = behind && side.outward.dot(c) <= side.reach + slack; });
+    if (!behind) return false;
   }
-  for (const auto& side : sides) {
-    const auto twin = sides.find({side.first.second, side.first.first});
-    if (twin == sides.end()) {
-      closed_ = false;
-    } else if (side.first.first < side.first.second) {
-      const Side &a = side.second, &b = twin->second;
-      const Vector3 sum = triangles_[a.triangle].normal + triangles_[b.triangle].normal;
-      edge_normals_[a.triangle][a.edge] = edge_normals_[b.triangle][b.edge] = sum;
-      add_edge(triangles_[a.triangle], a.edge, triangles_[b.triangle]);
-    }
+  return true;
+}
+
+/// By the number of sides that a ray from there crosses.
+bool MeshSurface::inside(const Face& face, const Vector3& place) const {
+  const Segment ray(Capsule{place, place + any_normal(face.normal), 0.0});
+  bool inside = false;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const double s = crossing(ray, face.normal, edges_[at(sides_[at(i)].edge)]);
+    if (s != 2.0 && s > 0.0) inside = !inside;
   }
-  convex_ &= closed_;
+  return inside;
 }
 
-void MeshSurface::add_edge(const Triangle& triangle, std::size_t edge, const Triangle& other) {
-  const Vector3& start = triangle.corners[edge];
-  const Vector3 along = triangle.corners[(edge + 1) % 3] - start;
-  const double bend = triangle.normal.cross(other.normal).dot(along.normalized());
-  if (bend > kFlat) convex_edges_.push_back({start, along, triangle.normal, other.normal});
-  if (bend < -kFlat) convex_ = false;
+/// From the last crossing before s to the first after it.
+Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) const {
+  if (!inside(face, segment.at(s))) return {1.0, 0.0};
+  Stretch stretch;
+  if (segment.along.isZero(0.0)) return stretch;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const double crosses = crossing(segment, face.normal, edges_[at(sides_[at(i)].edge)]);
+    if (crosses <= s) stretch.s0 = std::max(stretch.s0, crosses);
+    if (crosses > s) stretch.s1 = std::min(stretch.s1, crosses);
+  }
+  return stretch;
 }
 
-bool MeshSurface::in_bounds(const Vector3& place) const {
-  return (place.array() >= min_.array()).all() && (place.array() <= max_.array()).all();
+Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) const {
+  if (!face.convex) return around(face, segment, s);
+  Stretch stretch;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const Side& side = sides_[at(i)];
+    const double x0 = side.outward.dot(segment.start) - side.reach, dx = side.outward.dot(segment.along);
+    stretch.clip(x0, dx, 0.0);
+    if ((dx == 0.0 && x0 > 0.0) || stretch.s0 > stretch.s1) return {1.0, 0.0};
+  }
+  return stretch;
 }
 
-const Vector3& MeshSurface::normal(int triangle, const TriangleNearest& nearest) const {
-  const auto t = static_cast<std::size_t>(triangle), i = static_cast<std::size_t>(nearest.index);
-  if (nearest.part == TrianglePart::face) return triangles_[t].normal;
-  if (nearest.part == TrianglePart::edge) return edge_normals_[t][i];
-  return vertex_normals_[static_cast<std::size_t>(corners_[t][i])];
+SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) const {
+  const Face& face = faces_[at(index)];
+  SurfaceNearest found;
+  const double height = face.normal.dot(segment.start) - face.height, rise = face.normal.dot(segment.along);
+  const bool parallel = std::abs(rise) < kParallel;
+  const double crossing = -height / rise;
+  const bool crosses = !parallel && crossing >= 0.0 && crossing <= 1.0;
+  double s = parallel ? 0.5 : clamp_unit(crossing);
+  Stretch above = over(face, segment, s);
+  if (above.s0 > above.s1) return found;
+  if (parallel) {
+    s = above.middle();
+  } else if (s < above.s0 || s > above.s1) {
+    return found;
+  } else {
+    above = {s, s};
+  }
+  const double level = height + s * rise;
+  found.stretch = above;
+  found.distance = crosses ? 0.0 : std::abs(level);
+  found.point = segment.at(s) - level * face.normal;
+  found.index = index;
+  return found;
+}
+
+SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) const {
+  const Edge& edge = edges_[at(index)];
+  const EdgeNearest nearest = nearest_stretch(segment, edge.start, edge.along);
+  SurfaceNearest found;
+  if (nearest.t <= 0.0 || nearest.t >= 1.0) {
+    // The same for all edges that end here.
+    found.part = SurfacePart::corner;
+    found.index = edge.corners[nearest.t >= 1.0 ? 1 : 0];
+    found.point = corners_[at(found.index)];
+    const double s = nearest_to(found.point, segment);
+    found.stretch = {s, s};
+  } else {
+    found.part = SurfacePart::edge;
+    found.index = index;
+    found.point = edge.start + nearest.t * edge.along;
+    found.stretch = nearest.stretch;
+  }
+  found.distance = (segment.at(found.stretch.middle()) - found.point).norm();
+  return found;
+}
+
+Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
+  if (nearest.part == SurfacePart::face) return faces_[at(nearest.index)].normal;
+  if (nearest.part == SurfacePart::corner) return corner_normals_[at(nearest.index)];
+  const std::array<Vector3, 2> normal = normals(edges_[at(nearest.index)]);
+  return normal[0] + normal[1];
+}
+
+bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) const {
+  const double clear = kClear * nearest.distance;
+  if (nearest.part == SurfacePart::face) {
+    const Face& face = faces_[at(nearest.index)];
+    if (face.normal.dot(gap) <= 0.0) return false;
+    for (int i = face.first; i < face.first + face.count; ++i) {
+      const Side& side = sides_[at(i)];
+      if (side.outward.dot(nearest.point) - side.reach > -kClear * side.outward.squaredNorm()) return false;
+    }
+    return true;
+  }
+  if (nearest.part == SurfacePart::edge) {
+    const Edge& edge = edges_[at(nearest.index)];
+    const double length = edge.along.norm();
+    const double t = edge.along.dot(nearest.point - edge.start) / (length * length);
+    const std::array<Vector3, 2> normal = normals(edge);
+    return t > kClear && t < 1.0 - kClear && edge.along.cross(normal[0]).dot(gap) > clear * length &&
+           normal[1].cross(edge.along).dot(gap) > clear * length;
+  }
+  const std::size_t corner = at(nearest.index);
+  for (std::size_t i = first_edge_[corner]; i < first_edge_[corner + 1]; ++i) {
+    const Edge& edge = edges_[at(edges_at_[i])];
+    const double down = edge.corners[0] == nearest.index ? -edge.along.dot(gap) : edge.along.dot(gap);
+    if (down < clear * edge.along.norm()) return false;
+  }
+  return true;
 }
 
 }  // namespace mrhi

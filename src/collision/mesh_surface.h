@@ -2,50 +2,111 @@
 
 #include <vector>
 
-#include "mr_hand_interaction/collision/closest_features.h"
-#include "triangle.h"
+#include "flat_faces.h"
+#include "segment.h"
 
 namespace mrhi {
 
-/// The surface of a triangle mesh, with the normals of its edges and vertices (Baerentzen & Aanaes 2005: the
-/// angle-weighted normal at the nearest point tells inside from outside). Triangles without area are left
-/// out; neighbours are those that share indices of vertices.
+/// What of a surface a segment is nearest to.
+enum class SurfacePart { face, edge, corner };
+
+struct SurfaceNearest {
+  double distance = 1e300;          ///< 0 where the segment goes through the surface [m]
+  Stretch stretch;                  ///< of the segment; s0 == s1 unless it is parallel
+  Vector3 point = Vector3::Zero();  ///< of the surface, facing the stretch's middle
+  SurfacePart part = SurfacePart::face;
+  int index = -1;  ///< of the face, edge or corner
+};
+
+/// The surface of a triangle mesh: flat faces, the edges between them and their corners, with normals for
+/// each (Baerentzen & Aanaes 2005: the angle-weighted normal at the nearest point tells inside from outside).
 class MeshSurface {
  public:
-  /// Where faces meet and the solid bulges.
-  struct ConvexEdge {
+  struct Face {
+    Vector3 normal;
+    double height;     // n . p = height
+    int first, count;  // sides
+    bool convex;
+  };
+  struct Edge {
     Vector3 start, along;
-    Vector3 normal, other_normal;
+    std::array<int, 2> corners;
+    std::array<int, 2> faces;  // equal at the border of an open surface
+    bool bulges;               // the solid does, along it
   };
 
   explicit MeshSurface(const TriangleMesh& mesh);
 
-  const std::vector<Triangle>& triangles() const { return triangles_; }
-  const std::vector<ConvexEdge>& convex_edges() const { return convex_edges_; }
+  const std::vector<Vector3>& corners() const { return corners_; }
+  const std::vector<Face>& faces() const { return faces_; }
+  const std::vector<Edge>& edges() const { return edges_; }
   bool closed() const { return closed_; }  ///< has an inside
   bool convex() const { return convex_; }
-  bool in_bounds(const Vector3& place) const;
-  /// Outward normal, of any length, of the part of the triangle that is nearest.
-  const Vector3& normal(int triangle, const TriangleNearest& nearest) const;
+  const Vector3& min() const { return min_; }
+  const Vector3& max() const { return max_; }
+  bool in_bounds(const Vector3& place) const {
+    return (place.array() >= min_.array()).all() && (place.array() <= max_.array()).all();
+  }
+  /// True if no part of the segment is nearer than `reach` to the bounds.
+  bool is_beyond(const Segment& segment, double reach) const {
+    const Vector3 end = segment.end();
+    return ((segment.start.cwiseMin(end) - max_).array() > reach).any() ||
+           ((min_ - segment.start.cwiseMax(end)).array() > reach).any();
+  }
+  std::array<Vector3, 2> normals(const Edge& edge) const {
+    return {{faces_[static_cast<std::size_t>(edge.faces[0])].normal,
+             faces_[static_cast<std::size_t>(edge.faces[1])].normal}};
+  }
+  int face_at_corner(int corner) const {
+    const std::size_t first = first_edge_[static_cast<std::size_t>(corner)];
+    return edges_[static_cast<std::size_t>(edges_at_[first])].faces[0];
+  }
+  bool is_first_edge(int edge, int corner) const {
+    return edges_at_[first_edge_[static_cast<std::size_t>(corner)]] == edge;
+  }
+  /// Calls `see(corner)` for the corners around a face.
+  template <typename See>
+  void each_corner(const Face& face, const See& see) const {
+    for (int i = face.first; i < face.first + face.count; ++i) {
+      const Edge& edge = edges_[static_cast<std::size_t>(sides_[static_cast<std::size_t>(i)].edge)];
+      for (const int corner : edge.corners) see(corners_[static_cast<std::size_t>(corner)]);
+    }
+  }
+
+  /// What of the segment is straight above or below the face: the part around s if the face is not convex;
+  /// empty (s0 > s1) if nothing.
+  Stretch over(const Face& face, const Segment& segment, double s) const;
+  /// Distance 1e300 if an edge of the face is nearer than its inside.
+  SurfaceNearest nearest_on_face(int face, const Segment& segment) const;
+  SurfaceNearest nearest_on_edge(int edge, const Segment& segment) const;
+
+  /// Outward normal, of any length, where the surface is nearest.
+  Vector3 outward(const SurfaceNearest& nearest) const;
+  /// True if the whole of a convex solid is below the plane through the nearest point, across `gap` (from
+  /// there to the segment), and nothing but the part named is near that plane.
+  bool is_support(const SurfaceNearest& nearest, const Vector3& gap) const;
 
  private:
-  void find_normals(const TriangleMesh& mesh);
-  void find_edges();
-  void add_edge(const Triangle& triangle, std::size_t edge, const Triangle& other);
+  /// Of a face: outward in its plane, across an edge.
+  struct Side {
+    Vector3 outward;
+    double reach;
+    int edge;
+  };
+  void add_sides(const std::vector<FlatFaces::Edge>& edges);
+  void find_bends(bool one_piece);
+  bool is_convex(const Face& face) const;
+  bool inside(const Face& face, const Vector3& place) const;
+  Stretch around(const Face& face, const Segment& segment, double s) const;
 
-  std::vector<Triangle> triangles_;
-  std::vector<std::array<int, 3>> corners_;
-  std::vector<std::array<Vector3, 3>> edge_normals_;  // [triangle][edge]
-  std::vector<Vector3> vertex_normals_;
-  std::vector<ConvexEdge> convex_edges_;
+  std::vector<Vector3> corners_, corner_normals_;
+  std::vector<Face> faces_;
+  std::vector<Side> sides_;  // by face
+  std::vector<Edge> edges_;
+  std::vector<std::size_t> first_edge_;  // of a corner, in edges_at_
+  std::vector<int> edges_at_;
   Vector3 min_, max_;
   bool closed_ = true, convex_ = true;
 };
-
-/// The shortest translation that takes a segment, which cuts the surface or lies inside, out by a face or a
-/// convex edge; distance <= 0. Exact for a convex mesh. Elsewhere the way out has to lead through the face or
-/// edge itself; what the segment meets farther on is not looked at. Where there is none: out by `fallback`'s
-/// plane.
-ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, int fallback);
 
 }  // namespace mrhi

@@ -3,7 +3,11 @@
 namespace mrhi {
 
 MovingBody::MovingBody(const Body& of, const BodyState& state, const Vector3& gravity)
-    : body(of), pose(state.pose), rotation(state.pose.orientation.toRotationMatrix()), acceleration(gravity) {
+    : body(of),
+      pose(state.pose),
+      rotation(state.pose.orientation.toRotationMatrix()),
+      acceleration(gravity),
+      appeared(state.appeared) {
   if (of.fixed) {
     acceleration.setZero();
     return;

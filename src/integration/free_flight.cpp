@@ -3,61 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "free_rotation.h"
+
 namespace mrhi {
 namespace {
 
-/// Quaternion of the rotation vector `theta` [rad]; the series keeps full precision near zero.
-Quaternion exponential(const Vector3& theta) {
-  const double angle_squared = theta.squaredNorm();
-  double cosine, half_sinc;  // cos(a/2) and sin(a/2)/a
-  if (angle_squared < 1e-4) {
-    cosine = 1.0 - angle_squared / 8.0 + angle_squared * angle_squared / 384.0;
-    half_sinc = 0.5 - angle_squared / 48.0 + angle_squared * angle_squared / 3840.0;
-  } else {
-    const double angle = std::sqrt(angle_squared);
-    cosine = std::cos(0.5 * angle);
-    half_sinc = std::sin(0.5 * angle) / angle;
-  }
-  return Quaternion(cosine, half_sinc * theta.x(), half_sinc * theta.y(), half_sinc * theta.z());
+/// More parts than this no step is divided into: spins that need it are beyond what can be seen.
+constexpr double kMostParts = 1000.0;
+
+/// Turns `orientation` on by `by`, which need not be unit. What is added is rounded but once: were the
+/// product divided by its norm, slow turns would be rounded the same way in every step and drift.
+void turn_on(const Quaternion& by, Quaternion& orientation) {
+  const double scale = 1.0 / by.norm();
+  Quaternion change(scale * by.w(), scale * by.x(), scale * by.y(), scale * by.z());
+  const double sine_squared = change.vec().squaredNorm();
+  const double stretched = 0.5 * (1.0 - orientation.squaredNorm());
+  const double cosine = change.w();
+  change.w() = (cosine > 0.0 ? -sine_squared / (1.0 + cosine) : cosine - 1.0) + stretched * cosine;
+  change.vec() *= 1.0 + stretched;
+  orientation.coeffs() += (orientation * change).coeffs();
 }
-
-/// dexp^-1 of so(3), truncated after the second commutator: enough for order four.
-Vector3 inverse_differential(const Vector3& theta, const Vector3& rate) {
-  const Vector3 commutator = theta.cross(rate);
-  return rate + 0.5 * commutator + theta.cross(commutator) / 12.0;
-}
-
-/// Body angular velocity when the body has turned by `theta` (body axes) from where its momentum was
-/// `momentum`.
-Vector3 angular_velocity(const Body& body, const Vector3& momentum, const Vector3& theta) {
-  return body.inverse_inertia * (exponential(theta).conjugate() * momentum);
-}
-
-/// Below this turn the second-order step is exact to rounding [rad].
-constexpr double kSmallTurn = 1e-5;
-
-/// Rotation vector, body axes, that Euler's equations turn the body by within `step`.
-Vector3 rotation_over(const Body& body, const Vector3& momentum, double step) {
-  const Vector3 k1 = step * (body.inverse_inertia * momentum);
-  const Vector3 t2 = 0.5 * k1;
-  if (k1.squaredNorm() < kSmallTurn * kSmallTurn)
-    return k1 + step * (body.inverse_inertia * momentum.cross(t2));
-  const Vector3 k2 = step * inverse_differential(t2, angular_velocity(body, momentum, t2));
-  const Vector3 t3 = 0.5 * k2;
-  const Vector3 k3 = step * inverse_differential(t3, angular_velocity(body, momentum, t3));
-  const Vector3 k4 = step * inverse_differential(k3, angular_velocity(body, momentum, k3));
-  return (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0;
-}
-
-/// The fourth-order step loses its order beyond about a third of a radian, so fast spins take several.
-constexpr double kLargestTurn = 0.3;  // [rad]
 
 void turn(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
-  const Vector3 rate = body.inverse_inertia * (orientation.conjugate() * angular_momentum);
-  const int turns = 1 + static_cast<int>(std::min(rate.norm() * step / kLargestTurn, 1000.0));
-  for (int i = 0; i < turns; ++i) {
+  const Vector3& moments = body.inverse_moments;
+  const double spread = moments.maxCoeff() - moments.minCoeff();
+  const double way = spread * angular_momentum.norm() * step;
+  const int parts = 1 + static_cast<int>(std::min(way / kFreeTurn, kMostParts));
+  for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;
-    orientation = (orientation * exponential(rotation_over(body, momentum, step / turns))).normalized();
+    Quaternion by = free_rotation(moments, body.principal_axes.transpose() * momentum, step / parts);
+    by.vec() = body.principal_axes * by.vec();
+    turn_on(by, orientation);
   }
 }
 

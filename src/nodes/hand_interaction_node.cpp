@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
@@ -9,6 +10,7 @@
 /// by a call. Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
   ros::init(argc, argv, "interaction_node");
+  mrhi::end_in_order();
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
   try {
     const ros::NodeHandle node;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   ros::init(argc, argv, "synthetic_hand_node");
+  mrhi::end_in_order();
   const ros::NodeHandle node,
       parameters("~");  // the last handle to go would close the log before it is written to
   try {

@@ -80,6 +80,7 @@ Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clear
 
 bool ClearanceFinder::begin(const Setting& setting, double margin) {
   near_.clear();
+  shown_in_.clear();
   const Extent hand = extent(setting.tracked);
   for (std::size_t b = 0; b < setting.bodies.size(); ++b) {
     const Body& body = scene_.bodies[b];
@@ -88,10 +89,22 @@ bool ClearanceFinder::begin(const Setting& setting, double margin) {
     const double reach = body.bounding_radius + margin;
     if (outside.squaredNorm() > reach * reach) continue;
     const ContactFinder::PlacedFrame frame{pose.orientation.toRotationMatrix(), pose.position};
+    std::vector<Near>& list = setting.interactions[b].shown_in ? shown_in_ : near_;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape)
-      near_.push_back({static_cast<int>(b), shape, frame, pose.position, body.bounding_radius});
+      list.push_back({static_cast<int>(b), shape, frame, pose.position, body.bounding_radius});
   }
   return !near_.empty();
+}
+
+bool ClearanceFinder::end_shown_in(const Hand& shown, Interaction* interactions) const {
+  bool any = false;
+  for (const Near& near : shown_in_) interactions[near.body].shown_in = false;
+  each_near(shown_in_, shown, 0.0, [&](int, const Capsule& capsule, const Near& near) {
+    if (finder_.closest(capsule, near.body, near.shape, near.frame, 0.0))
+      interactions[near.body].shown_in = true;
+  });
+  for (const Near& near : shown_in_) any = any || !interactions[near.body].shown_in;
+  return any;
 }
 
 double ClearanceFinder::fastest_body(const std::vector<BodyState>& bodies) const {
@@ -114,13 +127,14 @@ Vector3 ClearanceFinder::velocity(int body, const Vector3& point,
 }
 
 template <typename See>
-void ClearanceFinder::each_near(const Hand& hand, double margin, const See& see) const {
+void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& hand, double margin,
+                                const See& see) {
   for (int c = 0; c < kCapsules; ++c) {
     const Capsule& capsule = hand.capsules[static_cast<std::size_t>(c)];
     if (capsule.radius <= 0.0) continue;
     const Vector3 centre = capsule.centre();
     const double around = 0.5 * (capsule.end - capsule.start).norm() + capsule.radius + margin;
-    for (const Near& near : near_) {
+    for (const Near& near : bodies) {
       const double reach = near.radius + around;
       if ((centre - near.centre).squaredNorm() <= reach * reach) see(c, capsule, near);
     }
@@ -130,7 +144,7 @@ void ClearanceFinder::each_near(const Hand& hand, double margin, const See& see)
 double ClearanceFinder::find(const Hand& placed, const Setting& setting, double margin,
                              std::vector<Clearance>& clearances) const {
   double least = margin;
-  each_near(placed, margin, [&](int c, const Capsule& capsule, const Near& near) {
+  each_near(near_, placed, margin, [&](int c, const Capsule& capsule, const Near& near) {
     AxisSpan span{};
     const auto features = finder_.closest(capsule, near.body, near.shape, near.frame, margin, &span);
     if (!features) return;
@@ -156,7 +170,7 @@ double ClearanceFinder::find(const Hand& placed, const Setting& setting, double 
 
 bool ClearanceFinder::clear(const Hand& hand) const {
   bool clear = true;
-  each_near(hand, 0.0, [&](int, const Capsule& capsule, const Near& near) {
+  each_near(near_, hand, 0.0, [&](int, const Capsule& capsule, const Near& near) {
     clear = clear && !finder_.closest(capsule, near.body, near.shape, near.frame, 0.0);
   });
   return clear;

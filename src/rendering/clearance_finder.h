@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mr_hand_interaction/collision/contact_finder.h"
+#include "mr_hand_interaction/interaction.h"
 #include "offset_solver.h"
 
 namespace mrhi {
@@ -20,11 +21,18 @@ class ClearanceFinder {
     int slot;
     const std::vector<BodyState>& bodies;
     const std::vector<Contact>& contacts;
-    const Hand* shown_before;  ///< of the frame before, if the hand was there
-    double moved;              ///< what hand and bodies have moved since [m]
+    const Hand* shown_before;         ///< of the frame before, if the hand was there
+    double moved;                     ///< what hand and bodies have moved since [m]
+    const Interaction* interactions;  ///< of the hand, one per body: which of them it is shown in
   };
-  /// Takes the bodies within `margin` of the tracked hand [m]; false if there are none.
+  /// Takes the bodies within `margin` of the tracked hand [m], but for those that it is shown in; false if
+  /// there are none.
   bool begin(const Setting& setting, double margin);
+
+  /// Of the bodies that the hand is shown in, some are near it.
+  bool shown_in_any() const { return !shown_in_.empty(); }
+  /// Ends this with those that the hand, as shown before, is clear of. True if there were any: begin anew.
+  bool end_shown_in(const Hand& shown, Interaction* interactions) const;
 
   /// Of any point of the bodies near the hand [m/s].
   double fastest_body(const std::vector<BodyState>& bodies) const;
@@ -52,12 +60,13 @@ class ClearanceFinder {
     double s0, s1;
   };
   template <typename See>
-  void each_near(const Hand& hand, double margin, const See& see) const;
+  static void each_near(const std::vector<Near>& near, const Hand& hand, double margin, const See& see);
   Face face(const Hand& placed, int capsule, const Near& near, const ClosestFeatures& features,
             const AxisSpan& span, const Setting& setting) const;
   const Scene& scene_;
   const ContactFinder& finder_;
   std::vector<Near> near_;
+  std::vector<Near> shown_in_;
 };
 
 }  // namespace mrhi

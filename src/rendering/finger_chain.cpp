@@ -46,14 +46,26 @@ RootFrame root_frame(const Hand& hand, int finger) {
 
 }  // namespace
 
-FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift)
+void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned) {
+  turned = tracked;
+  const Vector3& centre = tracked.palm.position;
+  const Matrix3 whole = lag.whole.toRotationMatrix();
+  turned.wrist = centre + whole * (tracked.wrist - centre);
+  for (Capsule& capsule : turned.capsules) {
+    capsule.start = centre + whole * (capsule.start - centre);
+    capsule.end = centre + whole * (capsule.end - centre);
+  }
+  turned.palm.orientation = (lag.frame * lag.whole * tracked.palm.orientation).normalized();
+}
+
+FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift, const Hand* lags_behind)
     : finger_(finger), tied_(has(tracked, 1)) {
   for (int bone = 0; bone < kBonesPerFinger; ++bone) {
     const auto c = static_cast<std::size_t>(capsule_index(finger_, bone));
     joints_[static_cast<std::size_t>(bone)] = tracked.capsules[c].start + shift;
   }
   find_axes(tracked);
-  find_limits(tracked);
+  find_limits(tracked, lags_behind);
   placed_swing_ = swing_;
   placed_hinge_ = hinge_;
 }
@@ -80,7 +92,7 @@ void FingerChain::find_axes(const Hand& tracked) {
   }
 }
 
-void FingerChain::find_limits(const Hand& tracked) {
+void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
   const auto bone = [&](int index) -> const Capsule& {
     return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
   };
@@ -97,11 +109,13 @@ void FingerChain::find_limits(const Hand& tracked) {
     reach_.head(joint + 1) += (bone(joint).end - bone(joint).start).norm();
   }
   reach_[1] = reach_[0];
+  const FingerOffset as_tracked =
+      lags_behind == nullptr ? angles_ : FingerChain(*lags_behind, finger_, Vector3::Zero()).angles_;
   const JointLimits limits = joint_limits(finger_);
   for (int i = 0; i < 4; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
-    lower_[i] = std::min(0.0, limits.lower[i] - angles_[i]);
-    upper_[i] = std::max(0.0, limits.upper[i] - angles_[i]);
+    lower_[i] = std::min(as_tracked[i], limits.lower[i]) - angles_[i];
+    upper_[i] = std::max(as_tracked[i], limits.upper[i]) - angles_[i];
   }
 }
 
@@ -120,9 +134,13 @@ FingerOffset FingerChain::angles(const Hand& hand, const Vector3& hinge) const {
   return angles;
 }
 
-FingerOffset FingerChain::like(const Hand& shown, const FingerChain& chain) const {
+FingerOffset FingerChain::pointing(const Hand& shown, const FingerChain& chain) const {
   if (!tied_ || !chain.tied_) return FingerOffset::Zero();
-  return (angles(shown, chain.placed_hinge_) - angles_).max(lower_).min(upper_);
+  return angles(shown, chain.placed_hinge_) - angles_;
+}
+
+FingerOffset FingerChain::like(const Hand& shown, const FingerChain& chain) const {
+  return pointing(shown, chain).max(lower_).min(upper_);
 }
 
 void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed) {

@@ -4,20 +4,25 @@
 
 namespace mrhi {
 
+/// The hand with its palm lagging behind. Writes to `turned`.
+void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned);
+
 /// A tracked finger as a chain: a root joint that flexes and abducts, fixed to the palm, and two hinges.
 /// Joints are turned from where they were tracked, so that bones keep their lengths whatever the offset. All
 /// in world.
 class FingerChain {
  public:
   FingerChain() = default;
-  /// As placed with no offset of its own.
-  FingerChain(const Hand& tracked, int finger, const Vector3& shift);
+  /// As placed with no offset of its own. Where the palm lags, `lags_behind` is the hand as it was tracked.
+  FingerChain(const Hand& tracked, int finger, const Vector3& shift, const Hand* lags_behind = nullptr);
 
   /// Places the finger's phalanges, its joints turned by `offset` and all shifted by `shift`.
   void place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed);
   /// The offset that lets the finger point as it does in `shown`, which `chain` placed, as far as its limits
   /// allow. Of a finger that nothing ties to the palm: none.
   FingerOffset like(const Hand& shown, const FingerChain& chain) const;
+  /// The same without regard to limits.
+  FingerOffset pointing(const Hand& shown, const FingerChain& chain) const;
   /// By how much n.x grows with each component of the offset, x a point of bone 1 to 3 as last placed.
   FingerOffset gradient(int bone, const Vector3& x, const Vector3& n) const;
   /// No joint of the finger moves farther than this for a change of the offset [m].
@@ -27,7 +32,7 @@ class FingerChain {
   FingerOffset swing(double way) const;
 
   /// Offsets that leave every joint in its limits or, if it was tracked beyond one, let it go no farther. 0
-  /// is always among them.
+  /// is among them unless the palm lags.
   const FingerOffset& lower() const { return lower_; }
   const FingerOffset& upper() const { return upper_; }
   /// How readily each component gives way.
@@ -35,7 +40,7 @@ class FingerChain {
 
  private:
   void find_axes(const Hand& tracked);
-  void find_limits(const Hand& tracked);
+  void find_limits(const Hand& tracked, const Hand* lags_behind);
   FingerOffset angles(const Hand& hand, const Vector3& hinge) const;
   bool has(const Hand& hand, int bone) const { return hand.has(capsule_index(finger_, bone)); }
 

@@ -2,15 +2,21 @@
 
 namespace mrhi {
 
-void HandChain::begin(const Hand& tracked) {
+void HandChain::begin(const Hand& tracked, const PalmLag& lag) {
   tracked_ = &tracked;
+  lags_behind_ = nullptr;
+  if (!lag.zero()) {
+    lags_behind_ = &tracked;
+    turn_palm(tracked, lag, turned_);
+    tracked_ = &turned_;
+  }
   shift_.setZero();
   known_.fill(false);
 }
 
 void HandChain::place(const HandOffset& offset, Hand& placed) {
   shift_ = offset.shift;
-  placed.palm.position = tracked_->palm.position + shift_;
+  placed.palm = {tracked_->palm.position + shift_, tracked_->palm.orientation};
   placed.wrist = tracked_->wrist + shift_;
   for (std::size_t c = 0; c < kCapsules; ++c) {
     const Capsule& from = tracked_->capsules[c];
@@ -30,7 +36,7 @@ void HandChain::place(const HandOffset& offset, Hand& placed) {
 FingerChain& HandChain::finger(int index) {
   const auto f = static_cast<std::size_t>(index);
   if (!known_[f]) {
-    fingers_[f] = FingerChain(*tracked_, index, shift_);
+    fingers_[f] = FingerChain(*tracked_, index, shift_, lags_behind_);
     known_[f] = true;
   }
   return fingers_[f];

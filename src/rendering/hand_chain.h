@@ -12,7 +12,7 @@ constexpr double kShiftCompliance = 0.3;
 class HandChain {
  public:
   /// Keeps a reference.
-  void begin(const Hand& tracked);
+  void begin(const Hand& tracked, const PalmLag& lag = PalmLag());
 
   /// The hand with its offset, which keeps within limits from here on.
   void place(const HandOffset& offset, Hand& placed);
@@ -26,6 +26,8 @@ class HandChain {
 
  private:
   const Hand* tracked_ = nullptr;
+  const Hand* lags_behind_ = nullptr;
+  Hand turned_;                      // what tracked_ is where the palm lags
   Vector3 shift_ = Vector3::Zero();  // as last placed
   std::array<FingerChain, kFingers> fingers_;
   std::array<bool, kFingers> known_{};

@@ -29,26 +29,33 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
   if (farthest_joint(before, placed) <= tracked_way + kPace) return;
-  const Pace pace(before, tracked_way + pushed_way(setting, placed) + kPace);
+  const Pace pace(before, tracked_way + kPace);
+  const double pushed = pushed_way(setting, placed);
+  const Pace hurried(before, tracked_way + pushed + kPace);
   double least_beyond = pace.beyond(placed);
-  if (least_beyond <= 0.0) return;
   HandOffset best = offset;
-  const auto in_step = [&](const HandOffset& nearest_to, double swing) {
-    pace.keep(placed, clearances);
-    settle(setting, nearest_to, {last, swing}, offset, placed, &pace);
+  const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
+    at.keep(placed, clearances);
+    settle(setting, nearest_to, {last, swing}, offset, placed, &at, tolerated);
     Pace::forget(clearances);
     const double beyond = pace.beyond(placed);
-    if (beyond >= least_beyond || finder.find(placed, setting, kAhead, clearances) < -kTolerated) return;
+    if (beyond >= least_beyond || finder.find(placed, setting, kAhead, clearances) < -tolerated) return;
     least_beyond = beyond;
     best = offset;
   };
-  in_step(reference, kSwingShare * setting.moved + kSwing);
-  if (least_beyond > kTolerated) {
-    const HandOffset stay = staying(setting, last);
+  const double swing = kSwingShare * setting.moved + kSwing;
+  if (least_beyond > pushed) in_step(hurried, reference, swing, kTolerated);
+  if (least_beyond > kTolerated && pushed > 0.0) in_step(pace, reference, swing, kTolerated);
+  for (const bool lags : {false, true}) {
+    if (least_beyond <= kTolerated + pushed) break;
+    const PalmLag lag = lags ? lag_staying(setting) : reference.lag;
+    chain.begin(setting.tracked, lag);
+    const HandOffset stay = staying(setting, lag);
     begin_anew(setting, stay, offset, placed);
-    in_step(stay, kAnyway);
+    in_step(hurried, stay, kAnyway, lags ? kDeepest : kTolerated);
   }
   offset = best;
+  chain.begin(setting.tracked, offset.lag);
   chain.place(offset, placed);
 }
 
@@ -66,8 +73,9 @@ double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, c
 }
 
 /// The hand does not move from where it was shown.
-HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const HandOffset& last) {
-  HandOffset stay = last;
+HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const PalmLag& lag) {
+  HandOffset stay;
+  stay.lag = lag;
   stay.shift = before.palm.position - setting.tracked.palm.position;
   for (int f = 0; f < kFingers; ++f)
     stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, chain_before.finger(f));
@@ -80,7 +88,7 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
   begin_anew(setting, reference, offset, placed);
   if (settle(setting, reference, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
   if (setting.shown_before != nullptr) {
-    const HandOffset stay = staying(setting, bounds.before);
+    const HandOffset stay = staying(setting, offset.lag);
     begin_anew(setting, stay, offset, placed);
     if (settle(setting, stay, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
   }
@@ -92,10 +100,11 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 /// [m].
 double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
-                                  const Pace* pace) {
+                                  const Pace* pace, double tolerated) {
+  const int most_in_vain = tolerated > kTolerated ? kMaxPasses : kMostInVain;
   double least = 0.0, best = std::numeric_limits<double>::lowest();
   int in_vain = 0;
-  for (int pass = 0; pass < kMaxPasses && in_vain < kMostInVain; ++pass) {
+  for (int pass = 0; pass < kMaxPasses && in_vain < most_in_vain; ++pass) {
     linearise(placed);
     const HandOffset from = offset;
     const double expected = solve_offset(reference, bounds, chain, clearances, offset);

@@ -24,7 +24,7 @@ HandRenderer::~HandRenderer() = default;
 
 void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
                           const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts,
-                          HandOffset& offset, RenderedHand& rendered) {
+                          Interaction* interactions, HandOffset& offset, RenderedHand& rendered) {
   Impl& impl = *impl_;
   rendered.hand = track.current;
   rendered.touching.fill(false);
@@ -32,12 +32,15 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
     if (contact.key.hand == slot && contact.touching()) rendered.touching[contact.key.capsule] = true;
   }
   if (track.appeared) offset = HandOffset();
-  ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0};
+  ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0, interactions};
   const bool away = !offset.zero();
-  const bool near = impl.finder.begin(setting, away ? offset.shift.norm() + kFarthestPush : kAhead);
+  const double margin = away ? offset.shift.norm() + kFarthestPush : kAhead;
+  bool near = impl.finder.begin(setting, margin);
+  if (impl.finder.shown_in_any() && impl.end_shown_in(track, offset, interactions))
+    near = impl.finder.begin(setting, margin);
   HandOffset now;
   if (away || near) {
-    impl.chain.begin(track.current);
+    impl.chain.begin(track.current, lag_returning(offset, stamp));
     impl.clearances.clear();
     now = returning(offset, stamp, impl.chain);
     impl.chain.place(now, rendered.hand);
@@ -58,6 +61,15 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   offset = now;
 }
 
+bool HandRenderer::Impl::end_shown_in(const HandTrack& track, const HandOffset& last,
+                                      Interaction* interactions) {
+  const Hand& from = track.appeared ? track.current : track.previous;
+  Hand shown = from;
+  chain_before.begin(from, last.lag);
+  chain_before.place(last, shown);
+  return finder.end_shown_in(shown, interactions);
+}
+
 /// At the frame before.
 void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
                                    ClearanceFinder::Setting& setting) {
@@ -65,7 +77,7 @@ void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, co
   setting.moved = kFromNowhere;
   if (track.appeared) return;
   before = track.previous;
-  chain_before.begin(track.previous);
+  chain_before.begin(track.previous, last.lag);
   chain_before.place(last, before);
   setting.shown_before = &before;
   tracked_way = farthest_joint(track.previous, track.current);
@@ -94,13 +106,14 @@ bool HandRenderer::Impl::left_behind(const ClearanceFinder::Setting& setting, Na
 }
 
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
-                           const std::vector<BodyState>& bodies) {
+                           const std::vector<BodyState>& bodies, const Interaction* interactions) {
   double deepest = 0.0;
   const std::vector<int> near = near_bodies(hand, scene, bodies, 0.0);
   for (int capsule = 0; capsule < kCapsules; ++capsule) {
     if (!hand.has(capsule)) continue;
     for (const int body : near) {
       const auto b = static_cast<std::size_t>(body);
+      if (interactions[b].shown_in) continue;
       for (int shape = 0; shape < static_cast<int>(scene.bodies[b].shapes.size()); ++shape) {
         const auto features = finder.closest(hand.capsules[static_cast<std::size_t>(capsule)], body, shape,
                                              bodies[b].pose, 0.0);

@@ -10,6 +10,7 @@ namespace mrhi {
 
 constexpr double kClear = 2e-5;      ///< gaps of more than -this are clear [m]
 constexpr double kTolerated = 1e-4;  ///< a gap of less than -this is too deep once all is done [m]
+constexpr double kDeepest = 1.8e-4;  ///< what is promised is 0.2 mm: where only that keeps pace [m]
 constexpr double kAhead = 0.0015;    ///< surfaces nearer than this are kept off before they are met [m]
 
 /// What one hand's frame is made with. `setting` is the frame's, `offset` what is looked for, `placed` the
@@ -19,6 +20,7 @@ struct HandRenderer::Impl {
     clearances.reserve(256);
   }
 
+  bool end_shown_in(const HandTrack& track, const HandOffset& last, Interaction* interactions);
   void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
                  ClearanceFinder::Setting& setting);
   void push_out(const ClearanceFinder::Setting& setting, const HandOffset& last, double least,
@@ -28,11 +30,14 @@ struct HandRenderer::Impl {
   void keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                 const OffsetBounds& bounds, HandOffset& offset, Hand& placed);
   double settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr);
+                const OffsetBounds& bounds, HandOffset& offset, Hand& placed, const Pace* pace = nullptr,
+                double tolerated = kTolerated);
   void begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference, HandOffset& offset,
                   Hand& placed);
   double pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const;
-  HandOffset staying(const ClearanceFinder::Setting& setting, const HandOffset& last);
+  HandOffset staying(const ClearanceFinder::Setting& setting, const PalmLag& lag);
+  PalmLag lag_staying(const ClearanceFinder::Setting& setting);
+  double held_by_limits(const ClearanceFinder::Setting& setting, const PalmLag& lag);
   void linearise(const Hand& placed);
   void shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);
   void lead_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed);

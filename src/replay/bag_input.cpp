@@ -6,10 +6,13 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <vector>
 
+#include "bag_check.h"
 #include "device_frames.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
@@ -55,11 +58,21 @@ SourceFrame refused(const std::string& reason, const std::string& detail) {
   return frame;
 }
 
+/// The bag library says no more than that it cannot open it.
+const std::string& readable(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw BagError(file + ": there is no such file");
+  if (!std::filesystem::is_regular_file(file, error)) throw BagError(file + ": is no file; allowed: a bag");
+  if (!std::ifstream(file)) throw BagError(file + ": cannot be read; allowed: a file that may be read");
+  check_bag(file);
+  return file;
+}
+
 }  // namespace
 
 struct BagInput::Impl {
   Impl(const std::string& file, const std::optional<std::string>& wanted, const std::optional<Pose>& device)
-      : bag(file, rosbag::bagmode::Read),
+      : bag(readable(file), rosbag::bagmode::Read),
         topic(chosen_topic(file, bag, wanted)),
         view(bag, rosbag::TopicQuery(topic)),
         devices(bag, device),
@@ -105,6 +118,12 @@ struct BagInput::Impl {
   }
 
   SourceFrame read(const rosbag::MessageInstance& message) {
+    SourceFrame frame = read_hands(message);
+    frame.arrival = from_ros_time(message.getTime());
+    return frame;
+  }
+
+  SourceFrame read_hands(const rosbag::MessageInstance& message) {
     try {
       if (message.getDataType() == "leap_motion/Human") return read_leap(message);
       if (message.getDataType() == "geometry_msgs/PoseArray") return read_pose_array(message);
@@ -134,6 +153,10 @@ BagInput::BagInput(const std::string& file, const std::optional<std::string>& to
     : impl_(std::make_unique<Impl>(file, topic, device_in_world)) {
 } catch (const rosbag::BagException& error) {
   throw BagError(file + ": " + error.what());
+} catch (const ros::Exception& error) {
+  throw BagError(file + ": is corrupt: " + error.what());
+} catch (const std::bad_alloc&) {
+  throw BagError(file + ": is corrupt: it asks for more memory than there is");
 }
 
 BagInput::~BagInput() = default;

@@ -1,6 +1,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "mr_hand_interaction/collision/overlap.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -50,6 +51,8 @@ Simulation prepare_simulation(const ReplayArguments& arguments) {
   }
   Scene scene = load_scene(file, scene_options(configuration));
   for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
+  const std::string overlaps = arguments.object_poses.empty() ? "" : overlaps_at_start(scene);
+  if (!overlaps.empty()) throw UsageError("--object-pose: " + overlaps + "; allowed: places that are free");
   for (const auto& [name, twist] : arguments.object_twists) {
     object_of(scene, "--object-twist", name).start_twist = twist;
   }

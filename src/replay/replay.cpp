@@ -44,6 +44,17 @@ void leave_out(const std::vector<std::string>& hands, ProgressBar& progress, Rep
   summary.hands_left_out += hands.size();
 }
 
+/// What the recorder's clock says of the stamps to come, as the node's does of those of live frames.
+struct RecordersClock {
+  Nanoseconds last_stamp = 0;
+  std::optional<Nanoseconds> arrival;  // of the frame with the last stamp
+
+  std::optional<Nanoseconds> expected(const std::optional<Nanoseconds>& now) const {
+    if (!arrival || !now) return std::nullopt;
+    return last_stamp + std::max<Nanoseconds>(0, *now - *arrival);
+  }
+};
+
 struct Input {
   std::unique_ptr<FrameSource> frames;
   std::string topic;
@@ -79,13 +90,14 @@ void write_summary(const std::string& folder, const ReplaySummary& summary) {
 void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
                 ReplaySummary& summary) {
   Nanoseconds last_stamp = 0;
+  RecordersClock clock;
   while (const std::optional<SourceFrame> input = source.next()) {
     progress.show(source.position(), source.size());
     if (!input->frame) {
       reject(input->reason, input->detail, progress, summary);
       continue;
     }
-    const Rejection rejection = simulation.begin(*input->frame);
+    const Rejection rejection = simulation.begin(*input->frame, clock.expected(input->arrival));
     if (rejection != Rejection::none) {
       reject(to_string(rejection), "frame " + std::to_string(source.position()) + " of the input", progress,
              summary);
@@ -95,9 +107,11 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
     while (timed_step(simulation, summary)) {
     }
     const FrameResult& result = simulation.end();
+    for (const std::string& what : result.not_finite) reject("not finite", what, progress, summary);
     writer.write(result, simulation.state());
     add(simulation, last_stamp, summary);
     last_stamp = result.stamp;
+    clock = {last_stamp, input->arrival};
   }
 }
 

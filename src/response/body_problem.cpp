@@ -1,5 +1,6 @@
 #include "body_problem.h"
 
+#include "grip_springs.h"
 #include "spring_potential.h"
 
 namespace mrhi {
@@ -26,12 +27,25 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
   for (const Link& link : island.links) objects_.push_back(&step.body_contacts[link.index]);
   fill_up(no_contact_, hands_);
   fill_up(no_body_contact_, objects_);
-  springs_.resize((hands_.size() + objects_.size()) / kLanes);
+  grips_.clear();
+  for (Grip& grip : step.grips) {
+    if (grip.body == touched.body) grips_.push_back(&grip);
+  }
+  static_assert(kGripPoints == kLanes, "a grip fills one group of lanes");
+  springs_.resize((hands_.size() + objects_.size()) / kLanes + grips_.size());
   auto spring = springs_.begin();
   for (std::size_t i = 0; i < hands_.size(); i += kLanes)
     make_springs(step, configuration, &hands_[i], *spring++);
   for (std::size_t i = 0; i < objects_.size(); i += kLanes)
     make_springs(step, configuration, &objects_[i], *spring++);
+  for (const Grip* grip : grips_) {
+    SpringContact<double> one;
+    for (int point = 0; point < kGripPoints; ++point) {
+      make_grip_spring(step, configuration, *grip, point, one);
+      put_in(point, one, *spring);
+    }
+    ++spring;
+  }
 
   step_ = step.step;
   begin_body(step.scene.bodies[touched.body], step.bodies[touched.body], step.gravity);
@@ -101,6 +115,11 @@ void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) co
   auto spring = springs_.begin();
   for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, *spring++, &hands_[i]);
   for (std::size_t i = 0; i < objects_.size(); i += kLanes) settle(step, *spring++, &objects_[i]);
+  for (Grip* grip : grips_) {
+    for (int point = 0; point < kGripPoints; ++point)
+      settle_grip(step, contact_in(point, *spring), point, *grip);
+    ++spring;
+  }
 }
 
 }  // namespace mrhi

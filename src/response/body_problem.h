@@ -4,6 +4,7 @@
 
 #include "cholesky6.h"
 #include "islands.h"
+#include "newton.h"
 #include "spring_contact.h"
 #include "spring_lanes.h"
 
@@ -18,6 +19,7 @@ class BodyProblem {
   BodyProblem();
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
+  static Effort effort() { return {}; }
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
   double error_squared() const;
@@ -42,6 +44,7 @@ class BodyProblem {
   // What presses the body, filled up to fours, and all of it as springs.
   std::vector<Contact*> hands_;
   std::vector<BodyContact*> objects_;
+  std::vector<Grip*> grips_;
   std::vector<SpringContact<Lanes>> springs_;
   Contact no_contact_;
   BodyContact no_body_contact_;

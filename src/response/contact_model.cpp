@@ -17,12 +17,12 @@ class WithObjects : public ContactModel {
       : hands_(std::move(hands)), objects_(configuration.contact) {}
 
   void respond(ContactStep& step) override {
-    ContactStep of_hands{step.scene, step.gravity, step.step,   step.contacts,
-                         nothing_,   step.bodies,  step.changes};
+    ContactStep of_hands{step.scene, step.gravity, step.step,    step.contacts,
+                         nothing_,   step.bodies,  step.changes, no_grips_};
     hands_->respond(of_hands);
     if (step.body_contacts.empty()) return;
-    ContactStep of_bodies{step.scene,         step.gravity, step.step,   no_hand_,
-                          step.body_contacts, step.bodies,  step.changes};
+    ContactStep of_bodies{step.scene,         step.gravity, step.step,    no_hand_,
+                          step.body_contacts, step.bodies,  step.changes, no_grips_};
     objects_.respond(of_bodies);
   }
 
@@ -31,6 +31,7 @@ class WithObjects : public ContactModel {
   ImplicitModel objects_;
   std::vector<Contact> no_hand_;
   std::vector<BodyContact> nothing_;
+  std::vector<Grip> no_grips_;
 };
 
 }  // namespace

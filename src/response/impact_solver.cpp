@@ -10,10 +10,14 @@ namespace mrhi {
 namespace {
 
 constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
-constexpr int kMaxSweeps = 500;
-constexpr double kConverged = 1e-13;   // of the approach velocity
-constexpr double kTogether = 1e-12;    // blows nearer to each other in time than this are one [s]
+constexpr double kTogether = 1e-12;        // blows nearer to each other in time than this are one [s]
 constexpr std::size_t kBlowsEach = 4;  // of an island's contacts, on average, in one step; then springs act
+/// Where so many strikes have been relaxed for an island, no more blows are looked for in this step.
+constexpr std::size_t kMostWork = 4000;
+/// An island of more contacts between bodies is a crowd.
+constexpr std::size_t kFewLinks = 16;
+/// Slower strikes are none in a crowd [m/s].
+constexpr double kSlow = 1e-3;
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
 
@@ -83,6 +87,9 @@ void widen(Strike strike, double step) {
 
 }  // namespace
 
+const ImpactSolver::Care ImpactSolver::kExact{500, 1e-13};
+const ImpactSolver::Care ImpactSolver::kVisible{30, 1e-6};
+
 ImpactSolver::ImpactSolver() {
   strikes_.reserve(kUsualStrikes);
   blow_.reserve(kUsualStrikes);
@@ -98,8 +105,12 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (const Island& island : islands.all()) {
     collect(step, island);
     if (springs && by_hand_ && is_held(step, island)) spare_carried(step, springs(island));
+    const bool crowd = island.links.size() > kFewLinks;
+    care_ = crowd ? kVisible : kExact;
+    work_ = 0;
+    if (crowd) spare_slow(step);
     if (strikes_.empty()) continue;
-    if (by_hand_) {
+    if (by_hand_ || crowd) {
       deal_at_once(step);
     } else {
       deal_in_turn(step, island);
@@ -133,6 +144,7 @@ void ImpactSolver::add(ContactStep& step, Contact& contact) {
   if (strike.time >= step.step) return;
   contact.time_of_impact = strike.time;
   strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
+  strike.a.inverse_mass = contact.inverse_mass;
   strike.by_hand = true;
   strike.gap = -contact.depth;
   strike.drive = contact.hand_velocity;
@@ -167,6 +179,12 @@ void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) 
   strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), parts), strikes_.end());
 }
 
+void ImpactSolver::spare_slow(const ContactStep& step) {
+  const double slow = kSlow + step.step * step.gravity.norm();
+  const auto is_slow = [slow](const Strike& strike) { return !strike.by_hand && strike.rate() > -slow; };
+  strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), is_slow), strikes_.end());
+}
+
 void ImpactSolver::deal_at_once(ContactStep& step) {
   blow_.clear();
   for (Strike& strike : strikes_) {
@@ -184,7 +202,7 @@ void ImpactSolver::deal_in_turn(ContactStep& step, const Island& island) {
     const bool pressed = contact.struck && classify(strike.rate()) == Approach::colliding;
     if (!pressed) add(strike, contact.material);
   }
-  for (std::size_t blows = 0; blows < kBlowsEach * strikes_.size(); ++blows) {
+  for (std::size_t blows = 0; blows < kBlowsEach * strikes_.size() && work_ < kMostWork; ++blows) {
     if (!find_blow(step.step) || !deal(step)) break;
   }
   for (const Strike& strike : strikes_) widen(strike, step.step);
@@ -240,14 +258,15 @@ bool ImpactSolver::deal(ContactStep& step) {
 
 /// Finds impulses that together give every strike its velocity; false if there are none.
 bool ImpactSolver::solve(double most) {
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+  for (int sweep = 0; sweep < care_.sweeps; ++sweep) {
+    work_ += blow_.size();
     double error = 0.0, scale = 0.0, sum = 0.0;
     for (Strike* strike : blow_) {
       error = std::max({error, strike->relax_normal(), strike->relax_tangential()});
       scale = std::max(scale, strike->magnitude / strike->mass);
       sum += strike->magnitude;
     }
-    if (error <= kConverged * scale) return true;
+    if (error <= care_.converged * scale) return true;
     if (sum > kPressed * most) return false;
   }
   return true;

@@ -15,6 +15,8 @@ enum class ImpactFriction { none, coulomb };
 /// and all on an island that a hand strikes, are one blow: each one's relative velocity becomes at least
 /// -restitution times what it was on impact, with impulses that only push. Blows between other pairs follow
 /// each other in time, each as the ones before it have left the bodies, up to several of one pair in a step.
+/// In a crowd, an island of many contacts, all strikes of a step are one blow, found to what can be seen, and
+/// only those that are faster than gravity makes things in a step: springs do the rest.
 /// With ImpactFriction::coulomb, sliding at the point is stopped as far as static friction times the normal
 /// impulse goes.
 class ImpactSolver {
@@ -33,6 +35,7 @@ class ImpactSolver {
   void add(ContactStep& step, BodyContact& contact);
   void add(Strike strike, const Material& material);
   void spare_carried(const ContactStep& step, const Twist& carried);
+  void spare_slow(const ContactStep& step);
   void deal_at_once(ContactStep& step);
   void deal_in_turn(ContactStep& step, const Island& island);
   bool find_blow(double end);
@@ -46,6 +49,14 @@ class ImpactSolver {
   std::vector<Strike*> blow_;     // those dealt together
   std::vector<BodyImpact> impacts_;
   bool by_hand_ = false;  // a hand takes part in this island's strikes
+  /// How exactly a blow is solved.
+  struct Care {
+    int sweeps;
+    double converged;  // of the approach velocity
+  };
+  static const Care kExact, kVisible;
+  Care care_ = kExact;
+  std::size_t work_ = 0;  // strikes relaxed for this island
 };
 
 }  // namespace mrhi

@@ -1,11 +1,13 @@
 #include "implicit_model.h"
 
 #include "edge_grip.h"
+#include "hand_strength.h"
 #include "newton.h"
 
 namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
+  share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
   islands_.build(step);
   const auto springs = [&](const Island& island) {

@@ -8,8 +8,9 @@ namespace mrhi {
 
 /// The paper's two phases solved at the end of the step: Newton's impact law where surfaces strike, and the
 /// god-object springs with Coulomb friction and soft-finger torsion as functions of the velocity that
-/// results. One convex problem per island of touching bodies, M (v - v*) = h sum J' f(v), by Newton's method;
-/// as the step goes to zero it becomes the seed model. See docs/contact.md.
+/// results. One convex problem per island of touching bodies, M (v - v*) = h sum J' f(v), by Newton's method.
+/// Release, damping, torsion and the lever of deep presses are its own: it is not the seed model in the limit
+/// of small steps. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
   explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}

@@ -1,43 +1,43 @@
 #include "island_problem.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cmath>
 
+#include "grip_springs.h"
 #include "spring_potential.h"
 
 namespace mrhi {
 namespace {
 
-/// Larger islands are sparse: most pairs of their bodies do not touch.
-constexpr std::size_t kMostDense = 12;
-
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// J' f of a force at an arm from the body's centre.
-Vector6 wrench_of(const Vector3& force, const Vector3& arm) {
-  Vector6 wrench;
-  wrench << force, arm.cross(force);
-  return wrench;
-}
-
-/// J_x' S J_y of a contact's slope S, for the arms x and y.
-Matrix6 slope_between(const IslandContact& contact, const Vector3& x, const Vector3& y) {
+/// Of a contact point, against its velocity: symmetric.
+Matrix3 slope_at_point(const IslandContact& contact) {
   const SpringResponse<double>& response = contact.response;
   const Vector3 n = vector(contact.spring.normal);
-  const Matrix3 cross_x = cross_matrix(x), cross_y = cross_matrix(y);
-  Matrix6 result;
-  result.topLeftCorner<3, 3>() = response.along * Matrix3::Identity();
-  result.topRightCorner<3, 3>() = -response.along * cross_y;
-  result.bottomLeftCorner<3, 3>() = response.along * cross_x;
-  result.bottomRightCorner<3, 3>() =
-      response.torque_slope * n * n.transpose() - response.along * cross_x * cross_y;
-  result += (response.across - response.along) * wrench_of(n, x) * wrench_of(n, y).transpose();
+  Matrix3 slope = (response.across - response.along) * n * n.transpose();
+  slope.diagonal().array() += response.along;
   if (response.slip > 0.0) {
     const Vector3 d = vector(response.drawn);
-    result -= (response.slip / response.drawn_squared) * wrench_of(d, x) * wrench_of(d, y).transpose();
+    slope -= (response.slip / response.drawn_squared * d) * d.transpose();
   }
+  return slope;
+}
+
+/// [v]x M.
+Matrix3 crossed(const Vector3& v, const Matrix3& m) {
+  Matrix3 result;
+  for (int i = 0; i < 3; ++i) result.col(i) = v.cross(m.col(i));
   return result;
+}
+
+/// Adds J_x' S J_y, for arms x and y, by [x]x S and [y]x S; and the twist's slope.
+void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Vector3& x,
+         const Matrix3& twist, BlockSystem::Matrix6& block) {
+  block.topLeftCorner<3, 3>() += sign * slope;
+  block.bottomLeftCorner<3, 3>() += sign * x_slope;
+  block.topRightCorner<3, 3>() += sign * y_slope.transpose();
+  block.bottomRightCorner<3, 3>() += sign * (crossed(x, y_slope.transpose()) + twist);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void IslandProblem::begin(ContactStep& step, const Island& island,
     begin_body(step.scene.bodies[body.body], step.bodies[body.body], step.gravity);
 
   add_contacts(step, island, configuration);
-  list_blocks();
+  couple();
 }
 
 void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
@@ -75,9 +75,21 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
       if (!step.contacts[i].ignored) add(step.contacts[i], IslandContact::kAlone, number(body.body));
     }
   }
+  for (const IslandBody& body : island.bodies) {
+    for (const Grip& grip : step.grips) {
+      if (grip.body != body.body) continue;
+      for (int point = 0; point < kGripPoints; ++point) {
+        contacts_.emplace_back();
+        make_grip_spring(step, configuration, grip, point, contacts_.back());
+        contacts_.back().a = IslandContact::kAlone, contacts_.back().b = number(body.body);
+      }
+    }
+  }
+  on_fixture_ = false;
   for (const Link& link : island.links) {
     const BodyContact& touch = step.body_contacts[link.index];
     const bool alone = step.scene.bodies[touch.key.a].fixed;
+    on_fixture_ = on_fixture_ || alone;
     add(touch, alone ? IslandContact::kAlone : number(touch.key.a), number(touch.key.b)).arm_a = touch.arm_a;
   }
 }
@@ -94,26 +106,30 @@ void IslandProblem::begin_body(const Body& body, const BodyState& state, const V
       free_.segment<3>(row + 3) + step_ * state.pushed.angular;
 }
 
-void IslandProblem::list_blocks() {
-  blocks_.clear();
-  for (int body = 0; body < static_cast<int>(masses_.size()); ++body) blocks_.push_back({body, body, {}});
-  const auto pairs = static_cast<std::ptrdiff_t>(masses_.size());
-  const auto order = [](const Block& x, const Block& y) {
-    return std::tie(x.column, x.row) < std::tie(y.column, y.row);
-  };
-  const auto same = [](const Block& x, const Block& y) { return x.row == y.row && x.column == y.column; };
+void IslandProblem::couple() {
+  system_.begin(static_cast<int>(masses_.size()));
   for (const IslandContact& contact : contacts_) {
-    if (contact.a == IslandContact::kAlone) continue;
-    blocks_.push_back({std::max(contact.a, contact.b), std::min(contact.a, contact.b), Matrix6::Zero()});
+    if (contact.a != IslandContact::kAlone) system_.couple(contact.a, contact.b);
   }
-  std::sort(blocks_.begin() + pairs, blocks_.end(), order);
-  blocks_.erase(std::unique(blocks_.begin() + pairs, blocks_.end(), same), blocks_.end());
-  couples_.clear();
-  for (const IslandContact& contact : contacts_) {
-    const Block wanted{std::max(contact.a, contact.b), std::min(contact.a, contact.b), {}};
-    const auto block = std::lower_bound(blocks_.begin() + pairs, blocks_.end(), wanted, order);
-    couples_.push_back(static_cast<std::size_t>(block - blocks_.begin()));
+  system_.arrange();
+  for (IslandContact& contact : contacts_) {
+    if (contact.a != IslandContact::kAlone) contact.coupling = system_.coupling(contact.a, contact.b);
   }
+}
+
+Effort IslandProblem::effort() const {
+  Effort effort;
+  effort.limits = 2;
+  effort.held_iterations = 20;
+  if (masses_.size() <= static_cast<std::size_t>(BlockSystem::kMostDense)) return effort;
+  effort.iterations = 12;
+  effort.limits = 1;
+  effort.held_iterations = 16;
+  effort.unchecked = 0;
+  effort.trials = 10;
+  effort.converged = 1e-6;
+  effort.anew = false;
+  return effort;
 }
 
 Vector3 IslandProblem::velocity_at(int body, const Vector3& arm) const {
@@ -133,6 +149,16 @@ double IslandProblem::relative_spin(const IslandContact& contact) const {
   return n.dot(velocity_.segment<3>(6 * contact.a + 3)) - of_b;
 }
 
+/// As most contacts of a crowd that may touch do: it then gives nothing, as respond() would find.
+bool IslandProblem::stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits) {
+  Spring<double>& spring = contact.spring;
+  if (spring.bond > 0.0 || spring.depth > spring.ahead * u.dot(spring.normal)) return false;
+  if (!renew_limits && (spring.slip_limit > 0.0 || spring.twist_limit > 0.0)) return false;
+  spring.slip_limit = spring.twist_limit = 0.0;
+  contact.response = {};
+  return true;
+}
+
 void IslandProblem::evaluate(bool renew_limits) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(6 * i);
@@ -143,9 +169,10 @@ void IslandProblem::evaluate(bool renew_limits) {
   scale_ = 0.0;
   for (IslandContact& contact : contacts_) {
     SpringResponse<double>& response = contact.response;
-    contact.spring.respond(triple(relative_velocity(contact)), relative_spin(contact), renew_limits,
-                           response);
-    scale_ += step_ * response.push;
+    const Triple<double> u = triple(relative_velocity(contact));
+    if (stays_apart(contact, u, renew_limits)) continue;
+    contact.spring.respond(u, relative_spin(contact), renew_limits, response);
+    scale_ += step_ * (response.push + contact.spring.bond);
     const Vector3 force = step_ * vector(response.force);
     const Vector3 torque = (step_ * response.torque) * vector(contact.spring.normal);
     const auto add_force = [&](int body, double sign, const Vector3& arm) {
@@ -158,53 +185,33 @@ void IslandProblem::evaluate(bool renew_limits) {
 }
 
 void IslandProblem::factorise() {
-  for (Block& block : blocks_) block.value.setZero();
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    blocks_[i].value.diagonal().head<3>().setConstant(masses_[i].mass);
-    blocks_[i].value.bottomRightCorner<3, 3>() = masses_[i].inertia;
+  system_.clear();
+  for (int i = 0; i < static_cast<int>(masses_.size()); ++i) {
+    const Mass& mass = masses_[static_cast<std::size_t>(i)];
+    system_.diagonal(i).diagonal().head<3>().setConstant(mass.mass);
+    system_.diagonal(i).bottomRightCorner<3, 3>() = mass.inertia;
   }
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const IslandContact& contact = contacts_[i];
-    if (contact.response.across <= 0.0 && contact.response.along <= 0.0) continue;
-    const auto add_slope = [&](std::size_t block, double sign, const Vector3& x, const Vector3& y) {
-      blocks_[block].value += (sign * step_) * slope_between(contact, x, y);
-    };
-    const Vector3 &a = contact.arm_a, b = vector(contact.arm);
-    add_slope(static_cast<std::size_t>(contact.b), 1.0, b, b);
-    if (contact.a == IslandContact::kAlone) continue;
-    add_slope(static_cast<std::size_t>(contact.a), 1.0, a, a);
-    if (contact.b > contact.a) {
-      add_slope(couples_[i], -1.0, b, a);
-    } else {
-      add_slope(couples_[i], -1.0, a, b);
-    }
+  for (const IslandContact& contact : contacts_) {
+    if (contact.response.across > 0.0 || contact.response.along > 0.0) add_slope(contact);
   }
-  if (masses_.size() > kMostDense) return factorise_sparse();
-  dense_.setZero(size(), size());
-  for (const Block& block : blocks_) dense_.block<6, 6>(6 * block.row, 6 * block.column) = block.value;
-  dense_factors_.compute(dense_);
+  system_.factorise();
 }
 
-void IslandProblem::factorise_sparse() {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(36 * blocks_.size());
-  for (const Block& block : blocks_) {
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 6; ++column)
-        entries.emplace_back(6 * block.row + row, 6 * block.column + column, block.value(row, column));
-    }
-  }
-  Eigen::SparseMatrix<double> hessian(size(), size());
-  hessian.setFromTriplets(entries.begin(), entries.end());
-  sparse_factors_.compute(hessian);
-}
-
-void IslandProblem::find_direction() {
-  direction_ = -gradient_;
-  if (masses_.size() > kMostDense) {
-    direction_ = sparse_factors_.solve(direction_).eval();
+void IslandProblem::add_slope(const IslandContact& contact) {
+  const Matrix3 slope = step_ * slope_at_point(contact);
+  const Vector3 n = vector(contact.spring.normal), b = vector(contact.arm);
+  const Matrix3 twist = (step_ * contact.response.torque_slope) * n * n.transpose();
+  const Matrix3 b_slope = crossed(b, slope);
+  add(1.0, slope, b_slope, b_slope, b, twist, system_.diagonal(contact.b));
+  if (contact.a == IslandContact::kAlone) return;
+  const Vector3& a = contact.arm_a;
+  const Matrix3 a_slope = crossed(a, slope);
+  add(1.0, slope, a_slope, a_slope, a, twist, system_.diagonal(contact.a));
+  BlockSystem::Matrix6& block = system_.between(contact.coupling);
+  if (contact.b > contact.a) {
+    add(-1.0, slope, b_slope, a_slope, b, twist, block);
   } else {
-    dense_factors_.solveInPlace(direction_);
+    add(-1.0, slope, a_slope, b_slope, a, twist, block);
   }
 }
 
@@ -231,7 +238,73 @@ double IslandProblem::energy() const {
   return sum;
 }
 
-void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) const {
+double IslandProblem::kinetic_energy(const Eigen::VectorXd& velocity) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const Vector3 spin = velocity.segment<3>(row + 3);
+    sum += 0.5 *
+           (masses_[i].mass * velocity.segment<3>(row).squaredNorm() + spin.dot(masses_[i].inertia * spin));
+  }
+  return sum;
+}
+
+/// How all bodies move as one that has these momenta, given as M V body by body.
+Eigen::VectorXd IslandProblem::common_motion(const Eigen::VectorXd& momenta,
+                                             const std::vector<Vector3>& places) const {
+  double mass = 0.0;
+  Vector3 centre = Vector3::Zero(), linear = centre, angular = centre;
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    mass += masses_[i].mass, centre += masses_[i].mass * places[i];
+  centre /= mass;
+  Matrix3 inertia = Matrix3::Zero();
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const Matrix3 arm = cross_matrix(places[i] - centre);
+    linear += momenta.segment<3>(row);
+    angular += momenta.segment<3>(row + 3) + arm * momenta.segment<3>(row);
+    inertia += masses_[i].inertia - masses_[i].mass * arm * arm;
+  }
+  const Vector3 velocity = linear / mass, spin = inertia.ldlt().solve(angular);
+  Eigen::VectorXd motion(momenta.size());
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    motion.segment<6>(static_cast<Eigen::Index>(6 * i)) << velocity + spin.cross(places[i] - centre), spin;
+  return motion;
+}
+
+/// Where the solution was cut short: momentum is kept by what is missing moving all bodies as one, and as
+/// much of what they do besides as does not take more energy than there is.
+void IslandProblem::make_passive(const ContactStep& step, const Island& island) {
+  Eigen::VectorXd common = Eigen::VectorXd::Zero(velocity_.size());
+  if (!on_fixture_) {
+    std::vector<Vector3> places;
+    for (const IslandBody& body : island.bodies) places.push_back(step.bodies[body.body].pose.position);
+    Eigen::VectorXd momenta(velocity_.size());
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(6 * i);
+      momenta.segment<6>(row) << masses_[i].mass * velocity_.segment<3>(row),
+          masses_[i].inertia * velocity_.segment<3>(row + 3);
+    }
+    velocity_ -= common_motion(momenta, places);
+    common = common_motion(momenta - gradient_, places);
+  }
+  double mass = 0.0, fastest = 0.0;
+  for (const Mass& of : masses_) mass += of.mass;
+  for (const IslandContact& contact : contacts_) fastest = std::max(fastest, vector(contact.drive).norm());
+  const double there_is =
+      std::max(kinetic_energy(start_), kinetic_energy(free_)) + 0.5 * mass * fastest * fastest;
+  const double left = std::max(0.0, there_is - kinetic_energy(common)), wanted = kinetic_energy(velocity_);
+  if (wanted > left) velocity_ *= std::sqrt(left / wanted);
+  velocity_ += common;
+}
+
+bool IslandProblem::nearly_agree() const {
+  return error_squared() <= kNearlyAgree * kNearlyAgree * scale_ * scale_;
+}
+
+void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) {
+  const bool by_forces = agree || nearly_agree();
+  if (!by_forces) make_passive(step, island);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < masses_.size(); ++i, row += 6) {
     BodyState& state = step.bodies[island.bodies.begin()[i].body];
@@ -239,7 +312,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) 
     state.pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
     state.linear_momentum = masses_[i].mass * velocity_.segment<3>(row);
     state.angular_momentum = masses_[i].inertia * velocity_.segment<3>(row + 3);
-    if (!agree) continue;
+    if (!by_forces) continue;
     state.linear_momentum -= gradient_.segment<3>(row);
     state.angular_momentum -= gradient_.segment<3>(row + 3);
   }
@@ -247,6 +320,12 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) 
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
       if (!step.contacts[i].ignored) settle(step, *contact++, step.contacts[i]);
+    }
+  }
+  for (const IslandBody& body : island.bodies) {
+    for (Grip& grip : step.grips) {
+      if (grip.body != body.body) continue;
+      for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *contact++, point, grip);
     }
   }
   for (const Link& link : island.links) settle(step, *contact++, step.body_contacts[link.index]);

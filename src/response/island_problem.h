@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <vector>
 
+#include "block_system.h"
 #include "islands.h"
+#include "newton.h"
 #include "spring_contact.h"
 
 namespace mrhi {
@@ -14,7 +14,8 @@ namespace mrhi {
 struct IslandContact : SpringContact<double> {
   static constexpr int kAlone = -1;
   int a, b;
-  Vector3 arm_a;  // from the centre of a [m]
+  Vector3 arm_a;         // from the centre of a [m]
+  std::size_t coupling;  // of a and b in the system
 };
 
 /// Several bodies that touch each other, and what presses them: six unknowns a body, solved together. A
@@ -25,53 +26,60 @@ class IslandProblem {
 
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
+  /// Few bodies are solved as one is. What many bodies may take is bounded, and their error what can be
+  /// seen.
+  Effort effort() const;
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
   double error_squared() const;
   double scale() const { return scale_; }
   void factorise();
-  void find_direction();
+  void find_direction() {
+    direction_ = -gradient_;
+    system_.solve(direction_, kDirection);
+  }
   void move(double part) { velocity_ += part * direction_; }
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 
   /// Gives the contacts what they have become, and the bodies their momenta at the step's end: what the
-  /// forces make of them where these and the velocity `agree`, so that none is lost between bodies.
-  void finish(bool agree, ContactStep& step, const Island& island) const;
+  /// forces make of them where these and the velocity `agree`, so that none is lost between bodies. What was
+  /// cut short keeps momentum too, and gains no energy.
+  void finish(bool agree, ContactStep& step, const Island& island);
 
  private:
+  /// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
+  static constexpr double kNearlyAgree = 1e-4;
+
   using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
   struct Mass {
     double mass;
     double gyration_squared;  // [m^2]
     Matrix3 inertia;          // world axes
   };
-  /// Blocks of the Hessian that two bodies share: row below or on the diagonal.
-  struct Block {
-    int row, column;
-    Matrix6 value;
-  };
+  /// A direction of many bodies is as good as that: the next one mends the rest.
+  static constexpr double kDirection = 0.01;
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(6 * masses_.size()); }
   Vector3 velocity_at(int body, const Vector3& arm) const;
   Vector3 relative_velocity(const IslandContact& contact) const;
   double relative_spin(const IslandContact& contact) const;
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
   void add_contacts(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
-  void list_blocks();
-  void factorise_sparse();
+  void couple();
+  bool nearly_agree() const;
+  double kinetic_energy(const Eigen::VectorXd& velocity) const;
+  Eigen::VectorXd common_motion(const Eigen::VectorXd& momenta, const std::vector<Vector3>& places) const;
+  void make_passive(const ContactStep& step, const Island& island);
+  void add_slope(const IslandContact& contact);
+  static bool stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits);
 
   std::vector<IslandContact> contacts_;
   double step_ = 0.0;
   std::vector<Mass> masses_;
   Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;
-  std::vector<Block> blocks_;         // the diagonal ones first, then those of touching pairs, sorted
-  std::vector<std::size_t> couples_;  // by contact: its block off the diagonal
-  Eigen::MatrixXd dense_;
-  Eigen::LLT<Eigen::MatrixXd> dense_factors_;
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_factors_;
+  BlockSystem system_;
   double scale_ = 0.0;
+  bool on_fixture_ = false;
 };
 
 }  // namespace mrhi

@@ -45,8 +45,19 @@ void Islands::build(const ContactStep& step) {
     while (last < step.contacts.size() && step.contacts[last].key.body == body) ++last;
     if (!step.scene.bodies[body].fixed) bodies_.push_back({static_cast<int>(body), body, first, last});
   }
+  add_gripped(step);
   if (!step.body_contacts.empty()) link_bodies(step);
   divide();
+}
+
+/// What a hand holds without touching it just now.
+void Islands::add_gripped(const ContactStep& step) {
+  for (const Grip& grip : step.grips) {
+    const auto after = std::lower_bound(bodies_.begin(), bodies_.end(), grip.body,
+                                        [](const IslandBody& x, std::size_t y) { return x.body < y; });
+    if (after == bodies_.end() || after->body != grip.body)
+      bodies_.insert(after, {grip.body, grip.body, 0, 0});
+  }
 }
 
 void Islands::link_bodies(const ContactStep& step) {

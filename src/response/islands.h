@@ -42,6 +42,7 @@ class Islands {
   const std::vector<Island>& all() const { return islands_; }
 
  private:
+  void add_gripped(const ContactStep& step);
   void link_bodies(const ContactStep& step);
   void divide();
   int root_of(int body);

@@ -14,16 +14,28 @@ namespace mrhi {
 ///   find_direction()      towards the solution, by the last Hessian
 ///   move(part)            along the direction; move(-part) goes back
 ///   kTrustsLastStep       whether the last step's effect may go unmeasured
+///   effort()              how long to try
 ///   energy(), descent()   of the convex problem, and its slope along the direction [J]
+/// How long a Problem is worked on, at most.
+struct Effort {
+  int iterations = 40;       // with limits renewed in each
+  int limits = 8;            // held after that, one after the other,
+  int held_iterations = 60;  // for each of them
+  int unchecked = 2;  // first steps: exact while contacts neither open nor slip, else the next one shows
+  bool anew = true;   // from the step's start on, else from where the others have led
+  int trials = 20;    // for the least energy along a direction
+  double converged = 1e-7;  // when it is solved: error of the forces' impulse
+};
+
 template <typename Problem>
 class Newton {
  public:
-  explicit Newton(Problem& problem) : problem_(problem) {}
+  explicit Newton(Problem& problem) : problem_(problem), effort_(problem.effort()) {}
 
   /// True if the forces and the velocity found agree.
   bool solve() {
     double last = 0.0;
-    for (int i = 0; i < kMaxIterations; ++i) {
+    for (int i = 0; i < effort_.iterations; ++i) {
       problem_.evaluate(true);
       if (solved()) return true;
       const double error = problem_.error_squared();
@@ -34,48 +46,40 @@ class Newton {
         advance(false, near);
         return false;
       }
-      advance(i >= kUncheckedIterations && !near, near);
+      advance(i >= effort_.unchecked && !near, near);
     }
     solve_with_held_limits();
     return false;
   }
 
  private:
-  static constexpr int kMaxIterations = 40;
-  static constexpr int kMaxHeldIterations = 60;
-  static constexpr int kMaxLimits = 8;
-  static constexpr int kMaxTrials = 20;
   /// The least energy along a direction is found where the slope is this part of what it began with.
   static constexpr double kFlat = 0.01;
-  /// The first full steps need no check: they are exact while contacts neither open nor slip, and what is
-  /// wrong with them shows in the next iterate.
-  static constexpr int kUncheckedIterations = 2;
   /// A step that leaves less than this part of the error was taken where the Hessian hardly changes.
   static constexpr double kFast = 0.05;
-  /// Fast convergence takes an error of this size below kConverged in one more step,
+  /// Fast convergence takes an error of this size below Effort::converged in one more step,
   static constexpr double kTrusted = 1e-5;
   /// and so does the first one, by a Hessian of its own, where the last step has led this near: what it
   /// leaves goes with the square (measured: 4e-11 of 3e-5).
   static constexpr double kTrustedAtOnce = 1e-4;
   /// Below this error the energy is rounding and no guide any more; of the forces' impulse.
   static constexpr double kFine = 1e-5;
-  /// The momenta at the step's end are what the forces found make of those at its start, so that what is
-  /// missing here costs no momentum; of the forces' impulse.
-  static constexpr double kConverged = 1e-7;
 
   bool error_below(double part) const {
     const double most = part * problem_.scale() + 1e-18;
     return problem_.error_squared() <= most * most;
   }
-  bool solved() const { return error_below(kConverged); }
+  /// The momenta at the step's end are what the forces found make of those at its start, so that what is
+  /// missing here costs no momentum.
+  bool solved() const { return error_below(effort_.converged); }
 
   /// Where the limits keep chasing the velocity: they are held while the convex problem is solved to its end,
   /// then renewed. The solution for any limits is passive, so whenever this stops nothing is thrown.
   void solve_with_held_limits() {
-    problem_.restart();
-    for (int renewed = 0; renewed < kMaxLimits; ++renewed) {
+    if (effort_.anew) problem_.restart();
+    for (int renewed = 0; renewed < effort_.limits; ++renewed) {
       problem_.evaluate(true);
-      for (int i = 0; i < kMaxHeldIterations && !solved(); ++i) {
+      for (int i = 0; i < effort_.held_iterations && !solved(); ++i) {
         advance(true, false);
         problem_.evaluate(false);
       }
@@ -98,7 +102,7 @@ class Newton {
     double low = 0.0, high = 1.0, part = 1.0, low_slope = descent;
     problem_.evaluate(false);
     double high_slope = problem_.descent();
-    for (int i = 0; i < kMaxTrials && high_slope > 0.0; ++i) {
+    for (int i = 0; i < effort_.trials && high_slope > 0.0; ++i) {
       const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
       const double next = i % 3 == 2 ? 0.5 * (low + high) : secant;
       problem_.move(next - part);
@@ -112,6 +116,7 @@ class Newton {
   }
 
   Problem& problem_;
+  const Effort effort_;
 };
 
 }  // namespace mrhi

@@ -31,15 +31,23 @@ struct Spring {
   Real twist;            ///< turn of 1 about n against 2, as far as it is held [rad]
 
   // What it is made of.
+  Real pad;              ///< depth over which it stiffens; 0: at once [m]
+  Real half_over_pad;    ///< 1/2 over that; 0 where it is 0 [1/m]
+  Real yields;           ///< as deep as this at full stiffness it begins to give way [m]
   Real ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
   Real stiffness;        ///< [N/m]
   Real twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
   Real friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
   Real patch_friction;   ///< torque that the patch bears, over the push [m]
+  Real bond;             ///< force along the surface that it bears without any push [N]
 
   // Coulomb's limits, by the normal force of the last iterate.
   Real slip_limit;   ///< [N]
   Real twist_limit;  ///< [N m]
+
+  /// The push over the stiffness as a function of the depth, and its slope: as that of a pulp, which stiffens
+  /// until it is pressed to `pad`, and of a finger, which gives way beyond its strength.
+  [[gnu::always_inline]] inline void press(const Real& deep, Real& pressed, Real& steepness) const;
 
   /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
   /// limits by the normal force there first, where asked.
@@ -58,6 +66,19 @@ struct SpringContact {
   Real drive_spin;                ///< of 1 about n [rad/s]
 };
 
+/// What a finger that gives way still gains in push with depth, of its stiffness.
+constexpr double kGivingWay = 0.02;
+
+template <typename Real>
+inline void Spring<Real>::press(const Real& deep, Real& pressed, Real& steepness) const {
+  const Real one = constant<Real>(1.0), part = constant<Real>(kGivingWay);
+  const Real soft = lesser(deep, pad);
+  pressed = deep - soft + soft * soft * half_over_pad;
+  steepness = where_at_most(pad, deep, one, constant<Real>(2.0) * deep * half_over_pad);
+  steepness = where_at_most(pressed, yields, steepness, part * steepness);
+  pressed = where_at_most(pressed, yields, pressed, yields + part * (pressed - yields));
+}
+
 template <typename Real>
 inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
                                   SpringResponse<Real>& response) {
@@ -66,12 +87,14 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   const Real deep = greater(zero, depth - ahead * rate);
   const Real parting = lesser(greater(rate, zero) * constant<Real>(1.0 / kReleaseSpeed), one);
   const Real kept = one - parting * parting;
-  const Real push = stiffness * deep * kept;
+  Real pressed, steepness;
+  press(deep, pressed, steepness);
+  const Real push = stiffness * pressed * kept;
   response.push = push;
-  const Real steep = ahead * kept + deep * parting * constant<Real>(2.0 / kReleaseSpeed);
+  const Real steep = steepness * ahead * kept + pressed * parting * constant<Real>(2.0 / kReleaseSpeed);
   response.across = where_at_most(push, zero, zero, stiffness * steep);
   if (renew_limits) {
-    slip_limit = friction * push;
+    slip_limit = friction * push + bond;
     twist_limit = patch_friction * push;
   }
 

@@ -21,8 +21,8 @@ constexpr double kPatchTorque = 2.0 / 3.0;
 /// Nothing is damped before it touches.
 template <typename Real>
 Real look_ahead(double step, const Real& depth, bool damping) {
-  const double more = damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0;
-  return where_at_most(depth, constant<Real>(0.0), constant<Real>(step), constant<Real>(step + more));
+  return where_at_most(depth, constant<Real>(0.0), constant<Real>(step),
+                       constant<Real>(mrhi::look_ahead(step, damping)));
 }
 
 double friction_of(const Material& material, Friction friction) {
@@ -39,10 +39,15 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   Spring<Real>& spring = result.spring;
   spring.normal = n;
   spring.stretch = reach - n.dot(reach) * n;
-  spring.depth = each(&Contact::depth);
+  spring.depth = each(&Contact::pressed);
   spring.twist = each(&Contact::twist);
   spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
+  const HandStrength& hand = configuration.hand;
+  spring.pad = constant<Real>(hand.pad);
+  spring.half_over_pad = constant<Real>(hand.pad > 0.0 ? 0.5 / hand.pad : 0.0);
   spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
+  spring.yields = each(&Contact::strength) / greater(spring.stiffness, constant<Real>(1e-300));
+  spring.bond = constant<Real>(0.0);
   const double twisting = configuration.torsion ? kTwistLever * kTwistLever : 0.0;
   spring.twist_stiffness = spring.stiffness * constant<Real>(twisting);
   spring.friction =
@@ -67,6 +72,8 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.friction =
       each([](const BodyContact& contact) { return friction_of(contact.material, contact.friction); });
   spring.twist = spring.twist_stiffness = spring.patch_friction = zero;
+  spring.pad = spring.half_over_pad = spring.bond = zero;
+  spring.yields = constant<Real>(HandStrength::kUnlimited);
   result.arm = each(&BodyContact::arm_b);
   result.drive = {zero, zero, zero};
   result.drive_spin = zero;
@@ -149,6 +156,16 @@ SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four) {
   for (std::size_t i = 0; i < kNumbers; ++i)
     reinterpret_cast<double*>(&result)[i] = reinterpret_cast<const Lanes*>(&four)[i].lane[lane];
   return result;
+}
+
+void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& four) {
+  constexpr std::size_t kNumbers = sizeof(SpringContact<double>) / sizeof(double);
+  for (std::size_t i = 0; i < kNumbers; ++i)
+    reinterpret_cast<Lanes*>(&four)[i].lane[lane] = reinterpret_cast<const double*>(&one)[i];
+}
+
+double look_ahead(double step, bool damping) {
+  return step + (damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
 }
 
 template <typename Touch>

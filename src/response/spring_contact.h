@@ -22,7 +22,12 @@ void settle(const ContactStep& step, const SpringContact<double>& solved, Touch&
 template <typename Touch>
 void settle(const ContactStep& step, const SpringContact<Lanes>& solved, Touch* const* touches);
 
+/// How far ahead a spring that touches is evaluated: the step, and what damping adds [s].
+double look_ahead(double step, bool damping);
+
 /// One of four.
 SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four);
+/// The other way round.
+void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& four);
 
 }  // namespace mrhi

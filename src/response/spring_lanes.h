@@ -8,7 +8,7 @@ namespace mrhi {
 struct SpringSum {
   double force[3];   ///< [N]
   double torque[3];  ///< about the body's centre [N m]
-  double push;       ///< sum of the pushes' sizes [N]
+  double push;       ///< sum of the pushes' sizes, and of the bonds' [N]
 };
 
 /// -d (force, torque) / d (velocity, angular velocity) of the body: the lower triangle, row by row.

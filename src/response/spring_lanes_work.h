@@ -26,7 +26,7 @@ inline void respond(SpringContact<Lanes>* first, SpringContact<Lanes>* last, con
     four.spring.respond(u, four.drive_spin - n.dot(angular), renew_limits, four.response);
     force = force + four.response.force;
     torque = torque + four.arm.cross(four.response.force) + four.response.torque * n;
-    push = push + four.response.push;
+    push = push + four.response.push + four.spring.bond;
   }
   write_sum(force, result.force);
   write_sum(torque, result.torque);

@@ -1,6 +1,7 @@
 #include "spring_potential.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace mrhi {
@@ -12,19 +13,39 @@ double yielding_energy(double stiffness, double stretch, double limit) {
   return limit * stretch - 0.5 * limit * limit / stiffness;
 }
 
-/// Integral of the push from the rate up, until it is none any more.
-double push_energy(double stiffness, double depth, double ahead, double rate) {
-  // Where the push is released, that of a line times a parabola.
-  const auto antiderivative = [=](double x) {
-    const double r = 1.0 / (kReleaseSpeed * kReleaseSpeed), x2 = x * x;
-    return stiffness * (depth * x - 0.5 * ahead * x2 - depth * r * x * x2 / 3.0 + 0.25 * ahead * r * x2 * x2);
-  };
-  const double gone = depth / ahead;  // the rate at which the surfaces just part
-  const double from = std::max(rate, 0.0), to = std::min(gone, kReleaseSpeed);
-  double energy = to > from ? antiderivative(to) - antiderivative(from) : 0.0;
-  if (rate < std::min(gone, 0.0) || (rate < 0.0 && gone > 0.0)) {
-    const double deep = std::max(0.0, depth - ahead * rate), at_rest = std::max(0.0, depth);
-    energy += 0.5 * stiffness * (deep * deep - at_rest * at_rest) / ahead;
+/// Gauss and Legendre's rule of three points, exact for polynomials up to degree five.
+template <typename Function>
+double integral(double from, double to, Function function) {
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from), off = std::sqrt(0.6) * half;
+  return half / 9.0 * (5.0 * function(middle - off) + 8.0 * function(middle) + 5.0 * function(middle + off));
+}
+
+double push(const Spring<double>& spring, double rate) {
+  const double deep = std::max(0.0, spring.depth - spring.ahead * rate);
+  const double parting = std::min(std::max(rate, 0.0) / kReleaseSpeed, 1.0);
+  double pressed, steepness;
+  spring.press(deep, pressed, steepness);
+  return spring.stiffness * pressed * (1.0 - parting * parting);
+}
+
+/// Depth at which the spring begins to give way.
+double yielding_depth(const Spring<double>& spring) {
+  if (spring.yields >= 0.5 * spring.pad) return spring.yields + 0.5 * spring.pad;
+  return std::sqrt(2.0 * spring.yields * spring.pad);
+}
+
+/// Integral of the push from the rate up, until it is none any more: piece by piece, a polynomial each.
+double push_energy(const Spring<double>& spring, double rate) {
+  const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
+  const double end = std::min(rate_at(0.0), kReleaseSpeed);
+  std::array<double, 4> kinks{rate_at(yielding_depth(spring)), rate_at(spring.pad), 0.0, end};
+  std::sort(kinks.begin(), kinks.end());
+  double energy = 0.0, from = rate;
+  for (const double kink : kinks) {
+    const double to = std::min(kink, end);
+    if (to <= from) continue;
+    energy += integral(from, to, [&](double x) { return push(spring, x); });
+    from = to;
   }
   return energy;
 }
@@ -35,7 +56,7 @@ double potential(const Spring<double>& spring, const Triple<double>& u, double s
   const double rate = u.dot(spring.normal);
   const Triple<double> drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
   const double turned = std::abs(spring.twist + spring.ahead * spin);
-  return push_energy(spring.stiffness, spring.depth, spring.ahead, rate) +
+  return push_energy(spring, rate) +
          (yielding_energy(spring.stiffness, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
           yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
              spring.ahead;

@@ -29,18 +29,21 @@ Vector3 Strike::Partner::velocity_of_centre() const {
 }
 
 Vector3 Strike::Partner::velocity() const {
-  if (state == nullptr) return Vector3::Zero();
+  if (state == nullptr) return recoil;
   return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
 }
 
 void Strike::Partner::push(const Vector3& by) {
-  if (state == nullptr) return;
+  if (state == nullptr) {
+    recoil += inverse_mass * by;
+    return;
+  }
   state->linear_momentum += by;
   state->angular_momentum += arm.cross(by);
 }
 
 Matrix3 Strike::Partner::inverse_effective_mass() const {
-  if (state == nullptr) return Matrix3::Zero();
+  if (state == nullptr) return inverse_mass * Matrix3::Identity();
   return collision_matrix(inverse_mass, inverse_inertia, arm);
 }
 
@@ -85,6 +88,7 @@ void Strike::move_arms(double seconds) {
 void Strike::prepare() {
   magnitude = 0.0;
   drag.setZero();
+  a.recoil.setZero();
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
   mass = 1.0 / normal.dot(k * normal);
   if (friction <= 0.0) return;

@@ -8,11 +8,13 @@ namespace mrhi {
 
 /// One surface that strikes another, or may, on its way through a step.
 struct Strike {
-  /// A body that takes part; nothing of it is set for a hand or a fixture, which an impulse does not move.
+  /// A body that takes part; nothing of it is set for a fixture, which an impulse does not move. Of a hand
+  /// that gives way there is the inverse mass, and by how much it has: what is tracked goes on all the same.
   struct Partner {
     BodyState* state = nullptr;
     double inverse_mass = 0.0;
-    Matrix3 inverse_inertia;  // world axes
+    Vector3 recoil = Vector3::Zero();  // of a hand in this blow [m/s]
+    Matrix3 inverse_inertia;           // world axes
     Vector3 arm;
 
     Vector3 velocity_of_centre() const;

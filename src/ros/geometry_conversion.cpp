@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/stamp_judge.h"
 
 namespace mrhi {
 
@@ -48,7 +51,8 @@ Pose from_message(const geometry_msgs::Transform& transform) {
 }
 
 ros::Time to_ros_time(Nanoseconds stamp) {
-  return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp));
+  constexpr Nanoseconds kEarliest = 0;
+  return ros::Time().fromNSec(static_cast<std::uint64_t>(std::clamp(stamp, kEarliest, StampJudge::kLatest)));
 }
 
 Nanoseconds from_ros_time(const ros::Time& stamp) {

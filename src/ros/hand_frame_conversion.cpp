@@ -8,6 +8,7 @@
 namespace mrhi {
 namespace {
 
+constexpr int kFarthest = 1000;          // [m], on each axis
 constexpr double kUnitTolerance = 1e-9;  // of a quaternion's length; what is nearer keeps its bits
 
 [[noreturn]] void refuse(const mr_hand_interaction::Hand& message, const std::string& what) {
@@ -26,6 +27,8 @@ Vector3 checked(const mr_hand_interaction::Hand& message, const char* name,
                 const geometry_msgs::Point& point) {
   const Vector3 position = from_message(point);
   if (!position.allFinite()) refuse(message, std::string(name) + " is not finite");
+  if (position.cwiseAbs().maxCoeff() > kFarthest)
+    refuse(message, std::string(name) + " is farther than " + std::to_string(kFarthest) + " m");
   return position;
 }
 

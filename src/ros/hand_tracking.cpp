@@ -12,16 +12,15 @@
 namespace mrhi {
 namespace {
 
-constexpr Nanoseconds kRestart =
-    500000000;  // a stamp that goes back further is a recording that starts again
 constexpr int kQueue = 10;
 
 const char* const kUnusableHand = "unusable hand";
 const char* const kStampNotIncreasing = "stamp repeats or goes back";
+const char* const kNoStamp = "stamp out of range";
 const char* const kNoTransform = "no transform";
 
 std::vector<std::string> known_reasons() {
-  std::vector<std::string> reasons{kUnusableHand, kStampNotIncreasing, kNoTransform};
+  std::vector<std::string> reasons{kUnusableHand, kStampNotIncreasing, kNoStamp, kNoTransform};
   for (auto kind :
        {DecodeError::Kind::unknown_version, DecodeError::Kind::malformed, DecodeError::Kind::wrong_count})
     reasons.emplace_back(DecodeError(kind, "").reason());
@@ -97,6 +96,10 @@ void HandTracking::take_pose_array(const ros::MessageEvent<const geometry_msgs::
 
 void HandTracking::take(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
   if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
+  if (joints.stamp > StampJudge::kLatest) {
+    statistics_.rejected(kNoStamp, std::to_string(joints.stamp / 1'000'000'000) + " s");
+    return;
+  }
   try {
     const Pose device = joints.hands.empty() ? Pose{} : device_pose(frame_id, joints.stamp);
     std::vector<std::string> defects;
@@ -107,22 +110,24 @@ void HandTracking::take(JointsFrame joints, const std::string& frame_id, const r
         boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(*frame, fixed_frame_));
     if (sink_) sink_(*message, receipt);
     publisher_.publish(message);
-    statistics_.taken((ros::Time::now() - to_ros_time(frame->stamp)).toSec());
+    statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame->stamp));
   } catch (const tf2::TransformException& error) {
     statistics_.rejected(kNoTransform, error.what());
   }
 }
 
+/// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not
+/// for those who listen to hand_frame.
 bool HandTracking::accept_stamp(Nanoseconds stamp) {
-  const Nanoseconds back = last_stamp_ - stamp;
-  if (back >= 0 && back <= kRestart) {
+  const Nanoseconds last = stamps_.last;
+  const StampVerdict verdict = stamps_.judge(stamp);
+  if (verdict == StampVerdict::late) {
     statistics_.rejected(kStampNotIncreasing, std::to_string(to_seconds(stamp)) + " s after " +
-                                                  std::to_string(to_seconds(last_stamp_)) + " s");
+                                                  std::to_string(to_seconds(last)) + " s");
     return false;
   }
   // Transforms that move would be refused as older than what the buffer has; static ones survive.
-  if (back > kRestart) transforms_.clear();
-  last_stamp_ = stamp;
+  if (verdict == StampVerdict::restart) transforms_.clear();
   return true;
 }
 

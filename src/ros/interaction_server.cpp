@@ -101,8 +101,11 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
 }
 
 void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
+  const Nanoseconds stamp = from_ros_time(message.header.stamp);
+  const StampVerdict verdict = arrivals_.judge(stamp);
   if (clock_.paused()) {
-    clock_.take(from_ros_time(message.header.stamp), ros::Time::now());
+    if (verdict == StampVerdict::follows || verdict == StampVerdict::restart)
+      clock_.take(stamp, ros::Time::now());
     diagnostics_.dropped_while_paused();
     return;
   }
@@ -110,11 +113,12 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message, cons
   while (timed_step()) results_.note_step();
   const FrameResult& result = live_.now().end();
   place_dragged();
+  for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
   results_.publish(result);
   if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
-  diagnostics_.taken((now - message.header.stamp).toSec());
-  clock_.take(from_ros_time(message.header.stamp), now);
+  diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
+  clock_.take(stamp, now);
 }
 
 bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
@@ -125,7 +129,8 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
   try {
     HandFrame frame = from_message(message);
     frame.stamp = clock_.to_simulation(frame.stamp);
-    const Rejection rejection = live_.now().begin(frame);
+    const Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+    const Rejection rejection = live_.now().begin(frame, expected);
     if (rejection == Rejection::none) return true;
     diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
   } catch (const std::invalid_argument& error) {
@@ -156,7 +161,7 @@ void InteractionServer::idle() {
 }
 
 bool InteractionServer::reset(std_srvs::Trigger::Response& response) {
-  live_.now().reset();
+  live_.reset();
   results_.show(live_.now());
   FrameResult start;
   start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "../scene/safe_yaml.h"
 #include "../scene/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -32,7 +33,7 @@ std::string read_all(const std::string& file) {
 std::string material_of(const std::string& link, const std::string& urdf_file) {
   const auto yaml_file = std::filesystem::path(urdf_file).replace_extension(".yaml");
   if (!std::filesystem::exists(yaml_file)) return "";
-  const YAML::Node scene = YAML::LoadFile(yaml_file.string());
+  const YAML::Node scene = load_yaml_file(yaml_file.string());
   if (!scene["materials"] || !scene["materials"][link]) return "";
   return text::one_line(YAML::Dump(scene["materials"][link]));
 }

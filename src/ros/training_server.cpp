@@ -163,7 +163,8 @@ Observation TrainingServer::observed(const mr_hand_interaction::ObjectStateArray
   seen.held = object.held;
   seen.tracking_losses = tracking_losses_;
   seen.put_back = put_back_;
-  if (std::abs((message.header.stamp - contacts_.header.stamp).toSec()) > kFresh) return seen;
+  const Nanoseconds apart = from_ros_time(message.header.stamp) - from_ros_time(contacts_.header.stamp);
+  if (std::abs(to_seconds(apart)) > kFresh) return seen;
   double pressing = 0.0;
   for (const auto& contact : contacts_.contacts) {
     if (contact.object != object.name) continue;

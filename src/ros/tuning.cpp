@@ -13,27 +13,10 @@ namespace {
 
 using Config = mr_hand_interaction::TuneConfig;
 
-const std::string kStiffness = "material/stiffness";
+const std::string kStiffness = "material/stiffness", kNoise = "filter/noise";
 
 std::string number(double value) {
   return yaml_text(XmlRpc::XmlRpcValue(value));
-}
-
-/// Ends of the sliders; a value beyond them may be set all the same.
-void slider_ends(Config& least, Config& most) {
-  least.step = 0.0002, most.step = 0.01;
-  least.gravity_x = least.gravity_y = least.gravity_z = -10.0;
-  most.gravity_x = most.gravity_y = most.gravity_z = 10.0;
-  least.filter_window = 1, most.filter_window = 16;
-  least.filter_min_cutoff = 0.1, most.filter_min_cutoff = 10.0;
-  least.filter_beta = 0.0, most.filter_beta = 500.0;
-  least.filter_noise = 1e-5, most.filter_noise = 0.003;
-  least.filter_acceleration = 0.01, most.filter_acceleration = 10.0;
-  least.filter_agility = 0.0, most.filter_agility = 30.0;
-  least.material_restitution = 0.0, most.material_restitution = 1.0;
-  least.material_static_friction = least.material_dynamic_friction = 0.0;
-  most.material_static_friction = most.material_dynamic_friction = 2.0;
-  least.material_stiffness = 10.0, most.material_stiffness = 10000.0;
 }
 
 dynamic_reconfigure::Config message_of(const Config& config) {
@@ -80,7 +63,39 @@ void add_stiffness(const Config& wanted, const Config& before, Tuning::Values& v
   values.emplace_back(kStiffness, of_model ? "model" : number(wanted.material_stiffness));
 }
 
+void add_noise(const Config& wanted, const Config& before, Tuning::Values& values) {
+  const bool moved = wanted.filter_noise != before.filter_noise;
+  if (!moved && wanted.filter_noise_estimated == before.filter_noise_estimated) return;
+  const bool estimated = wanted.filter_noise_estimated && !(moved && before.filter_noise_estimated);
+  values.emplace_back(kNoise, estimated ? "estimated" : number(wanted.filter_noise));
+}
+
+/// The parameter that a number of the dialog belongs to: gravity has one for each axis.
+std::string parameter_of(const std::string& field) {
+  for (const std::string& name : parameter_names()) {
+    if (field_of(name) == field) return name;
+  }
+  return field.substr(0, field.rfind('_'));
+}
+
+template <class Field>
+void set_ends(std::vector<Field>& least, std::vector<Field>& most) {
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    const ParameterLimits limits = parameter_limits(parameter_of(least[i].name)).value();
+    least[i].value = static_cast<decltype(least[i].value)>(limits.slider_min);
+    most[i].value = static_cast<decltype(most[i].value)>(limits.slider_max);
+  }
+}
+
 }  // namespace
+
+void slider_ends(Config& least, Config& most) {
+  dynamic_reconfigure::Config low = message_of(least), high = message_of(most);
+  set_ends(low.ints, high.ints);
+  set_ends(low.doubles, high.doubles);
+  least.__fromMessage__(low);
+  most.__fromMessage__(high);
+}
 
 Tuning::Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions)
     : actions_(std::move(actions)),
@@ -115,10 +130,11 @@ Tuning::Values Tuning::changes(const Config& wanted) const {
   Values values;
   const auto before = parameter_texts(shown_);
   for (const auto& [name, text] : parameter_texts(wanted)) {
-    if (name != kStiffness && text != before.at(name)) values.emplace_back(name, text);
+    if (name != kStiffness && name != kNoise && text != before.at(name)) values.emplace_back(name, text);
   }
   add_gravity(wanted, shown_, values);
   add_stiffness(wanted, shown_, values);
+  add_noise(wanted, shown_, values);
   return values;
 }
 
@@ -141,6 +157,8 @@ Config Tuning::now() const {
   const Vector3 gravity = configuration.gravity.value_or(simulation.scene().gravity);
   config.gravity_of_scene = !configuration.gravity;
   config.gravity_x = gravity.x(), config.gravity_y = gravity.y(), config.gravity_z = gravity.z();
+  config.filter_noise_estimated = !configuration.filter.noise;
+  config.filter_noise = configuration.filter.noise.value_or(kUsualNoise);
   config.stiffness_of_model = !configuration.stiffness;
   config.material_stiffness = default_material(configuration).stiffness;
   config.place_by_mouse = place_by_mouse_;

@@ -5,15 +5,33 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "body_limits.h"
 #include "text.h"
 
 namespace mrhi {
 namespace {
 
+using namespace body_limits;
+
+[[noreturn]] void refuse(const Body& body, const std::string& what, const Range& allowed,
+                         const std::string& unit) {
+  throw std::invalid_argument("body '" + text::one_line(body.name, 60) + "': " + what +
+                              " is not allowed; allowed: " + allowed.describe() + unit);
+}
+
 void check_mass(const Body& body) {
-  if (std::isfinite(body.mass) && body.mass > 0) return;
-  throw std::invalid_argument("body '" + body.name + "': mass " + text::number(body.mass) +
-                              " kg is not allowed; allowed: above 0");
+  if (!kMass.contains(body.mass)) refuse(body, "mass " + text::number(body.mass) + " kg", kMass, " kg");
+}
+
+void check_start(const Body& body) {
+  const Vector3& place = body.start.position;
+  if (!kPlace.contains(place.minCoeff()) || !kPlace.contains(place.maxCoeff()) || !place.allFinite())
+    refuse(body, "place " + text::vector(place) + " m", kPlace, " m");
+  const Twist& twist = body.start_twist;
+  if (!kSpeed.contains(twist.linear.norm()))
+    refuse(body, "velocity " + text::vector(twist.linear) + " m/s", kSpeed, " m/s");
+  if (!kSpin.contains(twist.angular.norm()))
+    refuse(body, "spin " + text::vector(twist.angular) + " rad/s", kSpin, " rad/s");
 }
 
 void check_inertia(const Body& body) {
@@ -24,9 +42,29 @@ void check_inertia(const Body& body) {
     throw std::invalid_argument(what + "is not symmetric; allowed: a symmetric matrix");
   }
   const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia).eigenvalues();
-  if (principal[0] > 1e-12 * principal[2]) return;
+  if (principal[0] > 1e-12 * principal[2]) {
+    if (!kInertia.contains(principal[0]) || !kInertia.contains(principal[2]))
+      refuse(body, "inertia with the principal moments " + text::vector(principal) + " kg m^2", kInertia,
+             " kg m^2");
+    return;
+  }
   throw std::invalid_argument(what + "with the principal moments " + text::vector(principal) +
                               " kg m^2 is not positive definite; allowed: all three above 0");
+}
+
+bool is_diagonal(const Matrix3& matrix) {
+  return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
+}
+
+/// Of a body that has its inertia along its own axes, these: to the bit.
+void find_principal_axes(Body& body) {
+  body.principal_axes.setIdentity();
+  body.inverse_moments = body.inverse_inertia.diagonal();
+  if (body.fixed || is_diagonal(body.inverse_inertia)) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(body.inverse_inertia);
+  body.principal_axes = solver.eigenvectors();
+  if (body.principal_axes.determinant() < 0.0) body.principal_axes.col(2) *= -1.0;
+  body.inverse_moments = solver.eigenvalues();
 }
 
 }  // namespace
@@ -39,9 +77,14 @@ void complete(Body& body) {
     const Matrix3 inverse = body.inertia.inverse();
     body.inverse_inertia = 0.5 * (inverse + inverse.transpose());
   }
+  find_principal_axes(body);
+  check_start(body);
+  const Range allowed{0, kPlace.max};
   body.bounding_radius = 0;
   for (const PlacedShape& placed : body.shapes) {
     const double reach = placed.pose.position.norm() + bounding_radius(placed.shape);
+    if (!allowed.contains(reach))
+      refuse(body, "a shape that reaches " + text::number(reach) + " m", allowed, " m");
     body.bounding_radius = std::max(body.bounding_radius, reach);
   }
 }

@@ -6,11 +6,10 @@ namespace mrhi {
 
 const std::array<MaterialField, 4>& material_fields() {
   static const std::array<MaterialField, 4> fields{{
-      {"restitution", "", &Material::restitution, &OwnMaterial::restitution, Range{0, 1}},
-      {"static_friction", "", &Material::static_friction, &OwnMaterial::static_friction, Range{0}},
-      {"dynamic_friction", "", &Material::dynamic_friction, &OwnMaterial::dynamic_friction, Range{0}},
-      {"stiffness", " [N/m]", &Material::stiffness, &OwnMaterial::stiffness,
-       Range{0, std::numeric_limits<double>::infinity(), false}},
+      {"restitution", "", &Material::restitution, &OwnMaterial::restitution, {0, 1}, {0, 1}},
+      {"static_friction", "", &Material::static_friction, &OwnMaterial::static_friction, {0, 10}, {0, 2}},
+      {"dynamic_friction", "", &Material::dynamic_friction, &OwnMaterial::dynamic_friction, {0, 10}, {0, 2}},
+      {"stiffness", " [N/m]", &Material::stiffness, &OwnMaterial::stiffness, {1, 1e7}, {10, 10000}},
   }};
   return fields;
 }

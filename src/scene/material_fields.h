@@ -9,13 +9,13 @@
 
 namespace mrhi {
 
-/// One number of a material: its name in files, and what it may be.
+/// One number of a material: its name in files, what it may be, and what a slider spans of that.
 struct MaterialField {
   const char* name;
   const char* unit;
   double Material::*value;
   bool OwnMaterial::*own;
-  Range range;
+  Range range, slider;
 };
 
 /// All of them; both the scene's YAML and the parameters are read by this table.

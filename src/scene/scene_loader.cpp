@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "mr_hand_interaction/collision/overlap.h"
 #include "named_file.h"
 #include "scene_yaml.h"
 #include "text.h"
@@ -24,6 +25,15 @@ void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   }
 }
 
+/// Bodies that begin inside each other push each other out with all they have, and many of them at once cost
+/// more than a step has time for.
+void check_overlaps(const std::string& file, const Scene& scene) {
+  const std::string overlaps = overlaps_at_start(scene);
+  if (overlaps.empty()) return;
+  throw SceneError(file + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +
+                   text::number(kOverlap) + " m");
+}
+
 }  // namespace
 
 std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories) {
@@ -38,6 +48,7 @@ Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   if (fs::exists(settings)) apply_scene_yaml(settings.string(), scene);
   if (options.gravity) scene.gravity = *options.gravity;
   check_starts_in_bounds(urdf_file, scene);
+  check_overlaps(urdf_file, scene);
   return scene;
 }
 

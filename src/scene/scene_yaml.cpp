@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "body_limits.h"
 #include "material_fields.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "safe_yaml.h"
 #include "text.h"
 #include "yaml_element.h"
 
@@ -48,14 +50,16 @@ void read_materials(const Element& element, Scene& scene) {
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   try {
-    const Element root{yaml_file, "", YAML::LoadFile(yaml_file)};
+    const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
     for (const std::string& key : checked_keys(root, {"gravity", "bounds", "materials"})) {
       const Element element = root.at(key);
-      if (key == "gravity") scene.gravity = read_vector(element);
+      if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);
     }
+  } catch (const YamlError& error) {
+    throw SceneError(error.what());
   } catch (const YAML::Exception& error) {
     throw SceneError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }
@@ -63,7 +67,9 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
 
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body) {
   try {
-    read_material({source, "", YAML::Load(yaml)}, body);
+    read_material({source, "", load_yaml(source, yaml)}, body);
+  } catch (const YamlError& error) {
+    throw SceneError(error.what());
   } catch (const YAML::Exception& error) {
     throw SceneError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }

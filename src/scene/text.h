@@ -14,7 +14,7 @@ std::string exact(double value);
 std::string vector(const Vector3& value);
 std::string joined(const std::vector<std::string>& names);
 
-/// Line breaks become spaces; what is longer than `longest` characters is cut.
+/// Line breaks become spaces, other control characters '?'; what is longer than `longest` characters is cut.
 std::string one_line(const std::string& text, std::size_t longest = 300);
 
 /// A name as people write it: without underscores.

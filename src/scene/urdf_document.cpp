@@ -4,13 +4,14 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 
+#include "file_text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "text.h"
+#include "xml_danger.h"
 
 namespace mrhi {
 namespace {
@@ -42,10 +43,9 @@ class Complaints : public console_bridge::OutputHandler {
 };
 
 std::string read_file(const std::string& file) {
-  std::ifstream stream(file);
-  const std::string xml{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream || xml.empty()) throw SceneError(file + ": cannot be read; allowed: a readable URDF file");
-  return xml;
+  const std::optional<std::string> xml = file_text(file, kMostXmlBytes + 1);
+  if (!xml || xml->empty()) throw SceneError(file + ": cannot be read; allowed: a readable URDF file");
+  return *xml;
 }
 
 std::string without_comments(std::string xml) {
@@ -54,6 +54,19 @@ std::string without_comments(std::string xml) {
     xml.erase(begin, end == std::string::npos ? end : end + 3 - begin);
   }
   return xml;
+}
+
+/// A mass without an inertia gets one of zeros, which urdfdom does not refuse: the shapes' own is meant.
+std::string with_inertias(const std::string& xml) {
+  std::string plain = without_comments(xml);
+  for (std::size_t at = plain.find("<inertial>"); at != std::string::npos;
+       at = plain.find("<inertial>", at + 1)) {
+    const std::size_t end = plain.find("</inertial>", at);
+    if (end == std::string::npos) break;
+    const std::size_t inertia = plain.find("<inertia", at + 1);
+    if (inertia > end) plain.insert(end, R"(<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>)");
+  }
+  return plain;
 }
 
 /// The value of the attribute `name` of a tag, or "".
@@ -83,11 +96,12 @@ UrdfDocument parse_urdf_file(const std::string& file) {
 }
 
 UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
+  if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   const Complaints complaints;
   UrdfDocument document;
   std::string problem;
   try {
-    document.model = urdf::parseURDF(xml);
+    document.model = urdf::parseURDF(with_inertias(xml));
     problem = complaints.text();  // urdfdom goes on with half a link after some errors
     if (!document.model && problem.empty()) problem = "urdfdom refuses it";
   } catch (const std::exception& error) {

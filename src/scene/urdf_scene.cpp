@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "names.h"
+#include "shape_inertia.h"
 #include "text.h"
 #include "urdf_shapes.h"
 
@@ -28,6 +30,7 @@ class BodyReader {
     if (!body.fixed) read_inertial(link, body);
     body.start = placed.in_world * body.link_in_body.inverse();
     read_collisions(link, body);
+    if (!body.fixed && body.inertia.isZero(0.0)) body.inertia = inertia_of(body.shapes, body.mass);
     read_visuals(link, body);
     finish(body);
     return body;
@@ -35,8 +38,7 @@ class BodyReader {
 
  private:
   void check_name(const urdf::Link& link) const {
-    if (!link.name.empty() && link.name.find_first_of(" \t\r\n,;\"'/") == std::string::npos) return;
-    fail(link, "this name is not allowed; allowed: no blanks, commas, quotes or slashes");
+    if (!is_name(link.name)) fail(link, std::string("this name is not allowed; allowed: ") + kNameIs);
   }
 
   void read_inertial(const urdf::Link& link, Body& body) const {
@@ -101,7 +103,7 @@ class BodyReader {
   }
 
   [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {
-    throw SceneError(file_ + ": link '" + link.name + "': " + what);
+    throw SceneError(file_ + ": link '" + text::one_line(link.name, 60) + "': " + what);
   }
 
   const std::string& file_;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "body_limits.h"
 #include "mesh_loader.h"
 #include "text.h"
 
@@ -24,20 +25,20 @@ Shape ShapeReader::read(const urdf::Geometry& geometry, const std::string& eleme
   switch (geometry.type) {
     case urdf::Geometry::SPHERE: {
       const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
-      require_positive(Vector3::Constant(radius), "sphere radius " + text::number(radius), element);
+      require_size(Vector3::Constant(radius), "sphere radius " + text::number(radius), element);
       return Sphere{radius};
     }
     case urdf::Geometry::BOX: {
       const Vector3 size = to_vector(static_cast<const urdf::Box&>(geometry).dim);
-      require_positive(size, "box size " + text::vector(size), element);
+      require_size(size, "box size " + text::vector(size), element);
       return Box{0.5 * size};
     }
     case urdf::Geometry::CYLINDER: {
       const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
       const double radius = cylinder.radius, length = cylinder.length;
-      require_positive({radius, radius, length},
-                       "cylinder radius " + text::number(radius) + " and length " + text::number(length),
-                       element);
+      require_size({radius, radius, length},
+                   "cylinder radius " + text::number(radius) + " and length " + text::number(length),
+                   element);
       return Cylinder{radius, 0.5 * length};
     }
     default:
@@ -81,10 +82,11 @@ std::string ShapeReader::mesh_file(const std::string& uri, const std::string& el
                     "'; allowed: package://, file://, or a path from the URDF's folder");
 }
 
-void ShapeReader::require_positive(const Vector3& size, const std::string& what,
-                                   const std::string& element) const {
-  if (size.allFinite() && (size.array() > 0).all()) return;
-  fail(element, what + " m is not allowed; allowed: above 0");
+void ShapeReader::require_size(const Vector3& size, const std::string& what,
+                               const std::string& element) const {
+  const Range& range = body_limits::kSize;
+  if (range.contains(size[0]) && range.contains(size[1]) && range.contains(size[2])) return;
+  fail(element, what + " m is not allowed; allowed: " + range.describe() + " m");
 }
 
 void ShapeReader::fail(const std::string& element, const std::string& what) const {

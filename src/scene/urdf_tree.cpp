@@ -1,6 +1,7 @@
 #include "urdf_tree.h"
 
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "text.h"
 
 namespace mrhi {
 namespace {
@@ -73,7 +74,9 @@ class Tree {
     }
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw SceneError(file_ + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw SceneError(file_ + ": " + text::one_line(what));
+  }
 
   const std::string& file_;
   const urdf::ModelInterface& model_;

@@ -39,9 +39,11 @@ std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<
   return keys;
 }
 
-Vector3 read_vector(const YamlElement& element) {
+Vector3 read_vector(const YamlElement& element, const Range& range) {
   const std::optional<Vector3> vector = yaml_vector(element.node);
-  if (!vector) element.refuse("three finite numbers [x, y, z]");
+  if (!vector || !range.contains(vector->minCoeff()) || !range.contains(vector->maxCoeff()))
+    element.refuse("three numbers [x, y, z] from " + text::number(range.min) + " to " +
+                   text::number(range.max));
   return *vector;
 }
 

@@ -22,6 +22,7 @@ struct YamlElement {
 /// The keys of a map, each known and given once.
 std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<std::string>& known);
 
-Vector3 read_vector(const YamlElement& element);
+/// Three numbers, each in the range: places in m by default.
+Vector3 read_vector(const YamlElement& element, const Range& range = {-1000, 1000});
 
 }  // namespace mrhi

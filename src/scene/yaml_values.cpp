@@ -7,13 +7,11 @@
 namespace mrhi {
 
 bool Range::contains(double value) const {
-  return std::isfinite(value) && (min_allowed ? value >= min : value > min) && value <= max;
+  return (min_allowed ? value >= min : value > min) && value <= max;  // not for NaN either
 }
 
 std::string Range::describe() const {
-  const std::string low = text::number(min);
-  if (std::isinf(max)) return min_allowed ? "a number of at least " + low : "a number above " + low;
-  const std::string high = text::number(max);
+  const std::string low = text::number(min), high = text::number(max);
   return min_allowed ? "a number from " + low + " to " + high : "a number above " + low + ", at most " + high;
 }
 

@@ -2,7 +2,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -10,11 +9,13 @@
 
 namespace mrhi {
 
-/// The numbers a setting may take; max is always one of them, infinity means no limit.
+/// The numbers a setting may take: two finite ends always; max is one of them.
 struct Range {
-  double min;
-  double max = std::numeric_limits<double>::infinity();
-  bool min_allowed = true;
+  constexpr Range(double least, double most, bool least_allowed = true)
+      : min(least), max(most), min_allowed(least_allowed) {}
+
+  double min, max;
+  bool min_allowed;
 
   bool contains(double value) const;
   std::string describe() const;  ///< "a number from 0 to 1"

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "filters.h"
@@ -27,6 +28,14 @@ Gain update(double acceleration, double noise, double elapsed, MotionVariance& v
   return gain;
 }
 
+/// rms speed of the hand without what noise beyond the usual feigns: three axes of the estimate's own error.
+double true_speed(const FilterMemory& memory, double noise) {
+  const double speed = rms_speed(memory.velocity, memory.filtered);
+  if (noise <= kUsualNoise) return speed;
+  const double beyond = 1.0 - kUsualNoise * kUsualNoise / (noise * noise);
+  return std::sqrt(std::max(0.0, speed * speed - 3.0 * beyond * memory.variance.speed));
+}
+
 Quaternion rotation(const Vector3& turned) {
   const double angle = turned.norm();
   if (angle == 0.0) return Quaternion::Identity();
@@ -45,10 +54,11 @@ void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Qua
 }  // namespace
 
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
+  if (!filter.noise) observe_noise(memory.history, memory.noise);
+  const double noise = filter.noise.value_or(filter_noise(memory.noise));
   Hand hand = memory.history.samples[0];
-  const double speed = rms_speed(memory.velocity, memory.filtered);
-  const Gain gain =
-      update(filter.acceleration + filter.agility * speed, filter.noise, elapsed, memory.variance);
+  const double speed = true_speed(memory, noise);
+  const Gain gain = update(filter.acceleration + filter.agility * speed, noise, elapsed, memory.variance);
   for (std::size_t point = 0; point < kHandPoints; ++point) {
     Vector3& velocity = memory.velocity.points[point];
     if (!has_point(hand, point) || !has_point(memory.filtered, point)) {

@@ -15,12 +15,14 @@ auto& point_of(AnyHand& hand, std::size_t point) {
 
 }  // namespace
 
-void SampleHistory::push(const Hand& sample, int keep) {
+void SampleHistory::push(const Hand& sample, double since, int keep) {
   size = std::min(size + 1, keep);
-  for (int i = size - 1; i > 0; --i) {
-    samples[static_cast<std::size_t>(i)] = samples[static_cast<std::size_t>(i - 1)];
+  for (auto i = static_cast<std::size_t>(size - 1); i > 0; --i) {
+    samples[i] = samples[i - 1];
+    elapsed[i] = elapsed[i - 1];
   }
   samples[0] = sample;
+  elapsed[0] = since;
 }
 
 const Vector3& hand_point(const Hand& hand, std::size_t point) {
@@ -36,7 +38,7 @@ bool has_point(const Hand& hand, std::size_t point) {
 
 void FilterMemory::restart(const Hand& sample) {
   history.size = 0;
-  history.push(sample, 1);
+  history.push(sample, 0.0, 1);
   filtered = sample;
   velocity = HandVelocity();
   variance = MotionVariance();

@@ -21,6 +21,15 @@ Hand one_euro(double elapsed, const FilterConfiguration& filter, FilterMemory& m
 /// one gain for the whole hand. The acceleration expected grows with the hand's speed.
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
 
+constexpr int kNoiseSamples = 5;  ///< of the history, from which observe_noise learns
+
+/// Learns from the newest samples how much they tremble; nothing while there are fewer than kNoiseSamples.
+void observe_noise(const SampleHistory& history, SeenNoise& noise);
+
+/// What a filter is to take for the rms of a sample on an axis [m]: a good tracker's, and beyond that what
+/// has been seen.
+double filter_noise(const SeenNoise& seen);
+
 /// Root mean square over the points of the capsules that `hand` has [m/s].
 double rms_speed(const HandVelocity& velocity, const Hand& hand);
 

@@ -14,8 +14,9 @@ int samples_needed(const FilterConfiguration& filter) {
       return std::min(filter.window, kMaxFilterWindow);
     case FilterKind::one_euro:
       return 2;
-    case FilterKind::none:
     case FilterKind::constant_velocity:
+      return filter.noise ? 1 : kNoiseSamples;
+    case FilterKind::none:
       break;
   }
   return 1;
@@ -42,7 +43,7 @@ Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& fil
     memory.restart(sample);
     return sample;
   }
-  memory.history.push(sample, samples_needed(filter));
+  memory.history.push(sample, elapsed, samples_needed(filter));
   memory.filtered = pass(elapsed, filter, memory);
   return memory.filtered;
 }

@@ -33,6 +33,15 @@ void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, 
   }
 }
 
+/// A free slot that knows what noise hands of this side have.
+bool was_last_here(const HandTrack& track, const Hand& hand) {
+  return !track.active && track.filter.noise.size > 0 && track.current.side == hand.side;
+}
+
+bool knows_nothing(const HandTrack& track, const Hand&) {
+  return !track.active && track.filter.noise.size == 0;
+}
+
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
@@ -53,6 +62,8 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
                (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
       },
       assignment);
+  assign(seen, hands, was_last_here, assignment);
+  assign(seen, hands, knows_nothing, assignment);
   assign(
       seen, hands, [](const HandTrack& track, const Hand&) { return !track.active; }, assignment);
   return assignment;
@@ -129,6 +140,7 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
     if (track.active) {
       follow(hand, frame.stamp, configuration, track);
     } else {
+      if (!was_last_here(track, hand)) track.filter.noise = SeenNoise();
       appear(hand, frame.stamp, track);
       events.push_back({frame.stamp, EventKind::hand_found, -1, hand.id});
     }

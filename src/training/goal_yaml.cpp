@@ -19,14 +19,15 @@ void speed_range(const Element& element, Goal& goal) {
   const char* const allowed = "[slowest, fastest] in m/s, slowest at least 0 and below fastest";
   if (!element.node.IsSequence() || element.node.size() != 2) element.refuse(allowed);
   const std::optional<double> slowest = yaml_number(element.node[0]), fastest = yaml_number(element.node[1]);
-  if (!slowest || !fastest || *slowest < 0.0 || *slowest >= *fastest) element.refuse(allowed);
+  if (!slowest || !fastest || *slowest < 0.0 || *slowest >= *fastest || !kAboveZero.contains(*fastest))
+    element.refuse(allowed);
   goal.min_speed = *slowest;
   goal.max_speed = *fastest;
 }
 
 Vector3 box_size(const Element& element) {
   const Vector3 size = read_vector(element);
-  if ((size.array() <= 0.0).any()) element.refuse("three numbers above 0 [m]");
+  if ((size.array() <= 0.0).any()) element.refuse("three numbers above 0, at most 1000 [m]");
   return size;
 }
 

@@ -33,7 +33,7 @@ std::uint64_t participant_place(const std::string& participant) {
   const std::string digits =
       last_letter == std::string::npos ? participant : participant.substr(last_letter + 1);
   if (digits.empty() || digits.size() > kMostDigits)
-    throw SessionError("participant '" + participant +
+    throw SessionError("participant '" + text::one_line(participant, 60) +
                        "' has no number for the order of objects; allowed: a name "
                        "that ends with one, such as P07, or a number of its own");
   const std::uint64_t number = std::stoull(digits);

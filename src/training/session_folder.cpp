@@ -86,6 +86,7 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SessionError(folder + ": cannot be made: " + error.message());
+  lock_ = std::make_unique<FolderLock>(folder);
   open_header(header);
 
   for (const auto& row : open_table("trials.csv", kTrialColumns, trials_)) {

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "../scene/names.h"
+#include "../scene/safe_yaml.h"
 #include "../scene/text.h"
 #include "../scene/yaml_values.h"
 
@@ -40,9 +42,9 @@ std::string field_text(const YAML::Node& node) {
 }
 
 void check_word(const char* key, const std::string& value) {
-  if (value.empty() || value.find_first_of(",\"\n\r") != std::string::npos || text::one_line(value) != value)
+  if (!is_name(value))
     throw SessionError(std::string(key) + " '" + text::one_line(value, 60) +
-                       "' is not allowed; allowed: a name without commas, quotes and line breaks");
+                       "' is not allowed; allowed: a name of " + kNameIs);
 }
 
 }  // namespace
@@ -80,7 +82,7 @@ std::string header_text(const SessionHeader& header) {
 
 void check_same_session(const std::string& file, const SessionHeader& header) {
   try {
-    const YAML::Node there = YAML::LoadFile(file);
+    const YAML::Node there = load_yaml_file(file);
     if (!there.IsMap())
       throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
     for (const auto& [key, here] : identity(header)) {
@@ -90,6 +92,8 @@ void check_same_session(const std::string& file, const SessionHeader& header) {
     const std::optional<Vector3> gravity = yaml_vector(there["gravity"]);
     if (!gravity || *gravity != header.gravity)
       refuse(file, "gravity", field_text(there["gravity"]), text::vector(header.gravity));
+  } catch (const YamlError& error) {
+    throw SessionError(error.what());
   } catch (const YAML::Exception& error) {
     throw SessionError(yaml_place(file, error.mark) + ": cannot be read: " + text::one_line(error.msg));
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "../scene/body_limits.h"
+#include "../scene/names.h"
 #include "../scene/text.h"
 
 namespace mrhi::task_yaml {
@@ -25,8 +27,7 @@ std::string choice(const YamlElement& element, const std::string& one, const std
 
 std::string name(const YamlElement& element) {
   const std::string given = string(element);
-  if (given.find_first_of("/\\,\"' ") != std::string::npos)
-    element.refuse("a name without spaces, commas and slashes");
+  if (!is_name(given)) element.refuse(std::string("a name of ") + kNameIs);
   return given;
 }
 
@@ -51,7 +52,9 @@ Quaternion quaternion(const YamlElement& element) {
 }
 
 Twist twist(const YamlElement& element) {
-  const char* const allowed = "six finite numbers [vx, vy, vz, wx, wy, wz]";
+  const std::string allowed = "six numbers [vx, vy, vz, wx, wy, wz], at most " +
+                              text::number(body_limits::kSpeed.max) + " m/s and " +
+                              text::number(body_limits::kSpin.max) + " rad/s";
   if (!element.node.IsSequence() || element.node.size() != 6) element.refuse(allowed);
   double given[6];
   for (std::size_t i = 0; i < 6; ++i) {
@@ -59,7 +62,11 @@ Twist twist(const YamlElement& element) {
     if (!value) element.refuse(allowed);
     given[i] = *value;
   }
-  return {Vector3(given[0], given[1], given[2]), Vector3(given[3], given[4], given[5])};
+  const Twist twist{Vector3(given[0], given[1], given[2]), Vector3(given[3], given[4], given[5])};
+  if (!body_limits::kSpeed.contains(twist.linear.norm()) ||
+      !body_limits::kSpin.contains(twist.angular.norm()))
+    element.refuse(allowed);
+  return twist;
 }
 
 void check_has(const YamlElement& element, const std::vector<std::string>& needed) {

@@ -13,7 +13,7 @@ constexpr Range kAboveZero{0.0, 1e6, false}, kFromZero{0.0, 1e6};
 double number(const YamlElement& element, const Range& range, const char* unit);
 std::string string(const YamlElement& element);
 std::string choice(const YamlElement& element, const std::string& one, const std::string& other);
-/// Without what would end a field of a CSV file or a part of a path.
+/// See is_name().
 std::string name(const YamlElement& element);
 Vector3 unit_vector(const YamlElement& element);
 Quaternion quaternion(const YamlElement& element);

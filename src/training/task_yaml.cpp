@@ -3,7 +3,9 @@
 #include <functional>
 #include <map>
 
+#include "../scene/body_limits.h"
 #include "../scene/named_file.h"
+#include "../scene/safe_yaml.h"
 #include "../scene/text.h"
 #include "goal_yaml.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
@@ -80,7 +82,7 @@ const std::map<std::string, std::function<void(const Element&, Task&)>>& task_ke
   static const std::map<std::string, std::function<void(const Element&, Task&)>> keys{
       {"name", [](E e, Task& t) { t.name = name(e); }},
       {"instructions", [](E e, Task& t) { t.instructions = string(e); }},
-      {"gravity", [](E e, Task& t) { t.gravity = read_vector(e); }},
+      {"gravity", [](E e, Task& t) { t.gravity = read_vector(e, body_limits::kGravity); }},
       {"objects", [](E e, Task& t) { t.objects = read_list(e, read_object); }},
       {"fixtures", [](E e, Task& t) { t.fixtures = read_list(e, read_fixture); }},
       {"order",
@@ -101,7 +103,7 @@ std::string find_task_file(const std::string& task, const std::vector<std::strin
 Task load_task(const std::string& file) {
   Task task;
   try {
-    const Element root{file, "", YAML::LoadFile(file)};
+    const Element root{file, "", load_yaml_file(file)};
     std::vector<std::string> known;
     for (const auto& key : task_keys()) known.push_back(key.first);
     for (const std::string& key : checked_keys(root, known)) task_keys().at(key)(root.at(key), task);
@@ -109,8 +111,8 @@ Task load_task(const std::string& file) {
       if (!root.node[key]) throw SceneError(file + ": no key '" + key + "'; needed: name, objects, goals");
     }
     check_names(root, task);
-  } catch (const YAML::BadFile&) {
-    throw SceneError(file + ": cannot be read; allowed: a readable task file");
+  } catch (const YamlError& error) {
+    throw SceneError(error.what());
   } catch (const YAML::Exception& error) {
     throw SceneError(yaml_place(file, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -103,6 +104,28 @@ TEST(TouchedPoints, ALargeResidualIsRefusedWithTheWorstPoint) {
     ADD_FAILURE() << "taken";
   } catch (const mrhi::FitError& error) {
     EXPECT_EQ(std::string(error.what()).find("the residual is too large: rms 7.1 mm, 10.0 mm at shelf"), 0u);
+  }
+}
+
+// The wrong point is far out, where it turns the fit the most: the largest residual is at another one.
+TEST(TouchedPoints, APointThatIsWrongIsNamedThoughAnothersResidualIsLarger) {
+  const Pose device{{0.1, -0.2, 0.05}, Quaternion(Eigen::AngleAxisd(1.2, Vector3(1, 2, 3).normalized()))};
+  std::vector<TouchedPoint> points(5);
+  const Vector3 places[] = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}, {0.05, 0.05, 0.01}, {1.0, 0.9, 0}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].name = std::string(1, static_cast<char>('a' + i));
+    points[i].world = places[i];
+    points[i].device = device.to_local(places[i]);
+  }
+  *points[4].device += device.orientation.conjugate() * Vector3(0.0, 0.0, 0.05);
+  const mrhi::RigidFit fit = mrhi::fit_mount(points);
+  const auto worst = std::max_element(fit.residuals.begin(), fit.residuals.end()) - fit.residuals.begin();
+  ASSERT_NE(worst, 4) << "or this test shows nothing";
+  try {
+    mrhi::check_residual(points, fit, 1e-4);
+    ADD_FAILURE() << "taken";
+  } catch (const mrhi::FitError& error) {
+    EXPECT_NE(std::string(error.what()).find("but 0.0 mm without e"), std::string::npos) << error.what();
   }
 }
 

@@ -76,7 +76,8 @@ struct Blow {
     std::vector<BodyContact> none;
     StepChanges changes;
     changes.reset(1);
-    ContactStep step{scene, scene.gravity, 0.001, contacts, none, bodies, changes};
+    std::vector<Grip> grips;
+    ContactStep step{scene, scene.gravity, 0.001, contacts, none, bodies, changes, grips};
     Islands islands;
     islands.build(step);
     ImpactSolver().resolve(step, islands, ImpactFriction::none);

@@ -30,9 +30,13 @@ double creep(const Vector3& gravity) {
   Configuration configuration = testing::implicit_configuration();
   configuration.gravity = gravity;
   Simulation simulation(pinch.scene(), configuration);
+  Simulation weightless(pinch.scene(), testing::implicit_configuration());
+  for (int frame = 0; frame < kRate; ++frame)
+    weightless.advance({at(frame / kRate), {pinch.hand(frame / kRate, Vector3::Zero())}});
+  simulation.set_state(weightless.state());
   Pose settled;
   const int frames = static_cast<int>((kSettled + kTenMinutes) * kRate);
-  for (int frame = 0; frame <= frames; ++frame) {
+  for (int frame = static_cast<int>(kRate); frame <= frames; ++frame) {
     const double t = frame / kRate;
     simulation.advance({at(t), {pinch.hand(t, Vector3::Zero())}});
     if (frame == static_cast<int>(kSettled * kRate)) settled = simulation.state().bodies[0].pose;

@@ -67,12 +67,12 @@ TEST(OneHand, is_the_tracked_hand_to_the_bit_where_nothing_touches) {
 // The plate is thinner than what the finger is pressed in: the nearest way out leads through it.
 TEST(OneHand, a_fingertip_pressed_through_a_thin_plate_stays_on_its_own_side) {
   const Hand still = testing::posed_hand(flat_posture(), Pose());
-  const double x = testing::tip_of(still, 2).x();
+  const double x = tip_of(still, 2).x();
   MovingFlatHand hand(testing::scene_of(wall(Vector3(0.03, 0.2, 0.0025), Vector3(x + 0.005, 0, -0.03))),
                       down_and_up(0.045));
   double least = 1.0, shifted = 0.0;
   hand.play(1.2, [&](const Hand& tracked, const Hand& shown) {
-    least = std::min(least, testing::tip_of(shown, 2).z());
+    least = std::min(least, tip_of(shown, 2).z());
     shifted = std::max(shifted, (shown.palm.position - tracked.palm.position).norm());
   });
   EXPECT_GT(least, -0.0275);

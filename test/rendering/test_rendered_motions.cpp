@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "rendering/expect_one_hand.h"
 #include "synthetic/performance.h"
 

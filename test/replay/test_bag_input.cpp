@@ -8,6 +8,9 @@
 #include <tf2_msgs/TFMessage.h>
 #include <topic_tools/shape_shifter.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/ros/leap_human_encoder.h"
@@ -204,6 +207,51 @@ TEST(BagInput, the_topic_is_the_usual_one_or_must_be_chosen) {
   TestBag none("none.bag");
   make(none, {});
   EXPECT_NE(refusal(none).find("leap_motion/Human"), std::string::npos);
+}
+
+std::string message_of(const std::string& file) {
+  try {
+    BagInput input(file, {}, {});
+    while (input.next()) {
+    }
+  } catch (const std::exception& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BagInput, a_missing_bag_and_what_cannot_be_one_are_told_in_a_line) {
+  test::TemporaryFolder folder;
+  EXPECT_EQ(message_of(folder / "missing.bag"), (folder / "missing.bag") + ": there is no such file");
+  EXPECT_EQ(message_of("/tmp"), "/tmp: is no file; allowed: a bag");
+}
+
+/// Wherever four bytes of a bag are another length, number or place, it is read or refused: the bag library,
+/// which takes them all on trust, does not end the program.
+TEST(BagInput, corrupt_bags_are_read_or_refused) {
+  TestBag bag("whole.bag");
+  for (std::size_t i = 0; i < 8; ++i) bag.add_leap("/leap_motion/leap_device", frames()[i]);
+  bag.add_static("world", "leap_hands", {});
+  bag.bag.close();
+  std::ifstream in(bag.file, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  ASSERT_EQ(message_of(bag.file), "");
+  const std::string corrupt = bag.folder / "corrupt.bag";
+  int refused = 0;
+  for (std::size_t at = 0; at + 4 <= whole.size(); at += at < 4200 ? 151 : 31) {
+    for (const char* bytes : {"\xFF\xFF\xFF\xFF", "\xFF\xFF\xFF\x7F", "\x10\x27\x00"}) {
+      std::string changed = whole;
+      changed.replace(at, 4, std::string(bytes, 4));
+      std::ofstream(corrupt, std::ios::binary) << changed;
+      refused += !message_of(corrupt).empty();
+    }
+  }
+  for (std::size_t size = 0; size < whole.size(); size += 97) {
+    std::ofstream(corrupt, std::ios::binary) << whole.substr(0, size);
+    EXPECT_NE(message_of(corrupt), "") << size;
+  }
+  EXPECT_GT(refused, 20);
 }
 
 TEST(BagInput, what_is_no_bag_is_named) {

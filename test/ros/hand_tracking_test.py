@@ -214,6 +214,13 @@ class HandTrackingTest(unittest.TestCase):
         with self.expect_rejected("stamp repeats or goes back"):
             self.leap.publish(late)
 
+    def test_a_stamp_that_is_no_time_is_rejected_and_the_next_frame_is_taken(self):
+        for seconds in (4294967295, 4000000000):
+            wrong = self.human()
+            wrong.header.stamp = rospy.Time(seconds)
+            with self.expect_rejected("stamp out of range"):
+                self.leap.publish(wrong)
+
     def test_a_recording_that_starts_again_is_passed_on(self):
         self.answer(self.human())
         type(self).next_stamp -= 100.0

@@ -230,10 +230,13 @@ class InteractionTest(unittest.TestCase):
         self.assertTrue(self.pause_service(False).success)
         self.clock.go_on_until(lambda: self.now.pose.position.x > position, "the cube flying on")
 
-    def assert_refused(self, reason, *hands, **options):
+    def assert_refused(self, reason, *hands, later=None, **options):
         key = "rejected: " + reason
         before = self.settled_counts()
+        self.answer(hand(-0.2))  # a stream's interval is that of its last two frames: two that follow closely
         cube = self.objects[self.answer(hand(-0.2))]
+        if later is not None:
+            options["stamp"] = self.clock.stamp + rospy.Duration(later)
         self.send(*hands, **options)
         wait_until(lambda: self.counts.get(key, 0.0) == before.get(key, 0.0) + 1, key)
         good = self.answer(hand(-0.2))
@@ -250,6 +253,15 @@ class InteractionTest(unittest.TestCase):
         twice.phalanges.append(twice.phalanges[0])
         self.assert_refused("unusable hand", twice)
         self.assert_refused("wrong frame", hand(-0.2), frame_id="leap_hands")
+
+    def test_a_stamp_that_is_no_time_is_refused_and_the_next_frame_is_taken(self):
+        for seconds in (4294967295, 4000000000):
+            self.assert_refused("stamp out of range", hand(0.0), stamp=rospy.Time(seconds))
+
+    def test_a_lone_frame_of_another_time_is_left_out(self):
+        self.assert_refused("stamp far ahead", hand(0.0), later=0.4)
+        self.assert_refused("stamp far ahead", hand(0.0), later=5.0)
+        self.assert_refused("stamp not increasing", hand(0.0), later=-5.0)
 
     def test_a_stamp_that_repeats_is_refused(self):
         stamp = self.answer(hand(-0.2))

@@ -158,6 +158,15 @@ class LiveChangesTest(unittest.TestCase):
         self.assertEqual(held["gravity_z"], 0.0)
         self.assertEqual(held["material_stiffness"], 2000.0)
 
+    def test_dynamic_reconfigure_fixes_the_noise_that_is_estimated_and_gives_it_back(self):
+        client = Client("interaction_node/tune", timeout=30.0)
+        for wanted, estimated, noise in (({"filter_noise": 0.002}, False, 0.002),
+                                         ({"filter_noise_estimated": True}, True, 0.0004),
+                                         ({"filter_noise_estimated": False}, False, 0.0004)):
+            held = client.update_configuration(wanted)
+            self.assertEqual((held["filter_noise_estimated"], held["filter_noise"]), (estimated, noise))
+        self.assertTrue(self.set("filter/noise", "estimated").success)
+
     def test_dynamic_reconfigure_refuses_a_bad_value_and_keeps_what_is_good(self):
         reconfigure = rospy.ServiceProxy(NODE + "tune/set_parameters", Reconfigure)
         for bad in (Config(doubles=[DoubleParameter("step", 7.0)]), Config(strs=[StrParameter("contact_model", "glue")]),

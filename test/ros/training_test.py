@@ -236,9 +236,19 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual([row["trial"] for row in trials(self.folder)], ["1", "3"], "2 was killed")
 
     @staticmethod
-    def kill(name):
+    def kill(name, by=signal.SIGKILL):
         uri = rosgraph.Master("/training_test").lookupNode("/" + name)
-        os.kill(ServerProxy(uri).getPid("/training_test")[2], signal.SIGKILL)
+        os.kill(ServerProxy(uri).getPid("/training_test")[2], by)
+
+    def test_a_signal_that_can_be_caught_writes_the_trial_s_row(self):
+        for count, by in enumerate((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), 1):
+            self.clear()
+            with self.training("record:=false", "auto_next:=-1"):
+                self.wait_for(TrainingStatus.READY)
+                self.begin()
+                self.kill("training_node", by)
+                wait_until(lambda: len(trials(self.folder)) == count, "the row")
+            self.assertEqual([row["result"] for row in trials(self.folder)], count * ["aborted"])
 
     def test_refuses_the_folder_of_another_participant(self):
         with self.training("record:=false"):

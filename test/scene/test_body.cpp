@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "mr_hand_interaction/scene/body.h"
@@ -48,10 +49,31 @@ TEST(CompleteBody, AFixtureNeedsNoMassAndCannotBeTurned) {
 }
 
 TEST(CompleteBody, RefusesAMassThatIsNotPositive) {
-  for (const double mass : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double mass : {0.0, -1.0, 1e-300, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
     Body body = named("brick");
     body.mass = mass;
-    test::expect_words(complaint(body), {"'brick'", "mass", "above 0"});
+    test::expect_words(complaint(body), {"'brick'", "mass", "from 1e-06 to 1e+06 kg"});
+  }
+}
+
+TEST(CompleteBody, RefusesAMotionAPlaceAndASizeBeyondTheirLimits) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double number : {1e200, -1e6, nan}) {
+    Body body = named("brick");
+    body.start_twist.angular.y() = number;
+    test::expect_words(complaint(body), {"'brick'", "spin", "0 to 1000 rad/s"});
+    body = named("brick");
+    body.start_twist.linear.x() = number;
+    test::expect_words(complaint(body), {"'brick'", "velocity", "0 to 100 m/s"});
+    body = named("brick");
+    body.start.position.z() = number;
+    test::expect_words(complaint(body), {"'brick'", "place", "-1000 to 1000 m"});
+    body = named("brick");
+    body.shapes = {{Sphere{std::abs(number)}, {}}};
+    test::expect_words(complaint(body), {"'brick'", "shape", "0 to 1000 m"});
+    body = named("brick");
+    body.inertia *= std::abs(number) * 1e4;
+    test::expect_words(complaint(body), {"'brick'", "inertia"});
   }
 }
 

@@ -121,6 +121,32 @@ TEST_F(MeshScene, RefusesASurfaceThatIsNotClosed) {
   test::expect_words(error("filename=\"leaf.obj\""), {"'leaf.obj'", "no volume"});
 }
 
+TEST_F(MeshScene, HasItsOwnInertiaIfOnlyItsMassIsGiven) {
+  folder_.write("wedge.obj", std::string(kVertices) + kOutward);
+  const Scene scene = load_scene(
+      folder_.write("own.urdf", test::thing("<inertial><mass value=\"3\"/></inertial><collision><geometry>"
+                                            "<mesh filename=\"wedge.obj\"/></geometry></collision>")),
+      {});
+  // Of a corner tetrahedron with legs a about that corner: the integral of x^2 is m a^2 / 10, of x y half
+  // that.
+  Matrix3 expected = Matrix3::Constant(-3.0 * 0.01 / 20.0);
+  expected.diagonal().setConstant(2.0 * 3.0 * 0.01 / 10.0);
+  EXPECT_LT((scene.bodies.at(0).inertia - expected).norm(), 1e-6 * expected.norm());
+}
+
+// Each facet's corners are off by some 1e-10 m, as a CAD program's are: 1e-9 of the size.
+TEST_F(MeshScene, IsClosedOverASeamOfRounding) {
+  folder_.write("seamed.obj",
+                "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 1e-10 0\nv 1e-10 0.1 0\nv 0 0 0.1000000001\n"
+                "v 0 -1e-10 0\nf 1 3 2\nf 8 5 4\nf 1 7 6\nf 2 3 4\n");
+  const Mesh mesh = load("filename=\"seamed.obj\"");
+  EXPECT_EQ(4u, mesh.triangles->triangles.size());
+  EXPECT_NEAR(kVolume, test::volume(*mesh.triangles), 1e-6 * kVolume);
+  // Beyond 1e-6 of the size a seam is a gap.
+  folder_.write("gap.obj", std::string(kVertices) + "v 0.1 1e-6 0\nf 1 3 2\nf 1 5 4\nf 1 4 3\nf 2 3 4\n");
+  test::expect_words(error("filename=\"gap.obj\""), {"'gap.obj'", "not closed", "joined"});
+}
+
 TEST_F(MeshScene, MayBeOpenWhereItIsOnlySeen) {
   folder_.write("open.obj", std::string(kVertices) + "f 1 3 2\n");
   const std::string visual = "<visual><geometry><mesh filename=\"open.obj\"/></geometry></visual>";

@@ -2,6 +2,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <limits>
+#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "scene/scene_files.h"
@@ -81,7 +83,19 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
-  c.contact = {false, false, false, false, false, false, false, false, false, false, 1};
+  c.contact = {false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               false,
+               1,
+               {7, 8, 0.001, 0.03, 0.5}};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -112,6 +126,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "contact/damping",
                                           "contact/edge_grip",
                                           "contact/entry_face",
+                                          "contact/grasp_assist",
                                           "contact/impact_friction",
                                           "contact/object_stiffness",
                                           "contact/sleep",
@@ -129,7 +144,12 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "filter/type",
                                           "filter/window",
                                           "gravity",
+                                          "hand/finger_mass",
+                                          "hand/pad",
+                                          "hand/palm_mass",
+                                          "hand/palm_strength",
                                           "hand/radius_scale",
+                                          "hand/strength",
                                           "material/dynamic_friction",
                                           "material/restitution",
                                           "material/static_friction",
@@ -169,6 +189,7 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(0, set("filter/beta", "0").filter.beta);
   EXPECT_EQ(5, set("filter/derivative_cutoff", "5").filter.derivative_cutoff);
   EXPECT_EQ(1e-3, set("filter/noise", "1e-3").filter.noise);
+  EXPECT_FALSE(set("filter/noise", "estimated").filter.noise);
   EXPECT_EQ(2, set("filter/acceleration", "2").filter.acceleration);
   EXPECT_EQ(0, set("filter/agility", "0").filter.agility);
   EXPECT_EQ(1, set("material/restitution", "1").material.restitution);
@@ -186,6 +207,7 @@ TEST(Parameters, AreReadBackAsTheyWereSet) {
   set_parameter(set, "gravity", "[0, -0.1, -1.62]");
   set_parameter(set, "contact_model", "seed");
   set_parameter(set, "filter/window", "7");
+  set_parameter(set, "filter/noise", "0.003");
   set_parameter(set, "contact/sweep", "false");
   Configuration read;
   for (const std::string& name : parameter_names()) {
@@ -196,9 +218,11 @@ TEST(Parameters, AreReadBackAsTheyWereSet) {
   EXPECT_EQ(read.gravity, set.gravity);
   EXPECT_EQ(read.contact_model, set.contact_model);
   EXPECT_EQ(read.filter.window, 7);
+  EXPECT_EQ(read.filter.noise, 0.003);
   EXPECT_FALSE(read.contact.sweep);
   EXPECT_EQ(parameter_text(read, "step"), "0.0012345678901234567");
   EXPECT_EQ(parameter_text(read, "material/stiffness"), "model");
+  EXPECT_EQ(parameter_text(Configuration(), "filter/noise"), "estimated");
   EXPECT_THROW(parameter_text(read, "speed"), ParameterError);
 }
 
@@ -213,43 +237,101 @@ TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
   const std::vector<std::array<std::string, 3>> wrong{
       {{"contact_model", "springs", "implicit, seed, penetration, impulse, virtual_spring, soft_pad"}},
       {{"contact_model", "[seed]", "implicit, seed, penetration, impulse, virtual_spring, soft_pad"}},
-      {{"step", "0", "above 0, at most 0.05 [s]"}},
-      {{"step", "0.0501", "at most 0.05"}},
-      {{"step", "-1", "above 0"}},
+      {{"step", "0", "from 1e-05 to 0.05 [s]"}},
+      {{"step", "0.0501", "from 1e-05 to 0.05"}},
+      {{"step", "-1", "from 1e-05"}},
       {{"step", "fast", "a number"}},
       {{"step", "1 ms", "a number"}},
       {{"step", ".nan", "a number"}},
       {{"step", "", "a number"}},
       {{"contact/sweep", "1", "true, false"}},
-      {{"gravity", "-9.81", "three finite numbers"}},
-      {{"gravity", "[0, 0]", "three finite numbers"}},
-      {{"gravity", "[0, 0, .inf]", "three finite numbers"}},
+      {{"gravity", "-9.81", "three numbers"}},
+      {{"gravity", "[0, 0]", "three numbers"}},
+      {{"gravity", "[0, 0, .inf]", "three numbers"}},
       {{"gravity", "moon", "'scene'"}},
       {{"filter/type", "kalman", "none, window, one_euro, constant_velocity"}},
-      {{"filter/min_cutoff", "0", "above 0 [Hz]"}},
-      {{"filter/beta", "-1", "at least 0 [Hz per m/s]"}},
-      {{"filter/derivative_cutoff", "0", "above 0 [Hz]"}},
-      {{"filter/noise", "0", "above 0 [m]"}},
-      {{"filter/acceleration", "0", "above 0 [m/s^2]"}},
-      {{"filter/agility", "-1", "at least 0 [1/s]"}},
+      {{"filter/min_cutoff", "0", "from 0.01 to 1000 [Hz]"}},
+      {{"filter/beta", "-1", "from 0 to 10000 [Hz per m/s]"}},
+      {{"filter/derivative_cutoff", "0", "from 0.01 to 1000 [Hz]"}},
+      {{"filter/noise", "0", "from 1e-06 to 0.1 [m], or 'estimated'"}},
+      {{"filter/noise", "guessed", "from 1e-06 to 0.1 [m], or 'estimated'"}},
+      {{"filter/acceleration", "0", "from 0.001 to 1000 [m/s^2]"}},
+      {{"filter/agility", "-1", "from 0 to 1000 [1/s]"}},
       {{"filter/window", "0", "from 1 to 16"}},
       {{"filter/window", "17", "from 1 to 16"}},
       {{"filter/window", "2.5", "whole number"}},
       {{"material/restitution", "1.01", "from 0 to 1"}},
       {{"material/restitution", "-0.01", "from 0 to 1"}},
-      {{"material/static_friction", "-1", "at least 0"}},
-      {{"material/dynamic_friction", "-1", "at least 0"}},
-      {{"material/stiffness", "0", "above 0 [N/m]"}},
-      {{"material/stiffness", ".inf", "above 0"}},
+      {{"material/static_friction", "-1", "from 0 to 10"}},
+      {{"material/dynamic_friction", "-1", "from 0 to 10"}},
+      {{"material/stiffness", "0", "from 1 to 1e+07 [N/m]"}},
+      {{"material/stiffness", ".inf", "from 1"}},
       {{"hand/radius_scale", "0.09", "from 0.1 to 10"}},
       {{"hand/radius_scale", "11", "from 0.1 to 10"}},
+      {{"hand/strength", "0", "from 0.1 to 1000 [N], or 'unlimited'"}},
+      {{"hand/palm_strength", "strong", "from 0.1 to 1000 [N], or 'unlimited'"}},
+      {{"hand/pad", "0.02", "from 0 to 0.01 [m]"}},
+      {{"hand/finger_mass", "0", "from 0.001 to 10 [kg], or 'unlimited'"}},
       {{"tracking/hold_time", "-0.1", "from 0 to 10 [s]"}},
-      {{"tracking/max_speed", "0", "above 0 [m/s]"}},
+      {{"tracking/max_speed", "0", "from 0.1 to 1000 [m/s]"}},
   };
   for (const auto& [name, value, allowed] : wrong) {
     test::expect_words(error(name, value), {"'" + name + "'", value, "allowed: ", allowed});
   }
   test::expect_words(error("gravity", "[0, 0"), {"'gravity'", "[0, 0", "not YAML"});
+}
+
+/// Every number that can be set, as the text of a value with `number` in its place.
+std::vector<std::pair<std::string, std::string>> with_number(const std::string& number) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const std::string& name : parameter_names()) {
+    if (!parameter_limits(name)) continue;
+    values.emplace_back(name, name == "gravity" ? "[0, " + number + ", 0]" : number);
+  }
+  return values;
+}
+
+TEST(Parameters, EveryNumberHasTwoFiniteEndsThatAreAllowedAndNothingBeyond) {
+  for (const auto& [name, any] : with_number("0")) {
+    const ParameterLimits limits = parameter_limits(name).value();
+    const auto text = [&, gravity = name == "gravity"](double value) {
+      std::ostringstream stream;
+      stream.precision(17);
+      stream << value;
+      return gravity ? "[0, " + stream.str() + ", 0]" : stream.str();
+    };
+    EXPECT_EQ(error(name, text(limits.min)), "") << name;
+    EXPECT_EQ(error(name, text(limits.max)), "") << name;
+    const double beyond = 1e-6 * (limits.max - limits.min);
+    EXPECT_NE(error(name, text(limits.min - beyond)), "") << name;
+    EXPECT_NE(error(name, text(limits.max + beyond)), "") << name;
+    EXPECT_LE(limits.min, limits.slider_min) << name;
+    EXPECT_LT(limits.slider_min, limits.slider_max) << name;
+    EXPECT_LE(limits.slider_max, limits.max) << name;
+  }
+  for (const char* number : {"1e300", "-1e300", ".nan", ".inf", "-.inf", "1e999"}) {
+    for (const auto& [name, value] : with_number(number)) EXPECT_NE(error(name, value), "") << name << value;
+  }
+}
+
+TEST(Parameters, ThatAreNoNumberHaveNoLimits) {
+  EXPECT_FALSE(parameter_limits("contact_model"));
+  EXPECT_FALSE(parameter_limits("contact/sweep"));
+  EXPECT_THROW(parameter_limits("speed"), ParameterError);
+}
+
+TEST(Parameters, SetInCodeAreValidatedToo) {
+  Configuration configuration;
+  configuration.step = 1e-10;
+  EXPECT_THROW(validate(configuration), ParameterError);
+  configuration = {};
+  configuration.gravity = Vector3(0, 0, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(validate(configuration), ParameterError);
+  configuration = {};
+  configuration.filter.agility = 1e300;
+  EXPECT_THROW(validate(configuration), ParameterError);
+  configuration.filter.agility = 1000;
+  EXPECT_NO_THROW(validate(configuration));
 }
 
 TEST(Parameters, AreUnchangedByARefusedValue) {

@@ -50,6 +50,27 @@ TEST(UrdfScene, BodyFrameIsAtTheCentreOfMassWithTheLinksAxes) {
   EXPECT_NEAR(0.05 + Vector3(0.09, 0.02, 0.03).norm(), body.bounding_radius, 1e-12);
 }
 
+TEST(UrdfScene, AMassWithoutInertiaHasThatOfItsShapes) {
+  const auto inertia = [](const std::string& shapes) -> Matrix3 {
+    return load(thing("<inertial><mass value=\"2\"/></inertial>" + shapes)).bodies.at(0).inertia;
+  };
+  const auto collision = [](const std::string& shape, const std::string& origin = "") {
+    return "<collision>" + origin + "<geometry>" + shape + "</geometry></collision>";
+  };
+  const Matrix3 box = inertia(collision(R"(<box size="0.1 0.2 0.3"/>)"));
+  EXPECT_TRUE(box.isApprox(Matrix3(Vector3(0.13, 0.10, 0.05).asDiagonal()) * 2.0 / 12.0, 1e-12));
+  const Matrix3 ball = inertia(collision(R"(<sphere radius="0.1"/>)"));
+  EXPECT_TRUE(ball.isApprox(0.4 * 2.0 * 0.01 * Matrix3::Identity(), 1e-12));
+  const Matrix3 can = inertia(collision(R"(<cylinder radius="0.1" length="0.3"/>)"));
+  const double across = 2.0 * (3.0 * 0.01 + 0.09) / 12.0;
+  EXPECT_TRUE(can.isApprox(Matrix3(Vector3(across, across, 0.01).asDiagonal()), 1e-12));
+  // Two halves of the box, side by side, are the box.
+  const Matrix3 halves = inertia(collision(R"(<box size="0.1 0.2 0.15"/>)", R"(<origin xyz="0 0 0.075"/>)") +
+                                 collision(R"(<box size="0.2 0.1 0.15"/>)",
+                                           R"(<origin xyz="0 0 -0.075" rpy="0 0 1.5707963267948966"/>)"));
+  EXPECT_TRUE(halves.isApprox(box, 1e-12));
+}
+
 TEST(UrdfScene, FixedLinksAreFixturesHoweverTheyAreChained) {
   const Scene scene = load(robot(
       link("frame", "") + link("post", kBox) + link("arm", kBox) +
@@ -64,7 +85,8 @@ TEST(UrdfScene, BodiesKeepTheOrderOfTheFile) {
   const std::string content = std::string(kInertial) + kBox;
   const Scene scene = load(robot("<!-- <link name=\"b\"/> -->" + link("z", content) + link("a", content) +
                                  link("b", content) + joint("floating", "world", "a") +
-                                 joint("floating", "world", "b") + joint("floating", "world", "z")));
+                                 joint("floating", "world", "b", "xyz=\"0.1 0 0\"") +
+                                 joint("floating", "world", "z", "xyz=\"0.2 0 0\"")));
   ASSERT_EQ(3u, scene.bodies.size());
   EXPECT_EQ("z", scene.bodies[0].name);
   EXPECT_EQ("a", scene.bodies[1].name);
@@ -116,7 +138,8 @@ TEST(UrdfScene, RefusesWhatIsNoUrdf) {
 
 TEST(UrdfScene, RefusesAWrongMass) {
   for (const char* mass : {"0", "-0.1"}) {
-    test::expect_words(error(thing(inertial(mass, {1, 1, 1}) + kBox)), {"'thing'", "mass", mass, "above 0"});
+    test::expect_words(error(thing(inertial(mass, {1, 1, 1}) + kBox)),
+                       {"'thing'", "mass", mass, "from 1e-06 to 1e+06 kg"});
   }
   test::expect_words(error(thing(inertial("heavy", {1, 1, 1}) + kBox)), {"heavy", "thing"});
   test::expect_words(error(thing(inertial("nan", {1, 1, 1}) + kBox)), {"nan"});

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 
 #include "support/fixtures.h"
 
@@ -116,6 +118,51 @@ TEST(Time, a_repeated_or_earlier_stamp_is_refused_and_changes_nothing) {
   EXPECT_EQ(simulation.advance({at(50 / kRate), {pushing(last)}}), Rejection::none);
 }
 
+TEST(Time, a_lone_frame_from_the_future_or_the_past_is_left_out) {
+  for (const double off : {0.4, 5.0, 3600.0, -0.7, -5.0}) {
+    Simulation disturbed(drifting_cube(), unfiltered()), calm(drifting_cube(), unfiltered());
+    run(calm, 0, 100);
+    run(disturbed, 0, 50);
+    for (int i = 50; i < 100; ++i) {
+      const double t = i / kRate;
+      if (i % 7 == 0) {
+        EXPECT_NE(disturbed.advance({at(t + off), {pushing(t)}}), Rejection::none) << off;
+      }
+      EXPECT_EQ(disturbed.advance({at(t), {pushing(t)}}), Rejection::none) << off;
+      EXPECT_FALSE(disturbed.result().restarted) << off;
+    }
+    EXPECT_EQ(hash(disturbed.state()), hash(calm.state())) << off;
+  }
+}
+
+TEST(Time, a_gap_costs_the_first_frame_after_it_alone) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  run(simulation, 0, 50);
+  EXPECT_EQ(simulation.advance({at(12.0), {}}), Rejection::stamp_ahead);
+  EXPECT_EQ(simulation.advance({at(12.01), {}}), Rejection::none);
+  EXPECT_FALSE(simulation.result().restarted);
+  EXPECT_EQ(simulation.state().time, at(12.01));
+}
+
+TEST(Time, a_stream_of_a_frame_a_minute_is_taken_from_its_third_frame) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  int taken = 0;
+  for (int i = 0; i < 10; ++i) taken += simulation.advance({at(60.0 * i), {}}) == Rejection::none;
+  EXPECT_EQ(taken, 9);
+}
+
+TEST(Time, a_stamp_that_is_none_is_refused_and_the_next_frame_is_taken) {
+  const Nanoseconds second = 1'000'000'000, longest = std::numeric_limits<Nanoseconds>::max();
+  for (const Nanoseconds stamp : {4'294'967'295 * second, 4'000'000'000 * second, longest, -longest - 1}) {
+    Simulation fresh(drifting_cube(), unfiltered()), running(drifting_cube(), unfiltered());
+    EXPECT_EQ(fresh.advance({stamp, {}}), Rejection::no_stamp);
+    EXPECT_EQ(fresh.advance({at(0.0), {}}), Rejection::none);
+    run(running, 0, 50);
+    EXPECT_EQ(running.advance({stamp, {}}), Rejection::no_stamp);
+    EXPECT_EQ(running.advance({at(50 / kRate), {}}), Rejection::none);
+  }
+}
+
 TEST(Time, a_stream_that_begins_anew_restarts_everything_at_its_third_frame) {
   Simulation simulation(drifting_cube(), unfiltered()), fresh(drifting_cube(), unfiltered());
   run(simulation, 100, 200);
@@ -135,7 +182,13 @@ TEST(Silence, computed_bit_by_bit_or_in_one_go_it_gives_the_same_bits) {
     run(live, 0, 70);
     const double last = 69 / kRate;
     for (double t = last; t < last + gap - 0.001; t += 0.0137) live.advance_without_hands(at(t));
-    for (Simulation* simulation : {&replayed, &live}) simulation->advance({at(last + gap), {pushing(0.0)}});
+    for (Simulation* simulation : {&replayed, &live}) {
+      const Nanoseconds now = at(last + gap);  // as a clock says too
+      ASSERT_EQ(simulation->begin({now, {pushing(0.0)}}, now), Rejection::none);
+      while (simulation->step()) {
+      }
+      simulation->end();
+    }
     EXPECT_EQ(hash(replayed.state()), hash(live.state())) << gap;
   }
 }
@@ -184,6 +237,14 @@ TEST(Gravity, the_parameter_goes_before_the_scenes_own) {
   simulation.advance({at(0.0), {}});
   simulation.advance({at(0.1), {}});
   EXPECT_NEAR(simulation.state().bodies[0].pose.position.z(), 0.5 * 0.01, 1e-15);
+}
+
+TEST(StepLength, that_would_never_end_is_refused) {
+  for (const double step : {0.0, -0.001, 1e-10, 1e-9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    Configuration configuration;
+    configuration.step = step;
+    EXPECT_THROW(Simulation(Scene(), configuration), std::invalid_argument) << step;
+  }
 }
 
 }  // namespace

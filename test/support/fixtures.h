@@ -57,7 +57,8 @@ inline void add_finger(Hand& hand, int capsule, const Vector3& start, const Vect
   hand.capsules[static_cast<std::size_t>(capsule)] = {start, end, radius};
 }
 
-/// Unfiltered, so that a scripted hand is where the script says.
+/// Unfiltered, unhelped and of a strength that nothing stops, so that a scripted hand is where the script
+/// says and closed forms hold.
 inline Configuration unfiltered(ContactModelKind model = ContactModelKind::seed) {
   Configuration configuration;
   configuration.contact_model = model;

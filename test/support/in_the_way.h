@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mr_hand_interaction/response/grip.h"
 #include "support/fixtures.h"
 
 namespace mrhi::testing {
@@ -14,14 +15,6 @@ inline const Hand& hand_at(const std::vector<HandFrame>& frames, double share) {
   for (std::size_t i = from; i-- > 0;)
     if (!frames[i].hands.empty()) return frames[i].hands.front();
   throw std::runtime_error("no hand in any frame");
-}
-
-inline Vector3 tip_of(const Hand& hand, int finger) {
-  for (int bone = kBonesPerFinger - 1; bone >= 0; --bone) {
-    const int capsule = capsule_index(finger, bone);
-    if (hand.has(capsule)) return hand.capsules[static_cast<std::size_t>(capsule)].end;
-  }
-  return hand.palm.position;
 }
 
 inline Body placed_body(const char* name, Shape shape, const Pose& at, bool fixed) {

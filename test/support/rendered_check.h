@@ -36,6 +36,8 @@ class RenderedCheck {
       const auto& touching = result.rendered[i].touching;
       ++i;
       ++frames;
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        shown_in += simulation.state().interactions[slot * bodies.size() + b].shown_in;
       touched += std::count(touching.begin(), touching.end(), true) > 0;
       see_bones(tracked, shown, result.stamp);
       away.note(farthest_joint(tracked, shown), result.stamp);
@@ -55,10 +57,12 @@ class RenderedCheck {
     bodies_before_ = bodies;
   }
 
-  int frames = 0;       // hands seen
-  int touched = 0;      // of them with a phalanx that touches
-  int moved_aside = 0;  // of them not where they were tracked
-  int jumps = 0;        // of them that jumped
+  int frames = 0;                // hands seen
+  int touched = 0;               // of them with a phalanx that touches
+  int moved_aside = 0;           // of them not where they were tracked
+  int shown_in = 0;              // of them in a body that appeared in them, or not clear of it yet
+  int jumps = 0;                 // of them that jumped
+  std::vector<Worst> all_jumps;  // [m]
   int passed = 0;     // of them that were held back by a body and then given up to the tracked hand behind it
   Worst length;       // of a bone, against the tracked one [m]
   Worst apart;        // ends of bones that are one joint in the tracked hand [m]
@@ -72,6 +76,7 @@ class RenderedCheck {
  private:
   static constexpr double kReturns = 1.5;  // [s]
   static constexpr double kJump = 0.002;   // [m]
+  static constexpr double kPutBack = 1.0;  // no body flies as far in a frame: it was put there [m]
   struct Before {
     Nanoseconds stamp;
     Hand tracked, shown;
@@ -106,6 +111,10 @@ class RenderedCheck {
                const std::vector<BodyState>& bodies, Nanoseconds stamp) {
     const double beyond = farthest_joint(before.shown, shown) - farthest_joint(before.tracked, tracked) -
                           std::max(fastest_body(before.shown, bodies), fastest_body(shown, bodies));
+    if (beyond > kJump) {
+      all_jumps.emplace_back();
+      all_jumps.back().note(beyond, stamp);
+    }
     if (beyond > kJump && before.held_back && farthest_joint(tracked, shown) == 0.0) {
       ++passed;
       return;
@@ -120,6 +129,7 @@ class RenderedCheck {
     for (const int body : near_bodies(hand, scene_, bodies, 0.02)) {
       const auto b = static_cast<std::size_t>(body);
       const Pose &from = bodies_before_[b].pose, &to = bodies[b].pose;
+      if ((to.position - from.position).norm() > kPutBack) continue;
       fastest = std::max(
           fastest, (to.position - from.position).norm() +
                        scene_.bodies[b].bounding_radius * to.orientation.angularDistance(from.orientation));

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "mr_hand_interaction/training/operator_trial.h"
+#include "support/white_noise.h"
 
 namespace mrhi::testing {
 
@@ -30,6 +30,32 @@ struct Staging {
   double gravity = 0.0;       // along world's z [m/s^2]
   double gravity_from = 0.0;  // when it sets in: none of the shipped objects stands on anything [s]
   bool stand = false;         // a table under the object
+  double rate = SyntheticHandOptions().rate;  // of the tracker [1/s]
+  double noise = 0.0;                         // white, on every joint by itself, rms on an axis [m]
+  double correlation = 0.0;                   // of that noise from one frame to the next
+  double dropped = 0.0;                       // share of the frames that do not come
+  std::uint64_t seed = 1;
+  FilterConfiguration filter;
+};
+
+/// The tracker of a staging: what comes of the frames that it sees.
+class BadTracker {
+ public:
+  explicit BadTracker(const Staging& staging)
+      : noise_(staging.noise, staging.seed, staging.correlation),
+        luck_(staging.seed + 1),
+        dropped_(staging.dropped) {}
+
+  /// False if the frame does not come.
+  bool pass(JointsFrame& frame) {
+    for (HandJoints& hand : frame.hands) noise_.apply(hand);
+    return frame.stamp == 0 || luck_.uniform() >= dropped_;
+  }
+
+ private:
+  JointNoise noise_;
+  Random luck_;
+  double dropped_;
 };
 
 inline Scene staged_scene(const ScriptedMotion& motion, const Configuration& configuration, bool stand) {
@@ -47,8 +73,11 @@ inline std::vector<Moment> perform(const std::string& motion, const Staging& sta
   SyntheticHandOptions options;
   options.motion = motion;
   options.side = staging.side;
+  options.rate = staging.rate;
   SyntheticHand source(options);
+  BadTracker tracker(staging);
   Configuration configuration;
+  configuration.filter = staging.filter;
   configuration.contact_model = staging.model;
   configuration.gravity = Vector3::Zero();
   const Scene scene = staged_scene(source.motion(), configuration, staging.stand);
@@ -58,7 +87,8 @@ inline std::vector<Moment> perform(const std::string& motion, const Staging& sta
   bool is_heavy = false;
   std::vector<Moment> moments;
   while (source.next_run() == 0) {
-    const JointsFrame joints = source.next();
+    JointsFrame joints = source.next();
+    if (!joints.hands.empty() && staging.noise + staging.dropped > 0.0 && !tracker.pass(joints)) continue;
     const double time = to_seconds(joints.stamp);
     HandFrame frame{joints.stamp, {}};
     for (const HandJoints& hand : joints.hands)
@@ -68,7 +98,7 @@ inline std::vector<Moment> perform(const std::string& motion, const Staging& sta
       is_heavy = true;
     }
     Simulation& simulation = is_heavy ? heavy : weightless;
-    if (simulation.advance(frame) != Rejection::none) ADD_FAILURE() << "frame refused";
+    if (simulation.advance(frame) != Rejection::none) throw std::runtime_error("frame refused");
     if (frame.hands.empty()) break;
     const BodyState& body = simulation.state().bodies.at(0);
     moments.push_back({time, body.pose, twist_of(simulation.scene().bodies.at(0), body),

@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "synthetic/performance.h"
 
 namespace mrhi {

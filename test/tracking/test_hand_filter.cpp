@@ -106,9 +106,10 @@ TEST(ConstantVelocityFilter, does_not_lag_behind_a_steady_motion) {
 TEST(ConstantVelocityFilter, gain_settles_at_that_of_the_tracking_index) {
   FilterConfiguration filter = kConstantVelocity;
   filter.agility = 0.0;
+  filter.noise = 0.0007;
   FilterMemory memory;
   for (int i = 0; i < 2000; ++i) filtered(hand_at(0.0), kFrame, filter, memory);
-  const double index = filter.acceleration * kFrame * kFrame / filter.noise;
+  const double index = filter.acceleration * kFrame * kFrame / *filter.noise;
   const double root = 0.25 * (4.0 + index - std::sqrt(8.0 * index + index * index));
   EXPECT_NEAR(filtered(hand_at(1.0), kFrame, filter, memory).capsules[kTip].start.x(), 1.0 - root * root,
               1e-6);

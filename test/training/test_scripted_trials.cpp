@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "mr_hand_interaction/training/observation.h"
 #include "synthetic/performance.h"
 #include "training/trials.h"

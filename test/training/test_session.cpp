@@ -1,4 +1,5 @@
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -286,6 +287,62 @@ TEST_F(SessionTest, refuses_the_folder_of_another_session_and_leaves_it_alone) {
   EXPECT_EQ("", refusal(other)) << "it has been started anew";
 }
 
+TEST_F(SessionTest, is_refused_while_another_program_has_its_folder_and_names_that) {
+  int ready[2], done[2];
+  ASSERT_EQ(0, pipe(ready));
+  ASSERT_EQ(0, pipe(done));
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  char byte = 0;
+  if (child == 0) {
+    const Session session = open();
+    if (write(ready[1], "r", 1) == 1 && read(done[0], &byte, 1) >= 0) kill(getpid(), SIGKILL);
+  }
+  ASSERT_EQ(1, read(ready[0], &byte, 1));
+  const std::string before = text(events_);
+  test::expect_words(refusal(header()), {path_, "in use by process " + std::to_string(child) + " on "});
+  EXPECT_EQ(before, text(events_));
+  ASSERT_EQ(1, write(done[1], "d", 1));
+  ASSERT_EQ(child, waitpid(child, nullptr, 0));
+  EXPECT_EQ("", refusal(header())) << "a lock ends with its program, however that ends";
+}
+
+/// No file of the child may grow further, as on a disk that is full.
+TEST_F(SessionTest, a_disk_that_is_full_is_told_and_what_is_in_the_files_stays) {
+  {
+    Session session = open();
+    do_trial(session);
+  }
+  const std::string trials = text(trials_);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    Session session = open();
+    const rlimit full{1, 1};
+    setrlimit(RLIMIT_FSIZE, &full);
+    try {
+      do_trial(session);
+    } catch (const SessionError& error) {
+      _exit(std::string(error.what()).find("space left") != std::string::npos ? 7 : 8);
+    }
+    _exit(9);
+  }
+  int status = 0;
+  ASSERT_EQ(child, waitpid(child, &status, 0));
+  EXPECT_EQ(7, WEXITSTATUS(status));
+  EXPECT_EQ(trials, text(trials_));
+  Session session = open();
+  EXPECT_EQ("flat", session.object().name);
+}
+
+TEST_F(SessionTest, a_folder_that_cannot_be_is_refused_in_one_line) {
+  path_ = "/dev/null/P01";
+  test::expect_words(refusal(header()), {"/dev/null/P01", "cannot be made"});
+  path_ = "/proc/P01";
+  EXPECT_NE("", refusal(header()));
+}
+
 TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
   SessionHeader bad = header();
   bad.group = "expert";
@@ -294,8 +351,18 @@ TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
   bad.handedness = "both";
   test::expect_words(refusal(bad), {"'both'", "right or left"});
   bad = header();
-  bad.participant = "a,b";
-  test::expect_words(refusal(bad), {"'a,b'", "commas"});
+  for (const std::string& name :
+       {std::string("a,b"), std::string("../../x"), std::string("=1+1"), std::string("-1"), std::string("@a"),
+        std::string("\x1b[2J"), std::string("a b"), std::string(65, 'a'), std::string("P\n1"),
+        std::string()}) {
+    bad = header();
+    bad.participant = name;
+    test::expect_words(refusal(bad), {"participant", "64 letters, digits, '_' and '-'"});
+    EXPECT_EQ(refusal(bad).find('\x1b'), std::string::npos);
+    bad = header();
+    bad.condition = name;
+    test::expect_words(refusal(bad), {"condition", "64 letters, digits, '_' and '-'"});
+  }
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 

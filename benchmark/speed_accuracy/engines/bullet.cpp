@@ -76,6 +76,20 @@ class BulletEngine final : public Engine {
             {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())}};
   }
 
+  double pressing(std::size_t kinematic) const override {
+    double impulse = 0.0;
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+      const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
+      if (manifold.getBody0() != hand_[kinematic] && manifold.getBody1() != hand_[kinematic]) continue;
+      for (int p = 0; p < manifold.getNumContacts(); ++p) {
+        const btManifoldPoint& point = manifold.getContactPoint(p);
+        impulse += std::hypot(point.m_appliedImpulse, point.m_appliedImpulseLateral1,
+                              point.m_appliedImpulseLateral2);
+      }
+    }
+    return impulse / step_;
+  }
+
  private:
   btRigidBody& add(const BodySpec& spec) {
     if (const Box* box = std::get_if<Box>(&spec.shape)) {

@@ -192,6 +192,19 @@ class MujocoEngine final : public Engine {
     return {{{q[0], q[1], q[2]}, turn}, {{v[0], v[1], v[2]}, turn * Vector3(v[3], v[4], v[5])}};
   }
 
+  double pressing(std::size_t kinematic) const override {
+    const int body = model_->jnt_bodyid[hand_[kinematic]];
+    double sum = 0.0;
+    for (int i = 0; i < data_->ncon; ++i) {
+      const mjContact& contact = data_->contact[i];
+      if (model_->geom_bodyid[contact.geom1] != body && model_->geom_bodyid[contact.geom2] != body) continue;
+      mjtNum force[6];  // in the contact's frame; the first three are no torques
+      mj_contactForce(model_, data_, i, force);
+      sum += Vector3(force[0], force[1], force[2]).norm();
+    }
+    return sum;
+  }
+
  private:
   /// MuJoCo has a free body's angular velocity in body axes.
   void set_twist(int joint, const Quaternion& turn, const Twist& twist) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 
 #include "../engine.h"
 
@@ -70,6 +71,7 @@ class OdeEngine final : public Engine {
 
   void step() override {
     dJointGroupEmpty(contacts_);
+    feedback_.clear();
     dSpaceCollide(space_, this,
                   [](void* self, dGeomID a, dGeomID b) { static_cast<OdeEngine*>(self)->collide(a, b); });
     if (setting_.dantzig) {
@@ -87,7 +89,21 @@ class OdeEngine final : public Engine {
             {from_ode(dBodyGetLinearVel(body)), from_ode(dBodyGetAngularVel(body))}};
   }
 
+  void watch_forces() override { watched_ = true; }
+  double pressing(std::size_t kinematic) const override {
+    double force = 0.0;
+    for (const Feedback& contact : feedback_)
+      if (contact.first == hand_[kinematic] || contact.second == hand_[kinematic])
+        force += from_ode(contact.force.f1).norm();
+    return force;
+  }
+
  private:
+  struct Feedback {
+    dBodyID first, second;
+    dJointFeedback force;
+  };
+
   static void place(dBodyID body, const Pose& pose) {
     const Quaternion& q = pose.orientation;
     const dQuaternion turn = {q.w(), q.x(), q.y(), q.z()};
@@ -148,7 +164,11 @@ class OdeEngine final : public Engine {
       dContact& contact = found[static_cast<std::size_t>(i)];
       contact.surface = surface();
       if (setting_.aligned) align(first, second, contact);
-      dJointAttach(dJointCreateContact(world_, contacts_, &contact), first, second);
+      const dJointID joint = dJointCreateContact(world_, contacts_, &contact);
+      dJointAttach(joint, first, second);
+      if (!watched_) continue;
+      feedback_.push_back({first, second, {}});
+      dJointSetFeedback(joint, &feedback_.back().force);
     }
   }
 
@@ -190,6 +210,8 @@ class OdeEngine final : public Engine {
   dSpaceID space_;
   dJointGroupID contacts_;
   std::vector<dBodyID> bodies_, hand_;
+  bool watched_ = false;
+  std::deque<Feedback> feedback_;  // whose places stay
 };
 
 using OdeMaker = TableMaker<OdeEngine, kSettings>;

@@ -13,6 +13,7 @@ struct ClosestFeatures {
   Vector3 normal;         ///< unit, out of the shape towards the hand: moving the capsule along it separates
   Vector3 point;          ///< on the shape's surface
   double axis_parameter;  ///< s in 0..1 of the capsule's axis point that faces `point`
+  int face = -1;          ///< of a mesh: its flat face that has the normal
 };
 
 /// Closed forms; shape frame at its centre. Exact also when the capsule's axis is inside the shape.

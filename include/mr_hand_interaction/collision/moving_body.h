@@ -24,6 +24,7 @@ struct MovingBody {
   Matrix3 rotation;      ///< of that pose
   Twist twist;           ///< at the step's start
   Vector3 acceleration;  ///< zero for a fixture [m/s^2]
+  bool appeared;         ///< as this step began
 };
 
 }  // namespace mrhi

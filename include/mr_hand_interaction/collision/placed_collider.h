@@ -16,7 +16,7 @@ class PlacedCollider {
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
   bool has_bodys_frame() const { return has_bodys_frame_; }
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
-    return contact_span(capsule, shape_, features);
+    return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
   }
 
   /// Between the body's frame and the shape's.

@@ -11,6 +11,7 @@ struct BodyState {
   Vector3 linear_momentum = Vector3::Zero();   ///< [kg m/s], world axes
   Vector3 angular_momentum = Vector3::Zero();  ///< about the centre of mass [kg m^2/s], world axes
   Twist pushed;  ///< acceleration by what touched it in the last step: near it lies the next [m/s^2, rad/s^2]
+  bool appeared = false;  ///< was put there since the last step: hands that it overlaps do not push it
 };
 
 /// Inverse inertia about the centre of mass in world axes [1/(kg m^2)].

@@ -4,9 +4,9 @@
 
 namespace mrhi {
 
-/// Moves a free body by `step` seconds under gravity [m/s^2] alone. Momenta are exact at any step; the path
-/// of the centre is the exact parabola; orientation follows Euler's equations with a fourth-order
-/// Runge-Kutta-Munthe-Kaas step (Munthe-Kaas 1998).
+/// Moves a free body by `step` seconds under gravity [m/s^2] alone. Momenta do not change by a bit; the path
+/// of the centre is the exact parabola; orientation follows Euler's equations to rounding at any step, energy
+/// included (free_rotation.h).
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state);
 
 }  // namespace mrhi

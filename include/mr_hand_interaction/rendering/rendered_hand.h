@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/collision/contact_finder.h"
+#include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
@@ -25,18 +26,20 @@ class HandRenderer {
   ~HandRenderer();
 
   /// The hand of a track at its frame's `stamp`. `contacts` are those of now, with the faces that phalanges
-  /// entered by. `offset` is the hand's of the frame before and becomes that of now.
+  /// entered by. `offset` is the hand's of the frame before and becomes that of now. `interactions` are the
+  /// hand's, one per body: they tell in which bodies the hand may be shown, and this is ended here.
   void render(const HandTrack& track, int slot, Nanoseconds stamp, const std::vector<BodyState>& bodies,
-              const std::vector<Contact>& contacts, HandOffset& offset, RenderedHand& rendered);
+              const std::vector<Contact>& contacts, Interaction* interactions, HandOffset& offset,
+              RenderedHand& rendered);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Deepest penetration of any of the hand's capsules into any body [m], >= 0. Looks at the hand as it is: it
-/// shares nothing with what made it.
+/// Deepest penetration of any of the hand's capsules into any body, but for those that it is shown in
+/// (`interactions`, as in render) [m], >= 0. Looks at the hand as it is: it shares nothing with what made it.
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
-                           const std::vector<BodyState>& bodies);
+                           const std::vector<BodyState>& bodies, const Interaction* interactions);
 
 }  // namespace mrhi

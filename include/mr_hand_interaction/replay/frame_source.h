@@ -12,9 +12,10 @@ namespace mrhi {
 /// One frame of a recording, or why it cannot be used.
 struct SourceFrame {
   std::optional<HandFrame> frame;
-  std::string reason;                 ///< kind of refusal, for counting; empty if there is a frame
-  std::string detail;                 ///< the particular case
-  std::vector<std::string> left_out;  ///< hands of the frame that cannot be used, each with its defect
+  std::optional<Nanoseconds> arrival;  ///< when it was received, by the recorder's clock, where that is known
+  std::string reason;                  ///< kind of refusal, for counting; empty if there is a frame
+  std::string detail;                  ///< the particular case
+  std::vector<std::string> left_out;   ///< hands of the frame that cannot be used, each with its defect
 };
 
 /// Places a tracker's frame in world.

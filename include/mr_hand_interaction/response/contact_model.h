@@ -7,6 +7,7 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/response/step_changes.h"
 #include "mr_hand_interaction/scene/scene.h"
 
@@ -21,6 +22,7 @@ struct ContactStep {
   std::vector<BodyContact>& body_contacts;  ///< of bodies with each other, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
   StepChanges& changes;
+  std::vector<Grip>& grips;  ///< what hands hold, by hand and body; `implicit` alone knows them
 };
 
 /// How an object answers a touch. All memory is in the contacts: a model keeps nothing but scratch space.

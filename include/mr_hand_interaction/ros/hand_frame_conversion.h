@@ -33,6 +33,7 @@ Pose from_message(const geometry_msgs::Pose& pose);
 /// With the quaternion brought to unit length.
 Pose from_message(const geometry_msgs::Transform& transform);
 
+/// What no header can hold becomes the nearest that one can.
 ros::Time to_ros_time(Nanoseconds stamp);
 Nanoseconds from_ros_time(const ros::Time& stamp);
 

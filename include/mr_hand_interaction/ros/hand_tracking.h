@@ -14,6 +14,7 @@
 
 #include "mr_hand_interaction/ros/input_statistics.h"
 #include "mr_hand_interaction/ros/leap_reader.h"
+#include "mr_hand_interaction/stamp_judge.h"
 
 namespace mrhi {
 
@@ -48,7 +49,7 @@ class HandTracking {
   Sink sink_;
   std::string fixed_frame_;
   Side pose_array_side_ = Side::right;
-  Nanoseconds last_stamp_ = -1;
+  StampJudge stamps_;
   bool leap_seen_ = false;  ///< a driver, by the present subscription
   LeapReader leap_reader_;
   InputStatistics statistics_;

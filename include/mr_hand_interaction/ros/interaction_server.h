@@ -56,6 +56,7 @@ class InteractionServer {
   std::string fixed_frame_;
   LiveSimulation live_;
   StampClock clock_;
+  StampJudge arrivals_;  ///< of all frames, those too that come while paused
   ResultPublisher results_;
   InteractionDiagnostics diagnostics_;
   Placing placing_;

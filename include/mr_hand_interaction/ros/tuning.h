@@ -13,6 +13,10 @@
 
 namespace mrhi {
 
+/// Ends of the sliders of all numbers, from the parameters' table. A value beyond them, but within the
+/// parameter's limits, may be set all the same.
+void slider_ends(mr_hand_interaction::TuneConfig& least, mr_hand_interaction::TuneConfig& most);
+
 /// dynamic_reconfigure at ~tune: what one tunes by eye. It leaves checking to the node, so that a bad value
 /// is refused instead of moved to the nearest one allowed.
 class Tuning {

@@ -17,8 +17,10 @@ struct Body {
   double mass = 1.0;                      ///< [kg], > 0
   Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass, body axes [kg m^2], positive definite
   Matrix3 inverse_inertia = Matrix3::Identity();
-  Pose start;         ///< of the body frame in world
-  Twist start_twist;  ///< world axes
+  Matrix3 principal_axes = Matrix3::Identity();  ///< of inertia, body axes: a rotation
+  Vector3 inverse_moments = Vector3::Ones();     ///< 1 / inertia along each of them [1/(kg m^2)]
+  Pose start;                                    ///< of the body frame in world
+  Twist start_twist;                             ///< world axes
   Pose link_in_body;  ///< the URDF link's frame in the body frame (rotation is identity)
   Material material;
   OwnMaterial own_material;
@@ -27,8 +29,9 @@ struct Body {
   double bounding_radius = 0.0;  ///< of all shapes, about the body frame's origin [m]
 };
 
-/// Fills inverse_inertia (zero for a fixture) and bounding_radius from the rest. Throws std::invalid_argument
-/// naming the body and the value if a free body's mass or inertia is not positive (definite).
+/// Fills inverse_inertia (zero for a fixture), its principal axes and bounding_radius from the rest. Throws
+/// std::invalid_argument naming the body and the value if a free body's mass or inertia is not positive
+/// (definite), or a number is beyond its limits (src/scene/body_limits.h).
 void complete(Body& body);
 
 }  // namespace mrhi

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/training/folder_lock.h"
 #include "mr_hand_interaction/training/trial.h"
 
 namespace mrhi {
@@ -63,7 +65,8 @@ struct HandRow {
 class SessionFolder {
  public:
   /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
-  /// Throws SessionError if it is that of another session, or cannot be read or written.
+  /// Throws SessionError if it is that of another session, in use by another program, or cannot be read or
+  /// written.
   SessionFolder(const std::string& folder, const SessionHeader& header);
 
   const std::string& path() const { return path_; }
@@ -85,6 +88,7 @@ class SessionFolder {
   std::vector<std::vector<std::string>> open_table(const char* name, const char* columns, std::ofstream& out);
 
   std::string path_, condition_;
+  std::unique_ptr<FolderLock> lock_;
   bool resumed_ = false;
   std::vector<TrialRow> earlier_;
   int last_trial_ = 0;

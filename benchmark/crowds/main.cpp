@@ -1,0 +1,128 @@
+// What a step costs where many bodies meet: CPU time of each, how often it was much, and what became of
+// momentum.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "scenes.h"
+#include "support/fixtures.h"
+
+namespace mrhi::crowds {
+namespace {
+
+/// Of this thread alone [us]: others on the machine do not count.
+double cpu_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+/// Of all bodies together.
+Vector3 momentum_of(const Simulation& simulation) {
+  Vector3 sum = Vector3::Zero();
+  for (const BodyState& state : simulation.state().bodies) sum += state.linear_momentum;
+  return sum;
+}
+
+/// What gravity and hands give in a step. Fixtures take what they like: where there are any, nothing is to be
+/// kept.
+Vector3 given_from_outside(const Simulation& simulation, double step) {
+  const SimulationState& state = simulation.state();
+  Vector3 sum = Vector3::Zero();
+  for (const Body& body : simulation.scene().bodies) sum += step * body.mass * simulation.scene().gravity;
+  for (const Contact& contact : state.contacts) sum += step * contact.force + contact.impulse;
+  return sum;
+}
+
+bool has_fixtures(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) { return body.fixed; });
+}
+
+struct Measured {
+  std::vector<double> times;  // [us]
+  double error = 0.0;         // of momentum in one step, most, where there are no fixtures [N s]
+  std::size_t contacts = 0;   // most
+  double slept = -1.0;        // from when on [s]
+};
+
+bool all_asleep(const Simulation& simulation) {
+  const auto& bodies = simulation.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].fixed && !simulation.state().asleep[b]) return false;
+  }
+  return true;
+}
+
+Measured play(const Crowd& crowd, double most_seconds) {
+  Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+  configuration.contact.sleep = crowd.sleep;
+  Simulation simulation(crowd.scene, configuration);
+  simulation.advance({testing::at(0.0), crowd.hands(0.0)});
+  Measured measured;
+  const double begun = cpu_time();
+  for (long i = 1; i <= std::lround(crowd.seconds / crowd.frame); ++i) {
+    const double t = static_cast<double>(i) * crowd.frame;
+    const HandFrame frame{testing::at(t), crowd.hands(t)};
+    const Vector3 before = momentum_of(simulation);
+    double from = cpu_time();
+    simulation.begin(frame);
+    if (!crowd.whole_frame) from = cpu_time();
+    while (simulation.step()) {
+    }
+    if (!crowd.whole_frame) measured.times.push_back(cpu_time() - from);
+    simulation.end();
+    if (crowd.whole_frame) {
+      measured.times.push_back(cpu_time() - from);
+    } else if (!has_fixtures(crowd.scene)) {
+      const Vector3 expected = before + given_from_outside(simulation, crowd.frame);
+      measured.error = std::max(measured.error, (momentum_of(simulation) - expected).norm());
+    }
+    measured.contacts = std::max(measured.contacts, simulation.state().body_contacts.size());
+    if (!all_asleep(simulation)) {
+      measured.slept = -1.0;
+    } else if (measured.slept < 0.0) {
+      measured.slept = t;
+    }
+    if (cpu_time() - begun > 1e6 * most_seconds) {
+      std::printf("cut short at %.3f s: ", t);
+      break;
+    }
+  }
+  return measured;
+}
+
+void print(const Crowd& crowd, Measured measured) {
+  std::vector<double>& times = measured.times;
+  double sum = 0.0;
+  for (const double time : times) sum += time;
+  const double first = times.front();
+  std::sort(times.begin(), times.end());
+  const auto part = [&](double p) {
+    return times[static_cast<std::size_t>(p * static_cast<double>(times.size() - 1))];
+  };
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("%-40s %6zu %6zu %10.1f %10.1f %10.1f %10.1f %10.1f %9.1e %7.2f %6.0f\n", crowd.name.c_str(),
+              crowd.scene.bodies.size(), measured.contacts, sum / static_cast<double>(times.size()),
+              part(0.5), part(0.99), times.back(), first, measured.error, measured.slept,
+              1e-3 * static_cast<double>(usage.ru_maxrss));
+}
+
+}  // namespace
+}  // namespace mrhi::crowds
+
+int main(int argc, char** argv) {
+  using namespace mrhi::crowds;
+  std::printf("%-40s %6s %6s %10s %10s %10s %10s %10s %9s %7s %6s\n", "CPU us a step", "bodies", "contac",
+              "mean", "median", "p99", "max", "first", "momentum", "asleep", "MB");
+  for (const Crowd& crowd : all_crowds()) {
+    if (argc > 1 && crowd.name.find(argv[1]) == std::string::npos) continue;
+    print(crowd, play(crowd, argc > 2 ? std::stod(argv[2]) : 60.0));
+    std::fflush(stdout);
+  }
+  return 0;
+}

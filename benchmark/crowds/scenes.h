@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi::crowds {
+
+/// A scene of many bodies, and the hands that come to it.
+struct Crowd {
+  std::string name;
+  Scene scene;
+  double seconds;            // as long as it is played
+  double frame = 0.001;      // of input [s]
+  bool sleep = true;         // what lies still may sleep
+  bool whole_frame = false;  // timed from the frame's arrival to the rendered hands, else by the step
+  std::function<std::vector<Hand>(double t)> hands = [](double) { return std::vector<Hand>(); };
+};
+
+/// Cubes let go of a hand's breadth above a floor, turned every way.
+Crowd dropped(int count, double edge, const char* name);
+/// Cubes that touch each other's faces, at rest on a floor.
+Crowd block(int count);
+/// Equal boxes, each half inside the next.
+Crowd overlapping(int count);
+Crowd far_spinning(int count);
+/// A hand sweeps blocks along a table.
+Crowd pushed(int count);
+/// Boxes half a millimetre apart on a table: one hand lifts one, the other rests beside them.
+Crowd lifted(int count);
+
+/// Those of the table, in its order.
+std::vector<Crowd> all_crowds();
+
+}  // namespace mrhi::crowds

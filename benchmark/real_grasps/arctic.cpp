@@ -1,0 +1,156 @@
+#include "arctic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "csv_columns.h"
+#include "finger_forces.h"
+#include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/simulation.h"
+#include "recording.h"
+#include "statistics.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+constexpr double kLed = 1e5;       // so much heavier is an object that is led: no hand moves it
+constexpr double kFurthest = 1e3;  // no bounds: what falls is away [m]
+
+/// Calls `take` with each row of a table.
+template <typename Take>
+void read_rows(const std::string& file, Take take) {
+  std::ifstream input(file);
+  std::string line;
+  if (!std::getline(input, line)) throw RecordingError(file + ": cannot be read, or is empty");
+  CsvColumns row(file, line);
+  for (std::size_t number = 2; std::getline(input, line); ++number) {
+    row.take(line, number);
+    take(row, line);
+  }
+}
+
+Pose pose_in(const CsvColumns& row) {
+  Pose pose{{row.required("px"), row.required("py"), row.required("pz")},
+            {row.required("qw"), row.required("qx"), row.required("qy"), row.required("qz")}};
+  if (!(pose.orientation.norm() > 0.5)) row.fail("qw", "a unit quaternion is needed");
+  pose.orientation.normalize();
+  return pose;
+}
+
+Window load_window(const std::string& path, const Configuration& configuration) {
+  Window window;
+  SceneOptions options;
+  options.default_material = default_material(configuration);
+  window.scene = load_scene(path + ".urdf", options);
+  window.scene.bounds = {Vector3::Constant(-kFurthest), Vector3::Constant(kFurthest)};
+  window.frames = read_recording_csv(path + ".csv");
+  const Pose body_in_link = window.scene.bodies.at(0).link_in_body.inverse();
+  read_rows(path + "_object.csv", [&](const CsvColumns& row, const std::string&) {
+    if (row.required("free") == 0.0) window.free_from = window.places.size() + 1;
+    window.places.push_back(pose_in(row) * body_in_link);
+  });
+  if (window.places.size() != window.frames.size() || window.free_from + 2 > window.frames.size())
+    throw RecordingError(path +
+                         "_object.csv: as many frames as in the hands' file are needed, two of them free");
+  return window;
+}
+
+/// As it was captured about a frame.
+Twist twist_at(const Window& window, std::size_t frame) {
+  const std::size_t a = frame > 0 ? frame - 1 : 0, b = std::min(frame + 1, window.places.size() - 1);
+  const double seconds = to_seconds(window.frames[b].stamp - window.frames[a].stamp);
+  const Pose &from = window.places[a], &to = window.places[b];
+  const Eigen::AngleAxisd turn(to.orientation * from.orientation.conjugate());
+  return {(to.position - from.position) / seconds, turn.angle() / seconds * turn.axis()};
+}
+
+BodyState captured(const Window& window, std::size_t frame, const Body& like) {
+  Body body = like;
+  body.start = window.places[frame];
+  body.start_twist = twist_at(window, frame);
+  return start_state(body);
+}
+
+void put(const BodyState& body, SimulationState state, Simulation& simulation) {
+  state.bodies.front() = body;
+  simulation.set_state(state);
+}
+
+bool advance(const Window& window, std::size_t frame, Simulation& simulation) {
+  std::vector<std::string> left_out;
+  const auto hands = complete_frame(window.frames[frame], device_mount(), left_out);
+  return hands && simulation.advance(*hands) == Rejection::none;
+}
+
+/// The hands and what they touch as the object is let free.
+SimulationState led(const Window& window, Configuration configuration, std::size_t from) {
+  configuration.gravity = Vector3::Zero();
+  Scene scene = window.scene;
+  scene.bodies.front().mass *= kLed;
+  scene.bodies.front().inertia *= kLed;
+  Simulation simulation(scene, configuration);
+  const Body& heavy = simulation.scene().bodies.front();
+  put(captured(window, from, heavy), simulation.state(), simulation);
+  for (std::size_t i = from; i <= window.free_from; ++i) {
+    advance(window, i, simulation);
+    put(captured(window, i, heavy), simulation.state(), simulation);
+  }
+  return simulation.state();
+}
+
+}  // namespace
+
+std::vector<Window> load_windows(const std::string& folder, const Configuration& configuration) {
+  std::vector<Window> windows;
+  read_rows(folder + "/windows.csv", [&](const CsvColumns& row, const std::string& line) {
+    const std::string name = line.substr(0, line.find(','));
+    windows.push_back(load_window(folder + "/" + name, configuration));
+    windows.back().name = name;
+    windows.back().first = row.required("first") != 0.0;
+  });
+  return windows;
+}
+
+WindowOutcome play(const Window& window, const Configuration& configuration, double lead) {
+  const Nanoseconds begin = window.frames[window.free_from].stamp - std::llround(1e9 * lead);
+  std::size_t from = 0;
+  while (window.frames[from].stamp < begin) ++from;
+  Simulation simulation(window.scene, configuration);
+  const Body& body = simulation.scene().bodies.front();
+  put(captured(window, window.free_from, body), led(window, configuration, from), simulation);
+  WindowOutcome outcome;
+  for (std::size_t i = window.free_from + 1; i < window.frames.size(); ++i) {
+    if (advance(window, i, simulation)) add_finger_forces(simulation.result(), outcome.forces);
+    const Vector3& place = simulation.state().bodies.front().pose.position;
+    outcome.away.push_back((place - window.places[i].position).norm());
+  }
+  return outcome;
+}
+
+double share_within(const std::vector<WindowOutcome>& outcomes, double limit) {
+  std::size_t frames = 0, within = 0;
+  for (const WindowOutcome& outcome : outcomes) {
+    frames += outcome.away.size();
+    within += static_cast<std::size_t>(std::count_if(outcome.away.begin(), outcome.away.end(),
+                                                     [limit](double away) { return away < limit; }));
+  }
+  return frames > 0 ? static_cast<double>(within) / static_cast<double>(frames) : 0.0;
+}
+
+std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit) {
+  return static_cast<std::size_t>(
+      std::count_if(outcomes.begin(), outcomes.end(), [limit](const auto& outcome) {
+        return *std::max_element(outcome.away.begin(), outcome.away.end()) < limit;
+      }));
+}
+
+double force_p90(const std::vector<WindowOutcome>& outcomes) {
+  std::vector<double> forces;
+  for (const WindowOutcome& outcome : outcomes)
+    forces.insert(forces.end(), outcome.forces.begin(), outcome.forces.end());
+  return quantile(forces, 0.9);
+}
+
+}  // namespace mrhi::real_grasps

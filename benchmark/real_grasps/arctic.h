@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/tracking/joints.h"
+
+namespace mrhi::real_grasps {
+
+/// Captured hands on a captured object, as arctic_windows.py cuts them.
+struct Window {
+  std::string name;
+  bool first = false;               ///< of its capture
+  Scene scene;                      ///< the object alone, at 1 g
+  std::vector<JointsFrame> frames;  ///< as a device at the default mount sees the hands
+  std::vector<Pose> places;         ///< of the object's centre of mass, in each frame
+  std::size_t free_from = 0;        ///< frame in which it is let free
+};
+
+/// Throws RecordingError, SceneError.
+std::vector<Window> load_windows(const std::string& folder, const Configuration& configuration);
+
+/// What became of the object, from the frame after it was let free.
+struct WindowOutcome {
+  std::vector<double> away;    ///< from where it was recorded, in each frame [m]
+  std::vector<double> forces;  ///< of each finger that presses, in each frame [N]
+};
+
+/// Up to `lead` seconds [s] before its window the object is led where it was recorded, so that hands touch it
+/// as they come to it; then it is free, with the velocity recorded.
+WindowOutcome play(const Window& window, const Configuration& configuration, double lead);
+
+/// Share of all frames in which the object is less than `limit` [m] from its recorded place.
+double share_within(const std::vector<WindowOutcome>& outcomes, double limit);
+
+/// Windows in which it is so in every frame.
+std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit);
+
+/// That nine of ten of all finger forces do not exceed [N].
+double force_p90(const std::vector<WindowOutcome>& outcomes);
+
+}  // namespace mrhi::real_grasps

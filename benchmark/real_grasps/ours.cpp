@@ -1,0 +1,58 @@
+#include <chrono>
+
+#include "finger_forces.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/simulation.h"
+#include "recording.h"
+#include "trial.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+constexpr double kFurthest = 1e3;  // no bounds: what is lost is lost [m]
+
+Scene scene_of(const Row& row, const Closing& closing, const Configuration& configuration) {
+  Scene scene;
+  scene.name = row.name;
+  scene.bounds = {Vector3::Constant(-kFurthest), Vector3::Constant(kFurthest)};
+  scene.bodies.push_back(body_of(row, closing.place, default_material(configuration)));
+  return scene;
+}
+
+void look(const Simulation& simulation, Story& story) {
+  const FrameResult& result = simulation.result();
+  const BodyState& state = simulation.state().bodies.front();
+  Moment moment{to_seconds(result.stamp), state.pose.position,
+                twist_of(simulation.scene().bodies.front(), state).linear};
+  for (const Contact& contact : result.contacts) moment.pressed |= contact.touching();
+  story.moments.push_back(moment);
+  add_finger_forces(result, story.forces);
+  for (const Event& event : result.events) {
+    const bool begins = event.kind == EventKind::grasp_begin;
+    if (!begins && event.kind != EventKind::grasp_end) continue;
+    auto& first = begins ? story.grasp_began : story.grasp_ended;
+    if (!first) first = to_seconds(event.stamp);
+  }
+}
+
+}  // namespace
+
+Story play_ours(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
+                const Configuration& configuration) {
+  using Clock = std::chrono::steady_clock;
+  Simulation simulation(scene_of(row, closing, configuration), configuration);
+  Story story;
+  story.has_grasps = true;
+  std::vector<std::string> left_out;
+  for (const JointsFrame& joints : frames) {
+    const auto frame = complete_frame(joints, device_mount(), left_out);
+    if (!frame) continue;
+    const auto begin = Clock::now();
+    if (simulation.advance(*frame) != Rejection::none) continue;
+    story.frame_times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
+    look(simulation, story);
+  }
+  return story;
+}
+
+}  // namespace mrhi::real_grasps

@@ -1,0 +1,79 @@
+#include "recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+namespace fs = std::filesystem;
+
+Vector3 in_world(const std::optional<Vector3>& point) {
+  if (!point) return Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  return {point->x(), -point->z(), point->y()};
+}
+
+Sighting sighting(const HandJoints& hand, std::size_t frame, double time) {
+  Sighting result{hand.id, frame, time, {}, in_world(hand.palm_centre)};
+  for (std::size_t f = 0; f < kFingers; ++f)
+    for (std::size_t j = 0; j < 5; ++j) result.joints[f][j] = in_world(hand.joints[f][j]);
+  return result;
+}
+
+bool is_recording(const fs::path& file) {
+  std::string header;
+  return file.extension() == ".csv" && std::getline(std::ifstream(file), header) &&
+         header.compare(0, 6, "time_s") == 0;
+}
+
+}  // namespace
+
+Pose device_mount() {
+  return default_device_mount();
+}
+
+Recording make_recording(std::string name, std::vector<JointsFrame> frames) {
+  Recording recording{std::move(name), std::move(frames), {}, {}};
+  std::vector<std::uint32_t> ids;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const JointsFrame& frame = recording.frames[i];
+    recording.sightings.emplace_back();
+    for (const HandJoints& hand : frame.hands) {
+      const auto track = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), hand.id) - ids.begin());
+      if (track == ids.size()) ids.push_back(hand.id), recording.tracks.emplace_back();
+      recording.sightings.back().push_back(sighting(hand, i, to_seconds(frame.stamp)));
+      recording.tracks[track].push_back(recording.sightings.back().back());
+    }
+  }
+  return recording;
+}
+
+Recording load_recording(const std::string& file) {
+  return make_recording(fs::path(file).stem().string(), read_recording_csv(file));
+}
+
+std::vector<std::string> recording_files(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    if (!fs::is_directory(path)) {
+      if (!fs::exists(path)) throw std::runtime_error(path + ": no such file or folder");
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t first = files.size();
+    for (const auto& entry : fs::directory_iterator(path))
+      if (is_recording(entry.path())) files.push_back(entry.path().string());
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(first), files.end());
+  }
+  return files;
+}
+
+}  // namespace mrhi::real_grasps

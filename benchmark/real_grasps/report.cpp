@@ -1,0 +1,85 @@
+#include "report.h"
+
+#include <cstdio>
+
+#include "statistics.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+std::string time_or_dash(const std::optional<double>& time) {
+  if (!time) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", *time);
+  return text;
+}
+
+}  // namespace
+
+Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
+  Summary sum;
+  std::vector<double> forces, aways, releases, times;
+  for (const Event& event : events) {
+    if (half && half_of(event.recording) != *half) continue;
+    const Outcome& outcome = event.outcome;
+    const bool fair = outcome.early < kFair;
+    ++sum.events;
+    sum.held += outcome.held, sum.carried += outcome.carried, sum.fair += fair;
+    sum.held_fair += fair && outcome.held, sum.carried_fair += fair && outcome.carried;
+    if (outcome.force > 0.0) forces.push_back(outcome.force);
+    if (outcome.carried) aways.push_back(outcome.away);
+    if (outcome.held && outcome.let_go) releases.push_back(outcome.release);
+    times.insert(times.end(), outcome.frame_times.begin(), outcome.frame_times.end());
+  }
+  sum.force = quantile(forces, 0.5), sum.away = quantile(aways, 0.5), sum.release = quantile(releases, 0.5);
+  sum.frame_time = quantile(times, 0.5), sum.frame_time_p99 = quantile(times, 0.99);
+  return sum;
+}
+
+std::string line(const Event& event) {
+  const Outcome& outcome = event.outcome;
+  char text[400];
+  if (!outcome.note.empty()) {
+    std::snprintf(text, sizeof text, "%-24s %6.2f s  lost  %s", event.recording.c_str(), event.closing.closed,
+                  outcome.note.c_str());
+    return text;
+  }
+  std::snprintf(
+      text, sizeof text,
+      "%-24s %6.2f s  %s  %4.0f mm away, %3.0f mm early, p90 %4.0f N, grasp %s to %s s, opens %.2f s, "
+      "release %.0f mm/s, %.2f of the hand's speed",
+      event.recording.c_str(), event.closing.closed, outcome.held ? "held" : "lost", 1e3 * outcome.away,
+      1e3 * outcome.early, outcome.force, time_or_dash(outcome.grasp_began).c_str(),
+      time_or_dash(outcome.grasp_ended).c_str(), event.closing.opens, 1e3 * outcome.release, outcome.speed);
+  return text;
+}
+
+std::string line(const std::string& name, const std::vector<Event>& events) {
+  char text[400];
+  const Summary all = summarise(events), tuned = summarise(events, Half::tuned),
+                held_out = summarise(events, Half::held_out);
+  const Interval interval = wilson(all.held, all.events);
+  std::snprintf(text, sizeof text,
+                "%-14s held %2zu of %2zu (%2.0f to %2.0f %%; tuned %zu of %zu, held out %zu of %zu), carried "
+                "%zu; within "
+                "10 mm %2zu of %2zu; p90 %5.1f N; release %4.0f mm/s; frame %.0f us, p99 %.0f",
+                name.c_str(), all.held, all.events, 100.0 * interval.low, 100.0 * interval.high, tuned.held,
+                tuned.events, held_out.held, held_out.events, all.carried, all.held_fair, all.fair, all.force,
+                1e3 * all.release, all.frame_time, all.frame_time_p99);
+  return text;
+}
+
+std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes) {
+  std::size_t frames = 0;
+  for (const WindowOutcome& outcome : outcomes) frames += outcome.away.size();
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%-26s %4zu frames; within 50 mm %3.0f %%, within 20 mm %3.0f %%; p90 force %5.1f N; to the "
+                "end %zu of %zu",
+                name.c_str(), frames, 100.0 * share_within(outcomes, 0.05),
+                100.0 * share_within(outcomes, 0.02), force_p90(outcomes), stayed(outcomes, 0.05),
+                outcomes.size());
+  return text;
+}
+
+}  // namespace mrhi::real_grasps

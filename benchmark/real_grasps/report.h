@@ -1,0 +1,57 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arctic.h"
+#include "contenders.h"
+#include "half.h"
+#include "trial.h"
+
+namespace mrhi::real_grasps {
+
+/// One closing, what was put there, and what became of it.
+struct Event {
+  std::string recording;
+  Closing closing;
+  Outcome outcome;
+};
+
+/// What the events of a row come to.
+struct Summary {
+  std::size_t events = 0, held = 0, carried = 0;
+  std::size_t fair = 0, held_fair = 0,
+              carried_fair = 0;  ///< of those nudged less than kFair as the hand closed
+  double force = 0.0;            ///< median of the p90 of a finger's force, where touched [N]
+  double away = 0.0;             ///< median of those carried [m]
+  double release = 0.0;          ///< median of those held [m/s]
+  double frame_time = 0.0;       ///< median [us]
+  double frame_time_p99 = 0.0;
+};
+
+/// Of one half, or of all.
+Summary summarise(const std::vector<Event>& events, std::optional<Half> half = std::nullopt);
+
+/// A line of text each.
+std::string line(const Event& event);
+std::string line(const std::string& name, const std::vector<Event>& events);
+std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes);
+
+/// real_grasps.csv: a line for each contender, row and half.
+void write_header(std::ostream& csv);
+void write_rows(std::ostream& csv, const Contender& contender, const std::string& row,
+                const std::vector<Event>& events);
+
+/// real_grasps_events.csv: a line for each closing.
+void write_events_header(std::ostream& csv);
+void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
+                  const std::vector<Event>& events);
+
+/// real_grasps_arctic.csv: a line for each contender and group of windows.
+void write_arctic_header(std::ostream& csv);
+void write_arctic(std::ostream& csv, const Contender& contender, const std::string& group,
+                  const std::vector<WindowOutcome>& outcomes);
+
+}  // namespace mrhi::real_grasps

@@ -1,0 +1,223 @@
+// Which closings are found, what counts as held, and the statistics; on recordings that the tests make.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "../arctic.h"
+#include "../contenders.h"
+#include "../half.h"
+#include "../report.h"
+#include "../statistics.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+constexpr double kPeriod = 0.01;  // [s]
+const Row kCube{"cube", Kind::pinch, false, 0.04, 0.1};
+constexpr double kLimit = 0.04 + 2.0 * 0.0088;  // between the tips as they begin to touch the cube [m]
+
+/// Tips of thumb and index about the origin, `opening(time)` apart.
+Recording two_tips(double seconds, const std::function<double(double)>& opening) {
+  std::vector<JointsFrame> frames;
+  for (int i = 0; i * kPeriod < seconds; ++i) {
+    HandJoints hand;
+    hand.id = 7;
+    const double half = 0.5 * opening(i * kPeriod);
+    hand.joints[0][4] = Vector3(-half, 0, 0), hand.joints[0][3] = Vector3(-half, -0.03, 0);
+    hand.joints[1][4] = Vector3(half, 0, 0), hand.joints[1][3] = Vector3(half, -0.03, 0);
+    frames.push_back({std::llround(1e9 * i * kPeriod), {hand}});
+  }
+  return make_recording("two_tips", std::move(frames));
+}
+
+/// Open by 0.1 m, closed to `least` from `from` to `to`, 0.05 s on the way.
+std::function<double(double)> closing_once(double from, double to, double least) {
+  return [=](double t) {
+    const double inside = std::min(t - from, to - t) / 0.05;
+    return 0.1 + (least - 0.1) * std::min(1.0, std::max(0.0, inside));
+  };
+}
+
+TEST(Closings, OneIsFoundWhereTheTipsComeNearerThanTheBodyIsWide) {
+  const auto found = closings(two_tips(3.0, closing_once(1.0, 2.0, 0.03)), kCube);
+  ASSERT_EQ(found.size(), 1u);
+  // From 0.1 m to 0.03 m in 0.05 s: at the limit 0.0303 s after 1 s, seen in the frame after.
+  EXPECT_NEAR(found[0].closed, 1.04, 1e-9);
+  EXPECT_NEAR(found[0].opens, 1.96, 1e-9);
+  EXPECT_LT(found[0].place.position.norm(), 1e-12) << "between the tips";
+  EXPECT_NEAR(std::abs((found[0].place.orientation * Vector3::UnitX()).x()), 1.0, 1e-12)
+      << "along their line";
+  EXPECT_EQ(found[0].hand, 7u);
+}
+
+TEST(Closings, ItIsPlayedFromWhereNothingIsNearToFourTenthsAfterItOpened) {
+  const Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
+  const Closing closing = closings(recording, kCube).at(0);
+  const auto clear_at = [&](std::size_t frame) {
+    return clearance(recording.sightings[frame], kCube, closing.place) > 0.002;
+  };
+  EXPECT_TRUE(clear_at(closing.begin));
+  EXPECT_FALSE(clear_at(closing.begin + 1)) << "not earlier than need be";
+  EXPECT_NEAR(static_cast<double>(closing.last) * kPeriod, closing.opens + 0.4, 1e-9);
+}
+
+TEST(Closings, ShortOnesShallowOnesAndThoseNotSeenToEndAreLeftOut) {
+  EXPECT_TRUE(closings(two_tips(3.0, closing_once(1.0, 1.2, 0.03)), kCube).empty()) << "0.13 s";
+  EXPECT_TRUE(closings(two_tips(3.0, closing_once(1.0, 2.0, kLimit - 0.003)), kCube).empty());
+  EXPECT_FALSE(closings(two_tips(3.0, closing_once(1.0, 2.0, kLimit - 0.005)), kCube).empty());
+  EXPECT_TRUE(closings(two_tips(3.0, closing_once(1.0, 9.0, 0.03)), kCube).empty()) << "never opens";
+}
+
+TEST(Closings, AHandThatWasNotSeenComingIsLeftOut) {
+  Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
+  recording.frames.erase(recording.frames.begin() + 95, recording.frames.begin() + 103);
+  EXPECT_TRUE(closings(make_recording("gap", recording.frames), kCube).empty()) << "0.09 s without a frame";
+}
+
+TEST(Closings, AtMostTenOfARecording) {
+  const auto often = [](double t) { return closing_once(0.2, 0.6, 0.03)(std::fmod(t, 0.8)); };
+  EXPECT_EQ(closings(two_tips(16.0, often), kCube).size(), 10u);
+}
+
+TEST(Clearance, IsTheDistanceOfTheSkinFromTheBody) {
+  const Recording recording = two_tips(0.1, [](double) { return 0.1; });
+  EXPECT_NEAR(clearance(recording.sightings[0], kCube, {}), 0.05 - 0.02 - 0.0088, 1e-12);
+  const Row ball{"ball", Kind::pinch, true, 0.06, 0.1};
+  EXPECT_NEAR(clearance(recording.sightings[0], ball, {}), 0.05 - 0.03 - 0.0088, 1e-12);
+}
+
+/// A body that stays at `place`, grasped at 1 s, pressed until 2.1 s, in a hand that opens at 2 s.
+struct Told {
+  Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
+  Closing closing = closings(recording, kCube).at(0);
+  Story story;
+
+  explicit Told(double place) {
+    for (int i = 90; i < 240; ++i)
+      story.moments.push_back({i * kPeriod, Vector3(0, place, 0), Vector3::Zero(), i > 100 && i < 210});
+    story.has_grasps = true;
+    story.grasp_began = 1.0;
+    story.grasp_ended = 2.1;
+  }
+  Outcome outcome() const { return judge(story, recording.tracks[0], closing, kCube); }
+};
+
+TEST(Held, IsWhatIsGraspedAndInTheHandUntilItOpens) {
+  EXPECT_TRUE(Told(0.0).outcome().held);
+  EXPECT_TRUE(Told(0.039).outcome().held) << "nearer than the body is wide";
+  EXPECT_FALSE(Told(0.041).outcome().held);
+}
+
+TEST(Held, NotWhatIsNeverGraspedOrLetGoTooEarly) {
+  Told told(0.0);
+  told.story.grasp_ended = told.closing.opens - 0.05;
+  EXPECT_TRUE(told.outcome().held) << "within the time that a grasp may end before the hand opens";
+  told.story.grasp_ended = told.closing.opens - 0.07;
+  EXPECT_FALSE(told.outcome().held);
+  told.story.grasp_ended.reset();
+  told.story.grasp_began.reset();
+  EXPECT_FALSE(told.outcome().held);
+  EXPECT_TRUE(told.outcome().carried);
+  told.story.has_grasps = false;
+  EXPECT_TRUE(told.outcome().held) << "by an engine that does not know grasps";
+}
+
+TEST(Held, CarriedIsNotWhatNothingPresses) {
+  Told told(0.0);
+  for (Moment& moment : told.story.moments) moment.pressed = false;
+  EXPECT_FALSE(told.outcome().carried);
+}
+
+TEST(Held, NudgedAndReleasedAreTold) {
+  const Outcome outcome = Told(0.012).outcome();
+  EXPECT_NEAR(outcome.early, 0.012, 1e-12);
+  ASSERT_TRUE(outcome.let_go);
+  EXPECT_NEAR(*outcome.let_go, 2.1, 1e-6);
+}
+
+/// The scripted hand that grasps a cube of 40 mm, with one of 44 mm: its tips end up 2 mm deep in that.
+std::vector<Event> scripted(const Configuration& configuration, const Disturbance& disturbance = {}) {
+  SyntheticHandOptions options;
+  options.motion = "grasp_cube";
+  const Recording recording = make_recording("scripted", record_motion(options));
+  const Row row{"cube", Kind::grab, false, 0.044, 0.1};
+  std::vector<Event> events;
+  for (const Closing& closing : closings(recording, row))
+    events.push_back(
+        {"scripted", closing, play(recording, closing, row, disturbance, ours(configuration).player)});
+  return events;
+}
+
+TEST(Played, AScriptedHandHoldsTheCubeThatIsPutWhereItCloses) {
+  const auto events = scripted(Configuration());
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].outcome.note, "");
+  EXPECT_TRUE(events[0].outcome.held);
+  EXPECT_TRUE(events[0].outcome.carried);
+  EXPECT_GT(events[0].outcome.force, 0.0);
+  EXPECT_EQ(summarise(events).held, 1u);
+}
+
+TEST(Played, WithoutFrictionItLosesIt) {
+  Configuration slippery;
+  slippery.material.static_friction = slippery.material.dynamic_friction = 0.0;
+  const auto events = scripted(slippery);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_LT(scripted(Configuration())[0].outcome.away, events[0].outcome.away);
+}
+
+TEST(Disturbed, IsEvenlySpacedAsNoisyAsSaidAndTheSameForOneSeed) {
+  const Recording recording = two_tips(4.0, [](double) { return 0.1; });
+  Disturbance disturbance;
+  disturbance.noise = 0.002;
+  disturbance.rate = 30.0;
+  const auto frames = disturbed(recording.frames, 0, recording.frames.size() - 1, disturbance);
+  const auto again = disturbed(recording.frames, 0, recording.frames.size() - 1, disturbance);
+  disturbance.seed = 2;
+  const auto other = disturbed(recording.frames, 0, recording.frames.size() - 1, disturbance);
+  ASSERT_EQ(frames.size(), 120u);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Vector3 tip = *frames[i].hands.at(0).joints[0][4];
+    EXPECT_EQ(frames[i].stamp, static_cast<Nanoseconds>(i) * 33333333);
+    EXPECT_EQ(tip, *again[i].hands.at(0).joints[0][4]);
+    EXPECT_NE(tip, *other[i].hands.at(0).joints[0][4]);
+    squares += (tip - Vector3(-0.05, 0, 0)).squaredNorm() / 3.0;
+  }
+  // The deviation of 360 numbers is known within 1 / sqrt(720) = 3.7 %; four times that.
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(frames.size())), 0.002, 0.15 * 0.002);
+}
+
+TEST(Statistics, WilsonsIntervalIsThatOfTables) {
+  // Brown, Cai and DasGupta (2001), equation 4, by hand.
+  EXPECT_NEAR(wilson(8, 10).low, 0.4902, 1e-4);
+  EXPECT_NEAR(wilson(8, 10).high, 0.9433, 1e-4);
+  EXPECT_EQ(wilson(0, 10).low, 0.0);
+  EXPECT_NEAR(wilson(0, 10).high, 0.2775, 1e-4);
+  EXPECT_EQ(wilson(0, 0).high, 1.0) << "nothing known";
+}
+
+TEST(Statistics, AQuantileLiesBetweenItsNeighbours) {
+  EXPECT_DOUBLE_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(quantile({1.0, 2.0, 3.0}, 0.9), 2.8);
+  EXPECT_DOUBLE_EQ(quantile({}, 0.9), 0.0);
+}
+
+TEST(Halves, WindowsOfOneCaptureAreInOne) {
+  EXPECT_EQ(capture_of("s01_laptop_use_01_412"), "s01_laptop_use_01");
+  EXPECT_EQ(half_of("ul_vr_a"), Half::held_out);
+  EXPECT_EQ(half_of("ul_vr_d"), Half::tuned);
+}
+
+TEST(Arctic, SharesAreOfAllFramesTogether) {
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {1.0}}, {{0.0}, {2.0, 3.0}}};
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.05), 0.75);
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 0.5);
+  EXPECT_EQ(stayed(outcomes, 0.05), 1u);
+  EXPECT_DOUBLE_EQ(force_p90(outcomes), 2.8);
+}
+
+}  // namespace
+}  // namespace mrhi::real_grasps

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/scene/scene.h"
+
+namespace mrhi {
+
+/// What two bodies may overlap, as things that rest on each other do [m].
+constexpr double kOverlap = 0.001;
+
+/// How deep body `a` is in body `b` [m]; 0: not at all.
+double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
+               std::size_t a, std::size_t b);
+
+/// "'cube' is 0.02 m in 'table'" for the pairs that overlap by more than kOverlap where they start, the first
+/// few of them; empty: none does. Fixtures may overlap each other.
+std::string overlaps_at_start(const Scene& scene);
+
+}  // namespace mrhi

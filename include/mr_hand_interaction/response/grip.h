@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "mr_hand_interaction/tracking/hand.h"
+
+namespace mrhi {
+
+constexpr int kGripPoints = 4;  ///< springs of a grip, at the corners of a tetrahedron
+
+/// A hand that has closed round a body, and through it, holds the body: by springs between the hand and the
+/// body that yield beyond what the hand's friction could bear. They give no force as the grip begins.
+struct Grip {
+  std::uint16_t body = 0;                      ///< index in Scene::bodies
+  std::uint8_t hand = 0;                       ///< index of the hand's track
+  bool by_palm = false;                        ///< what the fingers close against: the palm, or the thumb
+  std::uint8_t fingers = 0;                    ///< those that close, a bit each
+  double opening = 0.0;                        ///< at which both sides just touch the body [m]
+  double least = 0.0;                          ///< of the opening since the grip began [m]
+  double bond = 0.0;                           ///< most that each spring bears [N]
+  double stiffness = 0.0;                      ///< of each spring [N/m]
+  bool fresh = true;                           ///< begins with this step
+  bool closes = true;                          ///< the hand still closes
+  Vector3 middle_before = Vector3::Zero();     ///< of both sides as the frame begins, palm frame [m]
+  Vector3 middle = Vector3::Zero();            ///< and as it ends; an opening hand does not move it [m]
+  bool slips = false;                          ///< it has yielded in the last step
+  std::array<Vector3, kGripPoints> in_hand{};  ///< the springs' ends, see grip_frame() [m]
+  std::array<Vector3, kGripPoints> in_body{};  ///< and the others, body frame [m]
+  Vector3 force = Vector3::Zero();             ///< on the body in the last step, world [N]
+
+  // In this step, world.
+  std::array<Vector3, kGripPoints> point{};     ///< the ends on the hand, at the step's start [m]
+  std::array<Vector3, kGripPoints> velocity{};  ///< and theirs [m/s]
+
+  bool takes_part(int finger) const { return (fingers >> finger & 1) != 0; }
+};
+
+/// The tip of a finger, world [m].
+Vector3 tip_of(const Hand& hand, int finger);
+/// What fingers close against: the middle of the palm, or the thumb's tip, world [m].
+Vector3 base_of(const Hand& hand, bool by_palm);
+/// Distance between the tips of the grip's fingers, in the mean, and what they close against [m].
+double opening(const Grip& grip, const Hand& hand);
+/// Midway between the two sides, palm frame [m].
+Vector3 middle(const Grip& grip, const Hand& hand);
+/// The frame in which a gripped body is still: about that middle, turned as the palm.
+Pose grip_frame(const Hand& hand, const Vector3& middle);
+
+}  // namespace mrhi

@@ -1,0 +1,296 @@
+#include "flat_faces.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "sorted_mesh.h"
+
+namespace mrhi {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// A plane fitted to triangles by their areas, as they are added.
+class Plane {
+ public:
+  void add(const Vector3& doubled_area, const Vector3& centre) {
+    const double weight = doubled_area.norm();
+    area_ += doubled_area;
+    moment_ += weight * centre;
+    weight_ += weight;
+    if (weight_ == 0.0) return;
+    normal_ = area_.normalized();
+    height_ = normal_.dot(moment_) / weight_;
+  }
+  double above(const Vector3& place) const { return normal_.dot(place) - height_; }
+  const Vector3& normal() const { return normal_; }
+  double height() const { return height_; }
+
+ private:
+  Vector3 area_ = Vector3::Zero(), moment_ = Vector3::Zero(), normal_ = Vector3::Zero();
+  double weight_ = 0.0, height_ = 1e300;  // without an area it is near nothing
+};
+
+/// Cuts a surface along its edges into faces.
+class FaceFinder {
+ public:
+  FaceFinder(const TriangleMesh& mesh, const Neighbourhood& neighbourhood, double tolerance)
+      : mesh_(mesh),
+        neighbourhood_(neighbourhood),
+        tolerance_(tolerance),
+        areas_(mesh.triangles.size()),
+        face_of_(mesh.triangles.size(), -1) {
+    std::vector<int> order(mesh.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    for (std::size_t t = 0; t < areas_.size(); ++t) {
+      const auto corner = [&](std::size_t i) { return mesh.vertices[at(mesh.triangles[t][i])]; };
+      areas_[t] = (corner(1) - corner(0)).cross(Vector3(corner(2) - corner(0)));
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return areas_[at(a)].squaredNorm() > areas_[at(b)].squaredNorm(); });
+    if (order.empty() || areas_[at(order.front())].norm() == 0.0)
+      throw std::invalid_argument("mesh has no triangle with an area");
+    for (const int triangle : order) {
+      if (face_of_[at(triangle)] < 0) grow(triangle);
+    }
+  }
+
+  const std::vector<Plane>& planes() const { return planes_; }
+  int face_of(int triangle) const { return face_of_[at(triangle)]; }
+
+ private:
+  const Vector3& corner(int triangle, int i) const {
+    return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(i % 3)])];
+  }
+
+  void grow(int seed) {
+    const int face = static_cast<int>(planes_.size());
+    planes_.emplace_back();
+    take(seed, face);
+    std::vector<int> open{seed};
+    for (std::size_t next = 0; next < open.size(); ++next) {
+      for (int side = 0; side < 3; ++side) {
+        const Neighbourhood::Side beyond = neighbourhood_.beyond(open[next], side);
+        if (!beyond.exists() || face_of_[at(beyond.triangle)] >= 0) continue;
+        if (!goes_on(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
+        take(beyond.triangle, face);
+        open.push_back(beyond.triangle);
+      }
+    }
+  }
+  void take(int triangle, int face) {
+    face_of_[at(triangle)] = face;
+    const Vector3 centre = (corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2)) / 3.0;
+    planes_.back().add(areas_[at(triangle)], centre);
+  }
+
+  /// The one is flat beside the other, or so thin that it has no direction of its own.
+  bool goes_on(int triangle, int side, const Neighbourhood::Side& beyond) const {
+    if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
+    const Vector3 &area = areas_[at(triangle)], &other = areas_[at(beyond.triangle)];
+    if (area.dot(other) <= 0.0) return false;
+    const Vector3 apex = corner(triangle, side + 2), other_apex = corner(beyond.triangle, beyond.side + 2);
+    const Vector3 across = other_apex - apex;
+    const Vector3 on_side = corner(triangle, side) - apex;
+    const double rise = std::abs(area.dot(across) - area.dot(on_side)) / area.norm();
+    const double other_rise = std::abs(other.dot(on_side)) / other.norm();
+    return std::min(rise, other_rise) <= tolerance_;
+  }
+  bool is_needle(int triangle, int side) const {
+    const double length = (corner(triangle, side + 1) - corner(triangle, side)).norm();
+    return areas_[at(triangle)].norm() <= tolerance_ * 1e-3 * length;
+  }
+  bool on_plane(int triangle, const Plane& plane) const {
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(plane.above(corner(triangle, i))) > tolerance_) return false;
+    return true;
+  }
+
+  const TriangleMesh& mesh_;
+  const Neighbourhood& neighbourhood_;
+  const double tolerance_;
+  std::vector<Vector3> areas_;  // doubled
+  std::vector<Plane> planes_;
+  std::vector<int> face_of_;
+};
+
+/// A line along which two faces meet, from corner to corner: vertices in the order of the first face's side.
+struct Seam {
+  int face, other;  // -1 where there is none
+  std::vector<int> vertices;
+};
+
+/// Follows the lines between faces, and leaves out the vertices on their straight parts.
+class SeamFinder {
+ public:
+  SeamFinder(const TriangleMesh& mesh, const Neighbourhood& neighbourhood, const FaceFinder& faces,
+             double tolerance)
+      : mesh_(mesh), tolerance_(tolerance), around_(mesh.vertices.size()) {
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const Neighbourhood::Side beyond = neighbourhood.beyond(t, k);
+        const int face = faces.face_of(t), other = beyond.exists() ? faces.face_of(beyond.triangle) : -1;
+        const bool twice =
+            beyond.exists() && std::make_pair(beyond.triangle, beyond.side) < std::make_pair(t, k);
+        if (face == other || twice) continue;
+        const std::array<int, 3>& triangle = mesh.triangles[at(t)];
+        pieces_.push_back({triangle[at(k)], triangle[at((k + 1) % 3)], face, other, false});
+        for (const int end : {pieces_.back().from, pieces_.back().to})
+          around_[at(end)].push_back(static_cast<int>(pieces_.size()) - 1);
+      }
+    }
+    for (int v = 0; v < static_cast<int>(around_.size()); ++v)
+      if (!is_on_the_way(v)) follow_from(v);
+    for (std::size_t p = 0; p < pieces_.size(); ++p)  // what is left are rings
+      if (!pieces_[p].followed) follow(static_cast<int>(p), pieces_[p].from);
+  }
+
+  const std::vector<Seam>& seams() const { return seams_; }
+
+ private:
+  struct Piece {
+    int from, to, face, other;
+    bool followed;
+  };
+
+  bool is_on_the_way(int vertex) const {
+    const std::vector<int>& pieces = around_[at(vertex)];
+    if (pieces.size() != 2) return pieces.empty();
+    const Piece &a = pieces_[at(pieces[0])], &b = pieces_[at(pieces[1])];
+    return std::minmax(a.face, a.other) == std::minmax(b.face, b.other);
+  }
+  void follow_from(int corner) {
+    for (const int piece : around_[at(corner)])
+      if (!pieces_[at(piece)].followed) follow(piece, corner);
+  }
+  void follow(int piece, int start) {
+    Seam seam{pieces_[at(piece)].face, pieces_[at(piece)].other, {start}};
+    const bool along = pieces_[at(piece)].from == start;
+    for (int vertex = start; piece >= 0;) {
+      Piece& now = pieces_[at(piece)];
+      now.followed = true;
+      vertex = now.from == vertex ? now.to : now.from;
+      seam.vertices.push_back(vertex);
+      piece = -1;
+      if (!is_on_the_way(vertex)) break;
+      for (const int next : around_[at(vertex)])
+        if (!pieces_[at(next)].followed) piece = next;
+    }
+    if (!along) std::reverse(seam.vertices.begin(), seam.vertices.end());
+    straighten(seam.vertices);
+    seams_.push_back(std::move(seam));
+  }
+
+  /// Keeps what is farthest from the line between those kept, as long as it is off it (Douglas & Peucker
+  /// 1973). A ring is two lines, between two places far from each other.
+  void straighten(std::vector<int>& line) const {
+    std::vector<char> kept(line.size(), 0);
+    kept.front() = kept.back() = 1;
+    if (line.front() == line.back()) {
+      const std::size_t middle = farthest(line, 0, line.size() - 1).first;
+      kept[middle] = 1;
+      keep(line, 0, middle, kept), keep(line, middle, line.size() - 1, kept);
+    } else {
+      keep(line, 0, line.size() - 1, kept);
+    }
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < line.size(); ++i)
+      if (kept[i] != 0) line[count++] = line[i];
+    line.resize(count);
+  }
+  void keep(const std::vector<int>& line, std::size_t first, std::size_t last,
+            std::vector<char>& kept) const {
+    std::vector<std::pair<std::size_t, std::size_t>> open{{first, last}};
+    while (!open.empty()) {
+      const auto [from, to] = open.back();
+      open.pop_back();
+      const auto [i, distance] = farthest(line, from, to);
+      if (distance <= tolerance_) continue;
+      kept[i] = 1;
+      open.emplace_back(from, i), open.emplace_back(i, to);
+    }
+  }
+  std::pair<std::size_t, double> farthest(const std::vector<int>& line, std::size_t from,
+                                          std::size_t to) const {
+    const Vector3& start = mesh_.vertices[at(line[from])];
+    const Vector3 along = (mesh_.vertices[at(line[to])] - start).normalized();
+    std::pair<std::size_t, double> found{from, 0.0};
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const Vector3 offset = mesh_.vertices[at(line[i])] - start;
+      const double part = std::max(0.0, along.dot(offset));
+      const double distance = (offset - part * along).norm();
+      if (distance > found.second) found = {i, distance};
+    }
+    return found;
+  }
+
+  const TriangleMesh& mesh_;
+  const double tolerance_;
+  std::vector<std::vector<int>> around_;  // each vertex, the pieces
+  std::vector<Piece> pieces_;
+  std::vector<Seam> seams_;
+};
+
+double corner_angle(const Vector3& a, const Vector3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& faces) {
+  std::vector<Vector3> normals(mesh.vertices.size(), Vector3::Zero());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const std::array<int, 3>& triangle = mesh.triangles[at(t)];
+    const Vector3& normal = faces.planes()[at(faces.face_of(t))].normal();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3& corner = mesh.vertices[at(triangle[i])];
+      normals[at(triangle[i])] += corner_angle(mesh.vertices[at(triangle[(i + 1) % 3])] - corner,
+                                               mesh.vertices[at(triangle[(i + 2) % 3])] - corner) *
+                                  normal;
+    }
+  }
+  return normals;
+}
+
+double extent_of(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0.0;
+  Vector3 min = mesh.vertices[0], max = min;
+  for (const Vector3& v : mesh.vertices) min = min.cwiseMin(v), max = max.cwiseMax(v);
+  return (max - min).maxCoeff();
+}
+
+}  // namespace
+
+FlatFaces flat_faces(const TriangleMesh& unsorted) {
+  const TriangleMesh mesh = sorted(unsorted);
+  const Neighbourhood neighbourhood(mesh);
+  const double tolerance = kFlatness * extent_of(mesh);
+  const FaceFinder faces(mesh, neighbourhood, tolerance);
+  const SeamFinder lines(mesh, neighbourhood, faces, tolerance);
+
+  FlatFaces result;
+  result.closed = neighbourhood.closed();
+  result.one_piece = neighbourhood.one_piece();
+  for (const Plane& plane : faces.planes()) result.faces.push_back({plane.normal(), plane.height()});
+  std::vector<int> corner_of(mesh.vertices.size(), -1);
+  for (const Seam& seam : lines.seams())
+    for (const int v : seam.vertices) corner_of[at(v)] = 0;
+  const std::vector<Vector3> normals = vertex_normals(mesh, faces);
+  for (std::size_t v = 0; v < corner_of.size(); ++v) {
+    if (corner_of[v] < 0) continue;
+    corner_of[v] = static_cast<int>(result.corners.size());
+    result.corners.push_back(mesh.vertices[v]);
+    result.corner_normals.push_back(normals[v]);
+  }
+  for (const Seam& seam : lines.seams()) {
+    for (std::size_t i = 1; i < seam.vertices.size(); ++i) {
+      result.edges.push_back(
+          {corner_of[at(seam.vertices[i - 1])], corner_of[at(seam.vertices[i])], seam.face, seam.other});
+    }
+  }
+  return result;
+}
+
+}  // namespace mrhi

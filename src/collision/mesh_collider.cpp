@@ -1,0 +1,133 @@
+#include <atomic>
+
+#include "mesh_nearest.h"
+#include "mesh_shape.h"
+#include "mesh_way_out.h"
+#include "mr_hand_interaction/collision/mesh_collision.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kUnlimited = 1e300;
+/// Faces on which a finger lies flat for less than this are part of a curve, that it touches at a point [m].
+constexpr double kLeastFlat = 0.002;
+
+}  // namespace
+
+/// Where the nearest part was found last, by the place of the segment's middle: a guess to begin the next
+/// search with. No result depends on it, so that all who ask may share it.
+class GuessMemory {
+ public:
+  explicit GuessMemory(const MeshSurface& surface)
+      : corner_(surface.min()),
+        per_metre_(kCells / std::max(1e-9, (surface.max() - surface.min()).maxCoeff())) {
+    for (std::atomic<int>& part : parts_) part.store(-1, std::memory_order_relaxed);
+  }
+  std::atomic<int>& at(const Segment& segment) {
+    const Vector3 place = per_metre_ * (segment.middle() - corner_);
+    std::uint32_t cell = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double held = std::max(-1000.0, std::min(place[i], 1000.0));
+      cell = cell * 73u + static_cast<std::uint32_t>(static_cast<int>(held + 1000.0));
+    }
+    return parts_[cell % parts_.size()];
+  }
+
+ private:
+  static constexpr double kCells = 32.0;  // across the mesh
+  const Vector3 corner_;
+  const double per_metre_;
+  std::array<std::atomic<int>, 1021> parts_;
+};
+
+struct MeshCollider::Impl {
+  explicit Impl(const TriangleMesh& mesh) : shape(mesh), guesses(shape.surface) {}
+
+  MeshNearest nearest(const Segment& segment, double range) const {
+    std::atomic<int>& guess = guesses.at(segment);
+    MeshNearest search(shape.surface, shape.tree, segment, range, guess.load(std::memory_order_relaxed));
+    if (search.part() >= 0) guess.store(search.part(), std::memory_order_relaxed);
+    return search;
+  }
+  bool inside(const MeshNearest& search) const {
+    return shape.surface.closed() && search.gap().dot(shape.surface.outward(search.nearest())) < 0.0;
+  }
+  int face_at(const SurfaceNearest& nearest) const;
+  ClosestFeatures leave(const Segment& segment, const SurfaceNearest& nearest) const;
+  void leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const;
+
+  MeshShape shape;
+  mutable GuessMemory guesses;
+};
+
+/// A face that has the nearest place, or one beside it.
+int MeshCollider::Impl::face_at(const SurfaceNearest& nearest) const {
+  const auto index = static_cast<std::size_t>(nearest.index);
+  if (nearest.part == SurfacePart::face) return nearest.index;
+  if (nearest.part == SurfacePart::edge) return shape.surface.edges()[index].faces[0];
+  return shape.surface.face_at_corner(nearest.index);
+}
+
+ClosestFeatures MeshCollider::Impl::leave(const Segment& segment, const SurfaceNearest& nearest) const {
+  ClosestFeatures features = leave_mesh(segment, shape.surface, shape.tree, face_at(nearest));
+  if (!shape.surface.convex() && shape.surface.closed()) {
+    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, features);
+  }
+  return features;
+}
+
+/// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
+/// inwards.
+void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const {
+  const Vector3 end = segment.at(s);
+  const Segment only_end(Capsule{end, end, 0.0});
+  const MeshNearest search = nearest(only_end, kUnlimited);
+  const double depth = search.nearest().distance;
+  if (depth < kOnSurface || !inside(search)) return;
+  const Vector3 normal = -search.gap() / depth;
+  const bool is_last_out = normal.dot(segment.at(1.0 - s) - end) >= 0.0;
+  if (is_last_out && -depth > best.distance + kParallel) best = {-depth, normal, search.nearest().point, s};
+}
+
+MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
+MeshCollider::~MeshCollider() = default;
+
+const MeshShape& MeshCollider::shape() const {
+  return impl_->shape;
+}
+
+std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, double margin) const {
+  const MeshSurface& surface = impl_->shape.surface;
+  const Segment segment(capsule);
+  if (surface.is_beyond(segment, capsule.radius + margin)) return std::nullopt;
+  const bool may_be_deep = surface.closed() && surface.in_bounds(segment.middle());
+  const double reach = may_be_deep ? kUnlimited : capsule.radius + margin;
+  const MeshNearest search = impl_->nearest(segment, reach);
+  if (!search.found()) return std::nullopt;
+
+  const SurfaceNearest& nearest = search.nearest();
+  ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
+                           nearest.stretch.middle()};
+  if (nearest.part == SurfacePart::face) {
+    // The face's own normal has no rounding of a short gap.
+    const Vector3 normal = surface.outward(nearest);
+    features.normal = normal.dot(features.normal) < 0.0 ? Vector3(-normal) : normal;
+    features.face = nearest.index;
+  }
+  if (nearest.distance < kOnSurface || impl_->inside(search)) features = impl_->leave(segment, nearest);
+  features.distance -= capsule.radius;
+  if (features.distance > margin) return std::nullopt;
+  return features;
+}
+
+AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& features) const {
+  const Segment axis(capsule);
+  const double s = features.axis_parameter;
+  if (features.face < 0 || axis.along.isZero(0.0)) return {s, s};
+  const MeshSurface& surface = impl_->shape.surface;
+  const Stretch over = surface.over(surface.faces()[static_cast<std::size_t>(features.face)], axis, s);
+  if ((over.s1 - over.s0) * axis.along.norm() < kLeastFlat) return {s, s};
+  return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
+}
+
+}  // namespace mrhi

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "mesh_surface.h"
+#include "mesh_tree.h"
+
+namespace mrhi {
+
+/// What of a surface is nearest to a segment, if it is no farther than a range. Faces come before the edges
+/// around them, and of parts that are as near the first: the answer does not depend on where the search
+/// began.
+class MeshNearest {
+ public:
+  /// `guess` is a part to begin with, or -1. What stands above a convex solid needs no search if the guess is
+  /// right.
+  MeshNearest(const MeshSurface& surface, const MeshTree& tree, const Segment& segment, double range,
+              int guess);
+
+  bool found() const { return nearest().distance <= range_; }
+  const SurfaceNearest& nearest() const {
+    return on_face_.distance <= on_edge_.distance + kSameDistance ? on_face_ : on_edge_;
+  }
+  /// The part that it is on, as the tree names it, or another near it if nothing is within the range.
+  int part() const { return on_face_.distance <= on_edge_.distance + kSameDistance ? face_ : edge_; }
+  /// From the surface to the segment.
+  Vector3 gap() const { return segment_.at(nearest().stretch.middle()) - nearest().point; }
+
+ private:
+  static constexpr double kSameDistance = 1e-14, kAnyDistance = 1e300;
+
+  bool is_all() const;
+  void search(const MeshTree& tree, double range);
+  bool is_below(const MeshTree::Node& node, double limit) const;
+  bool is_too_far(int part, double limit) const;
+  void measure(int part, double range);
+  void face_nearest();
+  double limit(double range) const {
+    return std::min(range, std::min(on_face_.distance, on_edge_.distance)) + 1e-12;
+  }
+
+  const MeshSurface& surface_;
+  const Segment& segment_;
+  const double range_;
+  const int faces_;
+  SurfaceNearest on_face_, on_edge_;
+  int face_ = -1, edge_ = -1;
+  Vector3 facing_ = Vector3::Zero();  // unit, from the nearest so far to the segment
+  double least_ = 0.0;                // that any of the segment reaches along it
+};
+
+}  // namespace mrhi

@@ -1,0 +1,118 @@
+#include "mesh_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace mrhi {
+namespace {
+
+constexpr int kLeaf = 4;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Calls `place(p)` for what spans a part, `normal(n)` for the directions that it faces.
+template <typename Place, typename Normal>
+void span(const MeshSurface& surface, int part, const Place& place, const Normal& normal) {
+  const int faces = static_cast<int>(surface.faces().size());
+  if (part < faces) {
+    const MeshSurface::Face& face = surface.faces()[at(part)];
+    surface.each_corner(face, place);
+    normal(face.normal);
+  } else {
+    const MeshSurface::Edge& edge = surface.edges()[at(part - faces)];
+    for (const int corner : edge.corners) place(surface.corners()[at(corner)]);
+    for (const Vector3& n : surface.normals(edge)) normal(n);
+  }
+}
+
+}  // namespace
+
+double MeshTree::Node::distance(const Segment& segment) const {
+  const Vector3 offset = centre - segment.start;
+  const double squared = segment.along.squaredNorm(), along = segment.along.dot(offset);
+  const double s = along <= 0.0 ? 0.0 : (along >= squared ? 1.0 : along / squared);
+  return (offset - s * segment.along).norm() - radius;
+}
+
+double MeshTree::Node::depth(const Segment& segment) const {
+  if (cos_spread <= 0.0) return -1e300;
+  double depth = -1e300;
+  for (const Vector3& end : {segment.start, segment.end()}) {
+    const Vector3 offset = centre - end;
+    const double up = normal.dot(offset);
+    const double aside = std::sqrt(std::max(0.0, offset.squaredNorm() - up * up));
+    // Of directions within the cone the least along the offset; beyond its opposite that is -|offset|.
+    const double least =
+        up * sin_spread < -aside * cos_spread ? -offset.norm() : up * cos_spread - aside * sin_spread;
+    depth = std::max(depth, least - bottom - radius * sin_spread);
+  }
+  return depth;
+}
+
+MeshTree::MeshTree(const MeshSurface& surface) : parts_(surface.faces().size() + surface.edges().size()) {
+  std::iota(parts_.begin(), parts_.end(), 0);
+  std::vector<Vector3> centres;
+  for (const int part : parts_) {
+    Vector3 min = Vector3::Constant(1e300), max = -min;
+    span(
+        surface, part, [&](const Vector3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); },
+        [](const Vector3&) {});
+    centres.emplace_back(0.5 * (min + max));
+  }
+  nodes_.reserve(parts_.size());
+  nodes_.emplace_back();
+  build(surface, 0, centres, 0, static_cast<int>(parts_.size()));
+}
+
+void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>& centres, int first,
+                     int last) {
+  Node built{};
+  bound(surface, built, first, last);
+  if (last - first <= kLeaf) {
+    built.first = first, built.count = last - first;
+    nodes_[at(node)] = built;
+    return;
+  }
+  Vector3 min = Vector3::Constant(1e300), max = -min;
+  for (int i = first; i < last; ++i) {
+    min = min.cwiseMin(centres[at(parts_[at(i)])]), max = max.cwiseMax(centres[at(parts_[at(i)])]);
+  }
+  int axis = 0;
+  (max - min).maxCoeff(&axis);
+  const int middle = (first + last) / 2;
+  const auto before = [&](int a, int b) {
+    const double x = centres[at(a)][axis], y = centres[at(b)][axis];
+    return x != y ? x < y : a < b;
+  };
+  std::nth_element(parts_.begin() + first, parts_.begin() + middle, parts_.begin() + last, before);
+  built.first = static_cast<int>(nodes_.size());
+  nodes_[at(node)] = built;
+  nodes_.resize(nodes_.size() + 2);
+  build(surface, built.first, centres, first, middle);
+  build(surface, built.first + 1, centres, middle, last);
+}
+
+void MeshTree::bound(const MeshSurface& surface, Node& node, int first, int last) const {
+  const auto each = [&](const auto& place, const auto& normal) {
+    for (int i = first; i < last; ++i) span(surface, parts_[at(i)], place, normal);
+  };
+  Vector3 min = Vector3::Constant(1e300), max = -min, sum = Vector3::Zero();
+  each([&](const Vector3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); },
+       [&](const Vector3& n) { sum += n; });
+  node.centre = 0.5 * (min + max);
+  node.normal = sum.norm() > 1e-9 ? Vector3(sum.normalized()) : Vector3::UnitZ();
+  node.cos_spread = 1.0;
+  each(
+      [&](const Vector3& p) {
+        const Vector3 offset = p - node.centre;
+        const double up = node.normal.dot(offset);
+        node.radius = std::max(node.radius, offset.norm());
+        node.top = std::max(node.top, up), node.bottom = std::max(node.bottom, -up);
+      },
+      [&](const Vector3& n) { node.cos_spread = std::min(node.cos_spread, n.dot(node.normal)); });
+  node.sin_spread = std::sqrt(std::max(0.0, 1.0 - node.cos_spread * node.cos_spread));
+}
+
+}  // namespace mrhi

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh_surface.h"
+
+namespace mrhi {
+
+/// A tree over the faces and edges of a surface. Each node knows a ball and a slab that hold its parts, and a
+/// cone that holds their normals: on a curved surface the slab is thin, and a search that knows a direction
+/// sees at once that a node is below all it has found.
+class MeshTree {
+ public:
+  struct Node {
+    Vector3 centre;
+    double radius;
+    Vector3 normal;
+    double top, bottom;             // of the slab, from the centre, along the normal and against it
+    double cos_spread, sin_spread;  // of the cone about the normal; cos -1 if it is no cone
+    int first, count;               // parts of a leaf, or (count 0) the first of two children
+
+    /// Parts are no nearer to the segment than this; negative if it may cut them.
+    double distance(const Segment& segment) const;
+    /// The planes of its parts are no less deep around both ends of the segment than this.
+    double depth(const Segment& segment) const;
+  };
+
+  /// No branch is longer.
+  static constexpr std::size_t kMostLevels = 64;
+
+  explicit MeshTree(const MeshSurface& surface);
+
+  const Node& node(int index) const { return nodes_[static_cast<std::size_t>(index)]; }
+  /// i in first..first + count of a leaf: a face, or that many and an edge.
+  int part(int i) const { return parts_[static_cast<std::size_t>(i)]; }
+
+  /// Visits nodes that `wanted(node)`, always in the same order; `see(part)` the parts of leaves.
+  template <typename Wanted, typename See>
+  void visit(const Wanted& wanted, const See& see) const;
+
+  /// Visits nodes with cost(node) <= limit(), the lesser first; `see(part)` the parts of leaves.
+  template <typename Cost, typename Limit, typename See>
+  void search(const Cost& cost, const Limit& limit, const See& see) const;
+
+ private:
+  void build(const MeshSurface& surface, int node, std::vector<Vector3>& centres, int first, int last);
+  void bound(const MeshSurface& surface, Node& node, int first, int last) const;
+
+  std::vector<Node> nodes_;
+  std::vector<int> parts_;
+};
+
+template <typename Wanted, typename See>
+void MeshTree::visit(const Wanted& wanted, const See& see) const {
+  std::array<int, kMostLevels> open;
+  std::size_t count = 0;
+  open[count++] = 0;
+  while (count > 0) {
+    const Node& now = node(open[--count]);
+    if (!wanted(now)) continue;
+    for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+    if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
+  }
+}
+
+template <typename Cost, typename Limit, typename See>
+void MeshTree::search(const Cost& cost, const Limit& limit, const See& see) const {
+  struct Open {
+    int node;
+    double cost;
+  };
+  std::array<Open, kMostLevels> open;
+  std::size_t count = 0;
+  open[count++] = {0, cost(node(0))};
+  while (count > 0) {
+    const Open next = open[--count];
+    if (next.cost > limit()) continue;
+    const Node& now = node(next.node);
+    if (now.count > 0) {
+      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+      continue;
+    }
+    Open near{now.first, cost(node(now.first))}, far{now.first + 1, cost(node(now.first + 1))};
+    if (far.cost < near.cost) std::swap(near, far);
+    if (far.cost <= limit()) open[count++] = far;
+    if (near.cost <= limit()) open[count++] = near;
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <cmath>
+
+#include "frame_report.h"
+#include "simulation_impl.h"
+
+namespace mrhi {
+namespace {
+
+bool finite(const Vector3& v) {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+bool finite(const Pose& pose) {
+  return finite(pose.position) && std::isfinite(pose.orientation.coeffs().sum());
+}
+bool finite(const Hand& hand) {
+  return finite(hand.palm) && finite(hand.wrist) &&
+         std::all_of(hand.capsules.begin(), hand.capsules.end(), [](const Capsule& capsule) {
+           return finite(capsule.start) && finite(capsule.end) && std::isfinite(capsule.radius);
+         });
+}
+bool finite(const Contact& contact) {
+  return finite(contact.force) && finite(contact.impulse) && finite(contact.point) &&
+         finite(contact.normal) && std::isfinite(contact.depth);
+}
+
+std::string name_of(const Hand& hand) {
+  return "hand " + std::to_string(hand.id);
+}
+
+}  // namespace
+
+bool is_finite(const BodyState& state) {
+  return finite(state.pose) && finite(state.linear_momentum) && finite(state.angular_momentum);
+}
+
+void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    HandTrack& track = state.hands[slot];
+    if (!track.active || finite(track.current)) continue;
+    result.not_finite.push_back(name_of(track.current));
+    end_interactions(slot, now, state, result.events);
+    result.events.push_back({now, EventKind::hand_lost, -1, track.current.id});
+    track = HandTrack();
+    state.offsets[slot] = HandOffset();
+  }
+}
+
+/// What is shown of a hand that is sound is the hand itself if the drawn one is not.
+void Simulation::Impl::report_what_is_finite() {
+  for (std::size_t i = 0; i < result.rendered.size(); ++i) {
+    if (finite(result.rendered[i].hand)) continue;
+    result.not_finite.push_back("rendered " + name_of(result.tracked[i]));
+    result.rendered[i].hand = result.tracked[i];
+    std::fill(state.offsets.begin(), state.offsets.end(), HandOffset());
+  }
+  const auto end = std::remove_if(result.contacts.begin(), result.contacts.end(), [this](const Contact& c) {
+    if (finite(c)) return false;
+    result.not_finite.push_back("contact with '" + scene.bodies[c.key.body].name + "'");
+    return true;
+  });
+  result.contacts.erase(end, result.contacts.end());
+}
+
+}  // namespace mrhi

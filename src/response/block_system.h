@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "cholesky6.h"
+
+namespace mrhi {
+
+/// Linear equations A x = b with six unknowns a body and a coupling between some pairs of bodies; A is
+/// symmetric, positive definite. Few bodies are solved to rounding, many by conjugate gradients, whose cost
+/// is linear in the couplings. Keeps its memory.
+class BlockSystem {
+ public:
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  /// Up to so many bodies are solved to rounding.
+  static constexpr int kMostDense = 4;
+
+  /// Begins anew with so many bodies, none of them coupled.
+  void begin(int bodies);
+  /// Says that the two are coupled; may say so again. Then arrange(), before any coupling() is asked for.
+  void couple(int a, int b);
+  void arrange();
+  /// Number of the block that two coupled bodies share.
+  std::size_t coupling(int a, int b) const;
+
+  /// All entries zero.
+  void clear();
+  /// Of body `i` with itself.
+  Matrix6& diagonal(int i) { return diagonal_[static_cast<std::size_t>(i)]; }
+  /// Rows of the later body, columns of the earlier.
+  Matrix6& between(std::size_t coupling) { return couplings_[coupling].value; }
+
+  /// Call when the entries are there.
+  void factorise();
+  /// Solves in place. Of many bodies, until the residual is `tolerance` of what it was, as their masses
+  /// weigh it.
+  void solve(Eigen::VectorXd& x, double tolerance);
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  struct Coupling {
+    int row, column;  // row > column
+    Matrix6 value;
+  };
+  static bool before(const Coupling& x, const Coupling& y);
+
+  int bodies() const { return static_cast<int>(diagonal_.size()); }
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+  void precondition(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+
+  std::vector<Matrix6> diagonal_;
+  std::vector<Coupling> couplings_;  // sorted
+  std::vector<Cholesky6> factors_;   // of the diagonal blocks
+  Eigen::MatrixXd dense_;
+  Eigen::LLT<Eigen::MatrixXd> dense_factors_;
+  Eigen::VectorXd residual_, weighed_, along_, image_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "yaml_values.h"
+
+/// What the numbers of a body may be: far beyond what hands meet, and so near that squares and quotients of
+/// them are numbers still.
+namespace mrhi::body_limits {
+
+constexpr Range kMass{1e-6, 1e6};      ///< [kg]
+constexpr Range kInertia{1e-18, 1e9};  ///< principal moments [kg m^2]
+constexpr Range kSize{1e-5, 1000};     ///< of a shape, each [m]
+constexpr Range kPlace{-1000, 1000};   ///< of a body, on each axis [m]
+constexpr Range kSpeed{0, 100};        ///< [m/s]
+constexpr Range kSpin{0, 1000};        ///< [rad/s]
+constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
+
+}  // namespace mrhi::body_limits

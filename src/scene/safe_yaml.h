@@ -1,0 +1,24 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace mrhi {
+
+/// YAML that is not taken. what() is one line that begins with the source and says what is allowed.
+class YamlError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// YAML from who knows where: at most 256 KiB, 32 levels deep, without aliases, so that neither a few bytes
+/// that stand for millions nor a value that holds itself gets in. All of it is checked before anything is
+/// built. Throws YamlError.
+YAML::Node load_yaml_file(const std::string& file);
+
+/// The same from a text; `source` names it in messages.
+YAML::Node load_yaml(const std::string& source, const std::string& yaml);
+
+}  // namespace mrhi

@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include "collision/flat_faces.h"
+#include "collision/mesh_shape.h"
+#include "mr_hand_interaction/collision/body_manifold.h"
+#include "mr_hand_interaction/collision/mesh_collision.h"
+#include "random_capsules.h"
+#include "support/tessellated.h"
+
+namespace mrhi {
+namespace {
+
+using testing::in_floats;
+using testing::shuffled;
+using testing::tessellated_ball;
+using testing::tessellated_box;
+using testing::tessellated_can;
+using testing::tessellated_ring;
+
+const Vector3 kHalf(0.05, 0.04, 0.01);
+const Quaternion kTurn(Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()));
+
+TEST(FlatFaces, a_box_has_six_however_it_is_cut) {
+  for (const int n : {1, 2, 7, 32, 90}) {
+    for (const bool as_in_a_file : {false, true}) {
+      SCOPED_TRACE(n);
+      TriangleMesh mesh = tessellated_box(kHalf, n);
+      if (as_in_a_file) mesh = in_floats(testing::turned(mesh, kTurn));
+      const FlatFaces flat = flat_faces(mesh);
+      EXPECT_EQ(flat.faces.size(), 6u);
+      EXPECT_EQ(flat.edges.size(), 12u);
+      EXPECT_EQ(flat.corners.size(), 8u);
+      EXPECT_TRUE(flat.closed && flat.one_piece);
+      EXPECT_TRUE(MeshSurface(mesh).convex());
+    }
+  }
+}
+
+TEST(FlatFaces, a_can_has_two_caps_and_its_sides) {
+  const FlatFaces flat = flat_faces(in_floats(tessellated_can(0.033, 0.06, 71, 40, 20)));
+  EXPECT_EQ(flat.faces.size(), 73u);
+  EXPECT_EQ(flat.edges.size(), 3u * 71u);
+  EXPECT_EQ(flat.corners.size(), 2u * 71u);
+}
+
+TEST(FlatFaces, what_bends_everywhere_keeps_its_patches) {
+  const TriangleMesh ring = in_floats(tessellated_ring(0.04, 0.015, 40));
+  const FlatFaces flat = flat_faces(ring);
+  EXPECT_EQ(flat.faces.size(), 3200u);  // four-cornered: each is flat
+  EXPECT_FALSE(MeshSurface(ring).convex());
+}
+
+TEST(FlatFaces, triangles_of_no_area_belong_to_those_beside_them) {
+  // A box one of whose edges is split by a vertex that only one of its faces has: closed by a needle.
+  TriangleMesh mesh = tessellated_box(kHalf, 1);
+  const std::array<int, 3> cut = mesh.triangles[0];
+  const int middle = int(mesh.vertices.size());
+  mesh.vertices.push_back(0.5 * (mesh.vertices[std::size_t(cut[0])] + mesh.vertices[std::size_t(cut[1])]));
+  mesh.triangles[0] = {{cut[0], middle, cut[2]}};
+  mesh.triangles.push_back({{middle, cut[1], cut[2]}});
+  mesh.triangles.push_back({{cut[0], cut[1], middle}});
+  const FlatFaces flat = flat_faces(mesh);
+  EXPECT_EQ(flat.faces.size(), 6u);
+  EXPECT_TRUE(flat.closed);
+}
+
+/// Bit for bit.
+void expect_equal(const std::optional<ClosestFeatures>& a, const std::optional<ClosestFeatures>& b) {
+  ASSERT_EQ(bool(a), bool(b));
+  if (!a) return;
+  EXPECT_EQ(a->distance, b->distance);
+  EXPECT_EQ(a->normal, b->normal);
+  EXPECT_EQ(a->point, b->point);
+  EXPECT_EQ(a->axis_parameter, b->axis_parameter);
+  EXPECT_EQ(a->face, b->face);
+}
+
+TEST(Tessellation, order_of_triangles_and_vertices_changes_no_bit) {
+  for (const TriangleMesh& mesh : {tessellated_box(kHalf, 9), tessellated_can(0.033, 0.06, 40, 10, 5),
+                                   tessellated_ball(0.03, 20), tessellated_ring(0.04, 0.015, 20)}) {
+    Random random(21);
+    const MeshCollider one(mesh), other(shuffled(mesh, 1));
+    for (int i = 0; i < 3000 && !HasFailure(); ++i) {
+      const Capsule capsule = capsule_about(random.in_box({0.06, 0.06, 0.06}),
+                                            random.between(0.0, 0.04) * random.direction(), 0.008);
+      expect_equal(one.closest(capsule, 0.02), other.closest(capsule, 0.02));
+    }
+  }
+}
+
+TEST(Tessellation, what_was_asked_before_changes_no_bit) {
+  for (const TriangleMesh& mesh :
+       {tessellated_box(kHalf, 9), tessellated_ball(0.03, 20), tessellated_ring(0.04, 0.015, 20)}) {
+    Random random(22);
+    const MeshCollider used(mesh);
+    for (int i = 0; i < 20 && !HasFailure(); ++i) {
+      const MeshCollider fresh(mesh);
+      Capsule capsule = capsule_about(random.in_box({0.06, 0.06, 0.06}),
+                                      random.between(0.0, 0.04) * random.direction(), 0.008);
+      expect_equal(used.closest(capsule, 0.02), fresh.closest(capsule, 0.02));
+      for (int k = 0; k < 30; ++k) {  // creeps along, with what it was near to in mind
+        const Vector3 creep = 1e-5 * random.direction();
+        capsule.start += creep, capsule.end += 1.1 * creep;
+        used.closest(capsule, 0.02);
+      }
+      const MeshCollider fresh_there(mesh);
+      expect_equal(used.closest(capsule, 0.02), fresh_there.closest(capsule, 0.02));
+    }
+  }
+}
+
+/// The least distance of an axis from a surface, over all its parts.
+double brute_distance(const MeshSurface& surface, const Segment& segment) {
+  double least = 1e300;
+  for (int f = 0; f < int(surface.faces().size()); ++f)
+    least = std::min(least, surface.nearest_on_face(f, segment).distance);
+  for (int e = 0; e < int(surface.edges().size()); ++e)
+    least = std::min(least, surface.nearest_on_edge(e, segment).distance);
+  return least;
+}
+
+TEST(Tessellation, nothing_is_nearer_than_what_the_tree_finds) {
+  for (const TriangleMesh& mesh : {tessellated_can(0.033, 0.06, 40, 10, 5), tessellated_ball(0.03, 30),
+                                   tessellated_ring(0.04, 0.015, 20)}) {
+    Random random(23);
+    const MeshCollider collider(mesh);
+    const MeshSurface surface(mesh);
+    int outside = 0;
+    for (int i = 0; i < 1500 && !HasFailure(); ++i) {
+      const Capsule capsule = capsule_about(random.in_box({0.07, 0.07, 0.07}),
+                                            random.between(0.0, 0.04) * random.direction(), 0.008);
+      const auto found = collider.closest(capsule, 1.0);
+      ASSERT_TRUE(found);
+      if (found->distance + capsule.radius < 1e-9) continue;
+      ++outside;
+      EXPECT_EQ(found->distance + capsule.radius, brute_distance(surface, Segment(capsule)) - 0.008 + 0.008);
+    }
+    EXPECT_GT(outside, 500);
+  }
+}
+
+TEST(Tessellation, the_way_out_of_a_ball_is_along_its_radius) {
+  const double radius = 0.03;
+  const int k = 100;
+  const MeshCollider collider(tessellated_ball(radius, k));
+  Random random(24);
+  for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+    const Vector3 outward = random.direction();
+    const Vector3 middle = random.between(0.5, 0.9) * radius * outward;
+    const Vector3 half = random.between(0.0, 0.01) * any_normal(outward);
+    const Capsule capsule{middle - half, middle + half, 0.008};
+    const auto found = collider.closest(capsule, 0.001);
+    ASSERT_TRUE(found);
+    // Of chords across the radius the middle is deepest; facets are inside by up to r (pi / 2k)^2 / 2 * 2.
+    EXPECT_NEAR(found->distance, middle.norm() - radius - 0.008, radius * std::pow(M_PI / k, 2));
+    EXPECT_GT(found->normal.dot(outward), 0.99);
+  }
+}
+
+TEST(Tessellation, a_finger_lies_along_a_face_as_along_a_boxs) {
+  const Box box{kHalf};
+  Random random(25);
+  for (const int n : {1, 10, 60}) {
+    const MeshCollider collider(tessellated_box(kHalf, n));
+    for (int i = 0; i < 300 && !HasFailure(); ++i) {
+      const Vector3 start(random.between(-0.07, 0.04), random.between(-0.03, 0.03), 0.017);
+      const Capsule capsule{start, start + Vector3(0.025, 0.002, random.between(-1e-3, 1e-3)), 0.008};
+      const auto mesh = collider.closest(capsule, 0.001);
+      const ClosestFeatures features = capsule_box(capsule, box);
+      ASSERT_EQ(bool(mesh), features.distance <= 0.001);
+      if (!mesh || features.normal.z() < 1.0 - 1e-9) continue;
+      EXPECT_NEAR(mesh->distance, features.distance, 1e-12);
+      const AxisSpan of_box = contact_span(capsule, box, features), of_mesh = collider.span(capsule, *mesh);
+      if ((of_box.s1 - of_box.s0) * 0.025 < 0.0021) continue;
+      EXPECT_NEAR(of_mesh.s0, of_box.s0, 1e-9);
+      EXPECT_NEAR(of_mesh.s1, of_box.s1, 1e-9);
+    }
+  }
+}
+
+TEST(Tessellation, touches_are_those_of_the_shape_in_any_cut_and_order) {
+  const Shape plate = Box{{0.5, 0.5, 0.05}};
+  Random random(26);
+  const auto touches = [&](const TriangleMesh& triangles, const Pose& pose) {
+    const MeshCollider collider(triangles);
+    const Shape shape = Mesh{std::make_shared<const TriangleMesh>(triangles), "", Vector3::Ones()};
+    return body_manifold({shape, &collider}, pose, plate, {{0, 0, -0.05}, Quaternion::Identity()}, 0.001);
+  };
+  for (int i = 0; i < 20; ++i) {
+    const Quaternion turn(Eigen::AngleAxisd(random.between(-3.0, 3.0), Vector3::UnitZ()));
+    const Quaternion tilt(Eigen::AngleAxisd(random.between(0.0, 1e-3), random.direction()));
+    const Pose pose{{random.between(-0.1, 0.1), 0.02, kHalf.z() - 1e-4}, tilt * turn};
+    const Manifold coarse = touches(tessellated_box(kHalf, 1), pose);
+    EXPECT_GE(coarse.count, 3);
+    for (const int n : {2, 14, 33}) {
+      const Manifold fine = touches(shuffled(tessellated_box(kHalf, n), unsigned(n)), pose);
+      ASSERT_EQ(fine.count, coarse.count);
+      EXPECT_LT((fine.normal - coarse.normal).norm(), 1e-12);
+      for (int k = 0; k < fine.count; ++k) {
+        const ManifoldPoint &a = fine.points[std::size_t(k)], &b = coarse.points[std::size_t(k)];
+        EXPECT_NEAR(a.depth, b.depth, 1e-12);
+        EXPECT_LT((a.point - b.point).norm(), 1e-12);
+        EXPECT_EQ(a.feature, b.feature);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mrhi

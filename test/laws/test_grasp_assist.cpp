@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include "support/grips.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kHalf = 0.02;         // of the cube [m]
+constexpr double kFingersAway = 0.04;  // of the tips' surfaces from the cube's middle as the hand is open [m]
+
+/// Thumb and index reach for a cube from its two sides; at `closed` 1 each is `deep` in it, the index ahead
+/// by `ahead`: a hand that feels nothing.
+Hand reaching(double closed, double deep, double ahead, const Vector3& shift = Vector3::Zero()) {
+  Hand hand = testing::empty_hand();
+  const double in = kFingersAway - closed * (kFingersAway - kHalf + deep);
+  testing::add_fingertip(hand, capsule_index(1, 3), Vector3(in - ahead, 0, 0), Vector3::UnitX(), 1.2);
+  testing::add_fingertip(hand, capsule_index(0, 3), Vector3(-in - ahead, 0, 0), -Vector3::UnitX(), 1.2);
+  Pose pose;
+  pose.position = shift;
+  return testing::moved(hand, pose);
+}
+
+struct Reach {
+  double deep = 0.012, ahead = 0.0;
+  bool assist = true, opens = false;
+  double friction = 0.8, gravity = 0.0;
+};
+
+/// Where the cube ends up against the hand, which closes in 0.2 s, carries it by 10 cm and may open again.
+struct Outcome {
+  double off = 0.0, speed = 0.0, strongest = 0.0;
+  std::size_t grips = 0;
+};
+
+Outcome outcome_of(const Reach& reach) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.grasp_assist = reach.assist;
+  configuration.contact.hand = HandStrength::of_a_person();
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1);
+  cube.material.static_friction = cube.material.dynamic_friction = reach.friction;
+  Simulation simulation(testing::scene_of(cube), configuration);
+  Outcome outcome;
+  Vector3 shift = Vector3::Zero();
+  testing::play(
+      simulation, 0.0, 2.0, 120.0,
+      [&](double t) {
+        shift = 0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitY();
+        const double opened = reach.opens ? std::min(std::max(0.0, t - 1.5) / 0.2, 1.0) : 0.0;
+        return reaching(std::min(t / 0.2, 1.0) - opened, reach.deep, reach.ahead, shift);
+      },
+      [&](const Simulation& s) {
+        outcome.grips = std::max(outcome.grips, s.state().grips.size());
+        for (const Contact& contact : s.result().contacts)
+          outcome.strongest = std::max(outcome.strongest, contact.force.norm());
+      });
+  outcome.off = (simulation.state().bodies[0].pose.position - shift).norm();
+  outcome.speed = testing::object_twist(simulation).linear.norm();
+  return outcome;
+}
+
+TEST(GraspAssist, holds_what_the_hand_closes_through) {
+  for (const double ahead : {0.0, 0.01, -0.01}) {
+    const Outcome outcome = outcome_of({0.012, ahead});
+    EXPECT_EQ(outcome.grips, 1u) << ahead;
+    EXPECT_LT(outcome.off, 0.012) << ahead;
+    EXPECT_LT(outcome.strongest, 15.0) << ahead;
+  }
+}
+
+TEST(GraspAssist, without_it_the_first_finger_decides) {
+  EXPECT_GT(outcome_of({0.012, 0.01, false}).off, outcome_of({0.012, 0.01, true}).off);
+}
+
+// As deep as a pulp gives, contact holds by itself.
+TEST(GraspAssist, takes_nothing_that_contact_holds) {
+  const Outcome outcome = outcome_of({0.002, 0.0});
+  EXPECT_EQ(outcome.grips, 0u);
+  EXPECT_LT(outcome.off, 0.002);
+}
+
+TEST(GraspAssist, lets_go_without_a_kick_as_the_hand_opens) {
+  Reach reach;
+  reach.opens = true;
+  EXPECT_LT(outcome_of(reach).speed, 0.01);
+}
+
+// The hand closes beside the cube, or passes it without closing.
+TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.grasp_assist = true;
+  const Scene scene = testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1));
+  for (const bool closes : {true, false}) {
+    Simulation simulation(scene, configuration);
+    testing::play(
+        simulation, 0.0, 1.0, 120.0,
+        [&](double t) {
+          const Vector3 way = closes ? Vector3(0, 0.06, 0) : Vector3(0, 0.2 * (t - 0.5), 0.06);
+          return reaching(closes ? std::min(t / 0.2, 1.0) : 0.0, 0.012, 0.0, way);
+        },
+        [&](const Simulation& s) { EXPECT_TRUE(s.state().grips.empty()); });
+  }
+}
+
+// What the grip could bear is bounded: a body as heavy as a hand cannot hold stays where it is.
+TEST(GraspAssist, drags_nothing_that_friction_could_not_hold) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.grasp_assist = true;
+  configuration.contact.hand = HandStrength::of_a_person();
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 1000.0)),
+                        configuration);
+  testing::play(simulation, 0.0, 1.0, 120.0, [&](double t) {
+    return reaching(std::min(t / 0.2, 1.0), 0.012, 0.0, Vector3(0, 0.1 * testing::smooth(t - 0.3, 0.3), 0));
+  });
+  EXPECT_LT(testing::object_twist(simulation).linear.norm(), 2.0 * 0.8 * 20.0 / 1000.0 + 0.02);
+}
+
+TEST(GraspAssist, same_input_same_bits) {
+  const Outcome first = outcome_of({}), second = outcome_of({});
+  EXPECT_EQ(first.off, second.off);
+  EXPECT_EQ(first.speed, second.speed);
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include "support/pinched_cube.h"
+#include "support/tessellated.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+using testing::box_body;
+using testing::in_floats;
+using testing::shuffled;
+using testing::tessellated_box;
+
+const Vector3 kPlate(0.1, 0.1, 0.02);  // [m]
+
+Body as_mesh(Body body, const TriangleMesh& mesh) {
+  body.shapes = {{Mesh{std::make_shared<const TriangleMesh>(mesh), "", Vector3::Ones()}, {}}};
+  complete(body);
+  return body;
+}
+
+/// A body by itself on a table at 1 g, set down 0.1 mm above it.
+class OnTable {
+ public:
+  OnTable(Body body, double height) : simulation_(scene(std::move(body), height), configuration()) {
+    simulation_.advance({at(0.0), {}});
+  }
+  void run(double seconds) {
+    for (const long last = count_ + std::lround(100.0 * seconds); count_ < last;)
+      simulation_.advance({at(0.01 * static_cast<double>(++count_)), {}});
+  }
+  const Pose& pose() const { return simulation_.state().bodies[1].pose; }
+
+ private:
+  static Scene scene(Body body, double height) {
+    Body table = box_body(Vector3(1.0, 1.0, 0.1), 1.0);
+    table.name = "table";
+    table.fixed = true;
+    table.start.position = Vector3(0, 0, -0.05);
+    body.start.position = Vector3(0, 0, height + 1e-4);
+    Scene scene;
+    scene.name = "table";
+    scene.bodies = {table, body};
+    scene.gravity = Vector3(0, 0, -9.81);
+    return scene;
+  }
+  static Configuration configuration() {
+    Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+    configuration.contact.sleep = false;  // the law itself is tried here
+    configuration.gravity = Vector3(0, 0, -9.81);
+    return configuration;
+  }
+  Simulation simulation_;
+  long count_ = 0;
+};
+
+double turned(const Pose& a, const Pose& b) {
+  return a.orientation.angularDistance(b.orientation);
+}
+
+/// What the specification of meshes asks for: within 1 um and 1e-5 rad for 60 s.
+void expect_rest(OnTable& table) {
+  table.run(1.0);
+  const Pose settled = table.pose();
+  EXPECT_LT(turned(settled, Pose{}), 1e-5);
+  for (int i = 0; i < 6; ++i) {
+    table.run(10.0);
+    EXPECT_LT((table.pose().position - settled.position).norm(), 1e-6);
+    EXPECT_LT(turned(table.pose(), settled), 1e-5);
+  }
+}
+
+TEST(Meshes, a_plate_rests_on_a_table_however_it_is_cut) {
+  const Body plate = box_body(kPlate, 0.2);
+  OnTable box(plate, 0.01);
+  box.run(1.0);
+  // 12, 972, 2352, 12288 and 99372 triangles.
+  for (const int n : {1, 9, 14, 32, 91}) {
+    SCOPED_TRACE(n);
+    OnTable mesh(as_mesh(plate, tessellated_box(0.5 * kPlate, n)), 0.01);
+    expect_rest(mesh);
+    EXPECT_LT((mesh.pose().position - box.pose().position).norm(), 1e-6);
+  }
+}
+
+TEST(Meshes, order_of_triangles_changes_no_bit_of_the_rest) {
+  const Body plate = box_body(kPlate, 0.2);
+  const TriangleMesh mesh = tessellated_box(0.5 * kPlate, 24);
+  OnTable one(as_mesh(plate, mesh), 0.01), other(as_mesh(plate, shuffled(mesh, 3)), 0.01);
+  one.run(2.0), other.run(2.0);
+  EXPECT_EQ(one.pose().position, other.pose().position);
+  EXPECT_EQ(one.pose().orientation.coeffs(), other.pose().orientation.coeffs());
+}
+
+TEST(Meshes, a_plate_of_a_file_with_its_floats_rests) {
+  const Body plate = box_body(kPlate, 0.2);
+  const Quaternion turn(Eigen::AngleAxisd(0.3, Vector3(1, -1, 2).normalized()));
+  Body body =
+      as_mesh(plate, shuffled(in_floats(testing::turned(tessellated_box(0.5 * kPlate, 40), turn)), 5));
+  body.shapes[0].pose.orientation = turn.conjugate();
+  complete(body);
+  OnTable mesh(body, 0.01);
+  expect_rest(mesh);
+}
+
+TEST(Meshes, a_can_of_eleven_thousand_triangles_stands) {
+  Body can = box_body(Vector3(0.06, 0.06, 0.12), 0.4);
+  const TriangleMesh mesh = testing::tessellated_can(0.033, 0.06, 71, 41, 20);
+  EXPECT_EQ(mesh.triangles.size(), 11360u);
+  OnTable table(as_mesh(can, shuffled(mesh, 7)), 0.06);
+  expect_rest(table);
+}
+
+/// Scene (a) with another shape in place of the cube: carried to and fro for 3 s.
+std::vector<Pose> held(const Shape& shape) {
+  testing::PinchScene pinch;
+  pinch.stiffness = default_material(testing::unfiltered(ContactModelKind::implicit)).stiffness;
+  Scene scene = pinch.scene();
+  scene.bodies[0].shapes = {{shape, {}}};
+  complete(scene.bodies[0]);
+  Simulation simulation(scene,
+                        testing::PinchedCube::configuration_of(ContactModelKind::implicit, Vector3::Zero()));
+  std::vector<Pose> poses;
+  for (int i = 0; i <= 3000; ++i) {
+    const double t = 0.001 * i;
+    const Vector3 sway = t < 0.5 ? Vector3(Vector3::Zero()) : testing::swing(t - 0.5, 0.1, 1.0);
+    simulation.advance({at(t), {pinch.hand(t, sway)}});
+    if (i % 100 == 0) poses.push_back(simulation.state().bodies[0].pose);
+  }
+  return poses;
+}
+
+TEST(Meshes, a_cube_is_held_alike_however_it_is_cut) {
+  const std::vector<Pose> box = held(Box{Vector3::Constant(0.025)});
+  for (const int n : {1, 9, 91}) {
+    SCOPED_TRACE(n);
+    const TriangleMesh mesh = shuffled(tessellated_box(Vector3::Constant(0.025), n), unsigned(n));
+    const std::vector<Pose> poses =
+        held(Mesh{std::make_shared<const TriangleMesh>(mesh), "", Vector3::Ones()});
+    for (std::size_t i = 0; i < box.size(); ++i)
+      EXPECT_LT((poses[i].position - box[i].position).norm(), 5e-5) << i;
+  }
+}
+
+}  // namespace
+}  // namespace mrhi
