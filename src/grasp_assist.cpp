@@ -9,27 +9,39 @@ namespace {
 
 /// As deep as a pulp gives, the springs of contact hold a body [m].
 constexpr double kPulp = 0.003;
-/// Fingers close if their opening shrinks faster than this [m/s], and than this part of the speed at which
-/// they or what they close against move: a hand that slaps or nudges does not close.
+/// A finger closes if its opening shrinks faster than this [m/s], and than this part of the speed at which it
+/// or what it closes against moves: a hand that slaps or nudges does not close.
 constexpr double kClosingSpeed = 0.03;
-constexpr double kClosingPart = 0.3;
-/// A body between the fingers that is slower than this is not caught: they close round it [m/s].
-constexpr double kSlow = 0.1;
+constexpr double kClosingPart = 0.5;
+/// A hand that opens faster than this takes nothing [m/s].
+constexpr double kOpeningSpeed = 0.1;
+/// Of a body from the line between a finger and what it closes against, at most [m].
+constexpr double kBeside = 0.01;
+/// Beyond this a body is not looked at [m].
+constexpr double kFar = 0.1;
+/// The normals under both are as far from each other (cosine). A fingertip that taps on a cube has the thumb
+/// beside the next face.
+constexpr double kOpposite = -0.3;
 /// Normals nearer to the way of gravity than this (cosine) bear the weight of a body: there nothing gives
 /// way.
 constexpr double kBears = 0.3;
+/// A hand that is deeper in a fixture than this is shown elsewhere, and grasps nothing where it is [m].
+constexpr double kBuried = 0.015;
 /// A touch that gives way from its first step on [m].
 constexpr double kBegins = 1e-6;
+/// A finger that has stopped comes to press by this of its depth a second [m/s].
+constexpr double kRecovers = 0.03;
+/// A body that slips, and is off where it was taken by this, is not held by contact [m].
+constexpr double kSlipped = 0.0015;
 /// So many fingers that close on a body grab it.
 constexpr int kGrab = 2;
-/// Of a body near the line from a finger to what it closes against, for a grab and for a pinch [m].
-constexpr double kAround = 0.05, kPinched = 0.01;
 /// Part of the way to where both sides just touch the body again, by which the hand opens to let it go.
 constexpr double kOpened = 0.9;
-/// And at least by this, beyond a tracker's noise [m].
-constexpr double kOpenedLeast = 0.006;
+/// And at least by this, beyond a tracker's noise and what fingers do as they hold [m]. A hand that has
+/// opened by this and has lost the body on one side has let it go, too.
+constexpr double kOpenedLeast = 0.015;
 /// Of a grip over that of a touch: several fingers, on two sides.
-constexpr double kGripStiffness = 6.0;
+constexpr double kGripStiffness = 5.0;
 /// Of a grip's springs from their middle, at least and at most [m].
 constexpr double kSmallest = 0.04, kLargest = 0.06;
 /// Of that way, fingers that have parted by more do not carry what they held any more.
@@ -45,18 +57,11 @@ bool holds(const Grip& grip, const ContactKey& key) {
   return grip.hand == key.hand && grip.body == key.body;
 }
 
-const Grip* grip_on(const std::vector<Grip>& grips, const ContactKey& key) {
+const Grip* bearing_grip(const std::vector<Grip>& grips, const ContactKey& key) {
   for (const Grip& grip : grips) {
-    if (holds(grip, key)) return &grip;
+    if (grip.bears && holds(grip, key)) return &grip;
   }
   return nullptr;
-}
-
-/// True once the hand has opened about as wide as where both its sides just touch the body.
-bool has_opened(const Hand& hand, Grip& grip) {
-  const double now = opening(grip, hand);
-  grip.least = std::min(grip.least, now);
-  return now - grip.least > std::max(kOpenedLeast, kOpened * (grip.opening - grip.least));
 }
 
 bool is_base(bool by_palm, int capsule) {
@@ -68,12 +73,16 @@ bool has_tip(const Hand& hand, int finger) {
   return hand.has(capsule_index(finger, 3));
 }
 
+/// As far as the hand opens to let go: most of the way to where both sides just touch.
+double way_to_let_go(const Grip& grip, double part) {
+  return std::max(kOpenedLeast, part * (grip.opening - grip.least));
+}
+
 /// The body goes with the fingers, but not with those that open: they leave it where the palm has it.
 void follow(const HandTrack& track, Grip& grip) {
   grip.middle_before = grip.middle;
   const double opened = opening(grip, track.current) - grip.least;
-  if (opened <= std::max(kOpenedLeast, kOpens * (grip.opening - grip.least)))
-    grip.middle = middle(grip, track.current);
+  if (opened <= way_to_let_go(grip, kOpens)) grip.middle = middle(grip, track.current);
 }
 
 /// Contacts of one side of a grip.
@@ -82,6 +91,23 @@ struct Pads {
   int count = 0;
 
   Vector3 middle() const { return sum / count; }
+};
+
+struct Sides {
+  Pads base, fingers;
+
+  Sides(const Grip& grip, const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts) {
+      if (!holds(grip, contact.key) || !contact.touching()) continue;
+      Pads& side = of(grip, contact);
+      side.sum += contact.point;
+      ++side.count;
+    }
+  }
+  Pads& of(const Grip& grip, const Contact& contact) {
+    return is_base(grip.by_palm, contact.key.capsule) ? base : fingers;
+  }
+  bool both() const { return base.count > 0 && fingers.count > 0; }
 };
 
 }  // namespace
@@ -97,15 +123,23 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   let_go(state);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    if (!state.hands[slot].active || state.hands[slot].appeared) continue;
+    if (!state.hands[slot].active || state.hands[slot].appeared || buried(slot, state)) continue;
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
-      const bool gripped = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-        return grip.hand == slot && grip.body == near.body;
+      const auto body = static_cast<std::size_t>(near.body);
+      const bool borne = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
+        return grip.bears && grip.hand == slot && grip.body == body;
       });
-      if (!gripped && !scene_.bodies[static_cast<std::size_t>(near.body)].fixed)
-        look_at(slot, near.body, state);
+      const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
+      if (!borne && !appeared && !scene_.bodies[body].fixed) look_at(slot, near.body, state);
     }
   }
+}
+
+bool GraspAssist::buried(std::size_t slot, const SimulationState& state) const {
+  return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
+    return contact.key.hand == slot && contact.touching() && contact.depth > kBuried &&
+           scene_.bodies[contact.key.body].fixed;
+  });
 }
 
 void GraspAssist::let_go(SimulationState& state) {
@@ -115,54 +149,78 @@ void GraspAssist::let_go(SimulationState& state) {
     grip.closes = false;
     for (int finger = 0; finger < kFingers; ++finger)
       grip.closes = grip.closes || (grip.takes_part(finger) && closes(track, grip.by_palm, finger));
-    if (track.active && !track.appeared && !has_opened(track.current, grip)) {
+    if (track.active && !track.appeared && !opens(state, grip)) {
       follow(track, grip);
+      // Between a wall and what it holds no hand would find room.
+      if (grip.bears && buried(grip.hand, state))
+        state.interactions[grip.hand * state.bodies.size() + grip.body].shown_in = true;
       return false;
     }
     // What the fingers are still in they leave without a push.
     for (Contact& contact : state.contacts) {
-      if (holds(grip, contact.key)) contact.given = std::max(contact.given, contact.depth);
+      if (grip.bears && holds(grip, contact.key)) contact.given = std::max(contact.given, contact.depth);
     }
     return true;
   };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), ends), state.grips.end());
 }
 
-/// The opening between a finger and what it closes against shrinks, and not by the way while the hand sweeps.
-bool GraspAssist::closes(const HandTrack& track, bool by_palm, int finger) const {
-  const Hand &from = track.previous, &to = track.current;
-  const Vector3 tip = tip_of(from, finger), base = base_of(from, by_palm);
-  const Vector3 tip_way = tip_of(to, finger) - tip, base_way = base_of(to, by_palm) - base;
-  const double shrinks = (tip - base).norm() - (tip + tip_way - base - base_way).norm();
-  const double most = std::max(tip_way.norm(), base_way.norm());
-  return shrinks > std::max(kClosingSpeed * seconds_, kClosingPart * most);
+bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
+  const double now = opening(grip, state.hands[grip.hand].current);
+  grip.least = std::min(grip.least, now);
+  const double opened = now - grip.least;
+  if (opened > way_to_let_go(grip, kOpened)) return true;
+  return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
 }
 
-/// Distance of the body from the line between a finger and what it closes against; < 0 where it lies between.
-double GraspAssist::way_off(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const {
-  const Capsule way{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
-  double least = std::numeric_limits<double>::infinity();
+/// At which the opening between a finger and what it closes against shrinks, over the frame [m].
+double GraspAssist::closing_speed(const HandTrack& track, bool by_palm, int finger) const {
+  const Hand &from = track.previous, &to = track.current;
+  const double before = (tip_of(from, finger) - base_of(from, by_palm)).norm();
+  return (before - (tip_of(to, finger) - base_of(to, by_palm)).norm()) / seconds_;
+}
+
+/// It shrinks, and not by the way while the hand sweeps.
+bool GraspAssist::closes(const HandTrack& track, bool by_palm, int finger) const {
+  if (seconds_ <= 0.0) return false;
+  const Hand &from = track.previous, &to = track.current;
+  const double tip = (tip_of(to, finger) - tip_of(from, finger)).norm() / seconds_;
+  const double base = (base_of(to, by_palm) - base_of(from, by_palm)).norm() / seconds_;
+  return closing_speed(track, by_palm, finger) > std::max(kClosingSpeed, kClosingPart * std::max(tip, base));
+}
+
+std::optional<ClosestFeatures> GraspAssist::nearest(const Capsule& capsule, int body, const Pose& pose,
+                                                    double margin) const {
+  std::optional<ClosestFeatures> result;
   const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
   for (int shape = 0; shape < shapes; ++shape) {
-    const auto features = finder_.closest(way, body, shape, pose, kAround);
-    if (features) least = std::min(least, features->distance);
+    const auto features = finder_.closest(capsule, body, shape, pose, margin);
+    if (features && (!result || features->distance < result->distance)) result = features;
   }
-  return least;
+  return result;
+}
+
+bool GraspAssist::on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body,
+                                    const Pose& pose) const {
+  const auto under = [&](int capsule) {
+    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], body, pose, kFar);
+  };
+  const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
+  return tip && base && tip->normal.dot(base->normal) < kOpposite;
 }
 
 /// What a finger does about a body that is near the line to what it closes against.
-void GraspAssist::look_along(const HandTrack& track, bool by_palm, int finger, int body,
-                             const BodyState& state, Look& look) const {
-  const Body& of = scene_.bodies[static_cast<std::size_t>(body)];
-  const double off = way_off(track.current, by_palm, finger, body, state.pose);
-  if (off > kAround) return;
-  const bool closing = closes(track, by_palm, finger);
-  const bool slow = state.linear_momentum.norm() < kSlow * of.mass;
-  if ((closing && off <= kPinched) || (off <= 0.0 && slow)) look.closing = Closing::pinch;
-  if (by_palm && closing) ++look.fingers;
-  if (off > 0.0) return;
-  if (!look.touches) look.touches = touches(track.current, body, state.pose);
-  const auto here = opposed(*look.touches, by_palm, finger, of.material.static_friction);
+void GraspAssist::look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
+                             Look& look) const {
+  const Hand& hand = track.current;
+  const auto beside = nearest({base_of(hand, by_palm), tip_of(hand, finger), 0.0}, body, pose, kBeside);
+  if (!beside) return;
+  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, body, pose))
+    look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
+  if (beside->distance > 0.0 || closing_speed(track, by_palm, finger) < -kOpeningSpeed) return;
+  if (!look.touches) look.touches = touches(hand, body, pose);
+  const double friction = scene_.bodies[static_cast<std::size_t>(body)].material.static_friction;
+  const auto here = opposed(*look.touches, by_palm, finger, friction);
   std::optional<Opposed>& found = look.opposed;
   if (!here || (found && found->by_palm != by_palm)) return;
   const std::uint8_t others = found ? found->taking_part : std::uint8_t(0);
@@ -172,33 +230,29 @@ void GraspAssist::look_along(const HandTrack& track, bool by_palm, int finger, i
 
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   const HandTrack& track = state.hands[slot];
-  const BodyState& body_state = state.bodies[static_cast<std::size_t>(body)];
+  const Pose& pose = state.bodies[static_cast<std::size_t>(body)].pose;
   Look look;
   for (const bool by_palm : {false, true}) {
     for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger) {
       if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)))
-        look_along(track, by_palm, finger, body, body_state, look);
+        look_along(track, by_palm, finger, body, pose, look);
     }
   }
   if (look.opposed) {
     if (look.opposed->depth > kPulp) take(slot, body, *look.opposed, state);
-  } else if (look.closing != Closing::none) {
-    closing_.push_back(
-        {slot, static_cast<std::size_t>(body), look.fingers >= kGrab ? Closing::grab : look.closing});
+  } else if (look.closing != 0) {
+    int fingers = 0;
+    for (int finger = 1; finger < kFingers; ++finger) fingers += look.closing >> finger & 1;
+    closing_.push_back({slot, static_cast<std::size_t>(body), fingers >= kGrab});
   }
 }
 
 GraspAssist::Touches GraspAssist::touches(const Hand& hand, int body, const Pose& pose) const {
   Touches result;
-  const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
-  for (int c = 0; c < kCapsules; ++c) {
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(c)];
-    Touch& touch = result[static_cast<std::size_t>(c)];
-    for (int shape = 0; shape < shapes && capsule.radius > 0.0; ++shape) {
-      const auto features = finder_.closest(capsule, body, shape, pose, 0.0);
-      if (!features || (touch.touches && -features->distance <= touch.depth)) continue;
-      touch = {true, -features->distance, capsule.radius, features->normal, features->point};
-    }
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    if (hand.capsules[c].radius <= 0.0) continue;
+    const auto features = nearest(hand.capsules[c], body, pose, 0.0);
+    if (features) result[c] = {true, -features->distance, features->normal, features->point};
   }
   return result;
 }
@@ -216,16 +270,17 @@ std::optional<GraspAssist::Opposed> GraspAssist::opposed(const Touches& touches,
       const Touch& other = touches[static_cast<std::size_t>(capsule_index(finger, bone))];
       if (!other.touches || base.normal.dot(other.normal) > most) continue;
       most = base.normal.dot(other.normal);
-      const double width = (base.point - other.point).norm() + base.radius + other.radius;
-      result = Opposed{std::max(base.depth, other.depth), width, base.point, other.point, by_palm, 0};
+      result = Opposed{
+          std::max(base.depth, other.depth), base.depth + other.depth, base.point, other.point, by_palm, 0};
     }
   }
   return result;
 }
 
+/// The hand's way goes on from a grip that it has taken before and that has borne nothing yet.
 void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const {
   const auto b = static_cast<std::size_t>(body);
-  const Hand& hand = state.hands[slot].previous;  // where it is as the frame begins
+  const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
   const Pose& pose = state.bodies[b].pose;
   const Material& material = scene_.bodies[b].material;
   Grip grip;
@@ -233,8 +288,8 @@ void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, Simul
   grip.body = static_cast<std::uint16_t>(body);
   grip.by_palm = opposed.by_palm;
   grip.fingers = opposed.taking_part;
-  grip.least = opening(grip, hand);
-  grip.opening = std::max(grip.least, opposed.width);
+  grip.least = opening(grip, from);
+  grip.opening = std::max(grip.least, opening(grip, to) + opposed.squeeze);
   int fingers = 0;
   for (int finger = 0; finger < kFingers; ++finger) fingers += grip.takes_part(finger) ? 1 : 0;
   const HandStrength& strength = configuration_.hand;
@@ -243,9 +298,9 @@ void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, Simul
   grip.stiffness = kGripStiffness * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposed.base + opposed.fingers);
   const double reach = std::clamp(0.5 * (opposed.base - opposed.fingers).norm(), kSmallest, kLargest);
-  grip.middle_before = mrhi::middle(grip, hand);
-  grip.middle = mrhi::middle(grip, state.hands[slot].current);
-  const Pose frame = grip_frame(hand, grip.middle_before);
+  grip.middle_before = mrhi::middle(grip, from);
+  grip.middle = mrhi::middle(grip, to);
+  const Pose frame = grip_frame(from, grip.middle_before);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
     const Vector3 point = centre + reach / std::sqrt(3.0) * corner;
@@ -255,18 +310,26 @@ void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, Simul
   const auto after = [](const Grip& x, const Grip& y) {
     return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
   };
-  state.grips.insert(std::upper_bound(state.grips.begin(), state.grips.end(), grip, after), grip);
+  const auto place = std::lower_bound(state.grips.begin(), state.grips.end(), grip, after);
+  if (place == state.grips.end() || after(grip, *place)) {
+    state.grips.insert(place, grip);
+    return;
+  }
+  grip.least = std::min(grip.least, place->least);
+  if (place->by_palm == grip.by_palm) grip.fingers |= place->fingers;
+  grip.in_hand = place->in_hand, grip.in_body = place->in_body;
+  *place = grip;
 }
 
 /// A touch that begins gives way if the hand closes on the body with several fingers, or has something beyond
-/// the surface that is touched: a fingertip that taps on a face has not.
+/// the surface that is touched.
 bool GraspAssist::gives_way(const Contact& contact, const SimulationState& state) const {
   const auto on = std::find_if(closing_.begin(), closing_.end(), [&](const ClosingOn& x) {
     return x.hand == contact.key.hand && x.body == contact.key.body;
   });
   if (on == closing_.end()) return false;
   if (contact.normal.dot(gravity_) > kBears * gravity_.norm()) return false;
-  if (on->closing == Closing::grab) return true;
+  if (on->grabs) return true;
   const Hand& hand = state.hands[contact.key.hand].current;
   const auto beyond = [&](const Vector3& point) { return contact.normal.dot(point - contact.point) < 0.0; };
   const int capsule = contact.key.capsule;
@@ -279,66 +342,77 @@ bool GraspAssist::gives_way(const Contact& contact, const SimulationState& state
   return false;
 }
 
-/// Of the depth, a finger that closes round a body presses nothing; when it has stopped it presses from
-/// there.
-void GraspAssist::give_way(const SimulationState& state, Contact& contact) const {
+/// Of the depth, a finger that closes round a body presses nothing. When it has stopped it presses from
+/// there, and by and by in full, if no grip bears the body.
+void GraspAssist::give_way(const SimulationState& state, double step, Contact& contact) const {
   const bool may = contact.depth <= 0.0 || contact.given > 0.0;
-  const Grip* grip = grip_on(state.grips, contact.key);
+  const Grip* grip = bearing_grip(state.grips, contact.key);
   const bool gives = grip != nullptr ? grip->fresh || (grip->closes && may)
                                      : may && !closing_.empty() && gives_way(contact, state);
   if (gives) {
     contact.given = std::max(contact.depth, kBegins);
     contact.struck = true;
-  } else {
-    contact.given = std::min(contact.given, std::max(contact.depth, 0.0));
+  } else if (contact.given > 0.0) {
+    const double recovered = grip == nullptr ? kRecovers * step : 0.0;
+    contact.given = std::max(std::min(contact.given, contact.depth) - recovered, 0.0);
   }
 }
 
-void GraspAssist::begin_step(double fraction, SimulationState& state) const {
-  if (!configuration_.grasp_assist) return;
-  for (Contact& contact : state.contacts) give_way(state, contact);
-  for (Grip& grip : state.grips) {
-    grip.fresh = false;
-    const HandTrack& track = state.hands[grip.hand];
-    const Pose from = grip_frame(track.previous, grip.middle_before);
-    const Pose to = grip_frame(track.current, grip.middle);
-    for (std::size_t i = 0; i < kGripPoints; ++i) {
-      const Vector3 start = from * grip.in_hand[i], way = to * grip.in_hand[i] - start;
-      grip.point[i] = start + fraction * way;
-      grip.velocity[i] = seconds_ > 0.0 ? Vector3(way / seconds_) : Vector3::Zero();
-    }
+/// Where the springs' ends on the hand are, and how fast.
+void GraspAssist::place(double fraction, const HandTrack& track, Grip& grip) const {
+  const Pose from = grip_frame(track.previous, grip.middle_before);
+  const Pose to = grip_frame(track.current, grip.middle);
+  for (std::size_t i = 0; i < kGripPoints; ++i) {
+    const Vector3 start = from * grip.in_hand[i], way = to * grip.in_hand[i] - start;
+    grip.point[i] = start + fraction * way;
+    grip.velocity[i] = seconds_ > 0.0 ? Vector3(way / seconds_) : Vector3::Zero();
   }
+}
+
+/// True if contact does not hold what the hand has taken.
+bool GraspAssist::slips(const SimulationState& state, const Grip& grip) const {
+  const Pose& pose = state.bodies[grip.body].pose;
+  double off = 0.0;
+  for (std::size_t i = 0; i < kGripPoints; ++i)
+    off = std::max(off, (pose * grip.in_body[i] - grip.point[i]).norm());
+  return off > kSlipped &&
+         std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
+           return holds(grip, contact.key) && contact.touching() && contact.friction == Friction::slipping;
+         });
+}
+
+void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
+  if (!configuration_.grasp_assist) return;
+  for (Grip& grip : state.grips) {
+    place(fraction, state.hands[grip.hand], grip);
+    grip.fresh = !grip.bears && slips(state, grip);
+    if (!grip.fresh) continue;
+    grip.bears = true;
+    for (std::size_t i = 0; i < kGripPoints; ++i)
+      grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);
+  }
+  for (Contact& contact : state.contacts) give_way(state, step, contact);
 }
 
 /// The grip's force, and the squeeze that friction needs to bear it, as the contacts that touch would share
 /// them, beside what their own springs give: the sum of all is the force on the body.
 void GraspAssist::share_force(SimulationState& state) const {
   for (const Grip& grip : state.grips) {
-    Pads base, fingers;
-    const auto side = [&](const Contact& contact) -> Pads& {
-      return is_base(grip.by_palm, contact.key.capsule) ? base : fingers;
-    };
-    const auto takes_part = [&grip](const Contact& contact) {
-      return holds(grip, contact.key) && contact.touching();
-    };
-    for (const Contact& contact : state.contacts) {
-      if (!takes_part(contact)) continue;
-      side(contact).sum += contact.point;
-      ++side(contact).count;
-    }
+    if (!grip.bears) continue;
+    Sides sides(grip, state.contacts);
     Vector3 squeeze = Vector3::Zero();
-    if (base.count > 0 && fingers.count > 0) {
-      const Vector3 across = fingers.middle() - base.middle();
+    if (sides.both()) {
+      const Vector3 across = sides.fingers.middle() - sides.base.middle();
       const double friction = std::max(scene_.bodies[grip.body].material.static_friction, 0.1);
       const double push = kMargin * grip.force.norm() / (2.0 * friction);
       if (across.norm() > 0.0) squeeze = push * across.normalized();
     }
     for (Contact& contact : state.contacts) {
-      if (!takes_part(contact)) continue;
-      const bool of_base = is_base(grip.by_palm, contact.key.capsule);
+      if (!holds(grip, contact.key) || !contact.touching()) continue;
+      const double sign = is_base(grip.by_palm, contact.key.capsule) ? 1.0 : -1.0;
       contact.friction = grip.slips ? Friction::slipping : Friction::sticking;
-      contact.force +=
-          grip.force / (base.count + fingers.count) + (of_base ? 1.0 : -1.0) / side(contact).count * squeeze;
+      contact.force += grip.force / (sides.base.count + sides.fingers.count) +
+                       sign / sides.of(grip, contact).count * squeeze;
     }
   }
 }

@@ -9,10 +9,15 @@
 
 namespace mrhi {
 
-/// Help for hands that feel nothing and close through things. Fingers that close round a body give way to it,
-/// as those of a person do who feels it, so that the first of them does not bat it away. When both sides have
-/// reached it where friction could hold it, and are in it deeper than a pulp gives, a Grip holds it, until
-/// the hand has opened again. All other touches are as ever.
+/// Help for hands that feel nothing and close through things, in two parts.
+///
+/// A finger that closes on a body gives way to it, as a person's does who feels it, so that the first finger
+/// does not bat the body away. It closes on the body if that lies between it and the thumb, or the palm, on
+/// faces that oppose. When it has stopped it comes to press by and by.
+///
+/// A hand of which two sides have reached a body where friction could hold it, deeper than a pulp gives, has
+/// taken it: a Grip. It does nothing as long as contact holds the body. Once the body slips in the hand, the
+/// grip bears it, until the hand has opened again. All other touches are as ever.
 class GraspAssist {
  public:
   /// Keeps references.
@@ -23,56 +28,56 @@ class GraspAssist {
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
   /// Ends the grips of hands that have opened, jumped or are lost.
   void let_go(SimulationState& state);
-  /// Every step, `fraction` of the way into the frame: which contacts give way, and where grips are.
-  void begin_step(double fraction, SimulationState& state) const;
+  /// Every step of `step` seconds, `fraction` of the way into the frame: which contacts give way, and where
+  /// grips are.
+  void begin_step(double fraction, double step, SimulationState& state) const;
   /// After the response: what each contact of a grip has of its force.
   void share_force(SimulationState& state) const;
 
  private:
-  /// How a hand closes on a body.
-  enum class Closing : std::uint8_t {
-    none,
-    pinch,  ///< one finger, or what lies between finger and thumb or palm
-    grab    ///< several fingers
-  };
+  /// A body on which a hand closes.
   struct ClosingOn {
     std::size_t hand, body;
-    Closing closing;
+    bool grabs;  // with several fingers
   };
   /// A capsule of the hand that is in the body, by the way out that is nearest.
   struct Touch {
     bool touches = false;
-    double depth = 0.0;   // [m]
-    double radius = 0.0;  // of the capsule [m]
+    double depth = 0.0;  // [m]
     Vector3 normal, point;
   };
   using Touches = std::array<Touch, kCapsules>;
   /// Two sides of a hand that could hold a body between them.
   struct Opposed {
     double depth;           // of the deeper side [m]
-    double width;           // opening at which both just touch [m]
+    double squeeze;         // of both sides together [m]
     Vector3 base, fingers;  // where they touch
     bool by_palm;
     std::uint8_t taking_part;
   };
-
   /// What a hand's fingers do about a body.
   struct Look {
     std::optional<Touches> touches;  // found when first asked for
     std::optional<Opposed> opposed;
-    Closing closing = Closing::none;
-    int fingers = 0;  // that close towards the palm
+    std::uint8_t closing = 0;  // fingers that close on it, a bit each
   };
 
+  bool buried(std::size_t slot, const SimulationState& state) const;
   void look_at(std::size_t slot, int body, SimulationState& state);
-  void look_along(const HandTrack& track, bool by_palm, int finger, int body, const BodyState& state,
+  void look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
                   Look& look) const;
+  double closing_speed(const HandTrack& track, bool by_palm, int finger) const;
   bool closes(const HandTrack& track, bool by_palm, int finger) const;
-  double way_off(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const;
+  std::optional<ClosestFeatures> nearest(const Capsule& capsule, int body, const Pose& pose,
+                                         double margin) const;
+  bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const;
   Touches touches(const Hand& hand, int body, const Pose& pose) const;
   std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger, double friction) const;
   void take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const;
-  void give_way(const SimulationState& state, Contact& contact) const;
+  bool opens(const SimulationState& state, Grip& grip) const;
+  void place(double fraction, const HandTrack& track, Grip& grip) const;
+  bool slips(const SimulationState& state, const Grip& grip) const;
+  void give_way(const SimulationState& state, double step, Contact& contact) const;
   bool gives_way(const Contact& contact, const SimulationState& state) const;
 
   const Scene& scene_;

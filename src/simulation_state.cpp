@@ -119,6 +119,7 @@ void add_grip(const Grip& grip, Fnv1a& hash) {
   hash.add(grip.opening);
   hash.add(grip.least);
   hash.add(grip.bond);
+  hash.add(grip.bears);
   hash.add(grip.middle);
   for (const Vector3& point : grip.in_hand) hash.add(point);
   for (const Vector3& point : grip.in_body) hash.add(point);

@@ -27,7 +27,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   sleeping.wake(neighbours, step, state);
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
-  assist.begin_step(fraction, state);
+  assist.begin_step(fraction, step, state);
   end_stage(Stage::hand_contacts);
   body_finder.find(neighbours, state.bodies, state.asleep, step, state.body_contacts);
   end_stage(Stage::body_contacts);

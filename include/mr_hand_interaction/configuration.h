@@ -42,7 +42,7 @@ struct HandStrength {
   double finger_mass = kUnlimited;  ///< effective, of a phalanx that strikes; people's: 0.01 to 0.03 [kg]
   double palm_mass = kUnlimited;    ///< the same of a palm; people's: 0.3 to 0.5 [kg]
 
-  static HandStrength of_a_person() { return {20.0, 40.0, 0.002, kUnlimited, kUnlimited}; }
+  static HandStrength of_a_person() { return {16.0, 32.0, 0.002, kUnlimited, kUnlimited}; }
 };
 
 /// The switches are refinements: on, unless one is turned off to see what it is worth (docs/contact.md).
@@ -56,10 +56,10 @@ struct ContactConfiguration {
   bool damping = true;          ///< a pressed spring has a dashpot beside it (`implicit`)
   bool torsion = true;          ///< a fingertip resists twisting about its contact normal (`implicit`)
   bool edge_grip = true;        ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
-  bool grasp_assist = false;    ///< a hand that closes round a body and through it holds it (`implicit`)
+  bool grasp_assist = true;     ///< a hand that closes round a body and through it holds it (`implicit`)
   bool sleep = true;            ///< bodies that lie still on others cost nothing until something comes near
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
-  HandStrength hand;
+  HandStrength hand = HandStrength::of_a_person();
 };
 
 /// Everything that is set from outside, under the names of `parameters.h`. Immutable while a simulation runs.

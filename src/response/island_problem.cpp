@@ -77,7 +77,7 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
   }
   for (const IslandBody& body : island.bodies) {
     for (const Grip& grip : step.grips) {
-      if (grip.body != body.body) continue;
+      if (!grip.bears || grip.body != body.body) continue;
       for (int point = 0; point < kGripPoints; ++point) {
         contacts_.emplace_back();
         make_grip_spring(step, configuration, grip, point, contacts_.back());
@@ -324,7 +324,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) 
   }
   for (const IslandBody& body : island.bodies) {
     for (Grip& grip : step.grips) {
-      if (grip.body != body.body) continue;
+      if (!grip.bears || grip.body != body.body) continue;
       for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *contact++, point, grip);
     }
   }

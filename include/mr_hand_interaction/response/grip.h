@@ -20,7 +20,8 @@ struct Grip {
   double least = 0.0;                          ///< of the opening since the grip began [m]
   double bond = 0.0;                           ///< most that each spring bears [N]
   double stiffness = 0.0;                      ///< of each spring [N/m]
-  bool fresh = true;                           ///< begins with this step
+  bool bears = false;                          ///< contact alone has not held the body
+  bool fresh = false;                          ///< it begins to bear in this step
   bool closes = true;                          ///< the hand still closes
   Vector3 middle_before = Vector3::Zero();     ///< of both sides as the frame begins, palm frame [m]
   Vector3 middle = Vector3::Zero();            ///< and as it ends; an opening hand does not move it [m]
