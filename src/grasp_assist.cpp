@@ -69,6 +69,18 @@ bool is_base(bool by_palm, int capsule) {
   return finger_of(capsule) == 0;
 }
 
+bool slips(const std::vector<Contact>& contacts, const Grip& grip) {
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.friction == Friction::slipping && contact.touching() && holds(grip, contact.key);
+  });
+}
+
+double distance_from_axis(const Vector3& point, const Capsule& capsule) {
+  const Vector3 along = capsule.end - capsule.start;
+  const double s = (point - capsule.start).dot(along) / std::max(along.squaredNorm(), 1e-30);
+  return (point - capsule.axis_point(std::clamp(s, 0.0, 1.0))).norm();
+}
+
 bool has_tip(const Hand& hand, int finger) {
   return hand.has(capsule_index(finger, 3));
 }
@@ -126,11 +138,12 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
     if (!state.hands[slot].active || state.hands[slot].appeared || buried(slot, state)) continue;
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
       const auto body = static_cast<std::size_t>(near.body);
-      const bool borne = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-        return grip.bears && grip.hand == slot && grip.body == body;
+      // What is held by hands that do not close any more is known.
+      const bool known = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
+        return grip.hand == slot && grip.body == body && (grip.bears || !grip.closes);
       });
       const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
-      if (!borne && !appeared && !scene_.bodies[body].fixed) look_at(slot, near.body, state);
+      if (!known && !appeared && !scene_.bodies[body].fixed) look_at(slot, near.body, state);
     }
   }
 }
@@ -213,7 +226,10 @@ bool GraspAssist::on_opposite_faces(const Hand& hand, bool by_palm, int finger, 
 void GraspAssist::look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
                              Look& look) const {
   const Hand& hand = track.current;
-  const auto beside = nearest({base_of(hand, by_palm), tip_of(hand, finger), 0.0}, body, pose, kBeside);
+  const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
+  const double reach = scene_.bodies[static_cast<std::size_t>(body)].bounding_radius + kBeside;
+  if (distance_from_axis(pose.position, line) > reach) return;
+  const auto beside = nearest(line, body, pose, kBeside);
   if (!beside) return;
   if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, body, pose))
     look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
@@ -369,25 +385,23 @@ void GraspAssist::place(double fraction, const HandTrack& track, Grip& grip) con
   }
 }
 
-/// True if contact does not hold what the hand has taken.
-bool GraspAssist::slips(const SimulationState& state, const Grip& grip) const {
+/// How far the body is off where the hand has taken it [m].
+double GraspAssist::off(const SimulationState& state, const Grip& grip) const {
   const Pose& pose = state.bodies[grip.body].pose;
-  double off = 0.0;
+  double most = 0.0;
   for (std::size_t i = 0; i < kGripPoints; ++i)
-    off = std::max(off, (pose * grip.in_body[i] - grip.point[i]).norm());
-  return off > kSlipped &&
-         std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
-           return holds(grip, contact.key) && contact.touching() && contact.friction == Friction::slipping;
-         });
+    most = std::max(most, (pose * grip.in_body[i] - grip.point[i]).norm());
+  return most;
 }
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!configuration_.grasp_assist) return;
   for (Grip& grip : state.grips) {
+    grip.fresh = false;
+    if (!grip.bears && !slips(state.contacts, grip)) continue;
     place(fraction, state.hands[grip.hand], grip);
-    grip.fresh = !grip.bears && slips(state, grip);
-    if (!grip.fresh) continue;
-    grip.bears = true;
+    if (grip.bears || off(state, grip) <= kSlipped) continue;
+    grip.bears = grip.fresh = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);
   }

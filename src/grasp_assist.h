@@ -76,7 +76,7 @@ class GraspAssist {
   void take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const;
   bool opens(const SimulationState& state, Grip& grip) const;
   void place(double fraction, const HandTrack& track, Grip& grip) const;
-  bool slips(const SimulationState& state, const Grip& grip) const;
+  double off(const SimulationState& state, const Grip& grip) const;
   void give_way(const SimulationState& state, double step, Contact& contact) const;
   bool gives_way(const Contact& contact, const SimulationState& state) const;
 
