@@ -42,7 +42,8 @@ class Demo:
         self.most_contacts = 0
         self.objects = {}
         self.still = False  # as it was in the message before
-        self.start = {}
+        self.start = {}  # where things were before they were taken, since the run began
+        self.run_began = rospy.Time()
         self.last_event = None
         rospy.Subscriber("hand_frame", HandFrame, self.take_frame, queue_size=100)
         rospy.Subscriber("contacts", ContactArray, self.take_contacts, queue_size=100)
@@ -74,7 +75,9 @@ class Demo:
             self.still = bool(self.objects) and all(
                 thing.name in self.objects and self.objects[thing.name].pose == thing.pose for thing in message.objects)
             for thing in message.objects:
-                self.start.setdefault(thing.name, thing.pose.position)
+                # Who comes late sees the middle of a run.
+                if not thing.held and message.header.stamp >= self.run_began:
+                    self.start.setdefault(thing.name, thing.pose.position)
                 self.objects[thing.name] = thing
             self.changed.notify_all()
 
@@ -82,8 +85,16 @@ class Demo:
         """Seconds from the first frame with a hand to the last."""
         return (self.last_seen - self.first_seen).to_sec() if self.first_seen else 0.0
 
+    def begin_run(self):
+        """The scene has been reset."""
+        with self.changed:
+            self.run_began = rospy.Time.now()
+            self.start.clear()
+            self.touched.clear()
+            self.grasped.clear()
+
     def moved(self, name):
-        return distance(self.objects[name].pose.position, self.start[name])
+        return 0.0 if name not in self.start else distance(self.objects[name].pose.position, self.start[name])
 
     def carried(self):
         return any(thing.held and name in self.grasped and self.moved(name) > CARRIED
@@ -141,8 +152,8 @@ class Moment:
     """The moment for the picture: the simulation stands still, and the next run of the hand, which begins with a reset
     by the service of this node, does not begin."""
 
-    def __init__(self):
-        self.come = False
+    def __init__(self, demo):
+        self.come, self.demo = False, demo
         self.lock = threading.Lock()
         self.reset_scene = rospy.ServiceProxy("interaction_node/reset", Trigger)
         self.pause = rospy.ServiceProxy("interaction_node/pause", SetBool)
@@ -150,14 +161,18 @@ class Moment:
 
     def reset(self, _):
         with self.lock:
-            return TriggerResponse(False, "its picture is taken") if self.come else self.reset_scene()
+            if self.come:
+                return TriggerResponse(False, "its picture is taken")
+            answer = self.reset_scene()
+            self.demo.begin_run()
+            return answer
 
-    def stop(self, demo, what, deadline):
+    def stop(self, what, deadline):
         """Whether what is to be seen is there still, now that nothing moves."""
         with self.lock:
             self.pause(True)
-            demo.wait_for(lambda: demo.still, deadline)  # what was sent before has come
-            with demo.changed:
+            self.demo.wait_for(lambda: self.demo.still, deadline)  # what was sent before has come
+            with self.demo.changed:
                 self.come = what()
             if not self.come:
                 self.pause(False)
@@ -193,9 +208,9 @@ def main():
     join_master("watch_demo", deadline)
     demo = Demo()
     what = (lambda: demo.struck(SEEN_STRUCK)) if options.motion in STRIKES else demo.carried
-    moment, done = Moment(), False
+    moment, done = Moment(demo), False
     while not done and demo.wait_for(lambda: what() and rviz_listens(), deadline):
-        done = moment.stop(demo, what, deadline) and take_picture(options.picture, deadline)
+        done = moment.stop(what, deadline) and take_picture(options.picture, deadline)
         if moment.come:
             break
     if not moment.come:
