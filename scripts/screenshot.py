@@ -18,7 +18,7 @@ REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
-LAYERS = ("hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "text", "Grid")
+LAYERS = ("hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "shadows", "text", "Grid")
 
 
 def view(text):

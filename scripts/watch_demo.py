@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Watches a running demo until the hand has done what its motion is for, takes rviz's picture at that moment and
-writes a summary beside it. Exits with 0 if it was done in time, else with 1."""
+"""Watches a running demo until the hand has done what its motion is for, stops the simulation at that moment, takes
+rviz's picture of it and writes a summary beside it. Exits with 0 if it was done in time, else with 1."""
 import argparse
+import hashlib
 import math
 import os
 import subprocess
@@ -12,11 +13,16 @@ import time
 import rosgraph
 import rospy
 from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, ObjectStateArray
+from std_srvs.srv import SetBool, Trigger, TriggerResponse
 
 STRIKES = ("nudge", "tap", "slap")
 CARRIED = 0.04  # m from where it was taken: clearly so in the picture
 STRUCK = 0.01  # m
+SEEN_STRUCK = 0.03  # m: clearly so in the picture
 COLOURS = 500  # fewer: rviz has not drawn the scene yet
+STEADY = 3  # pictures alike, one after the other: rviz has drawn what there is
+BETWEEN = 0.7  # s between them
+STATUS_BAR = 40  # rows of pixels in which rviz counts its pictures per second
 
 
 def distance(a, b):
@@ -35,7 +41,9 @@ class Demo:
         self.grasped = set()
         self.most_contacts = 0
         self.objects = {}
-        self.start = {}
+        self.still = False  # as it was in the message before
+        self.start = {}  # where things were before they were taken, since the run began
+        self.run_began = rospy.Time()
         self.last_event = None
         rospy.Subscriber("hand_frame", HandFrame, self.take_frame, queue_size=100)
         rospy.Subscriber("contacts", ContactArray, self.take_contacts, queue_size=100)
@@ -64,8 +72,12 @@ class Demo:
 
     def take_objects(self, message):
         with self.changed:
+            self.still = bool(self.objects) and all(
+                thing.name in self.objects and self.objects[thing.name].pose == thing.pose for thing in message.objects)
             for thing in message.objects:
-                self.start.setdefault(thing.name, thing.pose.position)
+                # Who comes late sees the middle of a run.
+                if not thing.held and message.header.stamp >= self.run_began:
+                    self.start.setdefault(thing.name, thing.pose.position)
                 self.objects[thing.name] = thing
             self.changed.notify_all()
 
@@ -73,15 +85,23 @@ class Demo:
         """Seconds from the first frame with a hand to the last."""
         return (self.last_seen - self.first_seen).to_sec() if self.first_seen else 0.0
 
+    def begin_run(self):
+        """The scene has been reset."""
+        with self.changed:
+            self.run_began = rospy.Time.now()
+            self.start.clear()
+            self.touched.clear()
+            self.grasped.clear()
+
     def moved(self, name):
-        return distance(self.objects[name].pose.position, self.start[name])
+        return 0.0 if name not in self.start else distance(self.objects[name].pose.position, self.start[name])
 
     def carried(self):
         return any(thing.held and name in self.grasped and self.moved(name) > CARRIED
                    for name, thing in self.objects.items())
 
-    def struck(self):
-        return any(name in self.touched and self.moved(name) > STRUCK for name in self.objects)
+    def struck(self, by=STRUCK):
+        return any(name in self.touched and self.moved(name) > by for name in self.objects)
 
     def wait_for(self, condition, deadline):
         with self.changed:
@@ -108,10 +128,55 @@ def colours_of(file):
     return int(subprocess.run(["identify", "-format", "%k", file], check=True, stdout=subprocess.PIPE).stdout)
 
 
-def take_picture(file):
-    """Whether the screen shows more than an empty window; if so, its picture is in the file."""
-    grab(file)
-    return colours_of(file) >= COLOURS
+def without_status_bar(file):
+    raw = subprocess.run(["convert", file, "-gravity", "south", "-chop", f"0x{STATUS_BAR}", "rgb:-"], check=True,
+                         stdout=subprocess.PIPE).stdout
+    return hashlib.sha256(raw).digest()
+
+
+def take_picture(file, deadline):
+    """Whether the screen shows more than an empty window, and no longer changes; its picture is in the file anyway."""
+    alike, before = 0, None
+    while alike < STEADY:
+        grab(file)
+        now = without_status_bar(file)
+        alike = alike + 1 if now == before and colours_of(file) >= COLOURS else 1
+        before = now
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(BETWEEN)
+    return True
+
+
+class Moment:
+    """The moment for the picture: the simulation stands still, and the next run of the hand, which begins with a reset
+    by the service of this node, does not begin."""
+
+    def __init__(self, demo):
+        self.come, self.demo = False, demo
+        self.lock = threading.Lock()
+        self.reset_scene = rospy.ServiceProxy("interaction_node/reset", Trigger)
+        self.pause = rospy.ServiceProxy("interaction_node/pause", SetBool)
+        rospy.Service("watch_demo/reset", Trigger, self.reset)
+
+    def reset(self, _):
+        with self.lock:
+            if self.come:
+                return TriggerResponse(False, "its picture is taken")
+            answer = self.reset_scene()
+            self.demo.begin_run()
+            return answer
+
+    def stop(self, what, deadline):
+        """Whether what is to be seen is there still, now that nothing moves."""
+        with self.lock:
+            self.pause(True)
+            self.demo.wait_for(lambda: self.demo.still, deadline)  # what was sent before has come
+            with self.demo.changed:
+                self.come = what()
+            if not self.come:
+                self.pause(False)
+            return self.come
 
 
 def summary(demo, motion, done, picture):
@@ -142,12 +207,14 @@ def main():
 
     join_master("watch_demo", deadline)
     demo = Demo()
-    what = demo.struck if options.motion in STRIKES else demo.carried
-    done = False
+    what = (lambda: demo.struck(SEEN_STRUCK)) if options.motion in STRIKES else demo.carried
+    moment, done = Moment(demo), False
     while not done and demo.wait_for(lambda: what() and rviz_listens(), deadline):
-        done = take_picture(options.picture)
-    if not done:
-        take_picture(options.picture)
+        done = moment.stop(what, deadline) and take_picture(options.picture, deadline)
+        if moment.come:
+            break
+    if not moment.come:
+        grab(options.picture)
     with demo.changed:
         text = summary(demo, options.motion, done, options.picture)
     print(text, end="")

@@ -5,10 +5,23 @@
 #include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
+#include "mr_hand_interaction/ros/node_usage.h"
+
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: rosrun mr_hand_interaction hand_interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
+
+hand_tracking_node and interaction_node in one process; the launch files start it. Its topics, services and
+parameters are those of both; tracking's parameters are in ~hand_tracking. See their --help.
+)";
+
+}  // namespace
 
 /// hand_tracking_node and interaction_node in one process and one thread: a frame goes from one to the other
 /// by a call. Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
+  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
   ros::init(argc, argv, "interaction_node");
   mrhi::end_in_order();
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged

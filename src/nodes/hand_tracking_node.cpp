@@ -4,8 +4,26 @@
 
 #include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
+#include "mr_hand_interaction/ros/node_usage.h"
+
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: rosrun mr_hand_interaction hand_tracking_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
+
+Takes what hand trackers publish, and publishes the hands in world on hand_frame.
+
+  /leap_motion/leap_device                      leap_motion/Human, any published version
+  hands/pose_array, hands/left/pose_array, hands/right/pose_array
+                                                geometry_msgs/PoseArray of 21, 25 or 26 joints; see docs/trackers.md
+  ~fixed_frame   where hands are placed by tf; default world
+  ~side          of a hand on hands/pose_array; left or right, default right
+)";
+
+}  // namespace
 
 int main(int argc, char** argv) {
+  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
   ros::init(argc, argv, "hand_tracking_node");
   mrhi::end_in_order();
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged

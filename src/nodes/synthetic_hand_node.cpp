@@ -14,8 +14,21 @@
 namespace {
 
 constexpr const char* kUsage =
-    "synthetic_hand_node --csv FILE [--motion NAME] [--side left|right] [--rate HZ] [--noise AMPLITUDE] "
-    "[--seed N]";
+    R"(usage: rosrun mr_hand_interaction synthetic_hand_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
+       rosrun mr_hand_interaction synthetic_hand_node --csv FILE [--motion NAME] [--side left|right] [--rate HZ]
+                                                      [--noise AMPLITUDE] [--seed N]
+
+Publishes a scripted hand on /leap_motion/leap_device, as a Leap's driver would; with --csv writes one run of it as a
+recording, which needs no master.
+
+  ~motion   grasp_cube grasp_ball catch_ball pinch_long lift_flat nudge tap slap; default grasp_cube
+  ~side     left or right; default right
+  ~rate     frames per second; default 115
+  ~noise    1: as a Leap's; default 0
+  ~seed     of the noise; default 1
+  ~loop     begins again when it is done; default true
+  ~reset    the service that a run begins with; default none
+)";
 
 double number(const std::string& option, const std::string& text) {
   std::size_t used = 0;
@@ -39,7 +52,7 @@ void write_recording(const std::vector<std::string>& arguments) {
                        name == "--noise" || name == "--seed";
     if (!known || i + 1 == arguments.size())
       throw std::invalid_argument((known ? "value missing after " : "unknown option ") + name +
-                                  "; usage: " + kUsage);
+                                  "; see --help");
     const std::string& value = arguments[i + 1];
     if (name == "--csv") file = value;
     if (name == "--motion") options.motion = value;
@@ -48,7 +61,7 @@ void write_recording(const std::vector<std::string>& arguments) {
     if (name == "--noise") options.noise = number("noise", value);
     if (name == "--seed") options.seed = static_cast<std::uint64_t>(number("seed", value));
   }
-  if (file.empty()) throw std::invalid_argument(std::string("usage: ") + kUsage);
+  if (file.empty()) throw std::invalid_argument("--csv FILE is missing; see --help");
   const auto frames = mrhi::record_motion(options);
   std::ofstream out(file);
   mrhi::write_recording_csv(out, frames);
@@ -61,6 +74,10 @@ void write_recording(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
+  if (arguments.size() > 1 && (arguments[1] == "--help" || arguments[1] == "-h")) {
+    std::cout << kUsage;
+    return 0;
+  }
   if (arguments.size() > 1) {
     try {
       write_recording({arguments.begin() + 1, arguments.end()});

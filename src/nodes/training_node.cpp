@@ -3,9 +3,27 @@
 #include <exception>
 
 #include "mr_hand_interaction/ros/end_in_order.h"
+#include "mr_hand_interaction/ros/node_usage.h"
 #include "mr_hand_interaction/ros/training_server.h"
 
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: rosrun mr_hand_interaction training_node _participant:=NAME _folder:=FOLDER [_PARAMETER:=VALUE]...
+
+Leads a participant through a task beside a running interaction_node, and logs it; training.launch starts it with
+all that it needs. Publishes training/status and training/markers. Services: ~next, ~pause, ~skip, ~repeat.
+
+  ~participant, ~folder        who takes part, and the session's folder; must be given
+  ~task                        NAME|FILE; default pick_and_place
+  ~group, ~handedness, ~condition, ~seed, ~number, ~simulated, ~simulation, ~auto_next, ~auto_start
+                               see docs/training.md
+)";
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
   ros::init(argc, argv, "training_node");
   mrhi::end_in_order();
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged

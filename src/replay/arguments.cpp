@@ -159,7 +159,7 @@ Runs a recording of hands through a scene as fast as the machine goes; needs no 
   --scene NAME|FILE         a shipped scene, or a URDF file
   --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray or HandFrame)
   --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json
-  --topic TOPIC             of the bag; else /leap_motion/leap_device, /hands/pose_array, or the only fitting
+  --topic TOPIC             of the bag; else /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
   --params FILE.yaml        parameters, under the names of the parameter server
   --set KEY=VALUE           one parameter; stands above --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw

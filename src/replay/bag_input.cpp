@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <vector>
@@ -17,13 +18,17 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/ros/pose_array_hand.h"
+#include "mr_hand_interaction/tracking/hand_pairs.h"
 
 namespace mrhi {
 namespace {
 
 const std::set<std::string> kTypes{"leap_motion/Human", "geometry_msgs/PoseArray",
                                    "mr_hand_interaction/HandFrame"};
-const std::vector<std::string> kUsualTopics{"/leap_motion/leap_device", "/hands/pose_array"};
+const std::string kLeapTopic = "/leap_motion/leap_device";
+/// What other trackers' hands are on belongs together.
+const std::set<std::string> kPoseArrayTopics{"/hands/pose_array", "/hands/left/pose_array",
+                                             "/hands/right/pose_array"};
 
 std::string joined(const std::set<std::string>& names) {
   std::string text;
@@ -31,22 +36,24 @@ std::string joined(const std::set<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-std::string chosen_topic(const std::string& file, const rosbag::Bag& bag,
-                         const std::optional<std::string>& wanted) {
+std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& bag,
+                                    const std::optional<std::string>& wanted) {
   std::set<std::string> fitting;
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
     if (kTypes.count(connection->datatype) > 0) fitting.insert(connection->topic);
   }
   if (wanted) {
     for (const std::string& topic : {*wanted, "/" + *wanted}) {
-      if (fitting.count(topic) > 0) return topic;
+      if (fitting.count(topic) > 0) return {topic};
     }
     throw BagError(file + ": no topic '" + *wanted + "' with hands; allowed: " + joined(fitting));
   }
-  for (const std::string& topic : kUsualTopics) {
-    if (fitting.count(topic) > 0) return topic;
-  }
-  if (fitting.size() == 1) return *fitting.begin();
+  if (fitting.count(kLeapTopic) > 0) return {kLeapTopic};
+  std::set<std::string> pose_arrays;
+  std::set_intersection(fitting.begin(), fitting.end(), kPoseArrayTopics.begin(), kPoseArrayTopics.end(),
+                        std::inserter(pose_arrays, pose_arrays.end()));
+  if (!pose_arrays.empty()) return pose_arrays;
+  if (fitting.size() == 1) return fitting;
   throw BagError(file + (fitting.empty() ? ": no topic has hands; allowed types: " + joined(kTypes)
                                          : ": --topic must choose one of " + joined(fitting)));
 }
@@ -73,8 +80,9 @@ const std::string& readable(const std::string& file) {
 struct BagInput::Impl {
   Impl(const std::string& file, const std::optional<std::string>& wanted, const std::optional<Pose>& device)
       : bag(readable(file), rosbag::bagmode::Read),
-        topic(chosen_topic(file, bag, wanted)),
-        view(bag, rosbag::TopicQuery(topic)),
+        topics(chosen_topics(file, bag, wanted)),
+        topic(joined(topics)),
+        view(bag, rosbag::TopicQuery(std::vector<std::string>(topics.begin(), topics.end()))),
         devices(bag, device),
         at(view.begin()) {}
 
@@ -102,7 +110,14 @@ struct BagInput::Impl {
   SourceFrame read_pose_array(const rosbag::MessageInstance& message) {
     const auto array = message.instantiate<geometry_msgs::PoseArray>();
     if (!array) return refused("unknown version", "geometry_msgs/PoseArray with md5 " + message.getMD5Sum());
-    return place(joints_from_pose_array(*array, Side::right), array->header.frame_id, message.getTime());
+    const std::string& frame_id = array->header.frame_id;
+    const std::optional<Side> of_topic = side_by_name(message.getTopic());
+    const Side side = (of_topic ? of_topic : side_by_name(frame_id)).value_or(Side::right);
+    SourceFrame frame = place(joints_from_pose_array(*array, side), frame_id, message.getTime());
+    if (!frame.frame || has_both_hands(*array)) return frame;
+    frame.frame = pairs.take(side, *frame.frame);
+    frame.waits = !frame.frame;
+    return frame;
   }
 
   SourceFrame read_hand_frame(const rosbag::MessageInstance& message) {
@@ -139,8 +154,10 @@ struct BagInput::Impl {
   }
 
   rosbag::Bag bag;
+  std::set<std::string> topics;
   std::string topic;
   rosbag::View view;
+  HandPairs pairs;
   DeviceFrames devices;
   rosbag::View::iterator at;
   std::size_t position = 0;
@@ -162,11 +179,16 @@ BagInput::BagInput(const std::string& file, const std::optional<std::string>& to
 BagInput::~BagInput() = default;
 
 std::optional<SourceFrame> BagInput::next() {
-  if (impl_->at == impl_->view.end()) return std::nullopt;
-  SourceFrame frame = impl_->read(*impl_->at);
-  ++impl_->at;
-  ++impl_->position;
-  return frame;
+  while (impl_->at != impl_->view.end()) {
+    SourceFrame frame = impl_->read(*impl_->at);
+    ++impl_->at;
+    ++impl_->position;
+    if (!frame.waits) return frame;
+  }
+  SourceFrame last;
+  last.frame = impl_->pairs.rest();
+  if (!last.frame) return std::nullopt;
+  return last;
 }
 
 std::size_t BagInput::position() const {

@@ -14,6 +14,9 @@ namespace {
 
 constexpr int kQueue = 10;
 
+const char* const kPoseArrayTopics[] = {"hands/pose_array", "hands/left/pose_array",
+                                        "hands/right/pose_array"};
+
 const char* const kUnusableHand = "unusable hand";
 const char* const kStampNotIncreasing = "stamp repeats or goes back";
 const char* const kNoStamp = "stamp out of range";
@@ -44,12 +47,7 @@ HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& p
       diagnostics_(node, parameters, ros::this_node::getName()) {
   publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
   subscribe_leap();
-  using PoseArrayEvent = ros::MessageEvent<const geometry_msgs::PoseArray>;
-  pose_array_subscriber_ = node_.subscribe<geometry_msgs::PoseArray>(
-      "hands/pose_array", kQueue,
-      boost::function<void(const PoseArrayEvent&)>(
-          [this](const PoseArrayEvent& event) { take_pose_array(event); }),
-      nullptr, ros::TransportHints().tcpNoDelay());
+  for (const char* const topic : kPoseArrayTopics) subscribe_pose_arrays(topic);
   diagnostics_.setHardwareID("hand tracker");
   diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
   timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
@@ -66,6 +64,18 @@ void HandTracking::subscribe_leap() {
       ros::TransportHints().tcpNoDelay());
 }
 
+void HandTracking::subscribe_pose_arrays(const std::string& topic) {
+  using Event = ros::MessageEvent<const geometry_msgs::PoseArray>;
+  const std::optional<Side> of_topic = side_by_name(topic);
+  pose_array_subscribers_.push_back(node_.subscribe<geometry_msgs::PoseArray>(
+      topic, kQueue, boost::function<void(const Event&)>([this, of_topic](const Event& event) {
+        const geometry_msgs::PoseArray& message = *event.getConstMessage();
+        const std::optional<Side> side = of_topic ? of_topic : side_by_name(message.header.frame_id);
+        take_pose_array(message, side.value_or(pose_array_side_), event.getReceiptTime());
+      }),
+      nullptr, ros::TransportHints().tcpNoDelay()));
+}
+
 void HandTracking::welcome_other_versions() {
   const bool connected = leap_subscriber_.getNumPublishers() > 0;
   leap_seen_ = leap_seen_ || connected;
@@ -79,41 +89,48 @@ void HandTracking::take_leap(const LeapEvent& event) {
   leap_seen_ = true;
   try {
     LeapHumanDecoder::Frame frame = leap_reader_.read(message);
-    take(std::move(frame.joints), frame.frame_id, event.getReceiptTime());
+    take(place(std::move(frame.joints), frame.frame_id, event.getReceiptTime()), event.getReceiptTime());
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), message.getDataType() + ": " + error.what());
   }
 }
 
-void HandTracking::take_pose_array(const ros::MessageEvent<const geometry_msgs::PoseArray>& event) {
-  const geometry_msgs::PoseArray& message = *event.getConstMessage();
+void HandTracking::take_pose_array(const geometry_msgs::PoseArray& message, Side side,
+                                   const ros::Time& receipt) {
   try {
-    take(joints_from_pose_array(message, pose_array_side_), message.header.frame_id, event.getReceiptTime());
+    const auto frame = place(joints_from_pose_array(message, side), message.header.frame_id, receipt);
+    take(frame && !has_both_hands(message) ? pairs_.take(side, *frame) : frame, receipt);
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), error.what());
   }
 }
 
-void HandTracking::take(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
+std::optional<HandFrame> HandTracking::place(JointsFrame joints, const std::string& frame_id,
+                                             const ros::Time& receipt) {
   if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
   if (joints.stamp > StampJudge::kLatest) {
     statistics_.rejected(kNoStamp, std::to_string(joints.stamp / 1'000'000'000) + " s");
-    return;
+    return std::nullopt;
   }
   try {
     const Pose device = joints.hands.empty() ? Pose{} : device_pose(frame_id, joints.stamp);
     std::vector<std::string> defects;
     const auto frame = complete_frame(joints, device, defects);
     for (const std::string& found : defects) statistics_.rejected(kUnusableHand, found);
-    if (!frame || !accept_stamp(frame->stamp)) return;
-    const auto message =
-        boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(*frame, fixed_frame_));
-    if (sink_) sink_(*message, receipt);
-    publisher_.publish(message);
-    statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame->stamp));
+    return frame;
   } catch (const tf2::TransformException& error) {
     statistics_.rejected(kNoTransform, error.what());
+    return std::nullopt;
   }
+}
+
+void HandTracking::take(const std::optional<HandFrame>& frame, const ros::Time& receipt) {
+  if (!frame || !accept_stamp(frame->stamp)) return;
+  const auto message =
+      boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(*frame, fixed_frame_));
+  if (sink_) sink_(*message, receipt);
+  publisher_.publish(message);
+  statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame->stamp));
 }
 
 /// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not

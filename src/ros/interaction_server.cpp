@@ -67,6 +67,7 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
               {[this](const Tuning::Values& values) { change_parameters(values); },
                [this](bool on) { placing_.turn(on, live_.now()); },
                [this]() -> const Simulation& { return live_.now(); }}) {
+  if (parameters.standard_outputs) results_.add_standard_outputs(node);
   results_.show(live_.now());
   placing_.turn(parameters.place_by_mouse, live_.now());
   advertise_services(private_node);

@@ -20,6 +20,8 @@ class MarkerLayer {
   /// Valid until the next call.
   visualization_msgs::Marker& add(int id, int type, const Pose& pose, const Vector3& scale,
                                   const std_msgs::ColorRGBA& color);
+  /// The one that was added last.
+  void take_back() { array_.markers.pop_back(); }
 
  private:
   visualization_msgs::MarkerArray& array_;

@@ -9,6 +9,7 @@
 #include "hand_markers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/result_conversion.h"
+#include "shadow_markers.h"
 
 namespace mrhi {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kRestPeriod = 1.0 / 30;  // [s]
 
 /// Under all that is there at the start, where no hand comes between.
 Vector3 below(const Scene& scene) {
-  constexpr double kClearance = 0.05;  // [m]
+  constexpr double kClearance = 0.10;  // [m]
   Vector3 place(0.0, 0.0, 0.15);
   for (const Body& body : scene.bodies) {
     place.z() = std::min(place.z(), body.start.position.z() - body.bounding_radius);
@@ -87,6 +88,7 @@ Markers::Markers(const Scene& scene, const Configuration& configuration, const S
     : scene_(scene),
       configuration_(configuration),
       text_place_(below(scene)),
+      ground_(ground_height(scene)),
       hands_(std::make_unique<HandMarkers>(skin)),
       bodies_(std::make_unique<BodyMarkers>(scene)) {}
 Markers::~Markers() = default;
@@ -124,11 +126,13 @@ void Markers::update_rest(const FrameResult& result, const SimulationState& stat
   const double since = (header.stamp - rest_sent_).toSec();
   if (!all && since >= 0.0 && since < kRestPeriod) return;
   rest_sent_ = header.stamp;
-  MarkerLayer capsules(array, header, "capsules", kPassing), texts(array, header, "text", kForEver);
+  MarkerLayer capsules(array, header, "capsules", kPassing), shadows(array, header, "shadows", kPassing),
+      texts(array, header, "text", kForEver);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
     add_simulated(result.rendered[i], first_id, capsules);
   }
+  add_shadows(scene_, state, result, ground_, shadows);
   rest_.delete_gone(header, array);
   std::string text = heads_up(scene_, configuration_, state);
   if (!all && text == text_) return;

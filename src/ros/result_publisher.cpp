@@ -45,6 +45,10 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
                                                           })),
       picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
 
+void ResultPublisher::add_standard_outputs(const ros::NodeHandle& node) {
+  standard_.emplace(node);
+}
+
 void ResultPublisher::show(const Simulation& simulation) {
   simulation_ = &simulation;
   markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
@@ -68,12 +72,14 @@ void ResultPublisher::publish(const FrameResult& result) {
   }
   publish_events(result.events);
   publish_objects(when);
+  if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
   publish_rest(result, when);
 }
 
 void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& stamp) {
   publish_markers(result, header(stamp));
   publish_objects(header(stamp));
+  if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
   publish_rest(result, header(stamp));
 }
 

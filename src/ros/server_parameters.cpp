@@ -46,7 +46,7 @@ HapticsRate haptics_rate(const std::string& name, const XmlRpc::XmlRpcValue& val
 }
 
 void require_known(const std::string& name) {
-  std::string allowed = "scene, fixed_frame, haptics/rate, place_by_mouse";
+  std::string allowed = "scene, fixed_frame, haptics/rate, place_by_mouse, standard_outputs";
   for (const std::string& known : parameter_names()) {
     if (known == name) return;
     allowed += ", " + known;
@@ -81,6 +81,8 @@ void take(const std::string& name, const XmlRpc::XmlRpcValue& value, ServerParam
     parameters.fixed_frame = text_parameter(name, value);
   } else if (name == "place_by_mouse") {
     parameters.place_by_mouse = truth_parameter(name, value);
+  } else if (name == "standard_outputs") {
+    parameters.standard_outputs = truth_parameter(name, value);
   } else if (name == "haptics/rate") {
     parameters.haptics_rate = haptics_rate(name, value);
   } else if (begins_with(name, kTwists)) {

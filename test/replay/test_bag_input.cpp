@@ -161,6 +161,42 @@ TEST(BagInput, pose_arrays_are_taken_and_wrong_counts_refused) {
   EXPECT_EQ(read[1].reason, DecodeError(DecodeError::Kind::wrong_count, "").reason());
 }
 
+geometry_msgs::PoseArray pose_array(const JointsFrame& frame) {
+  geometry_msgs::PoseArray array;
+  array.header.stamp = to_ros_time(frame.stamp);
+  for (const HandJoints& hand : frame.hands) {
+    array.poses.resize(1);
+    array.poses[0].position = to_message(hand.wrist.value());
+    for (const auto& finger : hand.joints)
+      for (std::size_t j = 1; j < finger.size(); ++j) {
+        array.poses.emplace_back();
+        array.poses.back().position = to_message(finger[j].value());
+      }
+  }
+  return array;
+}
+
+TEST(BagInput, hands_on_topics_of_their_sides_come_together) {
+  TestBag bag("sides.bag");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Nanoseconds stamp = frames()[i].stamp;
+    bag.add("/hands/left/pose_array", stamp, pose_array(frames()[i]));
+    bag.add("/hands/right/pose_array", stamp + 1000, pose_array(frames()[i]));
+  }
+  bag.bag.close();
+  BagInput input(bag.file, {}, {});
+  std::vector<HandFrame> read;
+  while (const auto frame = input.next()) read.push_back(frame->frame.value());
+  EXPECT_EQ(input.position(), input.size());
+  // Until both have come twice, neither is known to go on.
+  ASSERT_EQ(read.size(), 5u);
+  for (std::size_t i : {3u, 4u}) {
+    ASSERT_EQ(read[i].hands.size(), 2u);
+    EXPECT_EQ(read[i].hands[0].side, Side::left);
+    EXPECT_EQ(read[i].hands[1].side, Side::right);
+  }
+}
+
 TEST(BagInput, hand_frames_in_world_keep_their_bits) {
   const HandFrame frame{kBegin, {complete_hand(frames()[0].hands[0], default_device_mount())}};
   TestBag bag("hand_frame.bag");

@@ -19,11 +19,15 @@ NEEDED = {"playback.launch": ["bag:=/tmp/a.bag"], "training.launch": ["participa
 SHELLS = ("sh", "bash", "dash", "zsh", "env", "xterm")
 
 
-def nodes_of(name, *arguments):
+def config_of(name, *arguments):
     config = roslaunch.config.ROSLaunchConfig()
     argv = NEEDED.get(name, []) + list(arguments)
     roslaunch.xmlloader.XmlLoader().load(os.path.join(FOLDER, name), config, argv=argv, verbose=False)
-    return config.nodes
+    return config
+
+
+def nodes_of(name, *arguments):
+    return config_of(name, *arguments).nodes
 
 
 def with_environment(**values):
@@ -74,6 +78,18 @@ class LaunchFilesTest(unittest.TestCase):
         for argument in ("/tmp/`touch x`.bag", "/tmp/a'; touch x; '.bag"):
             for node in nodes_of("playback.launch", "bag:=" + argument):
                 self.assertNotIn("touch", node.launch_prefix or "")
+
+    def test_tracking_is_a_process_of_its_own_where_that_is_asked_for(self):
+        def types(name, *arguments):
+            return sorted(node.type for node in nodes_of(name, *arguments) if node.package == PACKAGE)
+        simulating = [name for name in FILES if "hand_interaction_node" in types(name)]
+        self.assertGreater(len(simulating), 6)
+        for name in simulating:
+            apart = types(name, "one_process:=false")
+            self.assertEqual(apart.count("hand_tracking_node"), 1, name)
+            self.assertEqual(apart.count("interaction_node"), 1, name)
+            self.assertNotIn("hand_interaction_node", apart, name)
+
 
     def test_a_bag_s_name_is_a_name(self):
         script = roslib.packages.find_node(PACKAGE, "run_when")[0]

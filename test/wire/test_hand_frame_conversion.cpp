@@ -7,6 +7,7 @@
 
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/ros/pose_array_hand.h"
+#include "mr_hand_interaction/ros/standard_outputs.h"
 #include "sample_hands.h"
 
 namespace mrhi {
@@ -70,31 +71,44 @@ TEST(HandFrameConversion, BadMessagesAreRefusedByName) {
   }
 }
 
-geometry_msgs::PoseArray mediapipe_hand(const HandJoints& hand) {
+void add(const Vector3& joint, geometry_msgs::PoseArray& message) {
+  message.poses.emplace_back();
+  message.poses.back().position = to_message(joint);
+}
+
+/// As a tracker gives it that has so many joints.
+void add_hand(const HandJoints& hand, std::size_t joints, geometry_msgs::PoseArray& message) {
+  if (joints == 26) add(hand.palm_centre.value(), message);
+  add(hand.wrist.value(), message);
+  for (std::size_t f = 0; f < kFingers; ++f)
+    for (std::size_t j = f == 0 || joints == 21 ? 1 : 0; j < 5; ++j) add(hand.joints[f][j].value(), message);
+}
+
+geometry_msgs::PoseArray hand_message(const HandJoints& hand, std::size_t joints) {
   geometry_msgs::PoseArray message;
   message.header.stamp = ros::Time(3, 5);
-  message.poses.resize(1);
-  message.poses[0].position = to_message(hand.wrist.value());
-  for (const auto& finger : hand.joints)
-    for (std::size_t j = 1; j < finger.size(); ++j) {
-      message.poses.emplace_back();
-      message.poses.back().position = to_message(finger[j].value());
-    }
+  add_hand(hand, joints, message);
+  EXPECT_EQ(message.poses.size(), joints);
   return message;
+}
+
+void expect_joints(const HandJoints& hand, const HandJoints& sent, bool metacarpal_bases) {
+  EXPECT_EQ(hand.side, sent.side);
+  EXPECT_EQ(hand.wrist, sent.wrist);
+  EXPECT_FALSE(hand.palm_centre);
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    EXPECT_EQ(hand.joints[f][0], f > 0 && metacarpal_bases ? sent.joints[f][0] : std::nullopt);
+    for (std::size_t j = 1; j < 5; ++j) EXPECT_EQ(hand.joints[f][j], sent.joints[f][j]);
+  }
 }
 
 TEST(PoseArrayHand, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
   const HandJoints sent = sample_hand(Side::left);
-  const JointsFrame frame = joints_from_pose_array(mediapipe_hand(sent), Side::left);
+  const JointsFrame frame = joints_from_pose_array(hand_message(sent, 21), Side::left);
   EXPECT_EQ(frame.stamp, 3000000005);
   ASSERT_EQ(frame.hands.size(), 1u);
   const HandJoints& hand = frame.hands[0];
-  EXPECT_EQ(hand.side, Side::left);
-  EXPECT_EQ(hand.wrist, sent.wrist);
-  for (std::size_t f = 0; f < kFingers; ++f) {
-    EXPECT_FALSE(hand.joints[f][0]);
-    for (std::size_t j = 1; j < 5; ++j) EXPECT_EQ(hand.joints[f][j], sent.joints[f][j]);
-  }
+  expect_joints(hand, sent, false);
   ASSERT_EQ(defect(hand), "");
   const Hand completed = complete_hand(hand, Pose());
   // The palm's centre and direction come from wrist and knuckles alone: 1 cm, 10 degrees.
@@ -106,10 +120,84 @@ TEST(PoseArrayHand, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
 TEST(PoseArrayHand, NoPosesIsAFrameWithNoHandAndOtherCountsAreRefused) {
   geometry_msgs::PoseArray message;
   EXPECT_TRUE(joints_from_pose_array(message, Side::right).hands.empty());
-  for (std::size_t count : {1u, 20u, 22u, 26u}) {
+  for (std::size_t count : {1u, 20u, 22u, 24u, 27u, 41u, 48u, 63u}) {
     message.poses.resize(count);
     EXPECT_THROW(joints_from_pose_array(message, Side::right), DecodeError);
   }
+}
+
+TEST(PoseArrayHand, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
+  const HandJoints sent = sample_hand(Side::right);
+  for (std::size_t joints : {25u, 26u}) {
+    const JointsFrame frame = joints_from_pose_array(hand_message(sent, joints), Side::right);
+    ASSERT_EQ(frame.hands.size(), 1u);
+    expect_joints(frame.hands[0], sent, true);
+    const Hand completed = complete_hand(frame.hands[0], Pose()), whole = complete_hand(sent, Pose());
+    // The centre that the tracker gives of the palm is not used: 1 cm.
+    EXPECT_LT((completed.palm.position - whole.palm.position).norm(), 0.010);
+    EXPECT_LT(completed.palm.orientation.angularDistance(whole.palm.orientation), 0.05);
+  }
+}
+
+TEST(PoseArrayHand, TwiceAsManyJointsAreLeftAndRight) {
+  for (std::size_t joints : {21u, 25u, 26u}) {
+    geometry_msgs::PoseArray message;
+    add_hand(sample_hand(Side::left), joints, message);
+    EXPECT_FALSE(has_both_hands(message));
+    add_hand(sample_hand(Side::right), joints, message);
+    EXPECT_TRUE(has_both_hands(message));
+    const JointsFrame frame = joints_from_pose_array(message, Side::right);
+    ASSERT_EQ(frame.hands.size(), 2u);
+    expect_joints(frame.hands[0], sample_hand(Side::left), joints != 21);
+    expect_joints(frame.hands[1], sample_hand(Side::right), joints != 21);
+    EXPECT_NE(frame.hands[0].id, frame.hands[1].id);
+    for (std::size_t i = 0; i < joints; ++i) message.poses[i].position.y = NAN;
+    EXPECT_EQ(joints_from_pose_array(message, Side::right).hands.size(), 1u);
+  }
+}
+
+TEST(PoseArrayHand, AJointOfNanIsMissingAndAHandOfNothingElseIsNotThere) {
+  const HandJoints sent = sample_hand(Side::right);
+  geometry_msgs::PoseArray message = hand_message(sent, 26);
+  message.poses[9].position.z = NAN;  // the index finger's distal joint
+  const HandJoints hand = joints_from_pose_array(message, Side::right).hands.at(0);
+  EXPECT_FALSE(hand.joints[1][3]);
+  EXPECT_EQ(hand.joints[1][4], sent.joints[1][4]);
+  EXPECT_EQ(defect(hand), "");
+  EXPECT_FALSE(complete_hand(hand, Pose()).has(capsule_index(1, 3)));
+  for (auto& pose : message.poses) pose.position.x = NAN;
+  EXPECT_TRUE(joints_from_pose_array(message, Side::right).hands.empty());
+  message = hand_message(sent, 21);
+  message.poses[4].position.x = INFINITY;
+  EXPECT_NE(defect(joints_from_pose_array(message, Side::right).hands.at(0)), "");
+}
+
+TEST(PoseArrayHand, TopicsAndFramesNameTheSide) {
+  EXPECT_EQ(side_by_name("/hands/left/pose_array"), Side::left);
+  EXPECT_EQ(side_by_name("hands/right/pose_array"), Side::right);
+  EXPECT_EQ(side_by_name("headset/left_hand"), Side::left);
+  EXPECT_EQ(side_by_name("right_hand"), Side::right);
+  for (const char* const name : {"/hands/pose_array", "left_camera", "camera_left", ""})
+    EXPECT_FALSE(side_by_name(name)) << name;
+}
+
+TEST(PoseArrayHand, AHandGivenOutIsTheHandTakenIn) {
+  const Hand hand = complete_hand(sample_hand(Side::left), Pose());
+  const geometry_msgs::PoseArray message = pose_array_message(hand, std_msgs::Header());
+  ASSERT_EQ(message.poses.size(), 21u);
+  const Hand again = complete_hand(joints_from_pose_array(message, Side::left).hands.at(0), Pose());
+  for (int i = 0; i < kPhalanges; ++i) {
+    if (bone_of(i) == 0) continue;
+    const Capsule &a = hand.capsules[static_cast<std::size_t>(i)],
+                  &b = again.capsules[static_cast<std::size_t>(i)];
+    EXPECT_EQ(a.start, b.start);
+    EXPECT_EQ(a.end, b.end);
+    const Pose tip = from_message(message.poses[static_cast<std::size_t>(1 + finger_of(i) * 4 + bone_of(i))]);
+    EXPECT_GT((tip.orientation * Vector3::UnitX()).dot((a.end - a.start).normalized()), 1.0 - 1e-9);
+  }
+  Hand without = hand;
+  without.capsules[static_cast<std::size_t>(capsule_index(2, 3))].radius = 0.0;
+  EXPECT_TRUE(std::isnan(pose_array_message(without, std_msgs::Header()).poses[12].position.x));
 }
 
 }  // namespace

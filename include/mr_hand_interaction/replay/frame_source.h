@@ -13,6 +13,7 @@ namespace mrhi {
 struct SourceFrame {
   std::optional<HandFrame> frame;
   std::optional<Nanoseconds> arrival;  ///< when it was received, by the recorder's clock, where that is known
+  bool waits = false;                  ///< for the other hand's, with which it comes
   std::string reason;                  ///< kind of refusal, for counting; empty if there is a frame
   std::string detail;                  ///< the particular case
   std::vector<std::string> left_out;   ///< hands of the frame that cannot be used, each with its defect
@@ -27,7 +28,7 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Nothing at the end. Throws std::exception with one line if the recording cannot be read any further.
   virtual std::optional<SourceFrame> next() = 0;
-  /// Frames given so far and in all.
+  /// Of what is recorded, so far and in all: a frame each, or the hands of a frame in messages of their own.
   virtual std::size_t position() const = 0;
   virtual std::size_t size() const = 0;
 };

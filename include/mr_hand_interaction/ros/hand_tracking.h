@@ -9,18 +9,21 @@
 #include <topic_tools/shape_shifter.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mr_hand_interaction/ros/input_statistics.h"
 #include "mr_hand_interaction/ros/leap_reader.h"
 #include "mr_hand_interaction/stamp_judge.h"
+#include "mr_hand_interaction/tracking/hand_pairs.h"
 
 namespace mrhi {
 
-/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2.
-/// Parameters: ~fixed_frame (world), ~side of hands/pose_array (right). Throws std::invalid_argument for a
-/// bad one.
+/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2. A PoseArray's hand is
+/// of the side that its topic names, else its frame (side_by_name), else of ~side. Parameters: ~fixed_frame
+/// (world), ~side of hands/pose_array (right). Throws std::invalid_argument for a bad one.
 class HandTracking {
  public:
   HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
@@ -38,8 +41,11 @@ class HandTracking {
   /// subscription.
   void welcome_other_versions();
   void take_leap(const LeapEvent& event);
-  void take_pose_array(const ros::MessageEvent<const geometry_msgs::PoseArray>& event);
-  void take(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
+  void subscribe_pose_arrays(const std::string& topic);
+  void take_pose_array(const geometry_msgs::PoseArray& message, Side side, const ros::Time& receipt);
+  /// Nothing if it cannot be used.
+  std::optional<HandFrame> place(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
+  void take(const std::optional<HandFrame>& frame, const ros::Time& receipt);
 
   bool accept_stamp(Nanoseconds stamp);
   /// Pose of a tracker's frame in the fixed frame: at the stamp, else the latest. Throws
@@ -50,6 +56,7 @@ class HandTracking {
   std::string fixed_frame_;
   Side pose_array_side_ = Side::right;
   StampJudge stamps_;
+  HandPairs pairs_;
   bool leap_seen_ = false;  ///< a driver, by the present subscription
   LeapReader leap_reader_;
   InputStatistics statistics_;
@@ -58,7 +65,8 @@ class HandTracking {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
   ros::Publisher publisher_;
-  ros::Subscriber leap_subscriber_, pose_array_subscriber_;
+  ros::Subscriber leap_subscriber_;
+  std::vector<ros::Subscriber> pose_array_subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;
 };

@@ -18,8 +18,8 @@ class Skin;
 
 /// What rviz shows, a namespace for each layer: `hand` (rendered, as a skin), `ghost` (tracked, where it is
 /// elsewhere), `capsules` (rendered, as simulated), `objects`, `fixtures`, `contacts` (points), `friction`
-/// (rings), `forces` (arrows) and `text`. What passes (hands, contacts) is in each array, and deleted by the
-/// first one that it is not in; what stays is sent when it changes, and again twice a second.
+/// (rings), `forces` (arrows), `shadows` and `text`. What passes (hands, contacts) is in each array, and
+/// deleted by the first one that it is not in; what stays is sent when it changes, and again twice a second.
 class Markers {
  public:
   Markers(const Scene& scene, const Configuration& configuration);  ///< keeps references
@@ -29,7 +29,8 @@ class Markers {
   /// `array` may be one that is done with: its memory is used again.
   void update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
               visualization_msgs::MarkerArray& array);
-  /// What need not hurry, `capsules` and `text`: 30 times a second, after the picture. Empty in between.
+  /// What need not hurry, `capsules`, `shadows` and `text`: 30 times a second, after the picture. Empty in
+  /// between.
   void update_rest(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
                    visualization_msgs::MarkerArray& array);
   /// The next array has everything, and begins by deleting what was there before.
@@ -49,6 +50,7 @@ class Markers {
   const Scene& scene_;
   const Configuration& configuration_;
   const Vector3 text_place_;
+  const double ground_;  ///< height of what shadows fall on
   std::unique_ptr<HandMarkers> hands_;
   std::unique_ptr<BodyMarkers> bodies_;
   std::string text_;

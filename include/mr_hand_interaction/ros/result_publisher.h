@@ -5,12 +5,14 @@
 #include <tf2_ros/transform_broadcaster.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mr_hand_interaction/ros/haptics_publisher.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/ros/stamp_clock.h"
+#include "mr_hand_interaction/ros/standard_outputs.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
@@ -20,6 +22,8 @@ class ResultPublisher {
  public:
   ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
                   const StampClock& clock);
+  /// From now on those of standard_outputs.h too.
+  void add_standard_outputs(const ros::NodeHandle& node);
 
   /// From now on this one. rviz begins with an empty picture, so that what is no longer there goes.
   void show(const Simulation& simulation);
@@ -46,6 +50,7 @@ class ResultPublisher {
   const Simulation* simulation_ = nullptr;
   std::unique_ptr<Markers> markers_;
   HapticsPublisher haptics_;
+  std::optional<StandardOutputs> standard_;
   ros::Publisher rendered_hands_, tracked_hands_, objects_, contacts_, events_, marker_publisher_;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   tf2_ros::TransformBroadcaster transforms_;

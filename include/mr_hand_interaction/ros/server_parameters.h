@@ -17,8 +17,9 @@ struct ServerParameters {
   std::string fixed_frame = "world";           ///< ~fixed_frame
   std::map<std::string, Twist> object_twists;  ///< ~object_twist/NAME: [vx, vy, vz, wx, wy, wz] at the start
   HapticsRate haptics_rate = HapticsRate::frame;  ///< ~haptics/rate: frame, or step: one message each
-  bool place_by_mouse = false;  ///< ~place_by_mouse: interactive markers that move the objects
-  Configuration configuration;  ///< every name of parameters.h
+  bool place_by_mouse = false;    ///< ~place_by_mouse: interactive markers that move the objects
+  bool standard_outputs = false;  ///< ~standard_outputs: those of standard_outputs.h too
+  Configuration configuration;    ///< every name of parameters.h
 };
 
 /// Reads the private parameters of a node. Throws ParameterError naming one that is unknown or not allowed.
