@@ -18,7 +18,10 @@ struct Farthest {
   Vector3 operator()(const Sphere& s) const { return s.radius * n; }
   Vector3 operator()(const Box& b) const { return BoxShape{b.half_extents}.farthest(n); }
   Vector3 operator()(const Cylinder& c) const { return CylinderShape{c.radius, c.half_length}.farthest(n); }
-  Vector3 operator()(const Mesh&) const { return Vector3::Zero(); }
+  template <typename Other>
+  Vector3 operator()(const Other& shape) const {
+    return shape.farthest(n);
+  }
 };
 
 struct PlacedPair {
