@@ -22,6 +22,11 @@ const std::vector<ShapeKind>& shape_kinds() {
        [](const Size& s) -> Shape {
          return Cylinder{s[0], 0.5 * s[1]};
        }},
+      {"capsule",
+       {"radius", "length"},
+       [](const Size& s) -> Shape {
+         return Pill{s[0], 0.5 * s[1]};
+       }},
   };
   return kinds;
 }

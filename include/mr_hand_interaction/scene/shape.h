@@ -78,6 +78,20 @@ struct Cylinder {
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
 
+/// URDF's <capsule>: axis along z, centred at the origin, a half ball on each end.
+struct Pill {
+  double radius;       ///< [m]
+  double half_length;  ///< of the straight part [m]
+
+  double bounding_radius() const { return half_length + radius; }
+  SolidMoments moments() const;
+  Vector3 farthest(const Vector3& n) const;
+  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<Capsule> core() const;
+  ClosestFeatures closest(const Capsule& capsule, double margin) const;
+  AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
+};
+
 struct Mesh {
   std::shared_ptr<const TriangleMesh> triangles;  ///< scaled, in the shape's frame
   std::string uri;                                ///< for display: as the URDF has it, a path made file://
@@ -90,7 +104,7 @@ struct Mesh {
   std::optional<Capsule> core() const;
 };
 
-using Shape = std::variant<Sphere, Box, Cylinder, Mesh>;
+using Shape = std::variant<Sphere, Box, Cylinder, Pill, Mesh>;
 
 /// A collision shape and its place in the body frame.
 struct PlacedShape {
