@@ -58,6 +58,14 @@ std::string as_filename(const GivenShape& shape) {
   return name;
 }
 
+bool is_hull(const std::string& filename) {
+  return filename.compare(0, std::string(kHullPrefix).size(), kHullPrefix) == 0;
+}
+
+std::string without_hull(const std::string& filename) {
+  return is_hull(filename) ? filename.substr(std::string(kHullPrefix).size()) : filename;
+}
+
 std::optional<GivenShape> from_filename(const std::string& filename) {
   if (filename.compare(0, kPrefix.size(), kPrefix) != 0) return std::nullopt;
   std::istringstream words(filename.substr(kPrefix.size()));

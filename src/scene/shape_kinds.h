@@ -36,4 +36,9 @@ struct GivenShape {
 std::string as_filename(const GivenShape& shape);
 std::optional<GivenShape> from_filename(const std::string& filename);
 
+// Likewise of a mesh whose convex hull is meant.
+const char* const kHullPrefix = ":hull:";
+bool is_hull(const std::string& filename);
+std::string without_hull(const std::string& filename);
+
 }  // namespace mrhi

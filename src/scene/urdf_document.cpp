@@ -49,9 +49,24 @@ std::string read_file(const std::string& file) {
   return *xml;
 }
 
+/// Notes <!-- hull --> in the tag of the mesh that it stands behind.
+void note_hull(std::string& xml, std::size_t comment) {
+  const std::size_t mesh = xml.rfind("<mesh", comment), geometry = xml.rfind("<geometry", comment);
+  const std::size_t name = mesh == std::string::npos ? mesh : xml.find("filename", mesh);
+  const std::size_t quote = name == std::string::npos ? name : xml.find_first_of("\"'", name);
+  if (quote >= comment || geometry == std::string::npos || geometry > mesh)
+    throw std::runtime_error("<!-- hull --> stands behind no mesh");
+  xml.insert(quote + 1, kHullPrefix);
+}
+
 std::string without_comments(std::string xml) {
   for (std::size_t begin = xml.find("<!--"); begin != std::string::npos; begin = xml.find("<!--", begin)) {
-    const std::size_t end = xml.find("-->", begin);
+    std::size_t end = xml.find("-->", begin);
+    if (end != std::string::npos && text::one_line(xml.substr(begin + 4, end - begin - 4)) == "hull") {
+      const std::size_t length = xml.size();
+      note_hull(xml, begin);
+      begin += xml.size() - length, end += xml.size() - length;
+    }
     xml.erase(begin, end == std::string::npos ? end : end + 3 - begin);
   }
   return xml;

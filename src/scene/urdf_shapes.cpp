@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "body_limits.h"
+#include "convex_hull.h"
 #include "mesh_loader.h"
 #include "shape_kinds.h"
 #include "text.h"
@@ -60,20 +61,22 @@ Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, 
     fail(element,
          "mesh scale " + text::vector(scale) + " is not allowed; allowed: three numbers, none of them 0");
   }
-  const std::string file = mesh_file(mesh.filename, element);
-  const std::string key = file + (solid ? " solid " : " ") + text::vector(scale);
+  const bool hull = solid && is_hull(mesh.filename);
+  const std::string uri = without_hull(mesh.filename);
+  const std::string file = mesh_file(uri, element);
+  const std::string key = file + (hull ? " hull " : solid ? " solid " : " ") + text::vector(scale);
   if (!meshes_.count(key)) {
     try {
       TriangleMesh triangles = load_mesh(file, scale);
+      if (hull) triangles = convex_hull(triangles);
       if (solid) make_solid(triangles);
       meshes_[key] = std::make_shared<const TriangleMesh>(std::move(triangles));
     } catch (const std::runtime_error& error) {
-      fail(element, "mesh '" + mesh.filename + "' " + error.what());
+      fail(element, "mesh '" + uri + "' " + error.what());
     }
   }
-  const bool is_uri = mesh.filename.find("://") != std::string::npos;
-  return {meshes_[key], is_uri ? mesh.filename : "file://" + fs::absolute(file).lexically_normal().string(),
-          scale};
+  const bool is_uri = uri.find("://") != std::string::npos;
+  return {meshes_[key], is_uri ? uri : "file://" + fs::absolute(file).lexically_normal().string(), scale};
 }
 
 std::string ShapeReader::mesh_file(const std::string& uri, const std::string& element) const {
