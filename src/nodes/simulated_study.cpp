@@ -7,6 +7,7 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/arguments.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/training/operator_trial.h"
@@ -21,7 +22,7 @@ const char* const kHelp =
     "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with.\n\n"
     "  --operators FIRST-LAST   of those with these numbers; default 1-30\n"
     "  --group-size N           the first N operators are beginners, all others veterans; default 15\n"
-    "  --model NAME             contact model; again for more; default: all six\n"
+    "  --model NAME             contact model; again for more; default: all\n"
     "  --gravity G              in g, from 0 to 10; again for more; default: 0 and 1\n"
     "  --task NAME|FILE         default: pick_and_place\n"
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
@@ -103,7 +104,7 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   }
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
   if (study.models.empty())
-    study.models = {"implicit", "seed", "penetration", "impulse", "virtual_spring", "soft_pad"};
+    for (const ContactModelEntry* model : contact_models()) study.models.emplace_back(model->name);
   if (study.gravities.empty()) study.gravities = {0.0, 1.0};
   return study;
 }

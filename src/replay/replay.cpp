@@ -123,7 +123,7 @@ void replay(const ReplayArguments& arguments) {
   summary.scene = simulation.scene().name;
   summary.input = arguments.input;
   summary.topic = input.topic;
-  summary.contact_model = to_string(simulation.configuration().contact_model);
+  summary.contact_model = simulation.configuration().contact_model.name;
   ProgressBar progress;
   try {
     run_frames(*input.frames, simulation, writer, progress, summary);

@@ -1,4 +1,5 @@
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/response/contact_model.h"
 
 #include <ros/package.h>
 

@@ -4,24 +4,6 @@
 
 namespace mrhi {
 
-const char* to_string(ContactModelKind kind) {
-  switch (kind) {
-    case ContactModelKind::implicit:
-      return "implicit";
-    case ContactModelKind::seed:
-      return "seed";
-    case ContactModelKind::penetration:
-      return "penetration";
-    case ContactModelKind::impulse:
-      return "impulse";
-    case ContactModelKind::virtual_spring:
-      return "virtual_spring";
-    case ContactModelKind::soft_pad:
-      return "soft_pad";
-  }
-  return "";
-}
-
 std::uint32_t hand_id(const Contact& contact, const SimulationState& state) {
   return state.hands[contact.key.hand].current.id;
 }

@@ -13,7 +13,6 @@
 
 namespace mrhi {
 
-const char* to_string(ContactModelKind kind);
 
 /// The tracker's id of the contact's hand.
 std::uint32_t hand_id(const Contact& contact, const SimulationState& state);
