@@ -117,7 +117,7 @@ struct MeshCollider::Impl {
   }
   int face_at(const SurfaceNearest& nearest) const;
   ClosestFeatures leave(const Segment& segment, const SurfaceNearest& nearest) const;
-  void leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const;
+  void leave_by_end(const Segment& segment, double s, std::optional<ClosestFeatures>& best) const;
 
   MeshShape shape;
   mutable GuessMemory guesses;
@@ -133,16 +133,17 @@ int MeshCollider::Impl::face_at(const SurfaceNearest& nearest) const {
 }
 
 ClosestFeatures MeshCollider::Impl::leave(const Segment& segment, const SurfaceNearest& nearest) const {
-  ClosestFeatures features = leave_mesh(segment, shape.surface, shape.tree, face_at(nearest));
+  std::optional<ClosestFeatures> known;
   if (!shape.surface.convex() && shape.surface.closed()) {
-    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, features);
+    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, known);
   }
-  return features;
+  return leave_mesh(segment, shape.surface, shape.tree, face_at(nearest), known ? &*known : nullptr);
 }
 
 /// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
 /// inwards.
-void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const {
+void MeshCollider::Impl::leave_by_end(const Segment& segment, double s,
+                                      std::optional<ClosestFeatures>& best) const {
   const Vector3 end = segment.at(s);
   const Segment only_end(Capsule{end, end, 0.0});
   const MeshNearest search = nearest(only_end, kUnlimited);
@@ -150,7 +151,8 @@ void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestF
   if (depth < kOnSurface || !inside(search)) return;
   const Vector3 normal = -search.gap() / depth;
   const bool is_last_out = normal.dot(segment.at(1.0 - s) - end) >= 0.0;
-  if (is_last_out && -depth > best.distance + kParallel) best = {-depth, normal, search.nearest().point, s};
+  if (is_last_out && (!best || -depth > best->distance + kParallel))
+    best = {-depth, normal, search.nearest().point, s};
 }
 
 MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
