@@ -109,6 +109,18 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   return study;
 }
 
+Configuration configuration_of(const Study& study, const std::string& model) {
+  Configuration configuration;
+  try {
+    for (const auto& [key, value] : study.settings) set_parameter(configuration, key, value);
+    set_parameter(configuration, "contact_model", model);
+    validate(configuration);
+  } catch (const ParameterError& error) {
+    throw UsageError(error.what());
+  }
+  return configuration;
+}
+
 /// What one simulated operator did under one condition.
 void play_session(const Study& study, int person, const std::string& model, double gravity, Task task) {
   char name[16], strength[16];
@@ -117,9 +129,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
   task.gravity = Vector3(0.0, 0.0, -kStandardGravity * gravity);
 
   OperatorStage stage;
-  for (const auto& [key, value] : study.settings) set_parameter(stage.configuration, key, value);
-  set_parameter(stage.configuration, "contact_model", model);
-  validate(stage.configuration);
+  stage.configuration = configuration_of(study, model);
   stage.scene_folders = scene_folders();
   stage.scene_options = scene_options(stage.configuration);
 
@@ -132,7 +142,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
   header.condition = model;
   header.seed = study.seed;
   header.simulated = true;
-  header.software = "0.1.0";
+  header.software = MR_HAND_INTERACTION_VERSION;
   const OperatorSkill skill = draw_skill(header.group, seeds.bits());
   const std::uint64_t trials = seeds.bits();
   const std::string folder = study.output + "/" + model + "_" + strength + "/" + name;
@@ -149,6 +159,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
 }
 
 void play(const Study& study) {
+  for (const std::string& model : study.models) configuration_of(study, model);  // before anything is played
   const Task task = load_task(find_task_file(study.task, task_folders()));
   for (int person = study.first; person <= study.last; ++person) {
     for (const std::string& model : study.models) {
