@@ -7,21 +7,14 @@
 #include <fstream>
 #include <iostream>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "support/stability_map.h"
 
 namespace mrhi::testing {
 namespace {
 
-constexpr std::pair<const char*, ContactModelKind> kModels[] = {
-    {"implicit", ContactModelKind::implicit},
-    {"seed", ContactModelKind::seed},
-    {"penetration", ContactModelKind::penetration},
-    {"impulse", ContactModelKind::impulse},
-    {"virtual_spring", ContactModelKind::virtual_spring},
-    {"soft_pad", ContactModelKind::soft_pad}};
 constexpr int kMasses = 11, kSteps = 9;
 
 /// `count` values from `first` to `last`, each the same multiple of the one before.
@@ -70,8 +63,8 @@ int run(const std::string& folder) {
   std::ofstream csv(path);
   csv.precision(9);
   csv << "model,mass_kg,step_s,stiffness_n_m,contacts,restitution,outcome,largest_speed_m_s\n";
-  for (const auto& [name, model] : kModels) {
-    if (csv) map_model(name, model, csv);
+  for (const ContactModelEntry* model : contact_models()) {
+    if (csv) map_model(model->name, {model->name}, csv);
   }
   csv.close();
   if (csv) return 0;

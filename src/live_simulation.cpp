@@ -5,6 +5,7 @@
 
 #include "mr_hand_interaction/collision/overlap.h"
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene_change.h"
 #include "mr_hand_interaction/tracking/tracker.h"
 #include "scene/text.h"

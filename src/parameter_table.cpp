@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/tracking/filter_memory.h"
 #include "scene/body_limits.h"
 #include "scene/material_fields.h"
@@ -207,18 +208,17 @@ std::vector<ParameterEntry> filter_parameters() {
           "filter/agility", " [1/s]", {0, 1000}, {0, 30}, [](C & c) -> auto& { return c.filter.agility; })};
 }
 
+std::vector<std::pair<std::string, ContactModelKind>> contact_model_names() {
+  std::vector<std::pair<std::string, ContactModelKind>> names;
+  for (const ContactModelEntry* model : contact_models()) names.push_back({model->name, {model->name}});
+  return names;
+}
+
 std::vector<ParameterEntry> make_table() {
   using C = Configuration;
   std::vector<ParameterEntry> table{
       choice<ContactModelKind>(
-          "contact_model",
-          {{"implicit", ContactModelKind::implicit},
-           {"seed", ContactModelKind::seed},
-           {"penetration", ContactModelKind::penetration},
-           {"impulse", ContactModelKind::impulse},
-           {"virtual_spring", ContactModelKind::virtual_spring},
-           {"soft_pad", ContactModelKind::soft_pad}},
-          [](C & c) -> auto& { return c.contact_model; }),
+          "contact_model", contact_model_names(), [](C & c) -> auto& { return c.contact_model; }),
       number(
           "contact/object_stiffness", " [N/m]", {1, 1e9}, {1e4, 1e8},
           [](C & c) -> auto& { return c.contact.object_stiffness; }),

@@ -7,6 +7,7 @@
 #include "csv_columns.h"
 #include "finger_forces.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "recording.h"

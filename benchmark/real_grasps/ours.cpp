@@ -2,6 +2,7 @@
 
 #include "finger_forces.h"
 #include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"
 #include "recording.h"
 #include "trial.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"
 #include "recording.h"
 

@@ -3,13 +3,30 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/material.h"
 
 namespace mrhi {
 
-enum class ContactModelKind { implicit, seed, penetration, impulse, virtual_spring, soft_pad };
+/// Names one of contact_models() (response/contact_model.h). Those that tests and benchmarks speak of have a
+/// name here too; a new one needs none.
+struct ContactModelKind {
+  std::string_view name;  ///< of static storage
+
+  static const ContactModelKind implicit, seed, penetration, impulse, virtual_spring, soft_pad;
+
+  friend bool operator==(const ContactModelKind& a, const ContactModelKind& b) { return a.name == b.name; }
+  friend bool operator!=(const ContactModelKind& a, const ContactModelKind& b) { return !(a == b); }
+};
+inline constexpr ContactModelKind ContactModelKind::implicit{"implicit"};
+inline constexpr ContactModelKind ContactModelKind::seed{"seed"};
+inline constexpr ContactModelKind ContactModelKind::penetration{"penetration"};
+inline constexpr ContactModelKind ContactModelKind::impulse{"impulse"};
+inline constexpr ContactModelKind ContactModelKind::virtual_spring{"virtual_spring"};
+inline constexpr ContactModelKind ContactModelKind::soft_pad{"soft_pad"};
+
 enum class FilterKind { none, window, one_euro, constant_velocity };
 
 constexpr double kUsualNoise = 0.0004;  ///< of a good tracker's sample, rms on an axis [m]
@@ -75,10 +92,5 @@ struct Configuration {
   TrackingConfiguration tracking;
   ContactConfiguration contact;
 };
-
-/// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the paper's 100 N/m
-/// under the paper's models, 500 N/m under `virtual_spring` and `soft_pad`, and 2000 N/m under
-/// `implicit`, which is stable with it at any step and mass.
-Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

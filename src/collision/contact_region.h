@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "mr_hand_interaction/collision/body_manifold.h"
@@ -11,6 +12,11 @@ namespace mrhi {
 constexpr double kSameFace = 0.99905;
 /// Faces of sizes nearer than this are as large.
 constexpr double kSameSize = 1e-6;
+
+/// A face's deepest point may differ so much from the depth along the best direction.
+inline bool as_deep(double deepest, double separation) {
+  return deepest >= -separation - 1e-3 * std::abs(separation) - 3e-6;
+}
 
 /// A corner of the region in which two faces overlap, seen along the normal: across the face, and how deep.
 struct RegionPoint {

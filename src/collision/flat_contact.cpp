@@ -7,8 +7,6 @@
 namespace mrhi {
 namespace {
 
-/// A face's deepest point may differ so much from the best axis.
-constexpr double kRelative = 1e-3, kAbsolute = 3e-6;
 /// A cap meets a face with its rim, above; a side with its line, below this cosine.
 constexpr double kCapOrSide = 0.7071067811865476;
 
@@ -58,10 +56,6 @@ Manifold on_cap(const Disc& cap, bool cap_is_a, const OrientedCylinder& other, d
   const Disc &whole = by_other ? disc : cap, &part = by_other ? cap : disc;
   const DiscOverlap overlap(whole, by_other != cap_is_a, normal, part.centre, part.normal);
   return flat(overlap, overlap.with_disc(part), normal, margin);
-}
-
-bool as_deep(const Manifold& manifold, double separation) {
-  return deepest_depth(manifold) >= -separation - kRelative * std::abs(separation) - kAbsolute;
 }
 
 /// Is no other direction better than the face's? Turned by t towards where the deepest point is w from the
@@ -124,7 +118,7 @@ FlatContact flat_contact(const OrientedCylinder& a, const OrientedBox& b, const 
     flat.manifold = on_face(a, face, margin);
     border = to_border(face, flat.manifold);
   }
-  flat.found = as_deep(flat.manifold, separation);
+  flat.found = as_deep(deepest_depth(flat.manifold), separation);
   flat.certain = flat.found && is_certain(flat.manifold, border, 2.0 * std::min(a.reach(n), b.reach(n)));
   return flat;
 }
@@ -141,7 +135,7 @@ FlatContact flat_contact(const OrientedCylinder& a, const OrientedCylinder& b, c
     flat.manifold = on_cap(cap_b, false, a, margin);
     border = to_border(cap_b, flat.manifold);
   }
-  flat.found = as_deep(flat.manifold, separation);
+  flat.found = as_deep(deepest_depth(flat.manifold), separation);
   flat.certain = flat.found && is_certain(flat.manifold, border, 2.0 * std::min(a.reach(n), b.reach(n)));
   return flat;
 }

@@ -40,10 +40,73 @@ class GuessMemory {
   std::array<std::atomic<int>, 1021> parts_;
 };
 
+/// What was near to segments that were asked for, so that who asks again from almost the same place needs no
+/// search. No result depends on it either; who finds an entry in use by another goes without.
+class NearMemory {
+ public:
+  /// The answer if it is known; else `search()`, and what it found is remembered if the segment has kept so
+  /// still that this may serve once more.
+  template <typename Search>
+  MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range, const Search& search) {
+    Set& set = sets_[name_of(segment) % sets_.size()];
+    if (set.in_use.test_and_set(std::memory_order_acquire)) return search();
+    const Use use(set.in_use);
+    std::size_t closest = 0;
+    double least = 1e300;
+    for (std::size_t i = 0; i < set.entries.size(); ++i) {
+      const double moved = set.entries[i].moved(segment);
+      if (moved < least) least = moved, closest = i;
+    }
+    NearParts& entry = set.entries[closest];
+    if (least < entry.slack) return MeshNearest(shape.surface, segment, range, entry);
+    MeshNearest found = search();
+    if (least < kStill) {
+      entry = found.found() ? found.near_parts(shape.tree) : NearParts{};
+    } else {
+      set.next = (set.next + 1) % set.entries.size();
+      set.entries[set.next] = NearParts{};
+      closest = set.next;
+    }
+    set.entries[closest].start = segment.start, set.entries[closest].end = segment.end();
+    return found;
+  }
+
+ private:
+  static constexpr double kCell = 0.002, kStill = 2e-5;  // [m]
+
+  struct Use {
+    explicit Use(std::atomic_flag& taken) : flag(taken) {}
+    ~Use() { flag.clear(std::memory_order_release); }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    std::atomic_flag& flag;
+  };
+  struct Set {
+    std::atomic_flag in_use = ATOMIC_FLAG_INIT;
+    std::array<NearParts, 4> entries;
+    std::size_t next = 0;
+  };
+
+  static std::uint32_t name_of(const Segment& segment) {
+    std::uint32_t name = 0;
+    for (const Vector3& end : {segment.start, segment.end()})
+      for (int i = 0; i < 3; ++i) {
+        const double held = std::max(-1e6, std::min(std::floor(end[i] / kCell), 1e6));
+        name = name * 73u + static_cast<std::uint32_t>(static_cast<int>(held));
+      }
+    return name;
+  }
+
+  std::array<Set, 127> sets_;
+};
+
 struct MeshCollider::Impl {
   explicit Impl(const TriangleMesh& mesh) : shape(mesh), guesses(shape.surface) {}
 
   MeshNearest nearest(const Segment& segment, double range) const {
+    return memory.nearest(shape, segment, range, [&] { return searched(segment, range); });
+  }
+  MeshNearest searched(const Segment& segment, double range) const {
     std::atomic<int>& guess = guesses.at(segment);
     MeshNearest search(shape.surface, shape.tree, segment, range, guess.load(std::memory_order_relaxed));
     if (search.part() >= 0) guess.store(search.part(), std::memory_order_relaxed);
@@ -54,10 +117,11 @@ struct MeshCollider::Impl {
   }
   int face_at(const SurfaceNearest& nearest) const;
   ClosestFeatures leave(const Segment& segment, const SurfaceNearest& nearest) const;
-  void leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const;
+  void leave_by_end(const Segment& segment, double s, std::optional<ClosestFeatures>& best) const;
 
   MeshShape shape;
   mutable GuessMemory guesses;
+  mutable NearMemory memory;
 };
 
 /// A face that has the nearest place, or one beside it.
@@ -69,16 +133,17 @@ int MeshCollider::Impl::face_at(const SurfaceNearest& nearest) const {
 }
 
 ClosestFeatures MeshCollider::Impl::leave(const Segment& segment, const SurfaceNearest& nearest) const {
-  ClosestFeatures features = leave_mesh(segment, shape.surface, shape.tree, face_at(nearest));
+  std::optional<ClosestFeatures> known;
   if (!shape.surface.convex() && shape.surface.closed()) {
-    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, features);
+    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, known);
   }
-  return features;
+  return leave_mesh(segment, shape.surface, shape.tree, face_at(nearest), known ? &*known : nullptr);
 }
 
 /// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
 /// inwards.
-void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestFeatures& best) const {
+void MeshCollider::Impl::leave_by_end(const Segment& segment, double s,
+                                      std::optional<ClosestFeatures>& best) const {
   const Vector3 end = segment.at(s);
   const Segment only_end(Capsule{end, end, 0.0});
   const MeshNearest search = nearest(only_end, kUnlimited);
@@ -86,7 +151,8 @@ void MeshCollider::Impl::leave_by_end(const Segment& segment, double s, ClosestF
   if (depth < kOnSurface || !inside(search)) return;
   const Vector3 normal = -search.gap() / depth;
   const bool is_last_out = normal.dot(segment.at(1.0 - s) - end) >= 0.0;
-  if (is_last_out && -depth > best.distance + kParallel) best = {-depth, normal, search.nearest().point, s};
+  if (is_last_out && (!best || -depth > best->distance + kParallel))
+    best = {-depth, normal, search.nearest().point, s};
 }
 
 MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}

@@ -4,10 +4,10 @@
 
 #include "box_face.h"
 #include "contact_region.h"
+#include "core_manifold.h"
 #include "disc_overlap.h"
 #include "line_contact.h"
 #include "mesh_shape.h"
-#include "sphere_manifold.h"
 
 namespace mrhi {
 namespace {
@@ -79,7 +79,8 @@ struct Probes {
   const Wanted& wanted;
   const See& see;
 
-  void operator()(const Sphere&) const {}
+  template <typename Round>
+  void operator()(const Round&) const {}
   void operator()(const Box& shape) const {
     const OrientedBox box(shape, probing.pose);
     for (int i = 0; i < kBoxCorners; ++i) see(Probe::corner(box.corner(i), i));

@@ -1,5 +1,7 @@
 #include "mesh_nearest.h"
 
+#include <algorithm>
+
 namespace mrhi {
 
 MeshNearest::MeshNearest(const MeshSurface& surface, const MeshTree& tree, const Segment& segment,
@@ -14,12 +16,19 @@ MeshNearest::MeshNearest(const MeshSurface& surface, const MeshTree& tree, const
   }
 }
 
+MeshNearest::MeshNearest(const MeshSurface& surface, const Segment& segment, double range,
+                         const NearParts& near)
+    : surface_(surface), segment_(segment), range_(range), faces_(static_cast<int>(surface.faces().size())) {
+  for (std::size_t i = 0; i < near.count; ++i) measure(near.parts[i], kAnyDistance);
+}
+
 bool MeshNearest::is_all() const {
   return surface_.convex() && part() >= 0 && nearest().distance > kOnSurface &&
          surface_.is_support(nearest(), gap());
 }
 
-void MeshNearest::search(const MeshTree& tree, double range) {
+template <typename Limit, typename See>
+void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see) const {
   struct Open {
     int node;
     double squared;  // from the node's centre to the segment
@@ -37,15 +46,78 @@ void MeshNearest::search(const MeshTree& tree, double range) {
   while (count > 0) {
     const Open next = open[--count];
     const MeshTree::Node& node = tree.node(next.node);
-    const double limit_now = limit(range), reach = node.radius + limit_now;
+    const double limit_now = limit(), reach = node.radius + limit_now;
     if (next.squared > reach * reach || is_below(node, limit_now)) continue;
-    for (int i = node.first; i < node.first + node.count; ++i) measure(tree.part(i), range);
+    for (int i = node.first; i < node.first + node.count; ++i) see(tree.part(i));
     if (node.count > 0) continue;
     const Open one = look(node.first), other = look(node.first + 1);
     const bool one_first = one.squared <= other.squared;
     open[count++] = one_first ? other : one;
     open[count++] = one_first ? one : other;
   }
+}
+
+void MeshNearest::search(const MeshTree& tree, double range) {
+  visit(
+      tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });
+}
+
+/// A face that is nearest at its border says nothing: it comes with the edges there.
+NearParts MeshNearest::near_parts(const MeshTree& tree) const {
+  constexpr std::size_t kEdges = 12, kFaces = NearParts::kMost - kEdges;
+  constexpr double kMostSlack = 1e-4, kRounding = 1e-9;
+  struct Near {
+    double distance;
+    int part;
+  };
+  std::array<Near, kEdges + 1> edges;
+  std::array<Near, kFaces> faces;
+  std::size_t edge_count = 0, face_count = 0;
+  double bound = nearest().distance + 2.0 * kMostSlack;
+  const auto before = [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.part < b.part;
+  };
+  visit(
+      tree, [&] { return bound; },
+      [&](int part) {
+        if (is_too_far(part, bound)) return;
+        const bool is_face = part < faces_;
+        const SurfaceNearest now = is_face ? surface_.nearest_on_face(part, segment_)
+                                           : surface_.nearest_on_edge(part - faces_, segment_);
+        if (now.distance >= bound) return;
+        if (is_face) {
+          if (face_count == kFaces) {
+            bound = std::min(bound, now.distance);
+            return;
+          }
+          faces[face_count++] = {now.distance, part};
+          return;
+        }
+        std::size_t place = edge_count++;
+        for (; place > 0 && before({now.distance, part}, edges[place - 1]); --place)
+          edges[place] = edges[place - 1];
+        edges[place] = {now.distance, part};
+        if (edge_count > kEdges) bound = edges[--edge_count].distance;
+      });
+  NearParts near;
+  const auto add = [&](int part) {
+    const auto end = near.parts.begin() + static_cast<std::ptrdiff_t>(near.count);
+    if (std::find(near.parts.begin(), end, part) != end) return;
+    if (near.count < NearParts::kMost) near.parts[near.count] = part;
+    ++near.count;
+  };
+  std::sort(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(face_count), before);
+  for (std::size_t i = 0; i < face_count; ++i)
+    if (faces[i].distance < bound) add(faces[i].part);
+  for (std::size_t i = 0; i < edge_count; ++i) {
+    if (edges[i].distance >= bound) continue;
+    add(edges[i].part);
+    for (const int face : surface_.edges()[static_cast<std::size_t>(edges[i].part - faces_)].faces) add(face);
+  }
+  if (near.count > NearParts::kMost) return {};
+  near.start = segment_.start, near.end = segment_.end();
+  near.slack = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
+  return near;
 }
 
 /// Seen along the direction from the nearest so far to the segment, no part of the node is near enough.

@@ -5,6 +5,22 @@
 
 namespace mrhi {
 
+/// What may be nearest to a segment whose ends are within `slack` of those given: all other parts are farther
+/// by then.
+struct NearParts {
+  static constexpr std::size_t kMost = 40;
+
+  Vector3 start = Vector3::Zero(), end = Vector3::Zero();
+  double slack = 0.0;  // [m]; 0: nothing is known
+  std::array<int, kMost> parts;
+  std::size_t count = 0;
+
+  /// How far the farther end is from there.
+  double moved(const Segment& segment) const {
+    return std::sqrt(std::max((segment.start - start).squaredNorm(), (segment.end() - end).squaredNorm()));
+  }
+};
+
 /// What of a surface is nearest to a segment, if it is no farther than a range. Faces come before the edges
 /// around them, and of parts that are as near the first: the answer does not depend on where the search
 /// began.
@@ -14,6 +30,12 @@ class MeshNearest {
   /// right.
   MeshNearest(const MeshSurface& surface, const MeshTree& tree, const Segment& segment, double range,
               int guess);
+
+  /// The same where `near` holds for the segment: without a search.
+  MeshNearest(const MeshSurface& surface, const Segment& segment, double range, const NearParts& near);
+
+  /// What was found, and how far that is so. Ends that move by up to the slack change no distance by more.
+  NearParts near_parts(const MeshTree& tree) const;
 
   bool found() const { return nearest().distance <= range_; }
   const SurfaceNearest& nearest() const {
@@ -27,6 +49,10 @@ class MeshNearest {
  private:
   static constexpr double kSameDistance = 1e-14, kAnyDistance = 1e300;
 
+  /// Calls `see(part)` for parts of nodes that are no farther from the segment than limit(), the nearer nodes
+  /// first.
+  template <typename Limit, typename See>
+  void visit(const MeshTree& tree, const Limit& limit, const See& see) const;
   bool is_all() const;
   void search(const MeshTree& tree, double range);
   bool is_below(const MeshTree::Node& node, double limit) const;

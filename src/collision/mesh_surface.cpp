@@ -1,5 +1,7 @@
 #include "mesh_surface.h"
 
+#include "segment_pair.h"
+
 namespace mrhi {
 namespace {
 
@@ -10,34 +12,6 @@ constexpr double kClear = 1e-5;
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
-}
-
-double clamp_unit(double x) {
-  return std::max(0.0, std::min(x, 1.0));
-}
-
-struct EdgeNearest {
-  Stretch stretch;
-  double t;  // along the edge, facing the stretch's middle
-};
-
-/// Nearest stretch of the segment to the edge from `corner` along `edge` (Ericson, Real-Time Collision
-/// Detection, 5.1.9).
-EdgeNearest nearest_stretch(const Segment& segment, const Vector3& corner, const Vector3& edge) {
-  const Vector3 offset = segment.start - corner, &along = segment.along;
-  const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);
-  const double c = along.dot(offset), f = edge.dot(offset);
-  if (a == 0.0) return {{0.5, 0.5}, clamp_unit(f / e)};
-  const bool parallel = along.cross(edge).squaredNorm() <= kParallel * kParallel * e;
-  if (parallel) {
-    const double at_start = -c / a, at_end = (b - c) / a;
-    const double s0 = clamp_unit(std::min(at_start, at_end)), s1 = clamp_unit(std::max(at_start, at_end));
-    return {{s0, s1}, clamp_unit((0.5 * (s0 + s1) * b + f) / e)};
-  }
-  double s = clamp_unit((b * f - c * e) / (a * e - b * b));
-  const double t = clamp_unit((b * s + f) / e);
-  s = clamp_unit((b * t - c) / a);
-  return {{s, s}, clamp_unit((b * s + f) / e)};
 }
 
 double nearest_to(const Vector3& place, const Segment& segment) {
@@ -187,7 +161,7 @@ SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) c
 
 SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) const {
   const Edge& edge = edges_[at(index)];
-  const EdgeNearest nearest = nearest_stretch(segment, edge.start, edge.along);
+  const SegmentPair nearest = nearest_stretch(segment, edge.start, edge.along);
   SurfaceNearest found;
   if (nearest.t <= 0.0 || nearest.t >= 1.0) {
     // The same for all edges that end here.

@@ -51,6 +51,21 @@ double MeshTree::Node::depth(const Segment& segment) const {
   return depth;
 }
 
+bool MeshTree::Node::may_be_way_out(const Segment& segment) const {
+  if (cos_spread <= 0.1) return true;
+  const double rise = normal.dot(segment.along), swing = sin_spread * segment.along.norm() + kParallel;
+  // Of normals that all rise along the segment its start comes out last, of those that fall its end; else any
+  // place.
+  const double s0 = rise < -swing ? 1.0 : 0.0, s1 = rise > swing ? 0.0 : 1.0;
+  const Vector3 offset = centre - segment.at(s0), along = (s1 - s0) * segment.along;
+  const double up = normal.dot(offset), run_up = normal.dot(along);
+  const Vector3 aside = offset - up * normal, run = along - run_up * normal;
+  const double squared = run.squaredNorm();
+  const double s = squared > 0.0 ? std::max(0.0, std::min(aside.dot(run) / squared, 1.0)) : 0.0;
+  const double highest = std::max(0.0, std::max(up, up - run_up));
+  return (aside - s * run).norm() * cos_spread <= highest * sin_spread + radius;
+}
+
 MeshTree::MeshTree(const MeshSurface& surface) : parts_(surface.faces().size() + surface.edges().size()) {
   std::iota(parts_.begin(), parts_.end(), 0);
   std::vector<Vector3> centres;

@@ -23,6 +23,9 @@ class MeshTree {
     double distance(const Segment& segment) const;
     /// The planes of its parts are no less deep around both ends of the segment than this.
     double depth(const Segment& segment) const;
+    /// False if no part is where a straight way along its normal leads from what of the segment comes out
+    /// last.
+    bool may_be_way_out(const Segment& segment) const;
   };
 
   /// No branch is longer.

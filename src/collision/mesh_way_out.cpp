@@ -1,5 +1,6 @@
 #include "mesh_way_out.h"
 
+#include <limits>
 #include <optional>
 
 namespace mrhi {
@@ -51,15 +52,19 @@ std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshS
 
 class WayOutSearch {
  public:
-  WayOutSearch(const Segment& segment, const MeshSurface& surface) : segment_(segment), surface_(surface) {}
+  WayOutSearch(const Segment& segment, const MeshSurface& surface, double known)
+      : segment_(segment), surface_(surface), known_(known) {}
+
+  bool found() const { return face_.face >= 0 || edge_index_ >= 0; }
 
   /// How deep a node is at least. Where the way has to lead through a part, that is no farther than it is
   /// deep.
   double cost(const MeshTree::Node& node) const {
     const double depth = node.depth(segment_);
-    return surface_.convex() ? depth : std::max(depth, node.distance(segment_));
+    if (surface_.convex()) return depth;
+    return node.may_be_way_out(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
   }
-  double limit() const { return -std::max(face_.separation, edge_.distance) + 1e-9; }
+  double limit() const { return -std::max({face_.separation, edge_.distance, known_}) + 1e-9; }
   void see(int part) {
     const int faces = static_cast<int>(surface_.faces().size());
     part < faces ? see_face(part) : see_edge(part - faces);
@@ -74,6 +79,8 @@ class WayOutSearch {
   }
 
  private:
+  static constexpr double kNoWay = std::numeric_limits<double>::infinity();  // beyond any limit
+
   bool allowed(double separation) const { return surface_.convex() || separation < kOnSurface; }
   void see_face(int index) {
     const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(index)];
@@ -97,6 +104,7 @@ class WayOutSearch {
 
   const Segment& segment_;
   const MeshSurface& surface_;
+  const double known_;
   WayOut face_;
   ClosestFeatures edge_{-1e300, Vector3::UnitZ(), Vector3::Zero(), 0.5};
   int edge_index_ = -1;
@@ -105,11 +113,13 @@ class WayOutSearch {
 }  // namespace
 
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, const MeshTree& tree,
-                           int fallback) {
-  WayOutSearch search(segment, surface);
+                           int fallback, const ClosestFeatures* known) {
+  WayOutSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);
   tree.search([&](const MeshTree::Node& node) { return search.cost(node); }, [&] { return search.limit(); },
               [&](int part) { search.see(part); });
-  return search.result(fallback);
+  if (known != nullptr && !search.found()) return *known;
+  const ClosestFeatures best = search.result(fallback);
+  return known != nullptr && known->distance > best.distance + kParallel ? *known : best;
 }
 
 }  // namespace mrhi

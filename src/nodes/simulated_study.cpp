@@ -7,6 +7,7 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/arguments.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/training/operator_trial.h"
@@ -21,7 +22,7 @@ const char* const kHelp =
     "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with.\n\n"
     "  --operators FIRST-LAST   of those with these numbers; default 1-30\n"
     "  --group-size N           the first N operators are beginners, all others veterans; default 15\n"
-    "  --model NAME             contact model; again for more; default: all six\n"
+    "  --model NAME             contact model; again for more; default: all\n"
     "  --gravity G              in g, from 0 to 10; again for more; default: 0 and 1\n"
     "  --task NAME|FILE         default: pick_and_place\n"
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
@@ -103,9 +104,21 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   }
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
   if (study.models.empty())
-    study.models = {"implicit", "seed", "penetration", "impulse", "virtual_spring", "soft_pad"};
+    for (const ContactModelEntry* model : contact_models()) study.models.emplace_back(model->name);
   if (study.gravities.empty()) study.gravities = {0.0, 1.0};
   return study;
+}
+
+Configuration configuration_of(const Study& study, const std::string& model) {
+  Configuration configuration;
+  try {
+    for (const auto& [key, value] : study.settings) set_parameter(configuration, key, value);
+    set_parameter(configuration, "contact_model", model);
+    validate(configuration);
+  } catch (const ParameterError& error) {
+    throw UsageError(error.what());
+  }
+  return configuration;
 }
 
 /// What one simulated operator did under one condition.
@@ -116,9 +129,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
   task.gravity = Vector3(0.0, 0.0, -kStandardGravity * gravity);
 
   OperatorStage stage;
-  for (const auto& [key, value] : study.settings) set_parameter(stage.configuration, key, value);
-  set_parameter(stage.configuration, "contact_model", model);
-  validate(stage.configuration);
+  stage.configuration = configuration_of(study, model);
   stage.scene_folders = scene_folders();
   stage.scene_options = scene_options(stage.configuration);
 
@@ -131,7 +142,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
   header.condition = model;
   header.seed = study.seed;
   header.simulated = true;
-  header.software = "0.1.0";
+  header.software = MR_HAND_INTERACTION_VERSION;
   const OperatorSkill skill = draw_skill(header.group, seeds.bits());
   const std::uint64_t trials = seeds.bits();
   const std::string folder = study.output + "/" + model + "_" + strength + "/" + name;
@@ -148,6 +159,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
 }
 
 void play(const Study& study) {
+  for (const std::string& model : study.models) configuration_of(study, model);  // before anything is played
   const Task task = load_task(find_task_file(study.task, task_folders()));
   for (int person = study.first; person <= study.last; ++person) {
     for (const std::string& model : study.models) {

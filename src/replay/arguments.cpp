@@ -5,20 +5,12 @@
 #include <functional>
 #include <map>
 
+#include "../scene/text.h"
+
 namespace mrhi {
 namespace {
 
 constexpr double kShortestQuaternion = 1e-6;
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> fields;
-  std::size_t begin = 0;
-  for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) {
-    fields.push_back(text.substr(begin, comma - begin));
-  }
-  fields.push_back(text.substr(begin));
-  return fields;
-}
 
 /// The values of one option, for reading and for saying what is wrong with them.
 struct OptionText {
@@ -88,17 +80,17 @@ const std::map<std::string, Option>& options() {
       {"--object-pose",
        {"NAME,x,y,z,qx,qy,qz,qw", true,
         [](A& a, const OptionText& v) {
-          const auto fields = split(v.text);
+          const auto fields = text::split(v.text);
           a.object_poses.emplace_back(v.object_name(fields), v.pose(fields, 1));
         }}},
       {"--object-twist",
        {"NAME,vx,vy,vz,wx,wy,wz", true,
         [](A& a, const OptionText& v) {
-          const auto fields = split(v.text);
+          const auto fields = text::split(v.text);
           a.object_twists.emplace_back(v.object_name(fields), v.twist(fields, 1));
         }}},
       {"--hand-transform", {"x,y,z,qx,qy,qz,qw", false, [](A& a, const OptionText& v) {
-                              a.hand_transform = v.pose(split(v.text), 0);
+                              a.hand_transform = v.pose(text::split(v.text), 0);
                             }}}};
   return table;
 }

@@ -19,6 +19,7 @@
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/ros/pose_array_hand.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "open_bag.h"
 
 namespace mrhi {
 namespace {
@@ -199,6 +200,12 @@ std::size_t BagInput::size() const {
 }
 const std::string& BagInput::topic() const {
   return impl_->topic;
+}
+
+ReplayInput open_bag(const ReplayArguments& arguments) {
+  auto bag = std::make_unique<BagInput>(arguments.input, arguments.topic, arguments.hand_transform);
+  const std::string topic = bag->topic();
+  return {std::move(bag), topic};
 }
 
 }  // namespace mrhi

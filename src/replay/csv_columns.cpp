@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "../scene/text.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 
 namespace mrhi {
@@ -12,12 +13,7 @@ namespace {
 
 std::vector<std::string> split(std::string line) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
-  std::vector<std::string> cells;
-  std::size_t begin = 0;
-  for (std::size_t comma; (comma = line.find(',', begin)) != std::string::npos; begin = comma + 1)
-    cells.push_back(line.substr(begin, comma - begin));
-  cells.push_back(line.substr(begin));
-  return cells;
+  return text::split(line);
 }
 
 /// strtod that takes the decimal point whatever the process's locale.

@@ -4,9 +4,8 @@
 #include <chrono>
 #include <fstream>
 
-#include "mr_hand_interaction/replay/bag_input.h"
-#include "mr_hand_interaction/ros/result_conversion.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "open_bag.h"
 
 namespace mrhi {
 namespace {
@@ -55,19 +54,12 @@ struct RecordersClock {
   }
 };
 
-struct Input {
-  std::unique_ptr<FrameSource> frames;
-  std::string topic;
-};
-
-Input open_input(const ReplayArguments& arguments) {
+ReplayInput open_input(const ReplayArguments& arguments) {
   const std::string& file = arguments.input;
   if (file.compare(file.size() - 4, 4, ".csv") == 0) {
     return {std::make_unique<CsvInput>(file, arguments.hand_transform.value_or(default_device_mount())), ""};
   }
-  auto bag = std::make_unique<BagInput>(file, arguments.topic, arguments.hand_transform);
-  const std::string topic = bag->topic();
-  return {std::move(bag), topic};
+  return open_bag(arguments);
 }
 
 void finish(const Simulation& simulation, ReplaySummary& summary) {
@@ -117,13 +109,13 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
 
 void replay(const ReplayArguments& arguments) {
   Simulation simulation = prepare_simulation(arguments);
-  const Input input = open_input(arguments);
+  const ReplayInput input = open_input(arguments);
   ResultWriter writer(arguments.output, simulation.scene());
   ReplaySummary summary;
   summary.scene = simulation.scene().name;
   summary.input = arguments.input;
   summary.topic = input.topic;
-  summary.contact_model = to_string(simulation.configuration().contact_model);
+  summary.contact_model = simulation.configuration().contact_model.name;
   ProgressBar progress;
   try {
     run_frames(*input.frames, simulation, writer, progress, summary);

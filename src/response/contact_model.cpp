@@ -1,13 +1,18 @@
 #include "mr_hand_interaction/response/contact_model.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "contact_model_list.h"
 #include "implicit_model.h"
-#include "impulse_model.h"
-#include "penetration_model.h"
-#include "seed_model.h"
-#include "soft_pad_model.h"
-#include "virtual_spring_model.h"
 
 namespace mrhi {
+
+#define MRHI_DECLARE(name) extern const ContactModelEntry name##_model;
+#define MRHI_ADDRESS(name) &name##_model,
+MRHI_CONTACT_MODELS(MRHI_DECLARE)
+
 namespace {
 
 /// A model of what hands do to objects, with `implicit` for what objects do to each other.
@@ -34,27 +39,43 @@ class WithObjects : public ContactModel {
   std::vector<Grip> no_grips_;
 };
 
+std::vector<const ContactModelEntry*> in_their_places() {
+  std::vector<const ContactModelEntry*> models{MRHI_CONTACT_MODELS(MRHI_ADDRESS)};
+  std::sort(models.begin(), models.end(), [](const auto* a, const auto* b) {
+    return std::make_pair(a->place, std::string_view(a->name)) <
+           std::make_pair(b->place, std::string_view(b->name));
+  });
+  return models;
+}
+
+const ContactModelEntry& entry_of(ContactModelKind kind) {
+  std::string names;
+  for (const ContactModelEntry* model : contact_models()) {
+    if (model->name == kind.name) return *model;
+    names += (names.empty() ? "" : ", ") + std::string(model->name);
+  }
+  throw std::invalid_argument("contact model '" + std::string(kind.name) +
+                              "' is not known; allowed: " + names);
+}
+
 }  // namespace
 
+const std::vector<const ContactModelEntry*>& contact_models() {
+  static const std::vector<const ContactModelEntry*> models = in_their_places();
+  return models;
+}
+
 std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration) {
-  const auto with_objects = [&](std::unique_ptr<ContactModel> hands) {
-    return std::make_unique<WithObjects>(std::move(hands), configuration);
-  };
-  switch (configuration.contact_model) {
-    case ContactModelKind::seed:
-      return with_objects(std::make_unique<SeedModel>());
-    case ContactModelKind::penetration:
-      return with_objects(std::make_unique<PenetrationModel>());
-    case ContactModelKind::impulse:
-      return with_objects(std::make_unique<ImpulseModel>());
-    case ContactModelKind::virtual_spring:
-      return with_objects(std::make_unique<VirtualSpringModel>());
-    case ContactModelKind::soft_pad:
-      return with_objects(std::make_unique<SoftPadModel>());
-    case ContactModelKind::implicit:
-      break;
-  }
-  return std::make_unique<ImplicitModel>(configuration.contact);
+  const ContactModelEntry& model = entry_of(configuration.contact_model);
+  std::unique_ptr<ContactModel> made = model.make(configuration.contact);
+  if (model.of_objects) return made;
+  return std::make_unique<WithObjects>(std::move(made), configuration);
+}
+
+Material default_material(const Configuration& configuration) {
+  Material material = configuration.material;
+  material.stiffness = configuration.stiffness.value_or(entry_of(configuration.contact_model).stiffness);
+  return material;
 }
 
 }  // namespace mrhi

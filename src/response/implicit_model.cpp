@@ -50,4 +50,12 @@ void ImplicitModel::solve(ContactStep& step, const Island& island, Problem& prob
   }
 }
 
+/// Stable with that stiffness at any step and mass.
+extern const ContactModelEntry implicit_model{
+    "implicit", 0, 2000.0,
+    [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
+      return std::make_unique<ImplicitModel>(configuration);
+    },
+    true};
+
 }  // namespace mrhi

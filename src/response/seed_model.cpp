@@ -12,4 +12,10 @@ void SeedModel::respond(ContactStep& step) {
   penetration_phase(step);
 }
 
+/// The paper's stiffness.
+extern const ContactModelEntry seed_model{"seed", 1, 100.0,
+                                          [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
+                                            return std::make_unique<SeedModel>();
+                                          }};
+
 }  // namespace mrhi

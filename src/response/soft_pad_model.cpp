@@ -184,4 +184,10 @@ void SoftPadModel::respond(ContactStep& step) {
   }
 }
 
+extern const ContactModelEntry soft_pad_model{
+    "soft_pad", 5, SoftPadModel::kStiffness,
+    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
+      return std::make_unique<SoftPadModel>();
+    }};
+
 }  // namespace mrhi

@@ -49,4 +49,10 @@ void VirtualSpringModel::respond(ContactStep& step) {
   }
 }
 
+extern const ContactModelEntry virtual_spring_model{
+    "virtual_spring", 4, VirtualSpringModel::kStiffness,
+    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
+      return std::make_unique<VirtualSpringModel>();
+    }};
+
 }  // namespace mrhi

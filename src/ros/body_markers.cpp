@@ -55,6 +55,35 @@ Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& pai
   return marker;
 }
 
+/// What rviz has no marker for, as its outermost points in directions all around, in that light. A flat side
+/// is one point in all of them, so it serves for what is round.
+template <typename Round>
+Marker& add_round(const Round& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
+                  MarkerLayer& layer) {
+  constexpr int kAround = 24, kRows = 13;  // odd: no row of directions lies across z
+  constexpr double kPi = 3.141592653589793;
+  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, Vector3::Ones(), paint);
+  const auto direction = [&](int row, int place) -> Vector3 {
+    const double up = kPi * (static_cast<double>(row) / kRows - 0.5), turn = 2.0 * kPi / kAround * place;
+    return {std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)};
+  };
+  const auto add = [&](int row, int place) {
+    const Vector3 out = direction(row, place);
+    const Rgb light = light_on((pose.orientation * out).cast<float>()).min(1.0f);
+    std_msgs::ColorRGBA lit = paint;
+    lit.r *= light[0], lit.g *= light[1], lit.b *= light[2];
+    marker.points.push_back(to_message(shape.farthest(out)));
+    marker.colors.push_back(lit);
+  };
+  for (int row = 0; row < kRows; ++row) {
+    for (int place = 0; place < kAround; ++place) {
+      add(row, place), add(row, place + 1), add(row + 1, place + 1);
+      add(row, place), add(row + 1, place + 1), add(row + 1, place);
+    }
+  }
+  return marker;
+}
+
 struct AddShape {
   const Pose& pose;
   const std_msgs::ColorRGBA& paint;
@@ -65,6 +94,10 @@ struct AddShape {
   Marker& operator()(const Box& b) const { return add_box(b, pose, paint, id, layer); }
   Marker& operator()(const Cylinder& c) const {
     return add(Marker::CYLINDER, {2.0 * c.radius, 2.0 * c.radius, 2.0 * c.half_length});
+  }
+  template <typename Other>
+  Marker& operator()(const Other& round) const {
+    return add_round(round, pose, paint, id, layer);
   }
   Marker& operator()(const Mesh& m) const {
     Marker& marker = add(Marker::MESH_RESOURCE, m.scale);

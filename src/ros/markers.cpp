@@ -39,7 +39,7 @@ std::string heads_up(const Scene& scene, const Configuration& configuration, con
   const double g = configuration.gravity.value_or(scene.gravity).norm();
   char gravity[32];
   std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
-  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " + to_string(configuration.contact_model) +
+  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " + std::string(configuration.contact_model.name) +
          "  |  gravity: " + (g > 0.0 ? gravity : "none");
 }
 

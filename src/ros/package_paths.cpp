@@ -1,9 +1,10 @@
 #include "mr_hand_interaction/ros/package_paths.h"
-
-#include <ros/package.h>
+#include "mr_hand_interaction/response/contact_model.h"
 
 #include <cstdlib>
 #include <filesystem>
+
+#include "package_folder.h"
 
 namespace mrhi {
 namespace {
@@ -33,7 +34,7 @@ std::vector<std::string> share_folders() {
   add(MR_HAND_INTERACTION_SOURCE_DIR);
 #endif
   // Last, as it complains on stderr where there is no such package.
-  if (folders.empty() && std::getenv("ROS_PACKAGE_PATH") != nullptr) add(ros::package::getPath(kPackage));
+  if (folders.empty() && std::getenv("ROS_PACKAGE_PATH") != nullptr) add(package_folder(kPackage));
   return folders;
 }
 
@@ -64,7 +65,7 @@ std::string resolve_package_uri(const std::string& uri) {
     const std::vector<std::string> folders = share_folders();
     return folders.empty() ? "" : folders.front() + uri.substr(slash);
   }
-  const std::string folder = ros::package::getPath(package);
+  const std::string folder = package_folder(package);
   return folder.empty() ? "" : folder + uri.substr(slash);
 }
 

@@ -1,36 +1,14 @@
 #include "mr_hand_interaction/ros/result_conversion.h"
 
+#include "mr_hand_interaction/contact_phase.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 
-const char* to_string(ContactModelKind kind) {
-  switch (kind) {
-    case ContactModelKind::implicit:
-      return "implicit";
-    case ContactModelKind::seed:
-      return "seed";
-    case ContactModelKind::penetration:
-      return "penetration";
-    case ContactModelKind::impulse:
-      return "impulse";
-    case ContactModelKind::virtual_spring:
-      return "virtual_spring";
-    case ContactModelKind::soft_pad:
-      return "soft_pad";
-  }
-  return "";
-}
-
-std::uint32_t hand_id(const Contact& contact, const SimulationState& state) {
-  return state.hands[contact.key.hand].current.id;
-}
-
-std::uint8_t phase(const Contact& contact) {
-  using Message = mr_hand_interaction::Contact;
-  if (!contact.impulse.isZero(0.0)) return Message::IMPULSE;
-  return contact.friction == Friction::sticking ? Message::STICKING : Message::SLIPPING;
-}
+static_assert(mr_hand_interaction::Contact::IMPULSE == int(ContactPhase::impulse) &&
+                  mr_hand_interaction::Contact::STICKING == int(ContactPhase::sticking) &&
+                  mr_hand_interaction::Contact::SLIPPING == int(ContactPhase::slipping),
+              "phases are numbered as in Contact.msg");
 
 mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header) {
   mr_hand_interaction::HandFrame message;
@@ -79,7 +57,7 @@ mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const Fra
     touch.hand_id = hand_id(contact, state);
     touch.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
     touch.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
-    touch.phase = phase(contact);
+    touch.phase = static_cast<std::uint8_t>(phase(contact));
     touch.position = to_message(contact.point);
     touch.normal = vector_message(contact.normal);
     touch.depth = contact.depth;

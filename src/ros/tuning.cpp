@@ -6,6 +6,7 @@
 #include <map>
 
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 
 namespace mrhi {

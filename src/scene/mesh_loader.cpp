@@ -213,7 +213,9 @@ void make_solid(TriangleMesh& mesh) {
   if (const int open = count_open_edges(mesh)) {
     throw std::runtime_error("is not closed: " + std::to_string(open) +
                              " edges lack a neighbour or are turned against it, with vertices within " +
-                             text::number(seam) + " m joined; allowed for collision: a closed surface");
+                             text::number(seam) +
+                             " m joined; allowed for collision: a closed surface, or <!-- hull --> behind "
+                             "the mesh for its convex hull");
   }
   const double volume = signed_volume(mesh);
   if (!(std::abs(volume) > 1e-9 * extent.maxCoeff() * extent.maxCoeff() * extent.maxCoeff())) {

@@ -47,6 +47,15 @@ std::string joined(const std::vector<std::string>& names) {
   return list;
 }
 
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> fields;
+  std::size_t begin = 0;
+  for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
+    fields.push_back(text.substr(begin, comma - begin));
+  fields.push_back(text.substr(begin));
+  return fields;
+}
+
 std::string one_line(const std::string& text, std::size_t longest) {
   std::string line;
   for (const char c : text) {

@@ -13,6 +13,8 @@ std::string number(double value);
 std::string exact(double value);
 std::string vector(const Vector3& value);
 std::string joined(const std::vector<std::string>& names);
+/// What is between the commas: one more than there are.
+std::vector<std::string> split(const std::string& text);
 
 /// Line breaks become spaces, other control characters '?'; what is longer than `longest` characters is cut.
 std::string one_line(const std::string& text, std::size_t longest = 300);

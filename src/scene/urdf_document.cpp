@@ -10,6 +10,7 @@
 
 #include "file_text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "shape_kinds.h"
 #include "text.h"
 #include "xml_danger.h"
 
@@ -48,9 +49,24 @@ std::string read_file(const std::string& file) {
   return *xml;
 }
 
+/// Notes <!-- hull --> in the tag of the mesh that it stands behind.
+void note_hull(std::string& xml, std::size_t comment) {
+  const std::size_t mesh = xml.rfind("<mesh", comment), geometry = xml.rfind("<geometry", comment);
+  const std::size_t name = mesh == std::string::npos ? mesh : xml.find("filename", mesh);
+  const std::size_t quote = name == std::string::npos ? name : xml.find_first_of("\"'", name);
+  if (quote >= comment || geometry == std::string::npos || geometry > mesh)
+    throw std::runtime_error("<!-- hull --> stands behind no mesh");
+  xml.insert(quote + 1, kHullPrefix);
+}
+
 std::string without_comments(std::string xml) {
   for (std::size_t begin = xml.find("<!--"); begin != std::string::npos; begin = xml.find("<!--", begin)) {
-    const std::size_t end = xml.find("-->", begin);
+    std::size_t end = xml.find("-->", begin);
+    if (end != std::string::npos && text::one_line(xml.substr(begin + 4, end - begin - 4)) == "hull") {
+      const std::size_t length = xml.size();
+      note_hull(xml, begin);
+      begin += xml.size() - length, end += xml.size() - length;
+    }
     xml.erase(begin, end == std::string::npos ? end : end + 3 - begin);
   }
   return xml;
@@ -69,10 +85,46 @@ std::string with_inertias(const std::string& xml) {
   return plain;
 }
 
-/// The value of the attribute `name` of a tag, or "".
-std::string name_in(const std::string& tag) {
-  const std::size_t quote = tag.find_first_of("\"'", tag.find("name"));
+/// The value of an attribute of a tag, or "".
+std::string attribute(const std::string& tag, const std::string& name) {
+  const std::size_t at = tag.find(name);
+  const std::size_t quote = at == std::string::npos ? at : tag.find_first_of("\"'", at);
   return quote == std::string::npos ? "" : tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
+}
+
+bool urdfdom_knows(const ShapeKind& kind) {
+  return kind.name == "box" || kind.name == "sphere" || kind.name == "cylinder";
+}
+
+/// A tag <NAME SIZE="..."/> of a kind of shape as that of a mesh. What is no number there becomes none that
+/// is.
+std::string as_mesh(const std::string& tag, const ShapeKind& kind) {
+  std::string mesh = "<mesh filename=\":shape:" + kind.name;
+  for (const std::string& size : kind.sizes) {
+    std::string value = attribute(tag, size);
+    for (char& c : value)
+      if (std::string("+-.0123456789eE").find(c) == std::string::npos) c = '?';
+    mesh += " " + (value.empty() ? "?" : value);
+  }
+  return mesh + (tag[tag.size() - 2] == '/' ? "\"/>" : "\">");
+}
+
+/// Shapes that urdfdom does not know go past it as meshes.
+std::string with_known_shapes(std::string xml) {
+  for (const ShapeKind& kind : shape_kinds()) {
+    if (urdfdom_knows(kind)) continue;
+    const std::string open = "<" + kind.name, close = "</" + kind.name + ">";
+    for (std::size_t at = xml.find(open); at != std::string::npos; at = xml.find(open, at + 1)) {
+      const std::size_t end = xml.find('>', at);
+      if (end == std::string::npos ||
+          std::string(" \t\r\n/>").find(xml[at + open.size()]) == std::string::npos)
+        continue;
+      xml.replace(at, end + 1 - at, as_mesh(xml.substr(at, end + 1 - at), kind));
+    }
+    for (std::size_t at = xml.find(close); at != std::string::npos; at = xml.find(close, at))
+      xml.replace(at, close.size(), "</mesh>");
+  }
+  return xml;
 }
 
 std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface& model,
@@ -80,7 +132,7 @@ std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface&
   const std::string plain = without_comments(xml);
   std::map<std::string, std::size_t> place;
   for (std::size_t at = plain.find("<link"); at != std::string::npos; at = plain.find("<link", at + 1)) {
-    place.emplace(name_in(plain.substr(at, plain.find('>', at) - at)), at);
+    place.emplace(attribute(plain.substr(at, plain.find('>', at) - at), "name"), at);
   }
   std::vector<urdf::LinkConstSharedPtr> links;
   for (const auto& entry : model.links_) links.push_back(entry.second);
@@ -101,15 +153,15 @@ UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
   UrdfDocument document;
   std::string problem;
   try {
-    document.model = urdf::parseURDF(with_inertias(xml));
+    document.model = urdf::parseURDF(with_known_shapes(with_inertias(xml)));
     problem = complaints.text();  // urdfdom goes on with half a link after some errors
     if (!document.model && problem.empty()) problem = "urdfdom refuses it";
   } catch (const std::exception& error) {
     problem = error.what();
   }
   if (!problem.empty()) {
-    throw SceneError(source + ": bad URDF: " + text::one_line(problem) +
-                     "; allowed: a robot of links (box, sphere, cylinder, mesh) joined to one root link");
+    throw SceneError(source + ": bad URDF: " + text::one_line(problem) + "; allowed: a robot of links (" +
+                     shape_kind_names() + ", mesh) joined to one root link");
   }
   document.links = links_in_order(*document.model, xml);
   return document;

@@ -3,7 +3,9 @@
 #include <filesystem>
 
 #include "body_limits.h"
+#include "convex_hull.h"
 #include "mesh_loader.h"
+#include "shape_kinds.h"
 #include "text.h"
 
 namespace mrhi {
@@ -23,27 +25,34 @@ bool begins_with(const std::string& text, const std::string& prefix) {
 
 Shape ShapeReader::read(const urdf::Geometry& geometry, const std::string& element, bool solid) {
   switch (geometry.type) {
-    case urdf::Geometry::SPHERE: {
-      const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
-      require_size(Vector3::Constant(radius), "sphere radius " + text::number(radius), element);
-      return Sphere{radius};
-    }
+    case urdf::Geometry::SPHERE:
+      return make("sphere", {static_cast<const urdf::Sphere&>(geometry).radius}, element);
     case urdf::Geometry::BOX: {
-      const Vector3 size = to_vector(static_cast<const urdf::Box&>(geometry).dim);
-      require_size(size, "box size " + text::vector(size), element);
-      return Box{0.5 * size};
+      const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
+      return make("box", {size.x, size.y, size.z}, element);
     }
     case urdf::Geometry::CYLINDER: {
       const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-      const double radius = cylinder.radius, length = cylinder.length;
-      require_size({radius, radius, length},
-                   "cylinder radius " + text::number(radius) + " and length " + text::number(length),
-                   element);
-      return Cylinder{radius, 0.5 * length};
+      return make("cylinder", {cylinder.radius, cylinder.length}, element);
     }
-    default:
-      return read_mesh(static_cast<const urdf::Mesh&>(geometry), element, solid);
+    default: {
+      const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+      if (const auto given = from_filename(mesh.filename))
+        return make(given->kind->name, given->size, element);
+      return read_mesh(mesh, element, solid);
+    }
   }
+}
+
+Shape ShapeReader::make(const std::string& name, const std::vector<double>& size,
+                        const std::string& element) const {
+  const Range& range = body_limits::kSize;
+  const ShapeKind& kind = *find_shape_kind(name);
+  for (const double s : size) {
+    if (!range.contains(s))
+      fail(element, kind.describe(size) + " m is not allowed; allowed: " + range.describe() + " m");
+  }
+  return kind.make(size);
 }
 
 Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
@@ -52,20 +61,22 @@ Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, 
     fail(element,
          "mesh scale " + text::vector(scale) + " is not allowed; allowed: three numbers, none of them 0");
   }
-  const std::string file = mesh_file(mesh.filename, element);
-  const std::string key = file + (solid ? " solid " : " ") + text::vector(scale);
+  const bool hull = solid && is_hull(mesh.filename);
+  const std::string uri = without_hull(mesh.filename);
+  const std::string file = mesh_file(uri, element);
+  const std::string key = file + (hull ? " hull " : solid ? " solid " : " ") + text::vector(scale);
   if (!meshes_.count(key)) {
     try {
       TriangleMesh triangles = load_mesh(file, scale);
+      if (hull) triangles = convex_hull(triangles);
       if (solid) make_solid(triangles);
       meshes_[key] = std::make_shared<const TriangleMesh>(std::move(triangles));
     } catch (const std::runtime_error& error) {
-      fail(element, "mesh '" + mesh.filename + "' " + error.what());
+      fail(element, "mesh '" + uri + "' " + error.what());
     }
   }
-  const bool is_uri = mesh.filename.find("://") != std::string::npos;
-  return {meshes_[key], is_uri ? mesh.filename : "file://" + fs::absolute(file).lexically_normal().string(),
-          scale};
+  const bool is_uri = uri.find("://") != std::string::npos;
+  return {meshes_[key], is_uri ? uri : "file://" + fs::absolute(file).lexically_normal().string(), scale};
 }
 
 std::string ShapeReader::mesh_file(const std::string& uri, const std::string& element) const {
@@ -80,13 +91,6 @@ std::string ShapeReader::mesh_file(const std::string& uri, const std::string& el
   if (fs::is_regular_file(file, ignored)) return file.string();
   fail(element, "mesh '" + uri + "' not found at '" + file.string() +
                     "'; allowed: package://, file://, or a path from the URDF's folder");
-}
-
-void ShapeReader::require_size(const Vector3& size, const std::string& what,
-                               const std::string& element) const {
-  const Range& range = body_limits::kSize;
-  if (range.contains(size[0]) && range.contains(size[1]) && range.contains(size[2])) return;
-  fail(element, what + " m is not allowed; allowed: " + range.describe() + " m");
 }
 
 void ShapeReader::fail(const std::string& element, const std::string& what) const {

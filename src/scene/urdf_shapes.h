@@ -22,7 +22,7 @@ class ShapeReader {
  private:
   Mesh read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
   std::string mesh_file(const std::string& uri, const std::string& element) const;
-  void require_size(const Vector3& size, const std::string& what, const std::string& element) const;
+  Shape make(const std::string& kind, const std::vector<double>& size, const std::string& element) const;
   [[noreturn]] void fail(const std::string& element, const std::string& what) const;
 
   std::string urdf_file_;

@@ -173,7 +173,6 @@ void SimulatedOperator::shake_off() {
 }
 
 void SimulatedOperator::lose() {
-  ++losses_noticed_;
   firmness_ = std::min(kFirmest, kFirmer * firmness_);
   plan(Phase::withdrawing, aim_);
   then(kOpen * skill_.pace, shifted(now_.wrist, kApproach * retreat_), postures_->open);

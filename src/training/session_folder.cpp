@@ -6,6 +6,7 @@
 #include <locale>
 #include <sstream>
 
+#include "../scene/text.h"
 #include "session_header.h"
 
 namespace mrhi {
@@ -41,18 +42,6 @@ class Line {
   std::ostringstream stream_;
   bool empty_ = true;
 };
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
 
 std::string read_all(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -139,9 +128,9 @@ std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name
   std::istringstream lines(open_file(name, columns, out));
   std::string line;
   std::getline(lines, line);
-  const std::size_t fields = split(columns).size();
+  const std::size_t fields = text::split(columns).size();
   for (int number = 2; std::getline(lines, line); ++number) {
-    rows.push_back(split(line));
+    rows.push_back(text::split(line));
     if (rows.back().size() != fields)
       throw SessionError(file + ":" + std::to_string(number) + ": " + std::to_string(rows.back().size()) +
                          " fields; allowed: " + std::to_string(fields));

@@ -18,7 +18,13 @@ struct Farthest {
   Vector3 operator()(const Sphere& s) const { return s.radius * n; }
   Vector3 operator()(const Box& b) const { return BoxShape{b.half_extents}.farthest(n); }
   Vector3 operator()(const Cylinder& c) const { return CylinderShape{c.radius, c.half_length}.farthest(n); }
-  Vector3 operator()(const Mesh&) const { return Vector3::Zero(); }
+  Vector3 operator()(const Pill& p) const {
+    return p.radius * n + (n.z() < 0 ? -p.half_length : p.half_length) * Vector3::UnitZ();
+  }
+  template <typename Other>
+  Vector3 operator()(const Other& shape) const {
+    return shape.farthest(n);
+  }
 };
 
 struct PlacedPair {
@@ -64,6 +70,7 @@ struct PlacedPair {
 Shape random_shape(Random& random) {
   const double r = random.between(0.01, 0.04), h = random.between(0.01, 0.04);
   if (random.below(5) == 0) return Sphere{r};
+  if (random.below(5) == 0) return Pill{r, h};
   if (random.below(2) == 0) return Cylinder{r, h};
   return Box{{r, h, random.between(0.01, 0.04)}};
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "support/count_allocations.h"
 #include "support/grips.h"
 
@@ -37,11 +38,8 @@ TEST(NoAllocation, counting_works) {
 }
 
 TEST(NoAllocation, in_a_step_of_a_held_cube_once_warm) {
-  for (const ContactModelKind model :
-       {ContactModelKind::implicit, ContactModelKind::seed, ContactModelKind::penetration,
-        ContactModelKind::impulse, ContactModelKind::virtual_spring, ContactModelKind::soft_pad}) {
-    EXPECT_EQ(allocations_while_swinging(PinchScene().scene(), model), 0) << static_cast<int>(model);
-  }
+  for (const ContactModelEntry* model : contact_models())
+    EXPECT_EQ(allocations_while_swinging(PinchScene().scene(), {model->name}), 0) << model->name;
 }
 
 TEST(NoAllocation, in_a_step_with_far_objects_and_with_one_that_rides_on_the_held_cube) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "support/fixtures.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "support/pinched_cube.h"
 
 namespace mrhi {

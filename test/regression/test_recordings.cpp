@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/tracking/joints.h"

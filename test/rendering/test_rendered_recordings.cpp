@@ -1,6 +1,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "rendering/expect_one_hand.h"
 #include "support/random_way.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 namespace {
@@ -47,6 +48,15 @@ TEST(Tuning, sliders_end_where_the_parameters_table_says) {
   EXPECT_GE(low.doubles.size(), 12u);
   expect_ends_of_the_table(low.doubles, high.doubles);
   expect_ends_of_the_table(low.ints, high.ints);
+}
+
+TEST(Tuning, offers_every_contact_model) {
+  std::string offered;
+  for (const auto& parameter : Config::__getParamDescriptions__())
+    if (parameter->name == "contact_model") offered = parameter->edit_method;
+  for (const ContactModelEntry* model : contact_models())
+    EXPECT_NE(offered.find("'" + std::string(model->name) + "'"), std::string::npos)
+        << model->name << offered;
 }
 
 TEST(Tuning, numbers_begin_at_the_parameters_defaults) {

@@ -121,6 +121,42 @@ TEST_F(MeshScene, RefusesASurfaceThatIsNotClosed) {
   test::expect_words(error("filename=\"leaf.obj\""), {"'leaf.obj'", "no volume"});
 }
 
+TEST_F(MeshScene, MayBeItsConvexHullAlsoIfItIsOpenOrHollow) {
+  // A cube of 0.1 with a pit of half its height in the lid, and without its bottom.
+  folder_.write(
+      "pit.obj",
+      "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\n"
+      "v 0.05 0.05 0.05\n"
+      "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 9\nf 6 7 9\nf 7 8 9\nf 8 5 9\n");
+  const auto with = [&](const std::string& comment) {
+    return folder_.write("hull.urdf",
+                         test::thing("<inertial><mass value=\"3\"/></inertial><collision><geometry>"
+                                     "<mesh filename=\"pit.obj\"/>" +
+                                     comment + "</geometry></collision>"));
+  };
+  test::expect_words(test::scene_error(with("")), {"'pit.obj'", "not closed", "<!-- hull -->"});
+  const Scene scene = load_scene(with("<!-- hull -->"), {});
+  const Mesh hull = std::get<Mesh>(scene.bodies.at(0).shapes.at(0).shape);
+  EXPECT_EQ(8u, hull.triangles->vertices.size());
+  EXPECT_NEAR(1e-3, test::volume(*hull.triangles), 1e-9);
+  EXPECT_EQ("file://" + folder_.path() + "/pit.obj", hull.uri);
+  const Matrix3 inertia = scene.bodies.at(0).inertia;  // about a corner: its own, and m d^2
+  EXPECT_NEAR(3.0 * 2.0 * 0.01 / 3.0, inertia(0, 0), 1e-7);
+}
+
+TEST_F(MeshScene, RefusesAHullOfNothing) {
+  folder_.write("leaf.obj", std::string(kVertices) + "f 1 2 3\nf 1 3 2\n");
+  const auto with = [&](const std::string& geometry) {
+    return test::scene_error(
+        folder_.write("hull.urdf", test::thing(std::string(test::kInertial) + "<collision><geometry>" +
+                                               geometry + "</geometry></collision>")));
+  };
+  folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  test::expect_words(with("<mesh filename=\"flat.obj\"/><!-- hull -->"), {"'flat.obj'", "hull"});
+  test::expect_words(with("<!-- hull --><mesh filename=\"flat.obj\"/>"), {"hull", "behind no mesh"});
+  test::expect_words(with("<box size=\"1 1 1\"/><!--hull-->"), {"hull", "behind no mesh"});
+}
+
 TEST_F(MeshScene, HasItsOwnInertiaIfOnlyItsMassIsGiven) {
   folder_.write("wedge.obj", std::string(kVertices) + kOutward);
   const Scene scene = load_scene(

@@ -49,6 +49,9 @@ TEST(ObjectRequest, primitives_have_the_inertia_of_solids) {
   EXPECT_EQ(std::get<Cylinder>(rod.shapes.at(0).shape).half_length, 0.15);
   EXPECT_EQ(rod.visuals.size(), 1u);
   EXPECT_FALSE(rod.fixed);
+  const Body pill = requested_body(primitive("capsule", {0.01, 0.3}), {});
+  EXPECT_EQ(std::get<Pill>(pill.shapes.at(0).shape).half_length, 0.15);
+  EXPECT_GT(pill.inertia(0, 0), rod.inertia(0, 0));
 }
 
 TEST(ObjectRequest, without_mass_it_is_a_fixture) {
@@ -96,7 +99,7 @@ TEST(ObjectRequest, a_urdf_of_a_scene_with_one_link_serves_too) {
 
 TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  test::expect_words(error_of(primitive("cone", {1, 1})), {"cone", "box"});
+  test::expect_words(error_of(primitive("cone", {1, 1})), {"cone", "box", "capsule"});
   test::expect_words(error_of(primitive("box", {1, 1})), {"2 numbers", "x, y, z"});
   test::expect_words(error_of(primitive("box", {1, -1, 1})), {"-1"});
   test::expect_words(error_of(primitive("sphere", {nan})), {"radius"});

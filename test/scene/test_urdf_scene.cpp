@@ -64,6 +64,14 @@ TEST(UrdfScene, AMassWithoutInertiaHasThatOfItsShapes) {
   const Matrix3 can = inertia(collision(R"(<cylinder radius="0.1" length="0.3"/>)"));
   const double across = 2.0 * (3.0 * 0.01 + 0.09) / 12.0;
   EXPECT_TRUE(can.isApprox(Matrix3(Vector3(across, across, 0.01).asDiagonal()), 1e-12));
+  // A capsule is what two balls' halves and a cylinder are.
+  const double side = 0.3 * 0.01, ends = 4.0 / 3.0 * 0.001, density = 2.0 / (side + ends);
+  const Matrix3 capsule = inertia(collision(R"(<capsule length="0.3" radius = '0.1'></capsule>)"));
+  EXPECT_NEAR(capsule(2, 2), density * (0.5 * side * 0.01 + 0.4 * ends * 0.01), 1e-12);
+  const double far = 0.15 + 3.0 / 8.0 * 0.1, of_half = (0.4 - 9.0 / 64.0) * 0.01 - 0.2 * 0.01;
+  EXPECT_NEAR(capsule(0, 0),
+              density * (side * (0.25 * 0.01 + 0.09 / 12.0) + ends * (0.2 * 0.01 + of_half + far * far)),
+              1e-12);
   // Two halves of the box, side by side, are the box.
   const Matrix3 halves = inertia(collision(R"(<box size="0.1 0.2 0.15"/>)", R"(<origin xyz="0 0 0.075"/>)") +
                                  collision(R"(<box size="0.2 0.1 0.15"/>)",
@@ -173,7 +181,11 @@ TEST(UrdfScene, RefusesSizesThatAreNotPositive) {
   test::expect_words(error(with(R"(<sphere radius="-1"/>)")), {"'thing' collision 1", "sphere", "-1"});
   test::expect_words(error(with(R"(<cylinder radius="1" length="0"/>)")),
                      {"'thing'", "cylinder", "length 0"});
-  test::expect_words(error(with(R"(<capsule radius="1" length="1"/>)")), {"thing", "capsule"});
+  test::expect_words(error(with(R"(<capsule radius="0" length="1"/>)")),
+                     {"'thing' collision 1", "capsule", "radius 0"});
+  test::expect_words(error(with(R"(<capsule radius="1"/>)")), {"capsule", "length 0"});
+  test::expect_words(error(with(R"(<capsule radius="1 1" length="wide"/>)")), {"capsule", "radius 0"});
+  test::expect_words(error(with(R"(<cone radius="1" length="1"/>)")), {"thing", "cone"});
   test::expect_words(error(with(R"(<box size="0.1 0.1"/>)")), {"thing"});
   test::expect_words(error(with(R"(<box size="0.1 wide 0.1"/>)")), {"thing", "wide"});
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "support/pinch_scene.h"
 
 namespace mrhi::testing {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "mr_hand_interaction/response/contact_model.h"
 #include "synthetic/motions.h"
 #include "synthetic/performance.h"
 #include "training/trials.h"

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "../engine.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi::benchmark {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "mr_hand_interaction/collision/mesh_collision.h"
 #include "mr_hand_interaction/scene/shape.h"
@@ -29,7 +30,8 @@ struct ManifoldShape {
 
   const Shape& shape;
   const MeshCollider* mesh;
-  double bounding_radius;  ///< about the shape frame's origin [m]
+  std::optional<Capsule> core;  ///< if it is a ball or a capsule
+  double bounding_radius;       ///< about the shape frame's origin [m]
 };
 
 /// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
@@ -38,8 +40,9 @@ struct ManifoldShape {
 /// Sphere, box and cylinder with each other: the deepest point is as deep as the shortest translation that
 /// separates them, to rounding. Where that is within 2.5 degrees of a face's normal, the face's is taken (the
 /// larger face's, if two meet), so that what lies on a face keeps its normal and its points: right to 0.1 % +
-/// 3 um. A rim cut deeper than it is curved there may be taken 1 % too deep.
-/// Mesh: corners and edges of each are measured in the other; mesh_manifold.h says how well.
+/// 3 um. A ball or a capsule with any shape: to rounding, at two points where it lies along a face or a
+/// straight side. A rim cut deeper than it is curved there may be taken 1 % too deep. Mesh: corners and edges
+/// of each are measured in the other; mesh_manifold.h says how well.
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin);
 

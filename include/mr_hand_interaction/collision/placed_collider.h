@@ -5,15 +5,20 @@
 
 namespace mrhi {
 
+/// Closest features, in whose place anything of a distance beyond `margin` may stand where nothing is nearer
+/// than that [m]. Capsule and features in the shape's frame; `mesh` is null unless the shape is one.
+ClosestFeatures closest_on(const Shape& shape, const MeshCollider* mesh, const Capsule& capsule,
+                           double margin);
+
 /// A shape of a body as the hand's capsules meet it.
 class PlacedCollider {
  public:
   /// Keeps references; `mesh` is null unless the shape is one.
   PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh);
 
-  /// Closest features, in whose place anything of a distance beyond `margin` may stand where nothing is
-  /// nearer than that [m]. Capsule and features in the shape's frame.
-  ClosestFeatures closest(const Capsule& capsule, double margin) const;
+  ClosestFeatures closest(const Capsule& capsule, double margin) const {
+    return closest_on(shape_, mesh_, capsule, margin);
+  }
   bool has_bodys_frame() const { return has_bodys_frame_; }
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
     return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);

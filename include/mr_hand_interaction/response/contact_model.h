@@ -32,7 +32,25 @@ class ContactModel {
   virtual void respond(ContactStep& step) = 0;
 };
 
-/// Objects touch each other by the law of `implicit` under every model.
+/// What there is of a contact model before it is made. The file src/response/NAME_model.cpp defines
+/// NAME_model; the build finds it, and all else asks contact_models().
+struct ContactModelEntry {
+  const char* name;
+  int place;         ///< in lists
+  double stiffness;  ///< its own: of bodies that the scene says nothing about [N/m]
+  std::unique_ptr<ContactModel> (*make)(const ContactConfiguration&);
+  bool of_objects = false;  ///< it answers touches between objects too
+};
+
+/// In the order of their places.
+const std::vector<const ContactModelEntry*>& contact_models();
+
+/// Objects touch each other by the law of `implicit` under every model. Throws std::invalid_argument for a
+/// name that is not known.
 std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration);
+
+/// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the contact model's
+/// own.
+Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

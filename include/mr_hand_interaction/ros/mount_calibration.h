@@ -23,7 +23,6 @@ class MountCalibration {
   void run();
   const TouchRecorder& recorder() const { return recorder_; }
   /// Of the driver's messages; empty before the first.
-  const std::string& device_frame() const { return device_frame_; }
 
  private:
   void take(const topic_tools::ShapeShifter& message);

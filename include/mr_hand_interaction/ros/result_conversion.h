@@ -13,13 +13,6 @@
 
 namespace mrhi {
 
-const char* to_string(ContactModelKind kind);
-
-/// The tracker's id of the contact's hand.
-std::uint32_t hand_id(const Contact& contact, const SimulationState& state);
-/// A phase of Contact.msg.
-std::uint8_t phase(const Contact& contact);
-
 /// What has happened, as messages in world (header.frame_id). Tracked hands are those after the filter.
 mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header);
 mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header);

@@ -34,8 +34,6 @@ class SimulatedOperator {
   HandPlace move(double time, const Sight& sight);
 
   Phase phase() const { return phase_; }
-  /// Times that it noticed the object out of its hand while it meant to hold it.
-  int losses_noticed() const { return losses_noticed_; }
 
  private:
   struct Moment {
@@ -88,7 +86,6 @@ class SimulatedOperator {
   HandPlace now_;
   Vector3 velocity_ = Vector3::Zero();  ///< of the wrist
   double last_time_ = 0.0;
-  int losses_noticed_ = 0;
 };
 
 }  // namespace mrhi

@@ -1,6 +1,6 @@
+#include "chord.h"
 #include "cylinder_penetration.h"
-#include "mr_hand_interaction/collision/closest_features.h"
-#include "segment.h"
+#include "flat_part.h"
 
 namespace mrhi {
 namespace {
@@ -100,6 +100,50 @@ ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinde
   ClosestFeatures features = leave_cylinder(axis, cylinder);
   features.distance -= capsule.radius;
   return features;
+}
+
+ClosestFeatures Cylinder::closest(const Capsule& capsule, double) const {
+  return capsule_cylinder(capsule, *this);
+}
+
+AxisSpan Cylinder::span(const Capsule& capsule, const ClosestFeatures& features) const {
+  const Segment axis(capsule);
+  if (axis.along.isZero(0.0)) return at_point(features);
+  if (features.normal.head<2>().norm() <= kSameNormal) {
+    Stretch stretch;
+    stretch.clip_to_disc(axis, radius);
+    return over(stretch, features);
+  }
+  if (std::abs(features.normal.z()) > kSameNormal) return at_edge(features);
+  return beside_round_side(axis, features, half_length);
+}
+
+std::optional<Capsule> Cylinder::core() const {
+  return std::nullopt;
+}
+
+double Cylinder::bounding_radius() const {
+  return std::hypot(radius, half_length);
+}
+
+Vector3 Cylinder::farthest(const Vector3& n) const {
+  const double level = n.head<2>().norm(), scale = level > 0.0 ? radius / level : 0.0;
+  return {scale * n.x(), scale * n.y(), n.z() < 0.0 ? -half_length : half_length};
+}
+
+std::optional<double> Cylinder::way_out(const Vector3& point, const Vector3& direction) const {
+  Chord chord;
+  chord.clip_to_slab(point.z(), direction.z(), half_length);
+  chord.clip_to_ball(Eigen::Vector2d(point.head<2>()), Eigen::Vector2d(direction.head<2>()), radius);
+  return chord.out();
+}
+
+SolidMoments Cylinder::moments() const {
+  constexpr double kPi = 3.141592653589793;
+  const double square = radius * radius;
+  const double volume = 2.0 * kPi * square * half_length;
+  const Vector3 second(0.25 * square, 0.25 * square, half_length * half_length / 3.0);
+  return {volume, Vector3::Zero(), (volume * second).asDiagonal()};
 }
 
 }  // namespace mrhi

@@ -1,5 +1,7 @@
-#include "mr_hand_interaction/collision/closest_features.h"
-#include "segment.h"
+#include <limits>
+
+#include "chord.h"
+#include "flat_part.h"
 
 namespace mrhi {
 namespace {
@@ -53,7 +55,7 @@ ClosestFeatures over_face(const Capsule& capsule, const Vector3& half) {
 }
 
 /// A direction in which the axis can leave the box: `separation` < 0 is how far it has to go.
-struct WayOut {
+struct BoxWayOut {
   double separation = -1e300;
   Vector3 normal;
   int dimension = 0;
@@ -62,9 +64,9 @@ struct WayOut {
 
 /// The box swept along the axis is a polytope: its faces are those of the box, and those that an edge of the
 /// box sweeps out. The axis leaves the box by the nearest.
-WayOut way_out(const Segment& axis, const Vector3& half) {
+BoxWayOut leaving(const Segment& axis, const Vector3& half) {
   const Vector3 middle = axis.middle(), reach = 0.5 * axis.along.cwiseAbs();
-  WayOut best;
+  BoxWayOut best;
   for (int i = 0; i < 3; ++i) {
     const double separation = std::abs(middle[i]) - reach[i] - half[i];
     if (separation > best.separation) {
@@ -83,7 +85,7 @@ WayOut way_out(const Segment& axis, const Vector3& half) {
   return best;
 }
 
-ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const WayOut& way) {
+ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
   const int i = way.dimension;
   double s = way.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
   if (axis.along[i] == 0.0) {
@@ -96,7 +98,7 @@ ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const Wa
   return {way.separation, way.normal, point, s};
 }
 
-ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const WayOut& way) {
+ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
   const int i = way.dimension;
   Vector3 edge;
   for (int j = 0; j < 3; ++j) edge[j] = way.normal[j] < 0.0 ? -half[j] : half[j];
@@ -123,10 +125,53 @@ ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
   const Vector3 gap = axis_point - point;
   const double distance = gap.norm();
   if (distance > kOnSurface) return {distance - capsule.radius, gap / distance, point, s};
-  const WayOut way = way_out(axis, half);
+  const BoxWayOut way = leaving(axis, half);
   ClosestFeatures features = way.by_face ? leave_by_face(axis, half, way) : leave_by_edge(axis, half, way);
   features.distance -= capsule.radius;
   return features;
+}
+
+/// A quick look before the closed form is asked: is the capsule beyond `margin` from a face's plane?
+ClosestFeatures Box::closest(const Capsule& capsule, double margin) const {
+  const Vector3 half_length = 0.5 * (capsule.end - capsule.start).cwiseAbs();
+  const Vector3 gap = capsule.centre().cwiseAbs() - half_length - half_extents;
+  if (gap.maxCoeff() > margin + capsule.radius)
+    return {std::numeric_limits<double>::infinity(), Vector3::UnitZ(), Vector3::Zero(), 0.0};
+  return capsule_box(capsule, *this);
+}
+
+AxisSpan Box::span(const Capsule& capsule, const ClosestFeatures& features) const {
+  const Segment axis(capsule);
+  if (axis.along.isZero(0.0)) return at_point(features);
+  int across = 0;
+  Stretch stretch;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(features.normal[i]) > kSameNormal) {
+      ++across;
+    } else {
+      stretch.clip_to_slab(axis.start[i], axis.along[i], half_extents[i]);
+    }
+  }
+  return across == 1 ? over(stretch, features) : at_edge(features);
+}
+
+std::optional<Capsule> Box::core() const {
+  return std::nullopt;
+}
+
+Vector3 Box::farthest(const Vector3& n) const {
+  return (n.array() < 0.0).select(-half_extents, half_extents);
+}
+
+std::optional<double> Box::way_out(const Vector3& point, const Vector3& direction) const {
+  Chord chord;
+  for (int i = 0; i < 3; ++i) chord.clip_to_slab(point[i], direction[i], half_extents[i]);
+  return chord.out();
+}
+
+SolidMoments Box::moments() const {
+  const double volume = 8.0 * half_extents.prod();
+  return {volume, Vector3::Zero(), (volume / 3.0 * half_extents.cwiseAbs2()).asDiagonal()};
 }
 
 }  // namespace mrhi

@@ -1,0 +1,17 @@
+# Messages, services and sliders, and what other catkin packages are told.
+add_message_files(FILES
+  Contact.msg ContactArray.msg Hand.msg HandFrame.msg HandHaptics.msg HapticsArray.msg InteractionEvent.msg
+  ObjectState.msg ObjectStateArray.msg Phalanx.msg PhalanxHaptics.msg
+  TrainingStatus.msg)
+add_service_files(FILES DeleteObject.srv SetParameter.srv SpawnObject.srv)
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+generate_dynamic_reconfigure_options(cfg/Tune.cfg)
+
+set(run_packages ${ros_packages} message_runtime)
+list(REMOVE_ITEM run_packages message_generation rosbag_storage)  # the latter: inside the library alone
+catkin_package(
+  INCLUDE_DIRS include
+  LIBRARIES ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
+  CATKIN_DEPENDS ${run_packages}
+  DEPENDS EIGEN3
+  CFG_EXTRAS ${PROJECT_NAME}-targets.cmake)

@@ -1,0 +1,35 @@
+# The ROS library, the nodes and what is installed beside them.
+file(GLOB ros_sources src/ros/*.cpp src/replay/*.cpp)
+add_library(${PROJECT_NAME}_ros ${ros_sources})
+target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
+target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
+add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+
+set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp PROPERTIES
+  COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
+# Scenes are found from a devel space even where no environment has been sourced.
+set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
+  COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+
+foreach(node hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node calibrate_mount replay
+    marker_relay_node simulated_operator_node simulated_study)
+  add_executable(${node} src/nodes/${node}.cpp)
+  target_link_libraries(${node} ${PROJECT_NAME}_ros)
+endforeach()
+
+install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
+  ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node calibrate_mount replay
+    marker_relay_node simulated_operator_node simulated_study
+  RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+# No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
+set(scripts analyse_study ask_ratings doctor run_when set training_keys)
+foreach(script ${scripts})
+  install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
+endforeach()
+install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY config launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

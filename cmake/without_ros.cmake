@@ -1,0 +1,47 @@
+# What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
+set(replay_parts
+  arguments csv_columns csv_file duration_histogram frame_source prepare_simulation progress_bar recording_csv replay
+  result_writer summary)
+file(GLOB without_ros src/without_ros/*.cpp)
+set(replay_library_sources src/ros/package_paths.cpp ${without_ros})
+foreach(part ${replay_parts})
+  list(APPEND replay_library_sources src/replay/${part}.cpp)
+endforeach()
+add_library(${PROJECT_NAME}_replay STATIC ${replay_library_sources})
+target_link_libraries(${PROJECT_NAME}_replay PUBLIC ${PROJECT_NAME}_core PRIVATE yaml-cpp)
+# Scenes are found from where it was built, too.
+set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
+  COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+add_executable(replay src/nodes/replay.cpp)
+target_link_libraries(replay ${PROJECT_NAME}_replay)
+
+set_target_properties(${PROJECT_NAME}_core PROPERTIES EXPORT_NAME core)
+set_target_properties(replay PROPERTIES INSTALL_RPATH "$ORIGIN/../../${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS ${PROJECT_NAME}_core EXPORT ${PROJECT_NAME}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS replay RUNTIME DESTINATION lib/${PROJECT_NAME})
+install(DIRECTORY include/${PROJECT_NAME} DESTINATION include PATTERN ros EXCLUDE PATTERN replay EXCLUDE)
+install(DIRECTORY config DESTINATION share/${PROJECT_NAME})
+set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/${PROJECT_NAME})
+install(EXPORT ${PROJECT_NAME} FILE ${PROJECT_NAME}Targets.cmake NAMESPACE ${PROJECT_NAME}:: DESTINATION ${config_folder})
+include(CMakePackageConfigHelpers)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}Config.cmake
+  "include(CMakeFindDependencyMacro)\nfind_dependency(Eigen3)\n"
+  "include(\${CMAKE_CURRENT_LIST_DIR}/${PROJECT_NAME}Targets.cmake)\n")
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}ConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}Config.cmake ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}ConfigVersion.cmake
+  DESTINATION ${config_folder})
+
+option(BUILD_TESTING "Build the tests of the core" ON)
+if(BUILD_TESTING)
+  find_package(GTest)
+  if(GTEST_FOUND)
+    enable_testing()
+    add_subdirectory(test)
+  else()
+    message(STATUS "googletest not found: no tests")
+  endif()
+endif()

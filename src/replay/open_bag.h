@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "mr_hand_interaction/replay/arguments.h"
+#include "mr_hand_interaction/replay/frame_source.h"
+
+namespace mrhi {
+
+/// A recording that is open, and the topic that is read of it.
+struct ReplayInput {
+  std::unique_ptr<FrameSource> frames;
+  std::string topic;
+};
+
+/// Throws BagError; where this was built without ROS, UsageError.
+ReplayInput open_bag(const ReplayArguments& arguments);
+
+}  // namespace mrhi

@@ -1,0 +1,87 @@
+#include "shape_kinds.h"
+
+#include <locale>
+#include <sstream>
+
+#include "text.h"
+
+namespace mrhi {
+namespace {
+
+const std::string kPrefix = ":shape:";
+
+}  // namespace
+
+const std::vector<ShapeKind>& shape_kinds() {
+  using Size = std::vector<double>;
+  static const std::vector<ShapeKind> kinds{
+      {"box", {"x", "y", "z"}, [](const Size& s) -> Shape { return Box{0.5 * Vector3(s[0], s[1], s[2])}; }},
+      {"sphere", {"radius"}, [](const Size& s) -> Shape { return Sphere{s[0]}; }},
+      {"cylinder",
+       {"radius", "length"},
+       [](const Size& s) -> Shape {
+         return Cylinder{s[0], 0.5 * s[1]};
+       }},
+      {"capsule",
+       {"radius", "length"},
+       [](const Size& s) -> Shape {
+         return Pill{s[0], 0.5 * s[1]};
+       }},
+  };
+  return kinds;
+}
+
+const ShapeKind* find_shape_kind(const std::string& name) {
+  for (const ShapeKind& kind : shape_kinds()) {
+    if (kind.name == name) return &kind;
+  }
+  return nullptr;
+}
+
+std::string shape_kind_names() {
+  std::vector<std::string> names;
+  for (const ShapeKind& kind : shape_kinds()) names.push_back(kind.name);
+  return text::joined(names);
+}
+
+std::string ShapeKind::describe(const std::vector<double>& size) const {
+  if (size.size() == 3) return name + " size " + text::vector(Vector3(size[0], size[1], size[2]));
+  std::string all = name;
+  for (std::size_t i = 0; i < size.size(); ++i)
+    all += (i == 0 ? " " : " and ") + sizes[i] + " " + text::number(size[i]);
+  return all;
+}
+
+std::string as_filename(const GivenShape& shape) {
+  std::string name = kPrefix + shape.kind->name;
+  for (const double size : shape.size) name += " " + text::exact(size);
+  return name;
+}
+
+bool is_hull(const std::string& filename) {
+  return filename.compare(0, std::string(kHullPrefix).size(), kHullPrefix) == 0;
+}
+
+std::string without_hull(const std::string& filename) {
+  return is_hull(filename) ? filename.substr(std::string(kHullPrefix).size()) : filename;
+}
+
+std::optional<GivenShape> from_filename(const std::string& filename) {
+  if (filename.compare(0, kPrefix.size(), kPrefix) != 0) return std::nullopt;
+  std::istringstream words(filename.substr(kPrefix.size()));
+  words.imbue(std::locale::classic());
+  std::string name;
+  words >> name;
+  GivenShape given{find_shape_kind(name), {}};
+  if (given.kind == nullptr) return std::nullopt;
+  for (std::string word; words >> word;) {
+    std::istringstream number(word);
+    number.imbue(std::locale::classic());
+    double size = 0.0;
+    given.size.push_back(number >> size && number.eof() ? size : 0.0);  // what is no number is no size
+  }
+  given.size.resize(given.kind->sizes.size(), 0.0);
+  return given;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,65 @@
+"""The package as others build with it: outside of its tree, by its targets, and without ROS. With MR_HAND_CORE_BUILD=1
+the core is built, tested and installed without ROS too, which takes minutes."""
+import os
+import subprocess
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+REPOSITORY = os.path.dirname(os.path.dirname(HERE))
+WITHOUT_ROS = ['-DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON', '-DCMAKE_BUILD_TYPE=Release']
+
+
+def run(*command, **options):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, **options)
+    if done.returncode:
+        raise AssertionError('%s\n%s' % (' '.join(command), done.stdout[-4000:]))
+    return done.stdout
+
+
+def prefixes():
+    return os.pathsep.join([os.path.join(REPOSITORY, 'devel'), os.environ.get('CMAKE_PREFIX_PATH', '')]).strip(os.pathsep)
+
+
+def build(consumer, prefix, folder):
+    """The consumer's executable."""
+    environment = dict(os.environ, CMAKE_PREFIX_PATH=prefix)
+    run('cmake', '-S', os.path.join(REPOSITORY, 'test', 'consumers', consumer), '-B', folder,
+        '-DPYTHON_EXECUTABLE=/usr/bin/python3', '-DPython3_EXECUTABLE=/usr/bin/python3', env=environment)
+    run('cmake', '--build', folder, env=environment)
+    return os.path.join(folder, consumer + '_consumer')
+
+
+class Consumers(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def test_a_program_of_the_core(self):
+        self.assertEqual(run(build('core', prefixes(), self.folder.name)), '0.100\n')
+
+    def test_a_node_with_the_interaction_inside(self):
+        run(build('ros', prefixes(), self.folder.name))
+
+    def test_the_core_configures_without_ros(self):
+        said = run('cmake', '-S', REPOSITORY, '-B', self.folder.name, *WITHOUT_ROS)
+        self.assertIn('building without ROS', said)
+        targets = run('cmake', '--build', self.folder.name, '--target', 'help')
+        for target in 'mr_hand_interaction_core', 'replay', 'test_laws':
+            self.assertIn(target, targets)
+        self.assertNotIn('interaction_node', targets)
+
+    @unittest.skipUnless(os.environ.get('MR_HAND_CORE_BUILD'), 'takes minutes: set MR_HAND_CORE_BUILD=1')
+    def test_the_core_builds_runs_and_installs_without_ros(self):
+        tree, prefix = os.path.join(self.folder.name, 'build'), os.path.join(self.folder.name, 'prefix')
+        run('cmake', '-S', REPOSITORY, '-B', tree, '-DCMAKE_INSTALL_PREFIX=' + prefix, '-DWARNINGS_AS_ERRORS=ON',
+            *WITHOUT_ROS)
+        run('cmake', '--build', tree, '--', '-j2')
+        run('ctest', '--output-on-failure', '-R', 'scene|replay|collision', cwd=tree)
+        run('cmake', '--build', tree, '--target', 'install')
+        self.assertEqual(run(build('core', prefix, os.path.join(self.folder.name, 'consumer'))), '0.100\n')
+        self.assertIn('usage', run(os.path.join(prefix, 'lib', 'mr_hand_interaction', 'replay'), '--help'))
+
+
+if __name__ == '__main__':
+    unittest.main()
