@@ -5,6 +5,7 @@
 #include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
+#include "mr_hand_interaction/ros/master_watch.h"
 
 /// hand_tracking_node and interaction_node in one process and one thread: a frame goes from one to the other
 /// by a call. Parameters of tracking are in ~hand_tracking.
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "interaction_node");
   mrhi::end_in_order();
   const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
+  const mrhi::MasterWatch master;
   try {
     const ros::NodeHandle node;
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
