@@ -19,15 +19,35 @@ void check_in_bounds(const std::string& name, const Vector3& place, const Bounds
                               text::vector(bounds.min) + " to " + text::vector(bounds.max));
 }
 
-void check_free_place(const Simulation& simulation, std::size_t added) {
-  const Scene& scene = simulation.scene();
-  const SceneGeometry geometry(scene);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (b == added || (scene.bodies[b].fixed && scene.bodies[added].fixed)) continue;
-    const double depth = overlap(scene, geometry, simulation.state().bodies, added, b);
+/// The bodies that may touch the last one where they are now, and that one.
+Scene near_the_last(const Simulation& simulation) {
+  const std::vector<Body>& bodies = simulation.scene().bodies;
+  const Body& last = bodies.back();
+  Scene near;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Pose& pose = simulation.state().bodies[b].pose;
+    const bool apart =
+        (pose.position - last.start.position).norm() > bodies[b].bounding_radius + last.bounding_radius;
+    if (apart || (bodies[b].fixed && last.fixed && b + 1 < bodies.size())) continue;
+    near.bodies.push_back(bodies[b]);
+    near.bodies.back().start = pose;
+  }
+  return near;
+}
+
+/// What is asked for the last body, which is new.
+void check_free_place(const Simulation& simulation) {
+  const Scene near = near_the_last(simulation);
+  if (near.bodies.size() == 1) return;
+  const SceneGeometry geometry(near);
+  std::vector<BodyState> states;
+  for (const Body& body : near.bodies) states.push_back(start_state(body));
+  const std::size_t added = near.bodies.size() - 1;
+  for (std::size_t b = 0; b < added; ++b) {
+    const double depth = overlap(near, geometry, states, added, b);
     if (depth <= kOverlap) continue;
-    throw std::invalid_argument("'" + scene.bodies[added].name + "' would be " + text::number(depth) +
-                                " m in '" + scene.bodies[b].name + "'; allowed: a place that is free");
+    throw std::invalid_argument("'" + near.bodies[added].name + "' would be " + text::number(depth) +
+                                " m in '" + near.bodies[b].name + "'; allowed: a place that is free");
   }
 }
 
@@ -84,7 +104,7 @@ void LiveSimulation::add(const Body& body) {
   scene.bodies.push_back(body);
   auto next = std::make_unique<Simulation>(std::move(scene), simulation_->configuration());
   next->go_on_from(*simulation_);
-  check_free_place(*next, next->scene().bodies.size() - 1);
+  check_free_place(*next);
   simulation_ = std::move(next);
 }
 

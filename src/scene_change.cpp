@@ -3,21 +3,29 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <unordered_map>
 
 #include "scene/material_fields.h"
 
 namespace mrhi {
 namespace {
 
+using Places = std::vector<std::optional<int>>;
+
 /// For each body of `before` its index in `after`.
-std::vector<std::optional<int>> places_in(const Scene& before, const Scene& after) {
-  std::vector<std::optional<int>> places;
+Places places_in(const Scene& before, const Scene& after) {
+  std::unordered_map<std::string_view, int> by_name;
+  for (std::size_t b = 0; b < after.bodies.size(); ++b)
+    by_name.emplace(after.bodies[b].name, static_cast<int>(b));
+  Places places;
   places.reserve(before.bodies.size());
-  for (const Body& body : before.bodies) places.push_back(find_body(after, body.name));
+  for (const Body& body : before.bodies) {
+    const auto found = by_name.find(body.name);
+    places.push_back(found == by_name.end() ? std::nullopt : std::make_optional(found->second));
+  }
   return places;
 }
-
-using Places = std::vector<std::optional<int>>;
 
 void move(const Places& places, std::vector<Contact>& contacts) {
   std::vector<Contact> kept;
@@ -77,15 +85,18 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
   next.asleep.assign(after.bodies.size(), 0);
   next.bodies.clear();
   for (const Body& body : after.bodies) next.bodies.push_back(start_state(body));
+  std::vector<char> was_there(after.bodies.size(), 0);
   for (std::size_t b = 0; b < places.size(); ++b) {
-    if (places[b]) next.bodies[static_cast<std::size_t>(*places[b])] = state.bodies[b];
+    if (!places[b]) continue;
+    next.bodies[static_cast<std::size_t>(*places[b])] = state.bodies[b];
+    was_there[static_cast<std::size_t>(*places[b])] = 1;
   }
   move(places, next.contacts);
   move(places, next.body_contacts);
   move(places, next.grips);
   next.interactions = moved(places, after.bodies.size(), state);
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
-    if (!find_body(before, after.bodies[b].name)) mark_appeared(b, next);
+    if (!was_there[b]) mark_appeared(b, next);
   }
   return next;
 }

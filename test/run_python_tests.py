@@ -2,11 +2,14 @@
 """run_python_tests.py FILE RESULT: runs a file's unittest cases and writes their results as JUnit XML. rosunit's own
 writer counts skipped tests, and failures in subtests or in a class's set-up, as passed."""
 
+import faulthandler
 import os
 import sys
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
+
+LIMIT = 900  # s for a file, far beyond what any takes: one that hangs says where, and leaves the others their time
 
 
 class Recorder(unittest.TextTestResult):
@@ -58,6 +61,7 @@ class Recorder(unittest.TextTestResult):
 
 def main():
     file, result = map(os.path.abspath, sys.argv[1:3])
+    faulthandler.dump_traceback_later(LIMIT, exit=True)
     sys.path.insert(0, os.path.dirname(file))
     tests = unittest.defaultTestLoader.loadTestsFromName(os.path.splitext(os.path.basename(file))[0])
     outcome = unittest.TextTestRunner(resultclass=Recorder, verbosity=2).run(tests)

@@ -4,6 +4,7 @@
 
 #include "mr_hand_interaction/ros/end_in_order.h"
 #include "mr_hand_interaction/ros/marker_relay.h"
+#include "mr_hand_interaction/ros/master_watch.h"
 #include "mr_hand_interaction/ros/node_usage.h"
 
 namespace {
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "marker_relay_node");
   mrhi::end_in_order();
   const ros::NodeHandle node, parameters("~");  // outlive what may throw: without a node nothing is logged
+  const mrhi::MasterWatch master;
   try {
     const mrhi::MarkerRelay relay(node, parameters);
     ros::spin();

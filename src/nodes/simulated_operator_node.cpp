@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "mr_hand_interaction/ros/end_in_order.h"
+#include "mr_hand_interaction/ros/master_watch.h"
 #include "mr_hand_interaction/ros/node_usage.h"
 #include "mr_hand_interaction/ros/operator_publisher.h"
 
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "simulated_operator_node");
   mrhi::end_in_order();
   const ros::NodeHandle node, parameters("~");  // outlive what may throw: without a node nothing is logged
+  const mrhi::MasterWatch master;
   try {
     const mrhi::OperatorPublisher publisher(node, parameters);
     ros::spin();

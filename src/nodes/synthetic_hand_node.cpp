@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/ros/end_in_order.h"
+#include "mr_hand_interaction/ros/master_watch.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 
@@ -91,6 +92,7 @@ int main(int argc, char** argv) {
   mrhi::end_in_order();
   const ros::NodeHandle node,
       parameters("~");  // the last handle to go would close the log before it is written to
+  const mrhi::MasterWatch master;
   try {
     mrhi::SyntheticHandPublisher(node, parameters).run();
   } catch (const std::exception& error) {

@@ -20,6 +20,8 @@ constexpr std::size_t kFewLinks = 16;
 constexpr double kSlow = 1e-3;
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
+/// A gain of energy up to this part of what is exchanged is rounding.
+constexpr double kNoGain = 1e-7;
 
 Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
   const Body& body = step.scene.bodies[index];
@@ -95,6 +97,7 @@ ImpactSolver::ImpactSolver() {
   blow_.reserve(kUsualStrikes);
   meetings_.reserve(kUsualStrikes);
   impacts_.reserve(2 * kUsualStrikes);
+  newtons_.reserve(kUsualStrikes);
 }
 
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
@@ -233,6 +236,7 @@ bool ImpactSolver::deal(ContactStep& step) {
   double most = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
   const auto passes = [&most](Strike* strike) {
     strike->prepare();
+    strike->approach = strike->velocity_on_impact();
     strike->target = strike->rate();
     const double speed = strike->target + strike->time * strike->acceleration;
     if (classify(speed) != Approach::colliding) return true;
@@ -244,6 +248,7 @@ bool ImpactSolver::deal(ContactStep& step) {
   blow_.erase(std::remove_if(blow_.begin(), blow_.end(), passes), blow_.end());
   if (blow_.empty()) return true;
   if (solve(most)) {
+    keep_to_energy(most);
     report(step);
     return true;
   }
@@ -270,6 +275,52 @@ bool ImpactSolver::solve(double most) {
     if (sum > kPressed * most) return false;
   }
   return true;
+}
+
+/// Energy that the blow has given to the bodies beyond the work of the hands [J].
+double ImpactSolver::gain() const {
+  double sum = 0.0;
+  for (const Strike* strike : blow_)
+    sum -= 0.5 * strike->given().dot(strike->approach + strike->velocity_on_impact());
+  return sum;
+}
+
+/// Newton's restitution and Coulomb's friction together may make energy (Kane & Levinson 1985). Where they
+/// do, the blow is what lies between one without restitution, which only takes, and theirs, and keeps energy.
+void ImpactSolver::keep_to_energy(double most) {
+  double exchanged = 0.0;
+  for (const Strike* strike : blow_) exchanged += strike->given().norm() * strike->approach.norm();
+  if (gain() <= kNoGain * exchanged) return;
+  newtons_.clear();
+  for (Strike* strike : blow_)
+    newtons_.push_back({strike->given(), strike->velocity_on_impact(), strike->drag, strike->magnitude});
+  for (Strike* strike : blow_) {
+    strike->a.push(strike->given());
+    strike->b.push(-strike->given());
+  }
+  for (Strike* strike : blow_) {
+    strike->prepare();
+    strike->target += strike->restitution * strike->normal.dot(strike->approach);
+  }
+  solve(most);
+  double square = 0.0, linear = 0.0;
+  const double least = gain();
+  for (std::size_t i = 0; i < blow_.size(); ++i) {
+    const Vector3 more = newtons_[i].given - blow_[i]->given();
+    const Vector3 faster = newtons_[i].velocity - blow_[i]->velocity_on_impact();
+    square -= 0.5 * more.dot(faster);
+    linear -=
+        0.5 * (more.dot(blow_[i]->approach + blow_[i]->velocity_on_impact()) + blow_[i]->given().dot(faster));
+  }
+  const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * least));
+  const double share = least < 0.0 ? std::clamp((root - linear) / (2.0 * square), 0.0, 1.0) : 0.0;
+  for (std::size_t i = 0; i < blow_.size(); ++i) {
+    const Vector3 more = share * (newtons_[i].given - blow_[i]->given());
+    blow_[i]->magnitude += share * (newtons_[i].magnitude - blow_[i]->magnitude);
+    blow_[i]->drag += share * (newtons_[i].drag - blow_[i]->drag);
+    blow_[i]->a.push(-more);
+    blow_[i]->b.push(more);
+  }
 }
 
 void ImpactSolver::report(ContactStep& step) {

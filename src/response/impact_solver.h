@@ -17,6 +17,7 @@ enum class ImpactFriction { none, coulomb };
 /// each other in time, each as the ones before it have left the bodies, up to several of one pair in a step.
 /// In a crowd, an island of many contacts, all strikes of a step are one blow, found to what can be seen, and
 /// only those that are faster than gravity makes things in a step: springs do the rest.
+/// Where that together with friction would give the bodies more energy than they had, they part by less.
 /// With ImpactFriction::coulomb, sliding at the point is stopped as far as static friction times the normal
 /// impulse goes.
 class ImpactSolver {
@@ -41,6 +42,8 @@ class ImpactSolver {
   bool find_blow(double end);
   bool deal(ContactStep& step);
   bool solve(double most);
+  double gain() const;
+  void keep_to_energy(double most);
   void report(ContactStep& step);
 
   ImpactFriction friction_ = ImpactFriction::none;
@@ -48,6 +51,12 @@ class ImpactSolver {
   std::vector<double> meetings_;  // when each of them will collide, as the bodies move now [s]
   std::vector<Strike*> blow_;     // those dealt together
   std::vector<BodyImpact> impacts_;
+  /// A blow as Newton's law has it.
+  struct Newtons {
+    Vector3 given, velocity, drag;
+    double magnitude;
+  };
+  std::vector<Newtons> newtons_;
   bool by_hand_ = false;  // a hand takes part in this island's strikes
   /// How exactly a blow is solved.
   struct Care {

@@ -40,6 +40,7 @@ struct Strike {
   Vector3 normal;     // from b to a
 
   // The blow.
+  Vector3 approach;                   // velocity on impact before it [m/s]
   double target = 0.0;                // rate after the impact, as it would be at the step's start [m/s]
   double mass = 0.0;                  // effective along n [kg]
   double magnitude = 0.0;             // j so far [N s]
@@ -48,6 +49,8 @@ struct Strike {
   Vector3 drag = Vector3::Zero();     // tangential impulse so far [N s]
 
   Vector3 relative_velocity() const { return drive + a.velocity() - b.velocity(); }
+  /// The same when they meet, with gravity's part along n.
+  Vector3 velocity_on_impact() const { return relative_velocity() + time * acceleration * normal; }
   /// Of the gap, as if at the step's start: gravity's part is not in it [m/s].
   double rate() const { return normal.dot(relative_velocity()); }
   /// The normal of two balls turns as they pass each other.

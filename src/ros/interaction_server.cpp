@@ -213,9 +213,12 @@ void InteractionServer::change_parameters(const Tuning::Values& values) {
   show_change();
 }
 
+/// Changes that come faster than they could be seen are shown together, by the next frame or idle(): a scene
+/// of many objects costs more to show than to change.
 void InteractionServer::show_change() {
   results_.show(live_.now());
-  results_.publish_scene(live_.now().result(), to_ros_time(clock_.stamp(ros::Time::now())));
+  if (ros::WallTime::now() - results_.shown() > kIdlePeriod)
+    results_.publish_scene(live_.now().result(), to_ros_time(clock_.stamp(ros::Time::now())));
   placing_.renew(live_.now());
 }
 

@@ -9,6 +9,9 @@
 namespace mrhi {
 namespace {
 
+/// Seventy times what any version has: types nested through all of it fit on the stack.
+constexpr std::size_t kLongestDefinition = 256 * 1024;
+
 [[noreturn]] void unknown(const std::string& what) {
   throw DecodeError(DecodeError::Kind::unknown_version, what);
 }
@@ -90,6 +93,9 @@ bool names(const std::string& candidate, const std::string& wanted, const std::s
 }  // namespace
 
 MessageLayout::MessageLayout(const std::string& definition, const std::string& root_name) {
+  if (definition.size() > kLongestDefinition)
+    unknown("message definition: has " + std::to_string(definition.size()) + " bytes; allowed: at most " +
+            std::to_string(kLongestDefinition));
   types_.push_back({root_name, {}, std::nullopt});
   std::istringstream text(definition);
   bool new_block = false;

@@ -53,10 +53,12 @@ void write_now(std::ofstream& out, const std::string& text, const std::string& f
   if (!out) throw SessionError(file + ": cannot be written; allowed: a folder to write to with space left");
 }
 
+/// 0 for what is none, or more than are ever counted.
 int whole_number(const std::string& field) {
+  constexpr int kMost = 1'000'000'000;
   std::istringstream in(field);
   int value = 0;
-  return in >> value && value > 0 ? value : 0;
+  return in >> value && value > 0 && value <= kMost ? value : 0;
 }
 
 TrialResult result_named(const std::string& name) {

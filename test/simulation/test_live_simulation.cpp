@@ -191,6 +191,21 @@ TEST(LiveSimulation, no_change_by_eye_drops_what_is_held_or_jolts_it) {
   }
 }
 
+TEST(LiveSimulation, changes_with_every_frame_drop_and_jolt_nothing) {
+  Held held;
+  held.play(0.7);
+  ASSERT_TRUE(held.holds());
+  for (int i = 1; i <= 240; ++i) {
+    held.live().set_parameters({{"material/static_friction", i % 2 ? "0.9" : "0.8"},
+                                {"filter/window", std::to_string(1 + i % 5)},
+                                {"tracking/max_speed", std::to_string(20 + i % 3)}});
+    held.play(0.7 + i / kRate);
+    ASSERT_LT(held.speed_in_hand(), 0.05) << i;
+  }
+  EXPECT_TRUE(held.holds());
+  EXPECT_EQ(std::count(held.kinds.begin(), held.kinds.end(), EventKind::grasp_end), 0);
+}
+
 TEST(LiveSimulation, another_filter_takes_over_without_a_jolt) {
   const std::vector<std::vector<std::pair<std::string, std::string>>> changes{
       {{"filter/window", "12"}},

@@ -113,6 +113,7 @@ class Program(unittest.TestCase):
             for file in files:
                 self.write_hands(os.path.join(name, file), 0.004 if 'raw' in file else 0.001)
         done = self.run_program(self.root)
+        self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([name for name in self.figures() if name.startswith('trajectory') and name.endswith('.svg')],
                          ['trajectory_one_implicit_0_g.svg'])
         self.assertTrue(NO_PERSON in self.read('figures', 'trajectory_one_implicit_0_g.svg'))
@@ -125,6 +126,7 @@ class Program(unittest.TestCase):
             with open(self.write_hands(os.path.join(name, 'hands.csv'), 0.001), 'a') as file:
                 file.write('3.0,7,0,1,3,0,0.0')  # cut off by a crash
         done = self.run_program(self.root)
+        self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([name for name in self.figures() if name.startswith('trajectory') and name.endswith('.svg')],
                          ['trajectory_P01_implicit_0_g.svg', 'trajectory_P02_implicit_0_g.svg'])
         self.assertIn('1 sessions: no trajectory drawn', done.stderr)

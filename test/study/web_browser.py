@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import socket
 import subprocess
 import time
 import urllib.error
@@ -18,12 +19,20 @@ def missing():
     return ''
 
 
+def free_port():
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        return free.getsockname()[1]
+
+
 class Browser:
     def __init__(self):
-        self.driver = subprocess.Popen(['chromedriver', '--port=0'], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                       universal_newlines=True)
+        port = free_port()  # not every version tells which it has chosen itself
+        self.address = 'http://127.0.0.1:%d' % port
+        self.driver = subprocess.Popen(['chromedriver', '--port=%d' % port], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
         try:
-            self.address = 'http://127.0.0.1:%d' % self._port()
+            self._wait_until_ready()
             options = {'args': ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage']}
             wanted = {'goog:chromeOptions': options, 'timeouts': {'implicit': 1000 * LIMIT // 2}}  # [ms] to be found
             wanted = {'capabilities': {'alwaysMatch': wanted}}
@@ -32,10 +41,14 @@ class Browser:
             self.close()
             raise
 
-    def _port(self):
-        for line in self.driver.stdout:
-            if 'started successfully on port' in line:
-                return int(line.rstrip().rstrip('.').split()[-1])
+    def _wait_until_ready(self):
+        end = time.monotonic() + LIMIT
+        while self.driver.poll() is None and time.monotonic() < end:
+            try:
+                if self._send('GET', '/status')['ready']:
+                    return
+            except urllib.error.URLError:
+                time.sleep(0.05)
         raise RuntimeError('chromedriver did not start')
 
     def _send(self, method, path, body=None):
@@ -79,4 +92,3 @@ class Browser:
         finally:
             self.driver.terminate()
             self.driver.wait()
-            self.driver.stdout.close()

@@ -376,6 +376,16 @@ TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
   test::expect_words(refusal(header()), {"trials.csv:2", "2 fields"});
 }
 
+TEST_F(SessionTest, goes_on_counting_whatever_numbers_are_in_its_tables) {
+  open();
+  std::ofstream(events_, std::ios::app)
+      << "0.1,2147483647,manipulation,drop,cube,\n-5,x,manipulation,drop,cube,\n";
+  Session session = open();
+  session.begin(0);
+  session.abort(1);
+  EXPECT_EQ(lines(trials_).back().substr(0, 2), "1,");
+}
+
 TEST_F(SessionTest, orders_objects_by_the_latin_square_and_writes_it_down) {
   Task task = three_objects();
   task.latin_square = true;

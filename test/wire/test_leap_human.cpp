@@ -148,6 +148,21 @@ TEST(LeapHuman, UnknownVersionsAreRefusedByTheFieldThatDiffers) {
       << "a type that contains itself";
 }
 
+TEST(LeapHuman, DefinitionsThatAreNestedWithoutEndOrLieAboutSizesAreRefused) {
+  const auto nested = [](int levels, const std::string& count) {
+    std::string text = "T0" + count + " t\n";
+    for (int i = 0; i < levels; ++i)
+      text += std::string(80, '=') + "\nMSG: leap_motion/T" + std::to_string(i) + "\n" +
+              (i + 1 < levels ? "T" + std::to_string(i + 1) + count + " t\n" : "uint8 t\n");
+    return text;
+  };
+  EXPECT_NE(definition_error(nested(100'000, "")).find("at most 262144"), std::string::npos);
+  EXPECT_EQ(definition_error(nested(2200, "")),
+            "unknown version of leap_motion/Human: no field leap_motion/Human.header");
+  EXPECT_EQ(definition_error(nested(9, "[999999999]")),
+            "unknown version of leap_motion/Human: no field leap_motion/Human.header");
+}
+
 TEST(LeapHuman, LaterVersionsThatKeepTheNamesAreRead) {
   const JointsFrame sent{5, {sample_hand(Side::right)}};
   const std::string definition =

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""Records a scripted hand and plays it in a loop through the nodes for hours of its own time: memory, open files and
+the steps' 99th percentile of each node, ten times on the way. Exits with 1 if any grows after the first of them."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from mr_hand_interaction.msg import ObjectStateArray
+
+RATE = 10
+LOOKS = 10
+NODES = ("/hand_tracking_node", "/interaction_node")
+MOST_MEMORY, MOST_TIME = 1.05, 1.5  # against the first look; time is that of a machine with other things to do
+PAGE = os.sysconf("SC_PAGE_SIZE") / 1048576.0
+
+
+def run(*command):
+    return subprocess.Popen(command, start_new_session=True)
+
+
+def end(process):
+    os.killpg(process.pid, signal.SIGINT)
+    process.wait(60)
+
+
+def record(bag):
+    """Two runs of the hand, with what comes before and after."""
+    recorder = run("rosbag", "record", "-O", bag, "/leap_motion/leap_device")
+    hand = run("rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=grasp_cube")
+    time.sleep(25)  # of the hand's own time
+    end(hand)
+    end(recorder)
+
+
+class Look:
+    def __init__(self, p99):
+        self.p99 = p99
+        self.memory, self.files = 0.0, 0
+        for node in NODES:
+            uri = rosgraph.Master("/soak").lookupNode(node)
+            process = "/proc/%d/" % ServerProxy(uri).getPid("/soak")[2]
+            with open(process + "statm") as statm:
+                self.memory += int(statm.read().split()[1]) * PAGE
+            self.files += len(os.listdir(process + "fd"))
+
+
+class Live:
+    def __init__(self):
+        self.p99, self.stamps, self.loops = [], 0, 0
+        self.last = None
+        self.subscribers = [rospy.Subscriber("/diagnostics", DiagnosticArray, self.take_diagnostics),
+                            rospy.Subscriber("objects", ObjectStateArray, self.take_objects)]
+
+    def take_diagnostics(self, message):
+        for status in message.status:
+            if status.name == "interaction_node: interaction":
+                self.p99 += [float(v.value) for v in status.values if v.key == "step time p99 [us]"]
+
+    def take_objects(self, message):
+        self.loops += self.last is not None and message.header.stamp < self.last
+        self.last = message.header.stamp
+        self.stamps += 1
+
+    def look(self):
+        times, self.p99 = sorted(self.p99), []
+        return Look(times[len(times) // 2] if times else 0.0)
+
+
+def flat(looks):
+    first = looks[0]
+    return all(look.memory < MOST_MEMORY * first.memory and look.files <= first.files and
+               look.p99 < MOST_TIME * first.p99 for look in looks)
+
+
+def watch(hours):
+    live, looks = Live(), []
+    print("%6s %8s %8s %6s %8s" % ("look", "loops", "MiB", "files", "p99/us"))
+    for number in range(1, LOOKS + 1):
+        time.sleep(hours * 3600 / RATE / LOOKS)
+        looks.append(live.look())
+        print("%6d %8d %8.2f %6d %8.1f" % (number, live.loops, looks[-1].memory, looks[-1].files, looks[-1].p99),
+              flush=True)
+    return flat(looks) and live.loops > 0
+
+
+def main():
+    folder, core = tempfile.mkdtemp(), run("roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/"))
+    try:
+        while not rosgraph.is_master_online():
+            time.sleep(0.1)
+        bag = os.path.join(folder, "hand.bag")
+        record(bag)
+        launch = run("roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + bag, "scene:=cube", "rviz:=false",
+                     "loop:=true", "rate:=%d" % RATE)
+        try:
+            rospy.init_node("soak", disable_signals=True)
+            is_flat = watch(float(sys.argv[1]))
+        finally:
+            end(launch)
+    finally:
+        end(core)
+        shutil.rmtree(folder)
+    print("flat" if is_flat else "NOT FLAT")
+    return 0 if is_flat else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,186 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "fuzz/target.h"
+#include "support/fixtures.h"
+#include "support/posed_hand.h"
+#include "support/postures.h"
+
+namespace mrhi::fuzzing {
+
+/// A scene, a configuration and frames out of bytes: hands that go through one to four bodies, now and then
+/// with numbers that are none and stamps from elsewhere.
+struct StepCase {
+  Scene scene;
+  Configuration configuration;
+  std::vector<JointsFrame> frames;
+};
+
+constexpr std::size_t kMostFrames = 40;
+
+inline Shape shape_of(Bytes& bytes) {
+  const auto size = [&] { return 0.003 * std::pow(25.0, bytes.between(0.0, 1.0)); };  // 3 to 75 mm
+  const double first = size(), second = size(), third = size();
+  switch (bytes.below(3)) {
+    case 0:
+      return Box{Vector3(first, second, third)};
+    case 1:
+      return Cylinder{first, second};
+    default:
+      return Sphere{first};
+  }
+}
+
+inline Vector3 vector_of(Bytes& bytes, double most) {
+  const double x = bytes.between(-most, most), y = bytes.between(-most, most);
+  return {x, y, bytes.between(-most, most)};
+}
+
+inline Quaternion orientation_of(Bytes& bytes) {
+  const Vector3 half = vector_of(bytes, 1.0);
+  return Quaternion(1.0, half.x(), half.y(), half.z()).normalized();
+}
+
+inline Body body_of(Bytes& bytes, int number, const Material& material) {
+  const bool extreme = bytes.one_in(8);
+  const double mass = std::pow(10.0, extreme ? bytes.between(-6.0, 6.0) : bytes.between(-2.0, 0.5));
+  Body body = testing::box_body(Vector3(0.04, 0.05, 0.06), mass);
+  body.name = "body_" + std::to_string(number);
+  body.material = material;
+  body.fixed = bytes.one_in(4);
+  body.shapes = {{shape_of(bytes), {}}};
+  body.start = {vector_of(bytes, 0.15), orientation_of(bytes)};
+  if (!body.fixed && bytes.one_in(4)) body.start_twist = {vector_of(bytes, 2.0), vector_of(bytes, 30.0)};
+  complete(body);
+  return body;
+}
+
+inline bool is_clear(const Scene& scene, const Body& added) {
+  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
+    return (body.start.position - added.start.position).norm() < body.bounding_radius + added.bounding_radius;
+  });
+}
+
+inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
+  Scene scene;
+  scene.name = "fuzzed";
+  if (bytes.one_in(4)) scene.gravity = Vector3(0, 0, -9.81);
+  Material material = default_material(configuration);
+  if (bytes.one_in(2)) material.restitution = bytes.between(0.0, 1.0);
+  const int bodies = 1 + bytes.below(4);
+  for (int i = 0; i < bodies; ++i) {
+    Body body = body_of(bytes, i, material);
+    if (is_clear(scene, body)) scene.bodies.push_back(std::move(body));
+  }
+  return scene;
+}
+
+inline Configuration configuration_of(Bytes& bytes) {
+  static const double steps[] = {0.001, 0.0005, 0.004, 0.0083, 0.02};
+  static const FilterKind filters[] = {FilterKind::none, FilterKind::window, FilterKind::one_euro,
+                                       FilterKind::constant_velocity};
+  static const ContactModelKind models[] = {ContactModelKind::implicit,    ContactModelKind::implicit,
+                                            ContactModelKind::seed,        ContactModelKind::impulse,
+                                            ContactModelKind::penetration, ContactModelKind::virtual_spring,
+                                            ContactModelKind::soft_pad,    ContactModelKind::implicit};
+  Configuration configuration;
+  configuration.step = steps[bytes.below(5)];
+  configuration.filter.type = filters[bytes.below(4)];
+  if (bytes.one_in(4)) configuration.contact_model = models[bytes.below(5)];
+  if (bytes.one_in(3)) configuration.contact.hand = HandStrength::of_a_person();
+  configuration.contact.grasp_assist = bytes.one_in(4);
+  return configuration;
+}
+
+inline HandPosture posture_of(Bytes& bytes) {
+  static const HandPosture postures[] = {relaxed_posture(), flat_posture(), pointing_posture(),
+                                         testing::fist_posture()};
+  const HandPosture from = postures[bytes.below(4)];
+  return from + bytes.between(0.0, 1.0) * (testing::fist_posture() - from);
+}
+
+/// One number of the hand is what none should be.
+inline void spoil(Bytes& bytes, HandJoints& hand) {
+  static const double numbers[] = {std::numeric_limits<double>::quiet_NaN(),
+                                   std::numeric_limits<double>::infinity(),
+                                   1e300,
+                                   -1e30,
+                                   9.9,
+                                   0.0};
+  const double number = numbers[bytes.below(6)];
+  switch (bytes.below(4)) {
+    case 0:
+      hand.palm_width = static_cast<float>(number);
+      break;
+    case 1:
+      hand.wrist = Vector3(0.0, number, 0.0);
+      break;
+    case 2:
+      hand.finger_width[static_cast<std::size_t>(bytes.below(kFingers))].reset();
+      break;
+    default:
+      hand.joints[static_cast<std::size_t>(bytes.below(kFingers))][static_cast<std::size_t>(bytes.below(5))] =
+          Vector3::Constant(number);
+  }
+}
+
+inline Nanoseconds interval_of(Bytes& bytes) {
+  constexpr Nanoseconds kMillisecond = 1'000'000;
+  static const Nanoseconds odd[] = {0,
+                                    -kMillisecond,
+                                    60 * kMillisecond,
+                                    900 * kMillisecond,
+                                    -5000 * kMillisecond,
+                                    3'600'000 * kMillisecond,
+                                    std::numeric_limits<Nanoseconds>::max() / 2};
+  return bytes.one_in(16) ? odd[bytes.below(7)] : (1 + bytes.below(24)) * kMillisecond;
+}
+
+/// A hand about the first body: where its palm is, from there.
+struct Walk {
+  Vector3 offset;
+  Quaternion orientation;
+};
+
+inline HandJoints hand_of(Bytes& bytes, Side side, const Vector3& about, Walk& walk) {
+  static const Vector3 kPalm(0.1, 0.0, -0.02);  // in the hand's frame
+  walk.offset += vector_of(bytes, bytes.one_in(12) ? 0.3 : 0.012);
+  walk.offset = walk.offset.cwiseMax(-0.12).cwiseMin(0.12);
+  if (bytes.one_in(12)) walk.orientation = orientation_of(bytes);
+  const Pose wrist{about + walk.offset - walk.orientation * kPalm, walk.orientation};
+  HandJoints hand = hand_joints(human_hand(), side, wrist, posture_of(bytes));
+  hand.id = side == Side::left ? 2 : 1;
+  if (bytes.one_in(24)) spoil(bytes, hand);
+  return hand;
+}
+
+inline StepCase step_case(const std::uint8_t* data, std::size_t size) {
+  Bytes bytes(data, size);
+  StepCase made;
+  made.configuration = configuration_of(bytes);
+  made.scene = scene_of(bytes, made.configuration);
+  const Vector3 about = made.scene.bodies.empty() ? Vector3::Zero() : made.scene.bodies[0].start.position;
+  Walk right{vector_of(bytes, 0.08), orientation_of(bytes)},
+      left{vector_of(bytes, 0.08), orientation_of(bytes)};
+  Nanoseconds stamp = testing::kStart;
+  while (bytes.left() && made.frames.size() < kMostFrames) {
+    JointsFrame frame{stamp, {}};
+    const int who = bytes.below(8);  // mostly the right hand alone
+    if (who != 7) frame.hands.push_back(hand_of(bytes, Side::right, about, right));
+    if (who >= 6) frame.hands.push_back(hand_of(bytes, Side::left, about, left));
+    made.frames.push_back(std::move(frame));
+    const Nanoseconds interval = interval_of(bytes);
+    const bool stray =
+        interval < 0 || interval > 1'000'000'000;  // of one frame: the next goes on from the last
+    if (stray) {
+      made.frames.back().stamp = stamp + interval;
+    } else {
+      stamp += interval;
+    }
+  }
+  return made;
+}
+
+}  // namespace mrhi::fuzzing

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""What goes wrong around nodes, and what holds all the same: docs/reliability.md."""
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import roslib.packages
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from std_srvs.srv import SetBool, Trigger
+from visualization_msgs.msg import InteractiveMarkerFeedback, MarkerArray
+
+from mr_hand_interaction.msg import HandFrame, ObjectStateArray
+from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, SpawnObjectRequest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from waiting import TIMEOUT, wait_until  # noqa: E402
+
+ROUNDS = 100  # of everything at once: a second's worth at 100 Hz
+MOUNT = "0 0 0 0.7071067811865476 0 0 0.7071067811865476 world leap_hands".split()
+NODES = {
+    "hand_tracking_node": [],
+    "interaction_node": ["_scene:=cube", "_place_by_mouse:=true"],
+    "marker_relay_node": [],
+    "synthetic_hand_node": ["_motion:=nudge", "_reset:=/interaction_node/reset"],
+}
+
+
+def start(package, kind, arguments, **options):
+    return subprocess.Popen(roslib.packages.find_node(package, kind) + arguments, **options)
+
+
+class Pipeline:
+    """Context of all nodes from the tracker on, each in a process of its own."""
+
+    def __init__(self, master=None):
+        self.environment = dict(os.environ, ROS_MASTER_URI=master) if master else dict(os.environ)
+        self.folder, self.processes = tempfile.mkdtemp(), {}
+
+    def __enter__(self):
+        self.mount = start("tf2_ros", "static_transform_publisher", MOUNT, env=self.environment)
+        for kind in NODES:
+            self.start(kind)
+        return self
+
+    def start(self, kind):
+        with open(self.log(kind), "ab") as log:
+            self.processes[kind] = start("mr_hand_interaction", kind, NODES[kind], env=self.environment, stdout=log,
+                                         stderr=log)
+
+    def log(self, kind):
+        return os.path.join(self.folder, kind)
+
+    def said(self, kind, words):
+        with open(self.log(kind), errors="replace") as log:
+            return words in log.read()
+
+    def kill(self, kind):
+        self.processes[kind].kill()
+        self.processes[kind].wait()
+
+    def ended(self):
+        return [kind for kind, process in self.processes.items() if process.poll() is not None]
+
+    def __exit__(self, *_):
+        for process in list(self.processes.values()) + [self.mount]:
+            process.send_signal(signal.SIGINT)
+        for process in list(self.processes.values()) + [self.mount]:
+            process.wait(TIMEOUT)
+        for kind in NODES:
+            with open(self.log(kind), errors="replace") as log:
+                sys.stdout.write(log.read())
+        shutil.rmtree(self.folder)
+
+
+class Seen:
+    """How many of the messages have come that only come if all nodes work."""
+
+    def __init__(self):
+        self.counts = {"hands": 0, "objects": 0, "markers": 0}
+        self.subscribers = [rospy.Subscriber("rendered_hands", HandFrame, self.take_hands),
+                            rospy.Subscriber("objects", ObjectStateArray, lambda _: self.count("objects")),
+                            rospy.Subscriber("view/markers", MarkerArray, lambda _: self.count("markers"))]
+
+    def count(self, what):
+        self.counts[what] += 1
+
+    def take_hands(self, message):
+        if message.hands:
+            self.count("hands")
+
+    def wait_for_more(self, when):
+        before = dict(self.counts)
+        wait_until(lambda: all(self.counts[what] > before[what] + 3 for what in before), "all topics " + when)
+
+
+def free_port():
+    with socket.socket() as free:
+        free.bind(("", 0))
+        return free.getsockname()[1]
+
+
+class FaultsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("faults_test")
+        cls.seen = Seen()
+
+    def test_every_node_can_be_killed_and_started_again_while_the_others_run(self):
+        with Pipeline() as pipeline:
+            self.seen.wait_for_more("at first")
+            for kind in NODES:
+                pipeline.kill(kind)
+                self.assertEqual(pipeline.ended(), [kind])
+                pipeline.start(kind)
+                self.seen.wait_for_more("after %s was killed" % kind)
+                self.assertEqual(pipeline.ended(), [])
+
+    def test_nodes_tell_of_a_master_that_was_started_anew_and_what_is_connected_goes_on(self):
+        port = free_port()
+        uri = "http://localhost:%d" % port
+        command = ["rosmaster", "--core", "-p", str(port)]
+        core = subprocess.Popen(command)
+        self.addCleanup(lambda: (core.kill(), core.wait()))
+        with Pipeline(uri) as pipeline:
+            viewer = subprocess.Popen(["rostopic", "echo", "-p", "/rendered_hands/header/stamp"],
+                                      env=pipeline.environment, stdout=subprocess.PIPE, universal_newlines=True)
+            self.addCleanup(lambda: (viewer.kill(), viewer.wait(), viewer.stdout.close()))
+            lines = []
+            threading.Thread(target=lambda: [lines.append(line) for line in viewer.stdout], daemon=True).start()
+            wait_until(lambda: len(lines) > 3, "hands")
+            watching = time.monotonic()
+            wait_until(lambda: time.monotonic() > watching + 5.0, "the nodes to have asked for themselves")
+            core.kill()
+            core.wait()
+            for kind in NODES:
+                wait_until(lambda: pipeline.said(kind, "no ROS master at " + uri), kind + " to miss its master")
+            core = subprocess.Popen(command)
+            for kind in NODES:
+                wait_until(lambda: pipeline.said(kind, "start this node again"), kind + " to tell of the new master")
+            before = len(lines)
+            wait_until(lambda: len(lines) > before + 3, "hands without a master")
+            self.assertEqual(pipeline.ended(), [])
+
+    def test_services_reconfigures_mouse_and_viewers_at_once_at_100_hz_stop_nothing(self):
+        with Pipeline() as pipeline:
+            self.seen.wait_for_more("at first")
+            failures = []
+
+            def repeat(work):
+                try:
+                    for i in range(ROUNDS):
+                        work(i)
+                        time.sleep(0.01)  # the rate at which things are asked for
+                except Exception as error:
+                    failures.append(error)
+            threads = [threading.Thread(target=repeat, args=[work]) for work in self.works()]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            self.assertEqual(failures, [])
+            self.assertEqual(pipeline.ended(), [])
+            self.seen.wait_for_more("at last")
+
+    @staticmethod
+    def works():
+        """What each asks for, again and again."""
+        def service(name, kind):
+            rospy.wait_for_service("interaction_node/" + name, TIMEOUT)
+            return rospy.ServiceProxy("interaction_node/" + name, kind)
+        spawn, delete = service("spawn", SpawnObject), service("delete", DeleteObject)
+        change, pause, reset = service("set", SetParameter), service("pause", SetBool), service("reset", Trigger)
+        tune = Client("interaction_node/tune", timeout=TIMEOUT)
+        mouse = rospy.Publisher("interaction_node/place/feedback", InteractiveMarkerFeedback, queue_size=10)
+
+        def come_and_go(i):
+            request = SpawnObjectRequest(name="ball_%d" % i, shape="sphere", size=[0.02], mass=0.1)
+            request.pose.position.y, request.pose.position.z = 0.4, 0.4
+            assert spawn(request).success
+            assert delete(request.name).success
+
+        def set_parameters(i):
+            assert change("filter/window", str(1 + i % 5)).success
+            assert pause(i % 2 == 0).success
+            if i % 10 == 0:
+                assert reset().success
+
+        def drag(i):
+            feedback = InteractiveMarkerFeedback(client_id="test", marker_name="cube", control_name="move y")
+            feedback.event_type = InteractiveMarkerFeedback.MOUSE_UP if i % 10 == 9 else feedback.POSE_UPDATE
+            feedback.header.frame_id = "world"
+            feedback.pose.position.y, feedback.pose.position.z, feedback.pose.orientation.w = 0.1, 0.3, 1.0
+            mouse.publish(feedback)
+
+        def look(_):
+            rospy.Subscriber("markers", MarkerArray, lambda _: None).unregister()
+
+        return [come_and_go, set_parameters, drag, look,
+                lambda i: tune.update_configuration({"step": 0.001 + 0.001 * (i % 3), "gravity_z": 0.1 * (i % 2),
+                                                     "place_by_mouse": i % 20 != 19})]
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "faults", FaultsTest)
