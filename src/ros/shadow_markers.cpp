@@ -85,33 +85,41 @@ double Outline::distance(const Point& point) const {
   return (inside ? -nearest : nearest) - radius;
 }
 
-struct AddPoints {
-  const Pose& pose;
-  Outline& outline;
+class AddPoints {
+ public:
+  AddPoints(const Pose& to, Outline& added) : pose_(to), outline_(added) {}
 
-  void operator()(const Sphere& sphere) const {
-    outline.radius = sphere.radius;
-    outline.add(pose.position, sphere.radius);
-  }
+  void operator()(const Sphere& sphere) const { add(*sphere.core()); }
+  void operator()(const Pill& pill) const { add(*pill.core()); }
   void operator()(const Box& box) const {
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3 signs(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-      outline.add(pose * signs.cwiseProduct(box.half_extents), 0.0);
+      outline_.add(pose_ * signs.cwiseProduct(box.half_extents), 0.0);
     }
   }
   void operator()(const Cylinder& cylinder) const {
     for (int i = 0; i < 16; ++i) {
       const double angle = M_PI * i / 8.0;
       for (const double z : {-cylinder.half_length, cylinder.half_length})
-        outline.add(pose * (Vector3(cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z)),
-                    0.0);
+        outline_.add(
+            pose_ * (Vector3(cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z)), 0.0);
     }
   }
   void operator()(const Mesh& mesh) const {
     if (!mesh.triangles) return;
     const std::vector<Vector3>& vertices = mesh.triangles->vertices;
     const std::size_t step = 1 + vertices.size() / kMeshPoints;
-    for (std::size_t i = 0; i < vertices.size(); i += step) outline.add(pose * vertices[i], 0.0);
+    for (std::size_t i = 0; i < vertices.size(); i += step) outline_.add(pose_ * vertices[i], 0.0);
+  }
+
+ private:
+  const Pose pose_;
+  Outline& outline_;
+
+  void add(const Capsule& capsule) const {
+    outline_.radius = capsule.radius;
+    outline_.add(pose_ * capsule.start, capsule.radius);
+    outline_.add(pose_ * capsule.end, capsule.radius);
   }
 };
 
@@ -119,7 +127,7 @@ std::vector<Outline> outlines_of(const Body& body, const Pose& pose) {
   std::vector<Outline> outlines;
   for (const PlacedShape& placed : body.shapes) {
     Outline outline;
-    std::visit(AddPoints{pose * placed.pose, outline}, placed.shape);
+    std::visit(AddPoints(pose * placed.pose, outline), placed.shape);
     if (outline.hull.empty()) continue;
     outline.close();
     outlines.push_back(std::move(outline));

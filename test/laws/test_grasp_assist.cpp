@@ -158,6 +158,31 @@ TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {
   }
 }
 
+// The index snaps off the thumb's tip against a cube beyond it, which flies off as fast as without help.
+TEST(GraspAssist, leaves_a_flick_what_it_is) {
+  std::vector<double> speeds;
+  for (const bool assist : {true, false}) {
+    Configuration configuration = testing::implicit_configuration();
+    configuration.contact.grasp_assist = assist;
+    configuration.contact.hand = HandStrength::of_a_person();
+    Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.05)),
+                          configuration);
+    testing::play(
+        simulation, 0.0, 0.6, 120.0,
+        [&](double t) {
+          Hand hand = testing::empty_hand();
+          const double index = -0.045 + 0.04 * testing::smooth(t - 0.3, 0.05);
+          testing::add_fingertip(hand, capsule_index(1, 3), Vector3(index, 0, 0), Vector3::UnitX(), 1.2);
+          testing::add_fingertip(hand, capsule_index(0, 3), Vector3(-0.06, 0, 0), -Vector3::UnitX(), 1.2);
+          return hand;
+        },
+        [&](const Simulation& s) { EXPECT_TRUE(s.state().grips.empty()); });
+    speeds.push_back(testing::object_twist(simulation).linear.norm());
+  }
+  EXPECT_GT(speeds[0], 0.5);
+  EXPECT_EQ(speeds[0], speeds[1]);
+}
+
 // What the grip could bear is bounded: a body as heavy as a hand cannot hold stays where it is.
 TEST(GraspAssist, drags_nothing_that_friction_could_not_hold) {
   Configuration configuration = testing::implicit_configuration();

@@ -105,6 +105,14 @@ TEST_P(StrikingMotion, slap_drives_the_cube_to_the_palms_side_of_either_hand) {
   EXPECT_GT(struck_velocity("slap", "left").x(), 1.35);
 }
 
+TEST_P(StrikingMotion, takes_nothing) {
+  for (const char* motion : {"nudge", "tap", "slap"}) {
+    Staging staging;
+    staging.model = GetParam();
+    for (const Moment& moment : testing::perform(motion, staging)) EXPECT_FALSE(moment.held) << motion;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, StrikingMotion, ::testing::Values(kImplicit, kSeed),
                          [](const auto& tested) { return tested.param == kImplicit ? "implicit" : "seed"; });
 

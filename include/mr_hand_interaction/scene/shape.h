@@ -34,9 +34,9 @@ struct TriangleMesh {
 //   moments          of a solid of its form
 //   farthest         its point farthest along n
 //   way_out          from `point` along the unit vector `direction` to where that line leaves the shape
-//   (way_out.h) core             the capsule that it is, if it is one or a ball closest          features of
-//   a capsule of the hand; anything of a distance beyond `margin` may stand for what is
-//                    farther than that
+//   core             the capsule that it is, if it is one or a ball
+//   closest          features of a capsule of the hand; anything of a distance beyond `margin` may stand for
+//                    what is farther than that
 //   span             what of the capsule's axis stands over the flat or straight piece at `features`
 // A mesh leaves the last two to its MeshCollider, that is made once.
 
