@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fuzz/target.h"
+#include "mr_hand_interaction/response/contact_model.h"
 #include "support/fixtures.h"
 #include "support/posed_hand.h"
 #include "support/postures.h"
