@@ -78,7 +78,7 @@ struct Cylinder {
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
 
-/// URDF's <capsule>: axis along z, centred at the origin, a half ball on each end.
+/// A capsule: axis along z, centred at the origin, a half ball on each end.
 struct Pill {
   double radius;       ///< [m]
   double half_length;  ///< of the straight part [m]
