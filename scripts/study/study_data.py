@@ -84,8 +84,9 @@ def _cells(trials):
         means = means.rename(columns={'mean': 'value', 'size': 'trials'})
         means.insert(len(keys), 'measure', measure.name)
         tables.append(means)
+    # Numbers where there is none either: pandas 1.1 takes no mean of what might be anything.
     return pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame(
-        columns=keys + ['measure', 'value', 'trials'])
+        columns=keys + ['measure', 'value', 'trials']).astype({'value': float, 'trials': int})
 
 
 def parts(data):
