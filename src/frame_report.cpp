@@ -53,8 +53,9 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || !end.strikes.empty();
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
-      const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(),
-                                       [&](const Grip& grip) { return grip.bears && grip.hand == slot && grip.body == b; });
+      const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
+        return grip.bears && grip.hand == slot && grip.body == b;
+      });
       const InteractionLevel seen =
           gripped ? InteractionLevel::grasp
                   : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,

@@ -39,8 +39,8 @@ std::string heads_up(const Scene& scene, const Configuration& configuration, con
   const double g = configuration.gravity.value_or(scene.gravity).norm();
   char gravity[32];
   std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
-  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " + std::string(configuration.contact_model.name) +
-         "  |  gravity: " + (g > 0.0 ? gravity : "none");
+  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " +
+         std::string(configuration.contact_model.name) + "  |  gravity: " + (g > 0.0 ? gravity : "none");
 }
 
 void add_deleting(int action, const std::pair<std::string, int>& key, const std_msgs::Header& header,

@@ -14,8 +14,8 @@ TEST_P(OperatorTakes, it_at_the_first_attempt_when_nothing_disturbs) {
 }
 INSTANTIATE_TEST_SUITE_P(All, OperatorTakes, ::testing::Values("cube", "flat_cuboid", "long_cuboid"));
 
-// It does not turn the bar to fit: some take several attempts, and a few all of their time. Which ones hangs on
-// the last bits.
+// It does not turn the bar to fit: some take several attempts, and a few all of their time. Which ones hangs
+// on the last bits.
 TEST(OperatorTrial, puts_the_bar_into_the_hole) {
   constexpr int kPersons = 16;
   const Task task = load_task("config/tasks/assemble.yaml");
