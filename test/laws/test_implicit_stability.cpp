@@ -47,6 +47,20 @@ TEST(ImplicitStability, no_mass_step_stiffness_number_of_contacts_or_restitution
   RecordProperty("fastest_cell", where.str());
 }
 
+// What it cannot hold with its strength it may let go.
+TEST(ImplicitStability, a_persons_hand_makes_nothing_diverge_or_fly_off) {
+  int let_go = 0;
+  kGrid.for_every_cell(ContactModelKind::implicit, [&](StabilityCell cell) {
+    cell.hand = HandStrength::of_a_person();
+    const StabilityResult result = StabilityRun(cell).play();
+    EXPECT_TRUE(result.outcome == StabilityOutcome::stable || result.outcome == StabilityOutcome::let_go)
+        << cell << ": " << result.largest_speed << " m/s";
+    let_go += result.outcome == StabilityOutcome::let_go;
+  });
+  EXPECT_LE(let_go, 60);
+  RecordProperty("let_go", let_go);
+}
+
 TEST(ImplicitStability, judgement_finds_seed_stable_below_the_explicit_bound_and_ejecting_beyond_it) {
   EXPECT_EQ(ten_fingertips(ContactModelKind::seed, 0.25 * kExplicitBound), StabilityOutcome::stable);
   EXPECT_EQ(ten_fingertips(ContactModelKind::seed, 2.0 * kExplicitBound), StabilityOutcome::ejected);

@@ -18,6 +18,7 @@ struct StabilityCell {
   double stiffness;  // [N/m]
   int contacts;      // fingertips, 1 to 20
   double restitution;
+  HandStrength hand{};  // the paper's
 };
 
 inline std::ostream& operator<<(std::ostream& out, const StabilityCell& cell) {
@@ -57,7 +58,7 @@ struct StabilityGrid {
         for (const double stiffness : stiffnesses)
           for (const int count : contacts)
             for (const double restitution : restitutions)
-              visit(StabilityCell{model, mass, step, stiffness, count, restitution});
+              visit(StabilityCell{model, mass, step, stiffness, count, restitution, {}});
   }
 };
 
@@ -120,6 +121,7 @@ class StabilityRun {
   static Configuration configuration_of(const StabilityCell& cell) {
     Configuration configuration = unfiltered(cell.model);
     configuration.step = cell.step;
+    configuration.contact.hand = cell.hand;
     return configuration;
   }
   static Vector3 sway_at(double t) {
