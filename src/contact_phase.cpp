@@ -1,10 +1,34 @@
 #include "mr_hand_interaction/contact_phase.h"
 
+#include <algorithm>
+
 namespace mrhi {
 
 ContactPhase phase(const Contact& contact) {
   if (!contact.impulse.isZero(0.0)) return ContactPhase::impulse;
   return contact.friction == Friction::sticking ? ContactPhase::sticking : ContactPhase::slipping;
+}
+
+const char* phase_name(ContactPhase phase) {
+  constexpr const char* kNames[] = {"impulse", "sticking", "slipping"};
+  return kNames[static_cast<std::size_t>(phase)];
+}
+
+FrictionUse friction_use(const Contact& contact, const Material& material) {
+  const double push = -contact.force.dot(contact.normal);
+  const bool sticks = contact.friction == Friction::sticking;
+  const double friction = sticks ? material.static_friction : material.dynamic_friction;
+  return {push, (contact.force + push * contact.normal).norm(), friction * std::max(push, 0.0)};
+}
+
+const char* finger_name(int capsule) {
+  constexpr const char* kNames[] = {"thumb", "index", "middle", "ring", "little", "palm"};
+  return kNames[finger_of(capsule)];
+}
+
+const char* bone_name(int capsule) {
+  constexpr const char* kNames[] = {"metacarpal", "proximal", "intermediate", "distal"};
+  return capsule == kPalm ? "palm" : kNames[bone_of(capsule)];
 }
 
 std::uint32_t hand_id(const Contact& contact, const SimulationState& state) {

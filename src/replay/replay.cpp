@@ -4,6 +4,7 @@
 #include <chrono>
 #include <fstream>
 
+#include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "open_bag.h"
 
@@ -70,6 +71,19 @@ void finish(const Simulation& simulation, ReplaySummary& summary) {
   summary.state_hash = hash(simulation.state());
 }
 
+/// What the outcome hangs on beside the hands.
+void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
+  const Configuration& configuration = simulation.configuration();
+  summary.contact_model = configuration.contact_model.name;
+  summary.version = MR_HAND_INTERACTION_VERSION;
+  summary.gravity = configuration.gravity.value_or(simulation.scene().gravity);
+  for (const std::string& name : parameter_names()) {
+    const std::string text = parameter_text(configuration, name);
+    if (text != parameter_text(Configuration(), name)) summary.parameters[name] = text;
+  }
+  for (const Body& body : simulation.scene().bodies) summary.materials[body.name] = body.material;
+}
+
 void write_summary(const std::string& folder, const ReplaySummary& summary) {
   const std::string path = folder + "/summary.json";
   std::ofstream file(path);
@@ -115,7 +129,7 @@ void replay(const ReplayArguments& arguments) {
   summary.scene = simulation.scene().name;
   summary.input = arguments.input;
   summary.topic = input.topic;
-  summary.contact_model = simulation.configuration().contact_model.name;
+  tell_setting(simulation, summary);
   ProgressBar progress;
   try {
     run_frames(*input.frames, simulation, writer, progress, summary);

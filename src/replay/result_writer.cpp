@@ -49,7 +49,8 @@ ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
     : scene_(scene),
       objects_(made_folder(folder) + "/objects.csv", "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"),
       contacts_(folder + "/contacts.csv",
-                "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz"),
+                "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
+                "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit"),
       hands_(folder + "/hands.csv",
              "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching"),
       events_(folder + "/events.csv", "time,kind,object,hand_id") {}
@@ -83,10 +84,14 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
 
 void ResultWriter::write_contacts(double time, const FrameResult& result, const SimulationState& state) {
   for (const Contact& contact : result.contacts) {
-    contacts_ << time << scene_.bodies[contact.key.body].name << hand_id(contact, state)
-              << finger_of(contact.key.capsule) << bone_of(contact.key.capsule)
+    const Body& body = scene_.bodies[contact.key.body];
+    const int capsule = contact.key.capsule;
+    const FrictionUse use = friction_use(contact, body.material);
+    contacts_ << time << body.name << hand_id(contact, state) << finger_of(capsule) << bone_of(capsule)
               << static_cast<int>(phase(contact)) << contact.point << contact.normal << contact.depth
-              << contact.impulse << contact.force;
+              << contact.impulse << contact.force << std::string(finger_name(capsule))
+              << std::string(bone_name(capsule)) << std::string(phase_name(phase(contact))) << use.normal
+              << use.tangential << use.limit;
     contacts_.end_row();
   }
 }

@@ -28,12 +28,29 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-std::string object(const std::map<std::string, std::uint64_t>& counts) {
+/// With what `as_json` makes of each value.
+template <typename Value, typename AsJson>
+std::string object(const std::map<std::string, Value>& members, AsJson as_json) {
   std::string text;
-  for (const auto& [name, count] : counts) {
-    text += (text.empty() ? "" : ", ") + quoted(name) + ": " + std::to_string(count);
-  }
+  for (const auto& [name, value] : members)
+    text += (text.empty() ? "" : ", ") + quoted(name) + ": " + as_json(value);
   return "{" + text + "}";
+}
+
+std::string object(const std::map<std::string, std::uint64_t>& counts) {
+  return object(counts, [](std::uint64_t count) { return std::to_string(count); });
+}
+
+std::string material(const Material& material) {
+  const std::map<std::string, double> fields{{"restitution", material.restitution},
+                                             {"static_friction", material.static_friction},
+                                             {"dynamic_friction", material.dynamic_friction},
+                                             {"stiffness", material.stiffness}};
+  return object(fields, number);
+}
+
+std::string list(const Vector3& vector) {
+  return "[" + number(vector.x()) + ", " + number(vector.y()) + ", " + number(vector.z()) + "]";
 }
 
 std::string list(const std::vector<std::string>& names) {
@@ -57,6 +74,10 @@ std::string to_json(const ReplaySummary& summary) {
       {"input", quoted(summary.input)},
       {"topic", quoted(summary.topic)},
       {"contact_model", quoted(summary.contact_model)},
+      {"version", quoted(summary.version)},
+      {"gravity", list(summary.gravity)},
+      {"parameters", object(summary.parameters, quoted)},
+      {"materials", object(summary.materials, material)},
       {"frames", std::to_string(summary.frames)},
       {"simulated_seconds", number(summary.simulated_seconds)},
       {"steps", std::to_string(summary.steps)},

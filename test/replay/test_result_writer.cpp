@@ -10,6 +10,7 @@ namespace {
 
 struct Written {
   Written() : scene(testing::scene_of(testing::box_body({0.05, 0.05, 0.05}, 0.1))) {
+    scene.bodies.front().material.dynamic_friction = 0.6;
     scene.bodies.push_back(scene.bodies.front());
     scene.bodies.back().name = "table";
     scene.bodies.back().fixed = true;
@@ -57,7 +58,7 @@ TEST(ResultWriter, contacts_name_object_hand_and_phase) {
   contact.key.capsule = static_cast<std::uint8_t>(capsule_index(1, 3));
   contact.point = {1, 2, 3};
   contact.depth = 0.002;
-  contact.force = {0, 0, -0.5};
+  contact.force = {0.3, 0, -0.5};
   contact.friction = Friction::slipping;
   written.result.contacts = {contact, contact};
   written.result.contacts[1].impulse = {0, 0, -0.25};
@@ -65,9 +66,13 @@ TEST(ResultWriter, contacts_name_object_hand_and_phase) {
   written.write(0, 1);
   const auto lines = written.lines("contacts.csv");
   ASSERT_EQ(lines.size(), 5u);
-  EXPECT_EQ(lines[0], "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz");
-  EXPECT_EQ(lines[1], "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0,0,-0.5");
-  EXPECT_EQ(lines[2], "0,object,4000000000,5,0,0,1,2,3,0,0,1,0.002,0,0,-0.25,0,0,-0.5");
+  EXPECT_EQ(lines[0],
+            "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
+            "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit");
+  EXPECT_EQ(lines[1],
+            "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0.3,0,-0.5,index,distal,slipping,0.5,0.3,0.3");
+  EXPECT_EQ(lines[2],
+            "0,object,4000000000,5,0,0,1,2,3,0,0,1,0.002,0,0,-0.25,0.3,0,-0.5,palm,palm,impulse,0.5,0.3,0.3");
 }
 
 TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {

@@ -19,6 +19,10 @@ ReplaySummary some_summary() {
   summary.events["GRASP_BEGIN"] = 1;
   summary.held_at_end = {"cube"};
   summary.state_hash = 0xabc;
+  summary.version = "1.2.3";
+  summary.gravity = {0.0, 0.0, -9.81};
+  summary.parameters["hand/pad"] = "0";
+  summary.materials["cube"].static_friction = 0.75;
   return summary;
 }
 
@@ -36,6 +40,10 @@ TEST(ReplaySummaryJson, holds_what_the_summary_holds) {
   EXPECT_EQ(json["deepest_rendered_penetration_m"].as<double>(), 1.5e-4);
   EXPECT_EQ(json["rejected"]["unusable hand"].as<int>(), 2);
   EXPECT_EQ(json["events"]["GRASP_BEGIN"].as<int>(), 1);
+  EXPECT_EQ(json["version"].as<std::string>(), "1.2.3");
+  EXPECT_EQ(json["gravity"][2].as<double>(), -9.81);
+  EXPECT_EQ(json["parameters"]["hand/pad"].as<std::string>(), "0");
+  EXPECT_EQ(json["materials"]["cube"]["static_friction"].as<double>(), 0.75);
   EXPECT_EQ(json["objects_held_at_end"][0].as<std::string>(), "cube");
 }
 

@@ -5,14 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/replay/duration_histogram.h"
+#include "mr_hand_interaction/scene/material.h"
 
 namespace mrhi {
 
 /// What summary.json says of a replay.
 struct ReplaySummary {
-  std::string scene, input, topic, contact_model;
-  std::uint64_t frames = 0;  ///< taken
+  std::string scene, input, topic, contact_model, version;
+  Vector3 gravity = Vector3::Zero();              ///< [m/s^2]
+  std::map<std::string, std::string> parameters;  ///< that are not the default, as YAML
+  std::map<std::string, Material> materials;      ///< of the objects, by name
+  std::uint64_t frames = 0;                       ///< taken
   double simulated_seconds = 0.0;
   std::uint64_t steps = 0;
   DurationHistogram step_time;
