@@ -96,7 +96,7 @@ const std::map<std::string, Option>& options() {
 }
 
 std::string option_names() {
-  std::string names = "--help";
+  std::string names = "--help, --compare";
   for (const auto& entry : options()) names += ", " + entry.first;
   return names;
 }
@@ -128,6 +128,12 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
       parsed.help = true;
       return parsed;
     }
+    if (name == "--compare") {
+      if (arguments.size() != 3 || i != 0)
+        throw UsageError("--compare takes the folders of two runs, and stands alone");
+      parsed.compare = {arguments[1], arguments[2]};
+      return parsed;
+    }
     const auto option = options().find(name);
     if (option == options().end()) {
       throw UsageError("unknown argument '" + name + "'; allowed: " + option_names());
@@ -145,6 +151,7 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
 
 const char* replay_help() {
   return R"(usage: replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
+       replay --compare DIR DIR
 
 Runs a recording of hands through a scene as fast as the machine goes; needs no ROS master.
 
@@ -161,9 +168,10 @@ Runs a recording of hands through a scene as fast as the machine goes; needs no 
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else the bag's /tf_static, else at the origin
                             and turned by +90 degrees about x
+  --compare DIR DIR         when and where the objects of two runs part, and by how much
   --help                    this text
 
-Exit status: 0 done, 1 bad data (what was written stays), 2 bad usage.
+Exit status: 0 done, 1 bad data (what was written stays) or runs that part, 2 bad usage.
 )";
 }
 

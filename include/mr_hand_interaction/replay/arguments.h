@@ -19,6 +19,8 @@ class UsageError : public std::runtime_error {
 /// The command line of `replay`.
 struct ReplayArguments {
   bool help = false;
+  std::optional<std::pair<std::string, std::string>>
+      compare;         ///< folders of two runs; nothing is played then
   std::string scene;   ///< name or URDF file
   std::string input;   ///< .bag or .csv
   std::string output;  ///< folder
