@@ -37,8 +37,10 @@ class Qhull {
   void each_facet(const See& see) {
     for (facetT* facet = qh_.facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next) {
       setT* around = qh_facet3vertex(&qh_, facet);
+      const int count = qh_setsize(&qh_, around);
       std::vector<int> points;
-      for (int i = 0; i < qh_setsize(&qh_, around); ++i)
+      points.reserve(static_cast<std::size_t>(count));
+      for (int i = 0; i < count; ++i)
         points.push_back(qh_pointid(&qh_, static_cast<vertexT*>(SETelem_(around, i))->point));
       qh_settempfree(&qh_, &around);
       see(points);
