@@ -57,7 +57,7 @@ TEST(ImplicitStability, a_persons_hand_makes_nothing_diverge_or_fly_off) {
         << cell << ": " << result.largest_speed << " m/s";
     let_go += result.outcome == StabilityOutcome::let_go;
   });
-  EXPECT_LE(let_go, 60);
+  EXPECT_LE(let_go, 30);  // measured 24 of 720
   RecordProperty("let_go", let_go);
 }
 
