@@ -186,7 +186,7 @@ bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
   return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
 }
 
-/// At which the opening between a finger and what it closes against shrinks, over the frame [m].
+/// At which the opening between a finger and what it closes against shrinks over the frame [m/s].
 double GraspAssist::closing_speed(const HandTrack& track, bool by_palm, int finger) const {
   const Hand &from = track.previous, &to = track.current;
   const double before = (tip_of(from, finger) - base_of(from, by_palm)).norm();
@@ -293,7 +293,7 @@ std::optional<GraspAssist::Opposed> GraspAssist::opposed(const Touches& touches,
   return result;
 }
 
-/// The hand's way goes on from a grip that it has taken before and that has borne nothing yet.
+/// What the hand has taken before and has not had to bear is taken anew, but is off by where it was then.
 void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const {
   const auto b = static_cast<std::size_t>(body);
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
