@@ -78,7 +78,7 @@ HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, 
   stay.lag = lag;
   stay.shift = before.palm.position - setting.tracked.palm.position;
   for (int f = 0; f < kFingers; ++f)
-    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, chain_before.finger(f));
+    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, finger_before(f));
   return stay;
 }
 

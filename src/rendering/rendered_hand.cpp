@@ -16,6 +16,22 @@ constexpr double kFromNowhere = 1.0;   // that a hand is said to have moved that
 constexpr Nanoseconds kStaysBehind = 1'000'000'000;
 constexpr double kProgress = 0.001;
 
+bool same_place(const Hand& a, const Hand& b) {
+  const auto same = [](const Capsule& x, const Capsule& y) {
+    return x.radius == y.radius && x.start == y.start && x.end == y.end;
+  };
+  return a.palm.position == b.palm.position && a.wrist == b.wrist &&
+         a.palm.orientation.coeffs() == b.palm.orientation.coeffs() &&
+         std::equal(a.capsules.begin(), a.capsules.end(), b.capsules.begin(), same);
+}
+
+bool same_way(const HandOffset& a, const HandOffset& b) {
+  const auto same = [](const FingerOffset& x, const FingerOffset& y) { return (x == y).all(); };
+  return a.shift == b.shift && a.lag.whole.coeffs() == b.lag.whole.coeffs() &&
+         a.lag.frame.coeffs() == b.lag.frame.coeffs() &&
+         std::equal(a.fingers.begin(), a.fingers.end(), b.fingers.begin(), same);
+}
+
 }  // namespace
 
 HandRenderer::HandRenderer(const Scene& scene, const ContactFinder& finder)
@@ -59,6 +75,7 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   if (now.zero()) rendered.hand = track.current;
   now.stamp = stamp;
   offset = now;
+  if (!now.zero()) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
 }
 
 bool HandRenderer::Impl::end_shown_in(const HandTrack& track, const HandOffset& last,
@@ -71,18 +88,37 @@ bool HandRenderer::Impl::end_shown_in(const HandTrack& track, const HandOffset& 
 }
 
 /// At the frame before.
-void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
+void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& offset,
                                    ClearanceFinder::Setting& setting) {
-  finder.begin(setting, last.shift.norm() + kFarthestPush);
+  finder.begin(setting, offset.shift.norm() + kFarthestPush);
   setting.moved = kFromNowhere;
   if (track.appeared) return;
-  before = track.previous;
-  chain_before.begin(track.previous, last.lag);
-  chain_before.place(last, before);
+  const Shown& known = kept[static_cast<std::size_t>(setting.slot)];
+  tracked_before = track.previous;
+  offset_before = offset;
+  chain_before_set = false;
+  if (known.known && same_way(known.offset, offset_before) && same_place(known.tracked, tracked_before)) {
+    before = known.hand;
+  } else {
+    place_before();
+  }
   setting.shown_before = &before;
   tracked_way = farthest_joint(track.previous, track.current);
-  elapsed = to_seconds(stamp - last.stamp);
+  elapsed = to_seconds(stamp - offset_before.stamp);
   setting.moved = tracked_way + finder.fastest_body(setting.bodies) * elapsed;
+}
+
+void HandRenderer::Impl::place_before() {
+  before = tracked_before;
+  chain_before.begin(tracked_before, offset_before.lag);
+  chain_before.place(offset_before, before);
+  chain_before_set = true;
+}
+
+/// As it was placed then.
+FingerChain& HandRenderer::Impl::finger_before(int index) {
+  if (!chain_before_set) place_before();
+  return chain_before.finger(index);
 }
 
 /// True once the tracked hand has been clear of everything for a while and the rendered one has not come any
