@@ -27,7 +27,10 @@ struct HandRenderer::Impl {
     clearances.reserve(256);
   }
 
-  bool end_shown_in(const HandTrack& track, const HandOffset& last, Interaction* interactions);
+  HandOffset keep_outside(ClearanceFinder::Setting& setting, const HandTrack& track, Nanoseconds stamp,
+                          const HandOffset& offset, Hand& placed);
+  bool show_in(bool fixtures, Interaction* interactions) const;
+  void end_shown_in(const ClearanceFinder::Setting& setting, const HandTrack& track, const HandOffset& last);
   void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
                  ClearanceFinder::Setting& setting);
   void place_before();
@@ -62,6 +65,8 @@ struct HandRenderer::Impl {
   Hand tracked_before;       // and as it was tracked
   HandOffset offset_before;  // and its offset
   std::array<Shown, kMaxHands> kept;
+  bool pushed = false;  // bodies are in the way
+  double leap = 0.0;    // of a joint beyond what hand and bodies have moved, if there is no other way [m]
   double tracked_way = 0.0;  // of the farthest joint since then [m]
   double elapsed = 0.0;      // since then [s]
 };
