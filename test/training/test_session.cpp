@@ -379,7 +379,7 @@ TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
 TEST_F(SessionTest, goes_on_counting_whatever_numbers_are_in_its_tables) {
   open();
   std::ofstream(events_, std::ios::app)
-      << "0.1,2147483647,manipulation,drop,cube,\n-5,x,manipulation,drop,cube,\n";
+      << "0.1,2147483647,manipulation,drop,cube,,,\n-5,x,manipulation,drop,cube,,,\n";
   Session session = open();
   session.begin(0);
   session.abort(1);
