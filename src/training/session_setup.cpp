@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "../scene/file_text.h"
-#include "../scene/text.h"
+#include "../text/file_text.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/training/session_folder.h"
 #include "revision.h"
