@@ -7,25 +7,33 @@ import numpy as np
 import pandas
 from scipy import stats
 
-from . import pairwise
+from . import exact, pairwise, permutation
 from .anova import mixed_anova
+from .linear import ORDER, PERIOD, Model
 from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, plain
 from .study_data import SIMULATED, measures_in, of_part, parts
 
-Results = collections.namedtuple('Results', 'bars comparison anova sphericity post_hoc ratings rating_tests notes')
+Results = collections.namedtuple('Results', 'bars comparison effects post_hoc any anova sphericity classical_pairs ratings '
+                                            'rating_tests notes')
+PAIRS = ('source gravity_g condition measure at a b test n_a n_b centre_a centre_b difference statistic df p '
+         'comparisons p_bonferroni stars effect_name effect low high')
 COLUMNS = {
     'bars': 'source gravity_g condition group object measure unit n mean sd ci95',
     'comparison': 'source gravity_g condition quantity unit n mean sd',
     'anova': 'source gravity_g condition within measure effect n df df_error f epsilon correction p p_uncorrected '
              'p_greenhouse_geisser p_huynh_feldt partial_eta_squared',
     'sphericity': 'source gravity_g condition within measure n w chi_squared df p greenhouse_geisser huynh_feldt',
-    'post_hoc': 'source gravity_g condition measure at a b test n_a n_b centre_a centre_b difference statistic df p '
-                'comparisons p_bonferroni stars effect_name effect',
+    'effects': 'source gravity_g condition within measure effect test scale n values statistic df df_error p terms '
+               'variances',
+    'any': 'source gravity_g condition measure at a b test had_a n_a low_a high_a had_b n_b low_b high_b p comparisons '
+           'p_bonferroni stars',
+    'post_hoc': PAIRS,
+    'classical_pairs': PAIRS,
     'ratings': 'source gravity_g condition question n mean sd median quartile_1 quartile_3',
     'rating_tests': 'source gravity_g condition question a b test n_a n_b centre_a centre_b difference statistic p '
                     'comparisons p_bonferroni stars effect_name effect',
 }
-EVERY = 'all'
+EVERY, OVERALL = 'all', 'all objects'
 
 
 def analyse(data):
@@ -79,10 +87,106 @@ def _analyse_objects(tables, notes, head, cells):
             values = wide.loc[group][name].dropna()
             tables['bars'].append(dict(head_of, group=group, object=name, unit=OF[measure].unit, **summary(values)))
         _test(tables, notes, head_of, 'object', wide)
-        between = [('at ' + name, a, b, pairwise.independent(wide.loc[a][name].dropna(), wide.loc[b][name].dropna()))
+        model = _test_effects(tables, notes, head_of, 'object', wide, of_measure)
+        between = [('at ' + name, a, b, wide.loc[a][name].dropna(), wide.loc[b][name].dropna())
                    for name in wide.columns for a, b in _pairs(wide)]
-        _add_comparisons(tables['post_hoc'], head_of, between)
-        _add_comparisons(tables['post_hoc'], head_of, _paired_columns(wide, 'objects', pairwise.paired))
+        overall = [(OVERALL, a, b, *[wide.loc[g].mean(axis=1).dropna() for g in (a, b)]) for a, b in _pairs(wide)]
+        within = [('objects', a, b, *_both(wide, a, b)) for a, b in itertools.combinations(wide.columns, 2)]
+        _add_pairs(tables, head_of, model, between, 'group')
+        _add_pairs(tables, head_of, model, overall, 'group')
+        _add_pairs(tables, head_of, model, within, 'object')
+
+
+def _both(wide, a, b):
+    both = wide[[a, b]].dropna()
+    return both[a], both[b]
+
+
+def _add_pairs(tables, head, model, family, factor):
+    """`family`: (at, a, b, values of a, values of b). Counts by permutation, the rest by contrasts of the model; and the
+    classical tests."""
+    between = factor == 'group'
+    classical = pairwise.independent if between else pairwise.paired
+    _add_comparisons(tables['classical_pairs'], head, [
+        (at, a, b, classical(of_a, of_b)) for at, a, b, of_a, of_b in family])
+    if OF[head['measure']].kind == 'count':
+        test = pairwise.counts_of_groups if between else pairwise.counts_of_pairs
+        rows = [(at, a, b, test(of_a, of_b)) for at, a, b, of_a, of_b in family]
+        _add_any(tables['any'], head, family, between)
+    else:
+        rows = [(at, a, b, pairwise.modelled(of_a, of_b, _contrast(model, factor, at, a, b),
+                                             model is not None and model.logarithm))
+                for at, a, b, of_a, of_b in family]
+    _add_comparisons(tables['post_hoc'], head, rows)
+
+
+def _contrast(model, factor, at, a, b):
+    if model is None or not {a, b} <= set(model.factors.get(factor, ())):
+        return None
+    of = {'object': at[len('at '):]} if at.startswith('at ') and 'object' in model.factors else {}
+    return model.difference(dict(of, **{factor: a}), dict(of, **{factor: b}))
+
+
+def _add_any(table, head, family, between):
+    """Who had any at all: exact, also where all of one group had and none of the other."""
+    rows = []
+    for at, a, b, of_a, of_b in family:
+        had_a, had_b = np.asarray(of_a) > 0, np.asarray(of_b) > 0
+        of_a, of_b = exact.share(had_a), exact.share(had_b)
+        p = exact.fisher(had_a, had_b) if between else exact.mcnemar(had_a, had_b)
+        rows.append(dict(head, at=at, a=a, b=b, test='Fisher, exact' if between else 'McNemar, exact',
+                         had_a=of_a.had, n_a=of_a.n, low_a=of_a.low, high_a=of_a.high, had_b=of_b.had, n_b=of_b.n,
+                         low_b=of_b.low, high_b=of_b.high, p=p))
+    corrected = pairwise.bonferroni([row['p'] for row in rows])
+    for row, p in zip(rows, corrected):
+        table.append(dict(row, comparisons=int(np.isfinite(corrected).sum()), p_bonferroni=p, stars=pairwise.stars(p)))
+
+
+def _test_effects(tables, notes, head, factor, wide, cells):
+    """Of group, factor and both: nobody is left out for what is missing. Gives the mixed model, if there is one."""
+    head = dict(head, within=factor)
+    values = wide.values[~np.isnan(wide.values)]
+    if len(values) < 2 or np.ptp(values) == 0:
+        return None
+    if OF[head['measure']].kind == 'count':
+        _add_permutations(tables['effects'], head, factor, wide)
+        return None
+    alone = [group for group, some in cells.groupby('group') if some['participant'].nunique() < 2]
+    some = cells[~cells['group'].isin(alone)]
+    factors = collections.OrderedDict([('group', in_order(some['group'], GROUPS)),
+                                       ('object', in_order(some['object'], OBJECTS))])
+    if factor == 'condition':
+        factors['condition'] = in_order(some['condition'], CONDITIONS)
+    logarithm = OF[head['measure']].kind == 'time' and bool((some['value'] > 0).all())
+    covariates = [ORDER] + [PERIOD] * (factor == 'condition')
+    try:
+        model = Model(some, factors, covariates, logarithm)
+        for names, test in model.effects():
+            tables['effects'].append(dict(
+                head, effect=' x '.join(names), test='mixed model F', scale='logarithm' if logarithm else 'as it is',
+                n=some['participant'].nunique(), values=len(some), statistic=test.f, df=test.df,
+                df_error=test.df_error, p=test.p, terms=' + '.join([' x '.join(t) for t in model.terms[1:]] +
+                                                                   model.covariates),
+                variances='; '.join('%s %.6g' % item for item in model.variances().items())))
+        return model
+    except (ValueError, np.linalg.LinAlgError) as error:
+        notes.add(head, head['measure'], 'no mixed model: %s' % error)
+        return None
+
+
+def _add_permutations(table, head, factor, wide):
+    """Columns of `wide` are the factor's levels."""
+    wide = wide.dropna(axis=1, how='all')
+    labels = wide.index.get_level_values('group')
+    tests = (('group', lambda: permutation.several_groups(wide.values, labels, profile=False)),
+             (factor, lambda: permutation.levels(wide.values)),
+             ('group x ' + factor, lambda: permutation.several_groups(wide.values, labels, profile=True)))
+    for effect, test in tests:
+        p = test()
+        if np.isfinite(p):
+            table.append(dict(head, effect=effect, test='permutation', scale='as it is', n=len(wide),
+                              values=int(wide.notna().values.sum()), statistic=np.nan, df=np.nan, df_error=np.nan, p=p,
+                              terms='', variances=''))
 
 
 def _analyse_conditions(tables, notes, head, cells):
@@ -100,13 +204,18 @@ def _analyse_conditions(tables, notes, head, cells):
                       % (', '.join(common) or 'none'))
         wide = of_measure.pivot_table(index=['group', 'participant'], columns=['condition', 'object'], values='value')
         conditions = in_order(of_measure['condition'], CONDITIONS)
+        model = None
         if common:
             means = pandas.DataFrame({condition: wide[condition][common].dropna().mean(axis=1)
                                       for condition in conditions}, index=wide.index)
             _test(tables, notes, head_of, 'condition', means)
-        _add_comparisons(tables['post_hoc'], head_of, [
-            ('conditions', a, b, pairwise.paired(*_means_over_shared(wide[a], wide[b])))
-            for a, b in itertools.combinations(conditions, 2)])
+            shown = pandas.DataFrame({condition: wide[condition].reindex(columns=common).mean(axis=1)
+                                      for condition in conditions}, index=wide.index)
+            model = _test_effects(tables, notes, head_of, 'condition', shown,
+                                  of_measure[of_measure['object'].isin(common)])
+        family = [('conditions', a, b, *_means_over_shared(wide[a], wide[b]))
+                  for a, b in itertools.combinations(conditions, 2)]
+        _add_pairs(tables, head_of, model, family, 'condition')
 
 
 def _means_over_shared(a, b):

@@ -53,8 +53,7 @@ void check_word(const char* key, const std::string& value) {
 void check_header(const SessionHeader& header) {
   check_word("participant", header.participant);
   check_word("condition", header.condition);
-  if (header.group != "veteran" && header.group != "beginner")
-    throw SessionError("group '" + header.group + "' is not allowed; allowed: veteran or beginner");
+  check_word("group", header.group);
   if (header.handedness != "right" && header.handedness != "left")
     throw SessionError("handedness '" + header.handedness + "' is not allowed; allowed: right or left");
 }
@@ -66,7 +65,7 @@ std::string header_text(const SessionHeader& header) {
     out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
   };
   quoted("participant", header.participant);
-  out << YAML::Key << "group" << YAML::Value << header.group;
+  quoted("group", header.group);
   out << YAML::Key << "handedness" << YAML::Value << header.handedness;
   quoted("condition", header.condition);
   out << YAML::Key << "gravity" << YAML::Value << YAML::Flow << YAML::BeginSeq;

@@ -11,7 +11,7 @@ import paths
 import made_up_study
 from study import trajectories
 
-TABLES = {'anova.csv', 'bars.csv', 'comparison.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
+TABLES = {'any.csv', 'anova.csv', 'bars.csv', 'classical_pairs.csv', 'comparison.csv', 'effects.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
           'rating_tests.csv', 'report.html', 'sphericity.csv', 'trials.csv', 'figures'}
 SOME = ('attempts', 'completion_time', 'drops')
 NO_PERSON = 'no person took part'

@@ -132,7 +132,7 @@ class Refusals(Folders):
 
     def test_session_without_what_is_needed(self):
         for key, replacement, words in (('participant', '', "no 'participant'"),
-                                        ('group', 'group: expert', "'expert' is not beginner or veteran"),
+                                        ('group', 'group: " "', "group: is empty"),
                                         ('version', 'version: 2', "'2' is not 1"),
                                         ('gravity', 'gravity: 9.81', 'is not three numbers'),
                                         ('simulated', 'simulated: perhaps', 'is not true or false'),
