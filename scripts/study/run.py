@@ -3,7 +3,7 @@
 import collections
 import os
 
-from . import bars, distributions, trajectories
+from . import bars, distributions, trajectories, with_r
 from .analysis import analyse
 from .measures import COMPARED, CONDITIONS, MAIN, OF, in_order, plain
 from .report import write_report
@@ -11,17 +11,20 @@ from .session_folder import find_sessions, read_session
 from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
 
 
-def run(folders, output, pairs):
-    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn."""
+def run(folders, output, pairs, ask_r=False):
+    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn. `ask_r`: for its models too."""
     sessions = [read_session(folder) for folder in find_sessions(folders)]
     paths, notes = _read_paths(sessions, pairs)
     data = gather(sessions) if sessions else None
     results = analyse(data) if data else None
+    of_r = _models_of_r(data, notes) if data and ask_r else None
     os.makedirs(output, exist_ok=True)
     figures, pictures = collections.OrderedDict(), os.path.join(output, 'figures')
     if data:
         notes = data.notes + results.notes + notes
         _write_tables(output, data, results, notes)
+        if of_r is not None:
+            of_r.to_csv(os.path.join(output, 'r_models.csv'), index=False, float_format='%.10g')
         for part in parts(data):
             _draw_part(figures, pictures, part, data, results)
     for label, source, raw, filtered in paths:
@@ -30,6 +33,14 @@ def run(folders, output, pairs):
             raw, filtered, 'Trajectories: ' + label, source, pictures, file)
     write_report(os.path.join(output, 'report.html'), results, sessions, figures, notes)
     return notes
+
+
+def _models_of_r(data, notes):
+    lacking = with_r.missing()
+    if lacking:
+        notes.append('R: %s not installed: %s' % (lacking, with_r.WITHOUT))
+        return None
+    return with_r.models(data.cells)
 
 
 def _read_paths(sessions, pairs):

@@ -345,8 +345,8 @@ TEST_F(SessionTest, a_folder_that_cannot_be_is_refused_in_one_line) {
 
 TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
   SessionHeader bad = header();
-  bad.group = "expert";
-  test::expect_words(refusal(bad), {"'expert'", "veteran or beginner"});
+  bad.group = "two words";
+  test::expect_words(refusal(bad), {"group", "'two words'", "allowed: a name"});
   bad = header();
   bad.handedness = "both";
   test::expect_words(refusal(bad), {"'both'", "right or left"});
