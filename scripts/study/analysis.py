@@ -11,6 +11,7 @@ from . import exact, pairwise, permutation
 from .anova import mixed_anova
 from .linear import ORDER, PERIOD, Model
 from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, plain
+from .questions import scale_of
 from .study_data import SIMULATED, measures_in, of_part, parts
 
 Results = collections.namedtuple('Results', 'bars comparison effects post_hoc any anova sphericity classical_pairs ratings '
@@ -47,6 +48,8 @@ def analyse(data):
         _analyse_conditions(tables, notes, dict(head, condition=EVERY), cells)
         _compare(tables['comparison'], head, of_part(data.trials, part), cells, ratings)
         _analyse_ratings(tables, head, ratings)
+    for source in sorted(set(data.cells['source'])):
+        _analyse_gravities(tables, notes, data.cells[data.cells['source'] == source], source)
     frames = {name: pandas.DataFrame(rows, columns=COLUMNS[name].split()) for name, rows in tables.items()}
     return Results(notes=notes.lines(), **frames)
 
@@ -59,6 +62,8 @@ class _Notes:
 
     def add(self, head, measure, what):
         where = '%s%g g, %s conditions' if head['condition'] == EVERY else '%s%g g, %s'
+        if np.isnan(head['gravity_g']):
+            where = '%sgravities, %.0s%s'
         simulated = 'simulated, ' if head['source'] == SIMULATED else ''
         key = where % (simulated, head['gravity_g'], head['condition']), what
         self.measures.setdefault(key, []).append(plain(measure))
@@ -218,6 +223,26 @@ def _analyse_conditions(tables, notes, head, cells):
         _add_pairs(tables, head_of, model, family, 'condition')
 
 
+def _analyse_gravities(tables, notes, cells, source):
+    """Gravity within participants, under each condition, where the same people were at several: in `effects` and the
+    tables of pairs, gravity_g is empty."""
+    for condition in in_order(cells['condition'], CONDITIONS):
+        some = cells[cells['condition'] == condition]
+        strengths = some.groupby('participant')['gravity_g'].nunique()
+        some = some[some['participant'].isin(strengths[strengths > 1].index)]
+        if some.empty:
+            continue
+        some = some.assign(condition=['%g g' % gravity for gravity in some['gravity_g']])
+        made = {name: [] for name in COLUMNS}
+        _analyse_conditions(made, notes, {'source': source, 'gravity_g': np.nan, 'condition': condition}, some)
+        for name, rows in made.items():
+            for row in rows:
+                for key in ('within', 'effect', 'at', 'terms'):
+                    if key in row and isinstance(row[key], str):
+                        row[key] = row[key].replace('conditions', 'gravities').replace('condition', 'gravity')
+                tables[name].append(row)
+
+
 def _means_over_shared(a, b):
     """Each participant's means over the objects with a value in both tables."""
     shared = a.notna() & b.reindex(columns=a.columns).notna()
@@ -296,16 +321,16 @@ def _compare(table, head, trials, cells, ratings):
             row = summary(some.groupby('participant')['value'].mean())
             row.pop('ci95')
             table.append(dict(head_of, quantity=measure, unit=OF[measure].unit, **row))
-        for question in QUESTIONS:
+        for question in in_order(ratings['question'], QUESTIONS):
             some = ratings[(ratings['condition'] == condition) & (ratings['question'] == question)]
             if len(some):
-                row = summary(some['score'])
+                row = summary(some['score'].astype(float))
                 row.pop('ci95')
-                table.append(dict(head_of, quantity=question, unit='0 to 10', **row))
+                table.append(dict(head_of, quantity=question, unit=scale_of(question), **row))
 
 
 def _analyse_ratings(tables, head, ratings):
-    for question in QUESTIONS:
+    for question in in_order(ratings['question'], QUESTIONS):
         some = ratings[ratings['question'] == question]
         if some.empty:
             continue

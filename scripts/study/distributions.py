@@ -3,10 +3,11 @@
 import numpy as np
 
 from .measures import CONDITIONS, GROUPS, OF, QUESTIONS, in_order, plain, with_unit
-from .session_folder import HIGHEST_SCORE
+from .questions import PAPER
 from .style import INK, colours, finish, new_figure, save
 from .analysis import summary
 
+HIGHEST_SCORE = PAPER['naturalness'].highest
 COLOURS = dict(zip(QUESTIONS, ('#009E73', '#CC79A7')))
 WORDS = {'naturalness': ('unnatural', 'natural'), 'efficiency': ('inefficient', 'efficient')}
 

@@ -28,7 +28,7 @@ OF = {measure.name: measure for measure in MEASURES}
 MAIN = ('manipulation_drops', 'completion_time')  # named in advance, as in the paper; the others are exploratory
 COMPARED = ('completion_time', 'manipulation_drops', 'grasps', 'drops', 'completed', 'release_drift')
 
-QUESTIONS = ('naturalness', 'efficiency')
+QUESTIONS = ('naturalness', 'efficiency')  # the paper's; others follow
 GROUPS = ('beginner', 'veteran')
 OBJECTS = ('cube', 'flat_cuboid', 'long_cuboid')
 CONDITIONS = ('implicit', 'seed', 'penetration', 'impulse', 'virtual_spring', 'soft_pad')

@@ -175,7 +175,8 @@ def _kenward_roger(terms, rows):
     below = 3 * width + 2 * (1 - g)
     c1, c2, c3 = g / below, (width - g) / below, (width + 2 - g) / below
     mean = 1 / (1 - a2 / width)
-    variance = 2 / width * (1 + c1 * b) / ((1 - c2 * b) ** 2 * (1 - c3 * b))
+    with np.errstate(divide='ignore'):
+        variance = 2 / width * (1 + c1 * b) / ((1 - c2 * b) ** 2 * (1 - c3 * b))
     rho = variance / (2 * mean ** 2)
     df = 4 + (width + 2) / (width * rho - 1)
     if not 0 < df < MANY:

@@ -6,6 +6,7 @@ import html
 import numpy as np
 
 from .measures import CONDITIONS, MAIN, OF, in_order, plain, with_unit
+from .questions import scale_of
 from .study_data import SIMULATED, label_of
 
 STYLE = '''body{font:15px/1.5 sans-serif;color:#222;max-width:62rem;margin:2rem auto;padding:0 1rem}
@@ -105,6 +106,8 @@ def write_report(path, results, sessions, figures, notes):
         report.text(some + NO_PERSON, 'simulated')
     for part in sorted(set(map(tuple, results.comparison[['source', 'gravity_g']].values))) if results else ():
         _part(report, part, results, figures)
+    if results is not None:
+        _gravities(report, results)
     for (part, name, kind), file in figures.items():
         if kind == 'trajectory':
             report.heading('Trajectories: ' + name)
@@ -112,6 +115,17 @@ def write_report(path, results, sessions, figures, notes):
     if sessions:
         _account(report, sessions, notes)
     report.write(path)
+
+
+def _gravities(report, results):
+    """Of participants who were at several gravities."""
+    effects, pairs = (table[table['gravity_g'].isna()] for table in (results.effects, results.post_hoc))
+    if len(effects) or len(pairs):
+        report.heading('Gravity, within participants')
+        report.table('Effects', EFFECT_COLUMNS, [[plain(name) + ', ' + row[0]] + row[1:] for name, row in zip(
+            effects['condition'], _effect_rows(effects))])
+        _pairs(report, pairs[pairs['p'].notna()], 'Pairs',
+               lambda row: '%s, %s' % (plain(row.condition), OF[row.measure].label))
 
 
 def _account(report, sessions, notes):
@@ -145,6 +159,9 @@ def _part(report, part, results, figures):
             with report.folded('Further measures'):
                 _figure_of(report, figures, part, condition, 'further', 'Further measures')
     _ratings(report, results, part, figures)
+    if (part, None, 'learning') in figures:
+        report.heading('Learning', 3)
+        _figure_of(report, figures, part, None, 'learning', 'Learning curves')
 
 
 def _figure_of(report, figures, part, condition, kind, description):
@@ -154,7 +171,7 @@ def _figure_of(report, figures, part, condition, kind, description):
 
 def _comparison(report, rows):
     quantities = list(dict.fromkeys(rows['quantity']))
-    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else q.capitalize() + ' [0 to 10]' for q in quantities]
+    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else '%s [%s]' % (plain(q).capitalize(), scale_of(q)) for q in quantities]
     table = []
     for condition in dict.fromkeys(rows['condition']):
         some = rows[rows['condition'] == condition]
@@ -250,8 +267,8 @@ def _ratings(report, results, part, figures):
         return
     report.heading('Ratings', 3)
     _figure_of(report, figures, part, None, 'ratings', 'Distributions of the ratings')
-    report.table('Ratings, 0 to 10', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
-        [plain(row.condition), row.question, str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
+    report.table('Ratings', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
+        [plain(row.condition), '%s [%s]' % (plain(row.question), scale_of(row.question)), str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
          '%s to %s' % (number(row.quartile_1), number(row.quartile_3))] for row in ratings.itertuples()])
     pairs = _rows(results.rating_tests, part)
     _pairs(report, pairs[pairs['p'].notna()], 'Pairs: medians',

@@ -8,13 +8,12 @@ import os
 
 import yaml
 
-from .measures import GROUPS, QUESTIONS
+from .questions import score_of
 
 GRAVITY = 9.80665  # m/s^2
 VERSION = 1
 RESULTS = ('completed', 'skipped', 'timed_out', 'aborted')
 RATING_COLUMNS = ('condition', 'question', 'score')
-HIGHEST_SCORE = 10
 
 # `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` tells what was passed over.
 Session = collections.namedtuple('Session', 'folder participant group handedness condition gravity simulated '
@@ -65,13 +64,6 @@ def number(text):
     return value
 
 
-def score(text):
-    value = _number(int, text, 'a whole number from 0 to %d' % HIGHEST_SCORE)
-    if not 0 <= value <= HIGHEST_SCORE:
-        raise ValueError("'%s' is not a whole number from 0 to %d" % (text, HIGHEST_SCORE))
-    return value
-
-
 def _number(kind, text, what):
     try:
         return kind(text)
@@ -90,7 +82,7 @@ TRIALS = collections.OrderedDict(
 # Of sessions since they are measured; before, grasps are the attempts, and these drops are counted in events.csv.
 ADDED = collections.OrderedDict([('grasps', count), ('manipulation_drops', count)])
 EVENTS = collections.OrderedDict([('trial', count), ('stage', str), ('event', str)])
-RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, one_of(*QUESTIONS), score)))
+RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 
 
 def read_table(path, columns, notes, added=()):
@@ -137,6 +129,17 @@ def _parse_row(path, line, cells, header, places):
         except ValueError as error:
             raise StudyError('%s: line %d: %s: %s' % (path, line, column, error)) from None
     return row
+
+
+def read_ratings(path, notes):
+    """Rows with scores in the range of their question."""
+    rows = read_table(path, RATINGS, notes)
+    for line, row in enumerate(rows, 2):
+        try:
+            row['score'] = score_of(row['question'], row['score'])
+        except ValueError as error:
+            raise StudyError('%s: line %d: score: %s' % (path, line, error)) from None
+    return rows
 
 
 def read_header(folder):
@@ -209,11 +212,9 @@ HEADER = (('version', None, _version), ('participant', None, _text(name)), ('gro
 
 def read_session(folder):
     header, notes = read_header(folder), []
-    tables = []
-    for file, columns, added in (('trials.csv', TRIALS, ADDED), ('ratings.csv', RATINGS, {})):
-        path = os.path.join(folder, file)
-        tables.append(read_table(path, columns, notes, added) if os.path.exists(path) else [])
-    trials, ratings = tables
+    trials_file, ratings_file = (os.path.join(folder, file) for file in ('trials.csv', 'ratings.csv'))
+    trials = read_table(trials_file, TRIALS, notes, ADDED) if os.path.exists(trials_file) else []
+    ratings = read_ratings(ratings_file, notes) if os.path.exists(ratings_file) else []
     _add_counts(folder, trials, notes)
     _check_trial_numbers(os.path.join(folder, 'trials.csv'), trials)
     header.pop('version')

@@ -6,6 +6,7 @@ import os
 import pandas
 
 from .measures import MEASURES, OF
+from .questions import NASA_TLX, SUS, derived
 from .session_folder import ADDED, StudyError, TRIALS
 
 PEOPLE, SIMULATED = 'people', 'simulated operators, no person took part'
@@ -23,14 +24,30 @@ def gather(sessions):
     periods = _periods(sessions)
     notes = [note for session in sessions for note in session.notes]
     trials = _pooled(sessions, periods, 'trials', list(TRIALS) + list(ADDED) + PLACES)
-    ratings = _pooled(sessions, periods, 'ratings', ['question', 'score'])
+    ratings = _with_scales(_pooled(sessions, periods, 'ratings', ['question', 'score']))
     if trials.empty and ratings.empty:
         raise StudyError('no trials and no ratings in %d sessions' % len(sessions))
     notes += _notes_on_trials(trials)
     silent = sorted({s.participant for s in sessions if not s.ratings and not s.simulated})
     if silent:
         notes.append('no ratings from %s' % ', '.join(silent))
-    return StudyData(trials, ratings, _cells(trials), notes)
+    practice = (trials['repetition'] == 0).sum()
+    if practice:
+        notes.append('%d trials were practice: left out of all but the table of trials' % practice)
+    return StudyData(trials, ratings, _cells(trials[trials['repetition'] != 0]), notes)
+
+
+def _with_scales(ratings):
+    """NASA-TLX and SUS in the place of their single questions."""
+    if ratings.empty:
+        return ratings
+    rows = []
+    for _, some in ratings.groupby(['session', 'condition'], sort=False):
+        scores = dict(zip(some['question'], some['score']))
+        head = some.iloc[0].to_dict()
+        rows += [dict(head, question=question, score=score) for question, score in derived(scores).items()]
+    single = ratings[~ratings['question'].isin(list(NASA_TLX) + list(SUS))]
+    return pandas.concat([single, pandas.DataFrame(rows, columns=ratings.columns)], ignore_index=True)
 
 
 def _with_seeds(sessions):

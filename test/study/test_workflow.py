@@ -132,7 +132,7 @@ class Workflow(unittest.TestCase):
         os.killpg(running.pid, signal.SIGKILL)
         running.wait()
         self.write('let', '')
-        done = self.snakemake()
+        done = self.snakemake('--rerun-incomplete', '--cores', '1')
         self.assertNotEqual(done.returncode, 0)
         self.assertIn('--unlock', done.stdout)
         self.assertEqual(self.snakemake('--unlock', '--cores', '1').returncode, 0)
