@@ -48,7 +48,7 @@ Session::Session(Task task, const SessionHeader& header, std::uint64_t place, co
       first_(now),
       number_(folder_.last_trial()),
       trial_(*task_) {
-  for (int repetition = 1; repetition <= task_->repetitions; ++repetition) {
+  for (int repetition = task_->practice ? 0 : 1; repetition <= task_->repetitions; ++repetition) {
     for (const std::size_t object : object_order(*task_, header.seed, place))
       plan_.push_back({object, repetition, false});
   }

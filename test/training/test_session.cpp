@@ -411,6 +411,21 @@ TEST_F(SessionTest, repetitions_go_through_the_order_again) {
   EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,2,skipped,"));
 }
 
+TEST_F(SessionTest, practice_is_a_repetition_before_the_first_and_is_not_done_twice) {
+  Task task = three_objects();
+  task.practice = true;
+  {
+    Session session(task, header(), 0, path_, 0);
+    EXPECT_EQ(6u, session.trials());
+    session.skip(0);
+    EXPECT_EQ(0u, lines(trials_)[1].find("1,cube,implicit,0,skipped,"));
+  }
+  Session session(task, header(), 0, path_, 0);
+  EXPECT_EQ(1u, session.position());
+  for (int i = 0; i < 3; ++i) session.skip(0);
+  EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,1,skipped,"));
+}
+
 TEST(ParticipantPlace, is_the_number_at_the_end_of_the_name) {
   EXPECT_EQ(6u, participant_place("P07"));
   EXPECT_EQ(0u, participant_place("1"));

@@ -36,7 +36,7 @@ struct SessionHeader {
 struct TrialRow {
   int trial = 0;
   std::string object;
-  int repetition = 1;  ///< from 1
+  int repetition = 1;  ///< from 1; 0: practice
   TrialResult result = TrialResult::none;
   double start = 0.0;  ///< since the session's start [s]
   TrialMeasures measures;
