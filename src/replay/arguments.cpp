@@ -101,20 +101,26 @@ std::string option_names() {
   return names;
 }
 
-void check(const ReplayArguments& arguments) {
-  for (const auto& [option, value] : {std::pair<const char*, const std::string&>{"--scene", arguments.scene},
-                                      {"--input", arguments.input},
-                                      {"--output", arguments.output}}) {
-    if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
-  }
-  const auto ends_with = [&](const std::string& end) {
-    const std::string& input = arguments.input;
-    return input.size() > end.size() && input.compare(input.size() - end.size(), end.size(), end) == 0;
-  };
-  if (!ends_with(".bag") && !ends_with(".csv")) {
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void require(const char* option, const std::string& value) {
+  if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
+}
+
+/// A bag may tell its scene, and has a place for what comes of it.
+void check(ReplayArguments& arguments) {
+  require("--input", arguments.input);
+  const bool bag = ends_with(arguments.input, ".bag");
+  if (!bag && !ends_with(arguments.input, ".csv")) {
     throw UsageError("--input " + arguments.input + ": unknown kind of file; allowed: FILE.bag or FILE.csv");
   }
-  if (arguments.topic && !ends_with(".bag")) throw UsageError("--topic: only a bag has topics");
+  if (arguments.topic && !bag) throw UsageError("--topic: only a bag has topics");
+  if (!bag) require("--scene", arguments.scene);
+  if (!bag) require("--output", arguments.output);
+  if (arguments.output.empty())
+    arguments.output = arguments.input.substr(0, arguments.input.size() - 4) + "_replay";
 }
 
 }  // namespace
@@ -150,15 +156,18 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
 }
 
 const char* replay_help() {
-  return R"(usage: replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
+  return R"(usage: replay --input FILE.bag [options]
+       replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
        replay --compare DIR DIR
 
-Runs a recording of hands through a scene as fast as the machine goes; needs no ROS master.
+Does again what a live simulation did, from a bag of record.launch; or runs a recording of hands through a scene. As
+fast as the machine goes; needs no ROS master.
 
-  --scene NAME|FILE         a shipped scene, or a URDF file
+  --scene NAME|FILE         a shipped scene, or a URDF file; else as recorded
   --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray or HandFrame)
-  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json
-  --topic TOPIC             of the bag; else /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
+  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json;
+                            of a bag FILE_replay where none is given
+  --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
   --params FILE.yaml        parameters, under the names of the parameter server
   --set KEY=VALUE           one parameter; stands above --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw

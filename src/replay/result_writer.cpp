@@ -46,7 +46,7 @@ const char* event_name(EventKind kind) {
 }
 
 ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
-    : scene_(scene),
+    : scene_(&scene),
       objects_(made_folder(folder) + "/objects.csv", "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"),
       contacts_(folder + "/contacts.csv",
                 "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
@@ -71,8 +71,8 @@ void ResultWriter::flush() {
 }
 
 void ResultWriter::write_objects(double time, const SimulationState& state) {
-  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    const Body& body = scene_.bodies[i];
+  for (std::size_t i = 0; i < scene_->bodies.size(); ++i) {
+    const Body& body = scene_->bodies[i];
     if (body.fixed) continue;
     const Twist twist = twist_of(body, state.bodies[i]);
     objects_ << time << body.name << state.bodies[i].pose.position;
@@ -84,7 +84,7 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
 
 void ResultWriter::write_contacts(double time, const FrameResult& result, const SimulationState& state) {
   for (const Contact& contact : result.contacts) {
-    const Body& body = scene_.bodies[contact.key.body];
+    const Body& body = scene_->bodies[contact.key.body];
     const int capsule = contact.key.capsule;
     const FrictionUse use = friction_use(contact, body.material);
     contacts_ << time << body.name << hand_id(contact, state) << finger_of(capsule) << bone_of(capsule)
@@ -112,7 +112,7 @@ void ResultWriter::write_events(const FrameResult& result) {
   for (const Event& event : result.events) {
     const bool has_body = event.body >= 0;
     events_ << to_seconds(event.stamp - first_stamp_) << std::string(event_name(event.kind))
-            << (has_body ? scene_.bodies[static_cast<std::size_t>(event.body)].name : std::string())
+            << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
             << event.hand_id;
     events_.end_row();
   }

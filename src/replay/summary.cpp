@@ -64,6 +64,15 @@ std::string step_times(const DurationHistogram& times) {
          ", \"max\": " + number(times.max_us()) + "}";
 }
 
+std::string live_run(const LiveRun& live) {
+  return "{\"version\": " + quoted(live.version) + ", \"entries\": " + std::to_string(live.entries) +
+         ", \"missing\": " + std::to_string(live.missing) +
+         ", \"compared\": " + std::to_string(live.compared) + ", \"same\": " + std::to_string(live.same) +
+         ", \"parts_at\": " + (live.parts_at ? number(*live.parts_at) : "null") +
+         ", \"lost_by_queue\": " + std::to_string(live.lost_by_queue) +
+         ", \"changes\": " + list(live.changes) + ", \"overridden\": " + list(live.overridden) + "}";
+}
+
 }  // namespace
 
 std::string to_json(const ReplaySummary& summary) {
@@ -88,7 +97,9 @@ std::string to_json(const ReplaySummary& summary) {
       {"hands_left_out", std::to_string(summary.hands_left_out)},
       {"events", object(summary.events)},
       {"objects_held_at_end", list(summary.held_at_end)},
-      {"state_hash", quoted(hash)}};
+      {"state_hash", quoted(hash)},
+      {"not_known", list(summary.not_known)}};
+  if (summary.live) fields.emplace_back("live_run", live_run(*summary.live));
   if (!summary.error.empty()) fields.emplace_back("error", quoted(summary.error));
   std::string text = "{";
   for (const auto& [name, value] : fields)
