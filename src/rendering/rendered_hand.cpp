@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/collision/near_bodies.h"
+#include "../collision/near_bodies.h"
 #include "renderer.h"
 #include "return_home.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bag_check.h"
-#include "mr_hand_interaction/replay/bag_input.h"
+#include "bag_input.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "open_bag.h"
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "../scene/safe_yaml.h"
-#include "../scene/text.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

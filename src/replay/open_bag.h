@@ -5,7 +5,7 @@
 
 #include "mr_hand_interaction/replay/arguments.h"
 #include "mr_hand_interaction/replay/frame_source.h"
-#include "mr_hand_interaction/replay/input_log.h"
+#include "log_source.h"
 
 namespace mrhi {
 

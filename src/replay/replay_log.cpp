@@ -4,11 +4,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/state_bytes.h"
+#include "../simulation/state_bytes.h"
 #include "run.h"
 #include "urdf_meshes.h"
 

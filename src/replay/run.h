@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "mr_hand_interaction/replay/input_log.h"
+#include "log_source.h"
 #include "mr_hand_interaction/replay/replay.h"
 
 namespace mrhi {

@@ -6,7 +6,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "../scene/file_text.h"
+#include "../text/file_text.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 
 namespace mrhi {

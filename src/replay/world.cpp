@@ -9,7 +9,6 @@
 #include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/scene_change.h"
 #include "urdf_meshes.h"
 
 namespace mrhi {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/state_bytes.h"
+#include "../simulation/state_bytes.h"
 
 namespace mrhi {
 namespace {

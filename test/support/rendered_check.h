@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mr_hand_interaction/collision/near_bodies.h"
+#include "collision/near_bodies.h"
 #include "support/finger_angles.h"
 #include "support/fixtures.h"
 

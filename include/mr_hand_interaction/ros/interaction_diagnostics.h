@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "mr_hand_interaction/replay/duration_histogram.h"
+#include "mr_hand_interaction/math/duration_histogram.h"
 #include "mr_hand_interaction/ros/input_statistics.h"
 
 namespace mrhi {

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../text/text.h"
+#include "../tracking/tracker.h"
 #include "frame_report.h"
-#include "mr_hand_interaction/scene_change.h"
-#include "mr_hand_interaction/tracking/tracker.h"
-#include "scene/text.h"
+#include "scene_change.h"
 #include "simulation_impl.h"
 
 namespace mrhi {

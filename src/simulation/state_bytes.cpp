@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/state_bytes.h"
+#include "state_bytes.h"
 
 #include <array>
 #include <cstdint>
