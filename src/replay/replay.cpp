@@ -54,7 +54,7 @@ OpenLog open_log_of(const ReplayArguments& arguments) {
 
 void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
                 ReplaySummary& summary) {
-  Nanoseconds last_stamp = 0;
+  std::optional<Nanoseconds> last_stamp;
   RecordersClock clock;
   while (const std::optional<SourceFrame> input = source.next()) {
     progress.show(source.position(), source.size());
@@ -74,10 +74,10 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
     const FrameResult& result = simulation.end();
     for (const std::string& what : result.not_finite) reject("not finite", what, progress, summary);
     writer.write(result, simulation.state());
-    add_result(simulation, summary.frames > 0 ? last_stamp : 0, summary);
+    add_result(simulation, last_stamp, summary);
     ++summary.frames;
     last_stamp = result.stamp;
-    clock = {last_stamp, input->arrival};
+    clock = {result.stamp, input->arrival};
   }
 }
 

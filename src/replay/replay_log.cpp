@@ -229,7 +229,7 @@ class LogRun {
     writer_->write(now().result(), now().state());
     add_result(now(), last_stamp_, summary_);
     last_stamp_ = now().result().stamp;
-    if (first_stamp_ == 0) first_stamp_ = last_stamp_;
+    if (!first_stamp_) first_stamp_ = last_stamp_;
   }
 
   void change(const LogEntry& entry) {
@@ -254,7 +254,7 @@ class LogRun {
                      set.values.end());
   }
 
-  double seconds() const { return to_seconds(last_stamp_ - first_stamp_); }
+  double seconds() const { return last_stamp_ ? to_seconds(*last_stamp_ - *first_stamp_) : 0.0; }
 
   void compare(const LogEntry& entry) {
     const std::uint64_t here = hash(now().state());
@@ -279,7 +279,7 @@ class LogRun {
   std::unique_ptr<CsvFile> hashes_;
   std::uint64_t run_ = 0, sequence_ = 0, lost_before_ = 0;
   bool broken_ = false;  ///< entries are missing, so that nothing is as it was
-  Nanoseconds first_stamp_ = 0, last_stamp_ = 0;
+  std::optional<Nanoseconds> first_stamp_, last_stamp_;
 };
 
 }  // namespace

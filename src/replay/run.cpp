@@ -21,12 +21,12 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-void add_result(const Simulation& simulation, Nanoseconds since, ReplaySummary& summary) {
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since, ReplaySummary& summary) {
   const FrameResult& result = simulation.result();
   summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
   for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
   if (result.restarted) ++summary.restarts;
-  if (since != 0 && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - since);
+  if (since && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *since);
 }
 
 void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "log_source.h"
@@ -13,7 +13,7 @@ namespace mrhi {
 /// One step, its time noted; false if there is none to make.
 bool timed_step(Simulation& simulation, ReplaySummary& summary);
 /// A frame that has been run, or what came of a silence. `since`: the stamp of the one before.
-void add_result(const Simulation& simulation, Nanoseconds since, ReplaySummary& summary);
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since, ReplaySummary& summary);
 /// Counts; the first of each kind is told.
 void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
             ReplaySummary& summary);
