@@ -96,7 +96,7 @@ const std::map<std::string, Option>& options() {
 }
 
 std::string option_names() {
-  std::string names = "--help, --compare";
+  std::string names = "--help, --compare, --explain";
   for (const auto& entry : options()) names += ", " + entry.first;
   return names;
 }
@@ -140,6 +140,10 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
       parsed.compare = {arguments[1], arguments[2]};
       return parsed;
     }
+    if (name == "--explain") {
+      parsed.explain = true;
+      continue;
+    }
     const auto option = options().find(name);
     if (option == options().end()) {
       throw UsageError("unknown argument '" + name + "'; allowed: " + option_names());
@@ -177,6 +181,7 @@ fast as the machine goes; needs no ROS master.
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else the bag's /tf_static, else at the origin
                             and turned by +90 degrees about x
+  --explain                 explain.html and explain.json too: when each object was held, how, and why it was lost
   --compare DIR DIR         when and where the objects of two runs part, and by how much
   --help                    this text
 

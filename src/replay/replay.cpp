@@ -53,7 +53,7 @@ OpenLog open_log_of(const ReplayArguments& arguments) {
 }  // namespace
 
 void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
-                ReplaySummary& summary) {
+                ReplaySummary& summary, const FrameWatcher& watcher) {
   std::optional<Nanoseconds> last_stamp;
   RecordersClock clock;
   while (const std::optional<SourceFrame> input = source.next()) {
@@ -74,6 +74,7 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
     const FrameResult& result = simulation.end();
     for (const std::string& what : result.not_finite) reject("not finite", what, progress, summary);
     writer.write(result, simulation.state());
+    if (watcher) watcher(simulation);
     add_result(simulation, last_stamp, summary);
     ++summary.frames;
     last_stamp = result.stamp;
@@ -97,9 +98,10 @@ void replay(const ReplayArguments& arguments) {
   tell_setting(simulation, summary);
   summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
   ProgressBar progress;
+  Explaining explaining(arguments);
   if (!is_csv(arguments.input)) progress.line("replay: not known: " + summary.not_known.front());
   try {
-    run_frames(*input.frames, simulation, writer, progress, summary);
+    run_frames(*input.frames, simulation, writer, progress, summary, explaining.watcher());
     if (summary.frames == 0) throw std::runtime_error(arguments.input + ": no frame that can be used");
     writer.flush();
   } catch (const std::exception& error) {
@@ -110,6 +112,7 @@ void replay(const ReplayArguments& arguments) {
   }
   tell_end(simulation, summary);
   write_summary(arguments.output, summary);
+  explaining.write();
 }
 
 }  // namespace mrhi

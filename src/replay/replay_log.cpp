@@ -4,11 +4,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "../simulation/state_bytes.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "../simulation/state_bytes.h"
 #include "run.h"
 #include "urdf_meshes.h"
 
@@ -111,7 +111,10 @@ class Overrides {
 class LogRun {
  public:
   LogRun(const ReplayArguments& arguments, const std::string& topic)
-      : arguments_(arguments), overrides_(arguments) {
+      : arguments_(arguments),
+        overrides_(arguments),
+        explaining_(arguments),
+        watcher_(explaining_.watcher()) {
     summary_.input = arguments.input;
     summary_.topic = topic;
     summary_.live.emplace();
@@ -133,6 +136,7 @@ class LogRun {
     if (!simulation_) return;
     tell_end(now(), summary_);
     write_summary(arguments_.output, summary_);
+    explaining_.write();
     const LiveRun& live = *summary_.live;
     if (live.parts_at)
       progress_.line("replay: parts from the live run at " + text::number(*live.parts_at) + " s");
@@ -227,6 +231,7 @@ class LogRun {
 
   void note_result() {
     writer_->write(now().result(), now().state());
+    if (watcher_) watcher_(now());
     add_result(now(), last_stamp_, summary_);
     last_stamp_ = now().result().stamp;
     if (!first_stamp_) first_stamp_ = last_stamp_;
@@ -271,6 +276,8 @@ class LogRun {
 
   const ReplayArguments& arguments_;
   Overrides overrides_;
+  Explaining explaining_;
+  FrameWatcher watcher_;
   ScratchFolder scratch_;
   ProgressBar progress_;
   ReplaySummary summary_;

@@ -21,7 +21,8 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since, ReplaySummary& summary) {
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
+                ReplaySummary& summary) {
   const FrameResult& result = simulation.result();
   summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
   for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
@@ -55,11 +56,30 @@ void tell_end(const Simulation& simulation, ReplaySummary& summary) {
   summary.state_hash = hash(simulation.state());
 }
 
-void write_summary(const std::string& folder, const ReplaySummary& summary) {
-  const std::string path = folder + "/summary.json";
+namespace {
+
+void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(path);
-  file << to_json(summary) << std::flush;
+  file << text << std::flush;
   if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace
+
+void write_summary(const std::string& folder, const ReplaySummary& summary) {
+  write_text(folder + "/summary.json", to_json(summary));
+}
+
+FrameWatcher Explaining::watcher() {
+  if (!arguments_.explain) return {};
+  return [this](const Simulation& simulation) { explainer_.watch(simulation); };
+}
+
+void Explaining::write() {
+  if (!arguments_.explain) return;
+  const Explanation explanation = explainer_.explain(arguments_.input);
+  write_text(arguments_.output + "/explain.json", to_json(explanation));
+  write_text(arguments_.output + "/explain.html", to_html(explanation));
 }
 
 ScratchFolder::ScratchFolder() {

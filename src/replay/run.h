@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "explain.h"
 #include "log_source.h"
 #include "mr_hand_interaction/replay/replay.h"
 
@@ -13,7 +14,8 @@ namespace mrhi {
 /// One step, its time noted; false if there is none to make.
 bool timed_step(Simulation& simulation, ReplaySummary& summary);
 /// A frame that has been run, or what came of a silence. `since`: the stamp of the one before.
-void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since, ReplaySummary& summary);
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
+                ReplaySummary& summary);
 /// Counts; the first of each kind is told.
 void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
             ReplaySummary& summary);
@@ -23,6 +25,20 @@ void tell_setting(const Simulation& simulation, ReplaySummary& summary);
 void tell_end(const Simulation& simulation, ReplaySummary& summary);
 /// Throws std::runtime_error naming the file if it cannot be written.
 void write_summary(const std::string& folder, const ReplaySummary& summary);
+
+/// Explains a run if that is asked for.
+class Explaining {
+ public:
+  explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
+  /// Nothing, if it is not.
+  FrameWatcher watcher();
+  /// explain.json and explain.html. Throws std::runtime_error naming what cannot be written.
+  void write();
+
+ private:
+  const ReplayArguments& arguments_;
+  Explainer explainer_;
+};
 
 /// A folder that is gone with all that is in it when this is.
 class ScratchFolder {

@@ -3,30 +3,13 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "json_text.h"
+
 namespace mrhi {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    char escaped[8];
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", c);
-      result += escaped;
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
+using json::number;
+using json::quoted;
 
 /// With what `as_json` makes of each value.
 template <typename Value, typename AsJson>

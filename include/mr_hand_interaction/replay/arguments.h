@@ -19,6 +19,7 @@ class UsageError : public std::runtime_error {
 /// The command line of `replay`.
 struct ReplayArguments {
   bool help = false;
+  bool explain = false;  ///< explain.json and explain.html too
   std::optional<std::pair<std::string, std::string>>
       compare;         ///< folders of two runs; nothing is played then
   std::string scene;   ///< name or URDF file
