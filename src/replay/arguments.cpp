@@ -77,6 +77,13 @@ const std::map<std::string, Option>& options() {
       {"--topic", {"TOPIC", false, [](A& a, const OptionText& v) { a.topic = v.text; }}},
       {"--params", {"FILE.yaml", false, [](A& a, const OptionText& v) { a.parameter_file = v.text; }}},
       {"--set", {"KEY=VALUE", true, read_setting}},
+      {"--export",
+       {"HZ", false,
+        [](A& a, const OptionText& v) {
+          a.demonstration = v.numbers({v.text}, 0, 1).front();
+          if (!(*a.demonstration == 0.0 || (*a.demonstration >= 1.0 && *a.demonstration <= 1000.0)))
+            v.refuse("is no rate from 1 to 1000 Hz, and not 0 for the recording's");
+        }}},
       {"--object-pose",
        {"NAME,x,y,z,qx,qy,qz,qw", true,
         [](A& a, const OptionText& v) {
@@ -181,6 +188,8 @@ fast as the machine goes; needs no ROS master.
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else the bag's /tf_static, else at the origin
                             and turned by +90 degrees about x
+  --export HZ               demonstration.csv and demonstration.bag too, of standard messages alone; 0: a row for
+                            each frame
   --explain                 explain.html and explain.json too: when each object was held, how, and why it was lost
   --compare DIR DIR         when and where the objects of two runs part, and by how much
   --help                    this text

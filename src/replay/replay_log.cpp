@@ -6,6 +6,7 @@
 
 #include "../simulation/state_bytes.h"
 #include "../text/text.h"
+#include "dictionary.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -200,7 +201,7 @@ class LogRun {
   void tell_begin(const World& world) {
     if (!writer_) writer_ = std::make_unique<ResultWriter>(arguments_.output, now().scene());
     if (!hashes_)
-      hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", "sequence,stamp,state_hash");
+      hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", table_of("hashes.csv").header());
     writer_->follow(now().scene());
     summary_.scene = world.scene;
     summary_.live->version = world.version;

@@ -71,11 +71,20 @@ void write_summary(const std::string& folder, const ReplaySummary& summary) {
 }
 
 FrameWatcher Explaining::watcher() {
-  if (!arguments_.explain) return {};
-  return [this](const Simulation& simulation) { explainer_.watch(simulation); };
+  if (!arguments_.explain && !arguments_.demonstration) return {};
+  return [this](const Simulation& simulation) {
+    if (arguments_.explain) explainer_.watch(simulation);
+    if (arguments_.demonstration) demonstration_.watch(simulation);
+  };
 }
 
 void Explaining::write() {
+  if (arguments_.demonstration) {
+    const double rate = *arguments_.demonstration;
+    const Demonstration even = rate > 0.0 ? demonstration_.at_rate(rate) : demonstration_;
+    write_demonstration_csv(even, arguments_.output + "/demonstration.csv");
+    write_demonstration_bag(even, arguments_.output + "/demonstration.bag");
+  }
   if (!arguments_.explain) return;
   const Explanation explanation = explainer_.explain(arguments_.input);
   write_text(arguments_.output + "/explain.json", to_json(explanation));

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "demonstration.h"
 #include "explain.h"
 #include "log_source.h"
 #include "mr_hand_interaction/replay/replay.h"
@@ -26,18 +27,20 @@ void tell_end(const Simulation& simulation, ReplaySummary& summary);
 /// Throws std::runtime_error naming the file if it cannot be written.
 void write_summary(const std::string& folder, const ReplaySummary& summary);
 
-/// Explains a run if that is asked for.
+/// Explains and exports a run, as far as that is asked for.
 class Explaining {
  public:
   explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
-  /// Nothing, if it is not.
+  /// Nothing, if neither is.
   FrameWatcher watcher();
-  /// explain.json and explain.html. Throws std::runtime_error naming what cannot be written.
+  /// explain.json and explain.html, demonstration.csv and demonstration.bag. Throws std::runtime_error naming
+  /// what cannot be written.
   void write();
 
  private:
   const ReplayArguments& arguments_;
   Explainer explainer_;
+  Demonstration demonstration_;
 };
 
 /// A folder that is gone with all that is in it when this is.

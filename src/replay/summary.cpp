@@ -56,6 +56,17 @@ std::string live_run(const LiveRun& live) {
          ", \"changes\": " + list(live.changes) + ", \"overridden\": " + list(live.overridden) + "}";
 }
 
+/// By a queue on the way to the live simulation; and by stamps, which this run has judged itself.
+std::string lost(const ReplaySummary& summary) {
+  const auto count = [&](const char* reason) {
+    const auto found = summary.rejected.find(reason);
+    return found == summary.rejected.end() ? 0 : found->second;
+  };
+  return object({{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
+                 {"by_order", count("stamp not increasing")},
+                 {"by_stamp", count("stamp far ahead") + count("stamp out of range")}});
+}
+
 }  // namespace
 
 std::string to_json(const ReplaySummary& summary) {
@@ -77,6 +88,7 @@ std::string to_json(const ReplaySummary& summary) {
       {"deepest_rendered_penetration_m", number(summary.deepest_rendered)},
       {"restarts", std::to_string(summary.restarts)},
       {"rejected", object(summary.rejected)},
+      {"frames_lost", lost(summary)},
       {"hands_left_out", std::to_string(summary.hands_left_out)},
       {"events", object(summary.events)},
       {"objects_held_at_end", list(summary.held_at_end)},

@@ -87,7 +87,9 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
 void InteractionServer::subscribe(ros::NodeHandle& node) {
   using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
   const auto handler = [this](const Arrival& arrival) {
-    take(*arrival.getConstMessage(), arrival.getReceiptTime());
+    const auto& message = *arrival.getConstMessage();
+    note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
+    take(message, arrival.getReceiptTime());
   };
   hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
                                                           boost::function<void(const Arrival&)>(handler),
@@ -119,6 +121,11 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
                               [this](auto& request, auto& response) { return set(request, response); })};
 }
 
+void InteractionServer::note_lost(std::uint64_t frames) {
+  diagnostics_.lost(frames);
+  log_.lost(diagnostics_.lost());
+}
+
 void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
   const Nanoseconds stamp = from_ros_time(message.header.stamp);
   const StampVerdict verdict = arrivals_.judge(stamp);
@@ -137,6 +144,7 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message, cons
   results_.publish(result);
   if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
+  diagnostics_.waited((now - arrival).toSec());
   diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
   clock_.take(stamp, now);
 }

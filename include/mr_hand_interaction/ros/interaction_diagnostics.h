@@ -24,6 +24,10 @@ class InteractionDiagnostics {
   /// From the arrival of the hand's message until its markers were published [s].
   void picture(double latency) { picture_latency_.add(static_cast<Nanoseconds>(1e9 * latency)); }
   void rejected(const std::string& reason, const std::string& detail) { input_.rejected(reason, detail); }
+  void lost(std::uint64_t frames) { input_.lost(frames); }
+  std::uint64_t lost() const { return input_.lost(); }
+  /// From the arrival of a frame until it was done with [s].
+  void waited(double seconds) { input_.waited(seconds); }
   void dropped_while_paused() { ++dropped_; }
   /// Adds what else there is to tell.
   using Teller = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;

@@ -17,6 +17,7 @@
 #include "mr_hand_interaction/ros/interaction_diagnostics.h"
 #include "mr_hand_interaction/ros/placing.h"
 #include "mr_hand_interaction/ros/result_publisher.h"
+#include "mr_hand_interaction/ros/sequence_watch.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 #include "mr_hand_interaction/ros/stamp_clock.h"
 #include "mr_hand_interaction/ros/tuning.h"
@@ -34,6 +35,8 @@ class InteractionServer {
   void subscribe(ros::NodeHandle& node);
   /// or from the same process. `arrival`: of the message that they were in.
   void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival);
+  /// Frames that have not arrived, where who hands them on knows.
+  void note_lost(std::uint64_t frames);
 
  private:
   void advertise_services(ros::NodeHandle& private_node);
@@ -68,6 +71,7 @@ class InteractionServer {
   Placing placing_;
   Tuning tuning_;
 
+  SequenceWatch sequences_;
   ros::Subscriber hands_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer idle_timer_;
