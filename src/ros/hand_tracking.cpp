@@ -52,7 +52,7 @@ HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& p
   diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
   timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
     diagnostics_.force_update();
-    welcome_other_versions();
+    accept_other_versions();
   });
 }
 
@@ -77,7 +77,7 @@ void HandTracking::subscribe_pose_arrays(const std::string& topic) {
       nullptr, ros::TransportHints().tcpNoDelay()));
 }
 
-void HandTracking::welcome_other_versions() {
+void HandTracking::accept_other_versions() {
   const bool connected = leap_subscriber_.getNumPublishers() > 0;
   leap_seen_ = leap_seen_ || connected;
   if (!leap_seen_ || connected) return;

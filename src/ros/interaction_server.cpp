@@ -226,7 +226,7 @@ bool InteractionServer::spawn(const mr_hand_interaction::SpawnObject::Request& r
 bool InteractionServer::remove(const std::string& name,
                                mr_hand_interaction::DeleteObject::Response& response) {
   return answer(response, [&] {
-    results_.publish_events(live_.farewell(name));
+    results_.publish_events(live_.events_if_removed(name));
     make(Delete{name});
     show_change();
     return "'" + name + "' is gone";

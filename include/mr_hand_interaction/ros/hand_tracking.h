@@ -42,7 +42,7 @@ class HandTracking {
   void subscribe_leap();
   /// roscpp keeps a topic to the version that it met first, so a driver of another version needs a new
   /// subscription.
-  void welcome_other_versions();
+  void accept_other_versions();
   void take_leap(const LeapEvent& event);
   void subscribe_pose_arrays(const std::string& topic);
   void take_pose_array(const geometry_msgs::PoseArray& message, Side side, const ros::Time& receipt);
