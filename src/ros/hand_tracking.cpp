@@ -68,8 +68,9 @@ void HandTracking::subscribe_pose_arrays(const std::string& topic) {
   using Event = ros::MessageEvent<const geometry_msgs::PoseArray>;
   const std::optional<Side> of_topic = side_by_name(topic);
   pose_array_subscribers_.push_back(node_.subscribe<geometry_msgs::PoseArray>(
-      topic, kQueue, boost::function<void(const Event&)>([this, of_topic](const Event& event) {
+      topic, kQueue, boost::function<void(const Event&)>([this, of_topic, topic](const Event& event) {
         const geometry_msgs::PoseArray& message = *event.getConstMessage();
+        statistics_.lost(sequences_.missing(event.getPublisherName() + " " + topic, message.header.seq));
         const std::optional<Side> side = of_topic ? of_topic : side_by_name(message.header.frame_id);
         take_pose_array(message, side.value_or(pose_array_side_), event.getReceiptTime());
       }),
@@ -89,6 +90,7 @@ void HandTracking::take_leap(const LeapEvent& event) {
   leap_seen_ = true;
   try {
     LeapHumanDecoder::Frame frame = leap_reader_.read(message);
+    statistics_.lost(sequences_.missing(event.getPublisherName(), frame.sequence));
     take(place(std::move(frame.joints), frame.frame_id, event.getReceiptTime()), event.getReceiptTime());
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), message.getDataType() + ": " + error.what());

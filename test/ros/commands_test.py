@@ -35,7 +35,7 @@ PAGES = [os.path.join(PACKAGE, "README.md")] + sorted(glob.glob(os.path.join(PAC
 BEGINNINGS = re.compile(r"(roslaunch|rosrun|rosservice|rostopic|rosbag|rosdep|rosparam|snakemake|make|source|export|cd|git|"
                         r"apt-get|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
 
-PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "doctor",
+PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "doctor", "explain",
             "hand_interaction_node", "hand_tracking_node", "interaction_node", "marker_relay_node", "plan_study",
             "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
             "training_keys", "training_node")
@@ -45,7 +45,7 @@ EXCEPTED = (  # what the command begins with, and why it is not run here
     ("apt-get install", "installs packages"),
     ("source devel/setup.bash", "this test would not be found without"),
     ("export ROS_", "addresses of the user's machines"),
-    ("rosrun rqt_reconfigure", "Debian 12 does not have it"),
+    ("rosrun rqt_(reconfigure|plot)", "Debian 12 does not have it"),
     ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
     ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
     ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),

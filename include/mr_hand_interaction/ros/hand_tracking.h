@@ -16,6 +16,7 @@
 
 #include "mr_hand_interaction/ros/input_statistics.h"
 #include "mr_hand_interaction/ros/leap_reader.h"
+#include "mr_hand_interaction/ros/sequence_watch.h"
 #include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 
@@ -32,6 +33,8 @@ class HandTracking {
   /// arrived.
   using Sink = std::function<void(const mr_hand_interaction::HandFrame&, const ros::Time& arrival)>;
   void pass_to(Sink sink) { sink_ = std::move(sink); }
+  /// Frames of trackers that were sent and have not arrived, so far.
+  std::uint64_t lost() const { return statistics_.lost(); }
 
  private:
   using LeapEvent = ros::MessageEvent<const topic_tools::ShapeShifter>;
@@ -60,6 +63,7 @@ class HandTracking {
   bool leap_seen_ = false;  ///< a driver, by the present subscription
   LeapReader leap_reader_;
   InputStatistics statistics_;
+  SequenceWatch sequences_;
 
   ros::NodeHandle node_;
   tf2_ros::Buffer transforms_;
