@@ -7,15 +7,22 @@
 
 #include "frame_report.h"
 #include "mr_hand_interaction/scene_change.h"
+#include "joints/joint_law.h"
 #include "mr_hand_interaction/tracking/tracker.h"
+#include "response/joint_response.h"
 #include "scene/text.h"
 #include "simulation_impl.h"
 
 namespace mrhi {
 namespace {
 
+/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more. Joints
+/// take the steps that they are given.
+constexpr Nanoseconds kQuietFrame = 20'000'000;
+
 Scene completed(Scene scene) {
   for (Body& body : scene.bodies) complete(body);
+  arrange_joints(scene);
   return scene;
 }
 
@@ -44,7 +51,9 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       configuration(configuration_in),
       gravity(configuration.gravity.value_or(scene.gravity)),
       step_length(checked_step(configuration.step)),
-      model(make_contact_model(configuration)),
+      model(scene.joints.empty() ? make_contact_model(configuration)
+                                 : make_jointed_model(configuration, scene, state, result.events)),
+      quiet_frame(scene.joints.empty() ? kQuietFrame : 0),
       geometry(scene),
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
@@ -58,6 +67,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
 void Simulation::Impl::reset() {
   state = SimulationState();
   for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
+  for (const Joint& joint : scene.joints) state.joints.push_back(start_state(joint));
   state.asleep.assign(scene.bodies.size(), 0);
   state.hands.resize(kMaxHands);
   state.offsets.resize(kMaxHands);
