@@ -7,11 +7,17 @@ namespace mrhi {
 namespace {
 
 /// No joint turns, or falls, by more than this in one part of a step [rad].
-constexpr double kPart = 0.1;
+constexpr double kPart = 0.03;
 constexpr double kMostParts = 1000.0;
+/// What falls from rest turns as a pendulum of this length does, at most [m].
+constexpr double kFallLength = 0.1;
 constexpr int kMostRounds = 60;
 /// The stages are found when a round changes them by less than this, of their size.
 constexpr double kFound = 1e-16;
+
+const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
+  return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
+}
 
 Quaternion turned(const Vector3& turn) {
   const double angle = turn.norm();
@@ -66,7 +72,7 @@ void LinkageFlight::find_velocity(const Point& point) {
 
 void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point& rate) {
   find_velocity(point);
-  motion_.find_rates(linkage_.floats() ? Vector3::Zero() : gravity, rate.momenta);
+  motion_.find_rates(gravity, rate.momenta);
   rate.positions = velocity_.tail(point.momenta.size());
   if (linkage_.floats()) rate.turn = turn_rate(point.turn, velocity_.segment<3>(3));
 }
@@ -114,40 +120,67 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds) {
   std::swap(now_, next_);
 }
 
-void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
-                        std::vector<BodyState>& bodies) {
-  read(joints, bodies);
-  const BodyState& root = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)];
-  motion_.place(root.pose, now_.positions);
-  const Vector3 centre = linkage_.floats() ? motion_.centre_of_mass() : Vector3(Vector3::Zero());
-  Vector3 momentum = Vector3::Zero();
-  velocity_.setZero();
-  angular_momentum_.setZero();
+/// Always by the same sums of what is in the state, so that rounding does not add up over the steps.
+LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) const {
+  Whole whole{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   for (int i = 0; i < motion_.size(); ++i) {
-    const BodyState& state = bodies[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].body)];
-    momentum += state.linear_momentum;
+    const BodyState& state = of(linkage_, i, bodies);
+    whole.centre += motion_.body(i).mass * state.pose.position;
+    whole.linear += state.linear_momentum;
   }
-  const Vector3 drift = momentum / motion_.total_mass();
+  whole.centre /= motion_.total_mass();
+  const Vector3 drift = whole.linear / motion_.total_mass();
   for (int i = 0; i < motion_.size(); ++i) {
-    const BodyState& state = bodies[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].body)];
-    const Vector3 own = linkage_.floats() ? Vector3(state.linear_momentum - motion_.body(i).mass * drift)
-                                          : state.linear_momentum;
-    motion_.push(i, own, state.angular_momentum, velocity_);
-    angular_momentum_ += state.angular_momentum + (motion_.at(i).pose.position - centre).cross(own);
+    const BodyState& state = of(linkage_, i, bodies);
+    const Vector3 own = state.linear_momentum - motion_.body(i).mass * drift;
+    whole.angular += state.angular_momentum + (state.pose.position - whole.centre).cross(own);
+  }
+  return whole;
+}
+
+/// The joints' momenta; `drift` is that of the frame in which they count.
+void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& bodies) {
+  motion_.place(of(linkage_, 0, bodies).pose, now_.positions);
+  velocity_.setZero();
+  for (int i = 0; i < motion_.size(); ++i) {
+    const BodyState& state = of(linkage_, i, bodies);
+    motion_.push(i, state.linear_momentum - motion_.body(i).mass * drift, state.angular_momentum, velocity_);
   }
   now_.momenta = velocity_.tail(now_.momenta.size());
+}
+
+void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   find_rate(now_, gravity, stages_[0].rate);
-  const double fall = linkage_.floats() ? 0.0 : std::sqrt(gravity.norm() / 0.1);
-  const double way = step * std::max(fastest(), fall);
+  const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
   const int parts = 1 + static_cast<int>(std::min(way / kPart, kMostParts));
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);
     advance(gravity, step / parts);
   }
   find_velocity(now_);
-  const Vector3 centre_now = centre + step * drift + (0.5 * step * step) * gravity;
-  write(linkage_.floats() ? Vector3(centre_now - motion_.centre_of_mass()) : Vector3(Vector3::Zero()),
-        linkage_.floats() ? Vector3(drift + step * gravity) : Vector3(Vector3::Zero()), joints, bodies);
+}
+
+void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                        std::vector<BodyState>& bodies) {
+  read(joints, bodies);
+  if (linkage_.floats()) return fly_free(gravity, step, joints, bodies);
+  gather(Vector3::Zero(), bodies);
+  advance_by_parts(gravity, step);
+  write(Vector3::Zero(), Vector3::Zero(), joints, bodies);
+}
+
+void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                             std::vector<BodyState>& bodies) {
+  const Whole start = whole(bodies);
+  const Vector3 drift = start.linear / motion_.total_mass();
+  angular_momentum_ = start.angular;
+  gather(drift, bodies);
+  advance_by_parts(Vector3::Zero(), step);
+  const Vector3 centre = start.centre + step * drift + (0.5 * step * step) * gravity;
+  write(centre - motion_.centre_of_mass(), drift + step * gravity, joints, bodies);
+  BodyState& root = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)];
+  root.linear_momentum += start.linear + (motion_.total_mass() * step) * gravity - whole(bodies).linear;
+  root.angular_momentum += start.angular - whole(bodies).angular;
 }
 
 void LinkageFlight::write(const Vector3& place, const Vector3& velocity, std::vector<JointState>& joints,

@@ -34,6 +34,10 @@ class LinkageFlight {
   struct Stage {
     Point point, rate;
   };
+  /// Of all bodies: the centre of mass, momentum, and angular momentum about that centre.
+  struct Whole {
+    Vector3 centre, linear, angular;
+  };
 
   void read(const std::vector<JointState>& joints, const std::vector<BodyState>& bodies);
   void find_velocity(const Point& point);
@@ -42,6 +46,11 @@ class LinkageFlight {
   void advance(const Vector3& gravity, double seconds);
   static void go(const Point& from, double a, const Point& first, double b, const Point& second, Point& to);
   static double distance(const Point& a, const Point& b);
+  void advance_by_parts(const Vector3& gravity, double step);
+  void fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                std::vector<BodyState>& bodies);
+  Whole whole(const std::vector<BodyState>& bodies) const;
+  void gather(const Vector3& drift, const std::vector<BodyState>& bodies);
   void write(const Vector3& place, const Vector3& velocity, std::vector<JointState>& joints,
              std::vector<BodyState>& bodies);
 
