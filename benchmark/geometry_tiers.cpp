@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "mr_hand_interaction/collision/closest_features.h"
-#include "mr_hand_interaction/rendering/skin.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
+#include "rendering/skin.h"
 
 namespace mrhi {
 namespace {

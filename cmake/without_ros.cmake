@@ -1,6 +1,6 @@
 # What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
 set(replay_parts
-  arguments compare csv_columns csv_file duration_histogram frame_source prepare_simulation progress_bar recording_csv replay
+  arguments compare csv_columns csv_file frame_source prepare_simulation progress_bar recording_csv replay
   result_writer summary)
 file(GLOB without_ros src/without_ros/*.cpp)
 set(replay_library_sources src/ros/package_paths.cpp ${without_ros})

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/tracking/hand_filter.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi::filter_benchmark {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/leap_human_encoder.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "ros/leap_human_encoder.h"
 
 namespace {
 

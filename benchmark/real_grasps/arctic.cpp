@@ -4,13 +4,13 @@
 #include <cmath>
 #include <fstream>
 
-#include "csv_columns.h"
 #include "finger_forces.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "recording.h"
+#include "replay/csv_columns.h"
 #include "statistics.h"
 
 namespace mrhi::real_grasps {

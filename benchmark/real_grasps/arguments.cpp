@@ -104,7 +104,9 @@ const char* help_text() {
 Puts bodies at rest (0 g) where recorded hands close and tells how many are held until the hand opens.
   FOLDER            recordings in the CSV schema, or single files
   --set KEY=VALUE   a parameter, as replay's; repeatable
-  --only ROW,...    pinch20, pinch30, pinch40, grab_sphere60, grab_sphere80, grab_cube60, grab_cube80
+  --only ROW,...    pinch20, pinch30, pinch40, grab_sphere60, grab_sphere80, grab_cube60, grab_cube80; at 1 g on a
+                    column: rest_sphere60, rest_sphere100, rest_cube60, rest_cube100; hands that stay open round it,
+                    of which none is to be held: pass_sphere40, pass_cube40, pass_sphere60, pass_cube60
   --list            one line for each closing
   --noise RMS_MM    white noise on each joint and axis; 0 if not said
   --rate HZ         frames evenly spaced at this rate; as recorded if not said

@@ -18,6 +18,9 @@ constexpr double kDeeper = 0.004;      // it closes by so much more than to the 
 constexpr double kAfterwards = 0.4;    // played on after the hand has opened [s]
 constexpr std::size_t kOpening = 6;    // frames after it in which the hand's speed counts
 constexpr std::size_t kMost = 10;      // closings of one recording
+constexpr double kOpen = 0.02;         // wider than the body, a hand that passes stays open [m]
+constexpr double kPassing = 1.0;       // and for so long [s]
+constexpr double kLevel = 0.7;         // what stands is grasped from the side: sine of the line's rise
 
 const Vector3& thumb(const Sighting& hand) {
   return hand.joints[0][4];
@@ -36,9 +39,17 @@ Vector3 grip(Kind kind, const Sighting& hand) {
   return 0.5 * (thumb(hand) + opposite(kind, hand));
 }
 
+/// Turned about the vertical towards x.
+std::optional<Pose> upright(const Vector3& centre, const Vector3& x) {
+  if (!centre.allFinite() || !(std::abs(x.z()) < kLevel)) return std::nullopt;
+  return Pose{centre, Quaternion(Eigen::AngleAxisd(std::atan2(x.y(), x.x()), Vector3::UnitZ()))};
+}
+
 /// Middle of what comes together; x from the thumb to what it meets, y as the index's last bone.
-std::optional<Pose> place_in(Kind kind, const Sighting& hand) {
+std::optional<Pose> place_in(const Row& row, const Sighting& hand) {
+  const Kind kind = row.kind;
   const Vector3 x = (opposite(kind, hand) - thumb(hand)).normalized();
+  if (row.rests) return upright(grip(kind, hand), x);
   Vector3 along = hand.joints[1][4] - hand.joints[1][3];
   if (!along.allFinite()) along.setZero();
   const Vector3 y = (along - x * x.dot(along)).normalized();
@@ -81,6 +92,20 @@ std::vector<Span> closed_spans(const Track& track, Kind kind, double limit) {
   return spans;
 }
 
+/// Where a hand stays open for a while; the body is put there as that while is half over.
+std::vector<Span> open_spans(const Track& track, Kind kind, double limit) {
+  std::vector<Span> spans;
+  std::size_t from = 0;
+  for (std::size_t k = 0; k < track.size(); ++k) {
+    const bool open = opening(kind, track[k]) > limit + kOpen;
+    if (!open || (k > from && track[k].time - track[k - 1].time > kGap)) from = open ? k : k + 1;
+    if (!open || track[k].time - track[from].time < kPassing) continue;
+    spans.push_back({(from + k) / 2, k});
+    from = k + 1;
+  }
+  return spans;
+}
+
 /// The last of the track's frames before `closed` in which no hand is near the body.
 std::optional<std::size_t> clear_before(std::size_t closed, const Recording& recording, const Track& track,
                                         const Row& row, const Pose& place) {
@@ -112,7 +137,7 @@ std::size_t last_frame_until(const Recording& recording, std::size_t from, doubl
 std::optional<Closing> closing(const Recording& recording, std::size_t track_index, const Span& span,
                                const Row& row) {
   const Track& track = recording.tracks[track_index];
-  const auto place = place_in(row.kind, track[span.closed]);
+  const auto place = place_in(row, track[span.closed]);
   if (!place) return std::nullopt;
   const auto begin = clear_before(span.closed, recording, track, row, *place);
   if (!begin) return std::nullopt;
@@ -132,10 +157,21 @@ std::optional<Closing> closing(const Recording& recording, std::size_t track_ind
 }  // namespace
 
 std::vector<Row> all_rows() {
-  return {{"pinch20", Kind::pinch, false, 0.02, 0.03},    {"pinch30", Kind::pinch, false, 0.03, 0.06},
-          {"pinch40", Kind::pinch, false, 0.04, 0.1},     {"grab_sphere60", Kind::grab, true, 0.06, 0.1},
-          {"grab_sphere80", Kind::grab, true, 0.08, 0.1}, {"grab_cube60", Kind::grab, false, 0.06, 0.1},
-          {"grab_cube80", Kind::grab, false, 0.08, 0.1}};
+  return {{"pinch20", Kind::pinch, false, 0.02, 0.03},
+          {"pinch30", Kind::pinch, false, 0.03, 0.06},
+          {"pinch40", Kind::pinch, false, 0.04, 0.1},
+          {"grab_sphere60", Kind::grab, true, 0.06, 0.1},
+          {"grab_sphere80", Kind::grab, true, 0.08, 0.1},
+          {"grab_cube60", Kind::grab, false, 0.06, 0.1},
+          {"grab_cube80", Kind::grab, false, 0.08, 0.1},
+          {"rest_sphere60", Kind::grab, true, 0.06, 0.1, true},
+          {"rest_sphere100", Kind::grab, true, 0.1, 0.2, true},
+          {"rest_cube60", Kind::grab, false, 0.06, 0.1, true},
+          {"rest_cube100", Kind::grab, false, 0.1, 0.2, true},
+          {"pass_sphere40", Kind::pass, true, 0.04, 0.1},
+          {"pass_cube40", Kind::pass, false, 0.04, 0.1},
+          {"pass_sphere60", Kind::pass, true, 0.06, 0.1, true},
+          {"pass_cube60", Kind::pass, false, 0.06, 0.1, true}};
 }
 
 double clearance(const std::vector<Sighting>& hands, const Row& row, const Pose& place) {
@@ -158,7 +194,10 @@ std::vector<Closing> closings(const Recording& recording, const Row& row) {
   std::vector<Closing> found;
   std::size_t tried = 0;
   for (std::size_t t = 0; t < recording.tracks.size(); ++t) {
-    for (const Span& span : closed_spans(recording.tracks[t], row.kind, row.size + 2.0 * kTip)) {
+    const double limit = row.size + 2.0 * kTip;
+    const Track& track = recording.tracks[t];
+    for (const Span& span :
+         row.kind == Kind::pass ? open_spans(track, row.kind, limit) : closed_spans(track, row.kind, limit)) {
       if (tried++ == kMost) return found;
       if (auto next = closing(recording, t, span, row)) found.push_back(std::move(*next));
     }

@@ -11,7 +11,8 @@ namespace mrhi::real_grasps {
 /// What comes together as a hand closes.
 enum class Kind {
   pinch,  ///< the tips of thumb and index
-  grab    ///< the thumb's tip and the middle of the other four
+  grab,   ///< the thumb's tip and the middle of the other four
+  pass    ///< those as well, but they stay open round the body: nothing is to be taken
 };
 
 /// A row of the result: what is put where recorded hands close.
@@ -19,8 +20,9 @@ struct Row {
   std::string name;
   Kind kind;
   bool sphere;
-  double size;  ///< edge or diameter [m]
-  double mass;  ///< [kg]
+  double size;         ///< edge or diameter [m]
+  double mass;         ///< [kg]
+  bool rests = false;  ///< at 1 g, upright on a column, else free at 0 g
 };
 
 /// Those of docs/real_grasps.md.

@@ -10,13 +10,28 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kFurthest = 1e3;  // no bounds: what is lost is lost [m]
+constexpr double kFurthest = 1e3;       // no bounds: what is lost is lost [m]
+constexpr double kColumn = 0.5;         // height of what a resting body stands on [m]
+constexpr double kColumnRadius = 0.02;  // [m]
+
+Body column_under(const Row& row, const Pose& place) {
+  Body column;
+  column.name = "column";
+  column.fixed = true;
+  column.start.position = place.position - Vector3(0.0, 0.0, 0.5 * (row.size + kColumn));
+  column.shapes.push_back({Cylinder{kColumnRadius, 0.5 * kColumn}, {}});
+  return column;
+}
 
 Scene scene_of(const Row& row, const Closing& closing, const Configuration& configuration) {
   Scene scene;
   scene.name = row.name;
   scene.bounds = {Vector3::Constant(-kFurthest), Vector3::Constant(kFurthest)};
   scene.bodies.push_back(body_of(row, closing.place, default_material(configuration)));
+  if (row.rests) {
+    scene.gravity.z() = -9.81;
+    scene.bodies.push_back(column_under(row, closing.place));
+  }
   return scene;
 }
 
@@ -27,6 +42,7 @@ void look(const Simulation& simulation, Story& story) {
                 twist_of(simulation.scene().bodies.front(), state).linear};
   for (const Contact& contact : result.contacts) moment.pressed |= contact.touching();
   story.moments.push_back(moment);
+  for (const Grip& grip : simulation.state().grips) story.taken |= grip.bears;
   add_finger_forces(result, story.forces);
   for (const Event& event : result.events) {
     const bool begins = event.kind == EventKind::grasp_begin;

@@ -24,7 +24,8 @@ Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
     const Outcome& outcome = event.outcome;
     const bool fair = outcome.early < kFair;
     ++sum.events;
-    sum.held += outcome.held, sum.carried += outcome.carried, sum.fair += fair;
+    sum.held += outcome.held, sum.carried += outcome.carried, sum.taken += outcome.taken;
+    sum.fair += fair;
     sum.held_fair += fair && outcome.held, sum.carried_fair += fair && outcome.carried;
     if (outcome.force > 0.0) forces.push_back(outcome.force);
     if (outcome.carried) aways.push_back(outcome.away);
@@ -47,10 +48,11 @@ std::string line(const Event& event) {
   std::snprintf(
       text, sizeof text,
       "%-24s %6.2f s  %s  %4.0f mm away, %3.0f mm early, p90 %4.0f N, grasp %s to %s s, opens %.2f s, "
-      "release %.0f mm/s, %.2f of the hand's speed",
+      "release %.0f mm/s, %.2f of the hand's speed%s",
       event.recording.c_str(), event.closing.closed, outcome.held ? "held" : "lost", 1e3 * outcome.away,
       1e3 * outcome.early, outcome.force, time_or_dash(outcome.grasp_began).c_str(),
-      time_or_dash(outcome.grasp_ended).c_str(), event.closing.opens, 1e3 * outcome.release, outcome.speed);
+      time_or_dash(outcome.grasp_ended).c_str(), event.closing.opens, 1e3 * outcome.release, outcome.speed,
+      outcome.taken ? ", taken" : "");
   return text;
 }
 
@@ -61,11 +63,11 @@ std::string line(const std::string& name, const std::vector<Event>& events) {
   const Interval interval = wilson(all.held, all.events);
   std::snprintf(text, sizeof text,
                 "%-14s held %2zu of %2zu (%2.0f to %2.0f %%; tuned %zu of %zu, held out %zu of %zu), carried "
-                "%zu; within "
+                "%zu, taken %zu; within "
                 "10 mm %2zu of %2zu; p90 %5.1f N; release %4.0f mm/s; frame %.0f us, p99 %.0f",
                 name.c_str(), all.held, all.events, 100.0 * interval.low, 100.0 * interval.high, tuned.held,
-                tuned.events, held_out.held, held_out.events, all.carried, all.held_fair, all.fair, all.force,
-                1e3 * all.release, all.frame_time, all.frame_time_p99);
+                tuned.events, held_out.held, held_out.events, all.carried, all.taken, all.held_fair, all.fair,
+                all.force, 1e3 * all.release, all.frame_time, all.frame_time_p99);
   return text;
 }
 

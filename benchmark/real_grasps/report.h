@@ -21,7 +21,7 @@ struct Event {
 
 /// What the events of a row come to.
 struct Summary {
-  std::size_t events = 0, held = 0, carried = 0;
+  std::size_t events = 0, held = 0, carried = 0, taken = 0;
   std::size_t fair = 0, held_fair = 0,
               carried_fair = 0;  ///< of those nudged less than kFair as the hand closed
   double force = 0.0;            ///< median of the p90 of a finger's force, where touched [N]

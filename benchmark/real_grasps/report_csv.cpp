@@ -26,14 +26,14 @@ void write_row(std::ostream& csv, const Contender& contender, const std::string&
       << sum.events << ',' << sum.held << ',' << sum.carried << ',' << interval.low << ',' << interval.high
       << ',' << sum.fair << ',' << sum.held_fair << ',' << sum.carried_fair << ',' << sum.force << ','
       << kMilli * sum.away << ',' << kMilli * sum.release << ',' << sum.frame_time << ','
-      << sum.frame_time_p99 << '\n';
+      << sum.frame_time_p99 << ',' << sum.taken << '\n';
 }
 
 }  // namespace
 
 void write_header(std::ostream& csv) {
   csv << "engine,setting,row,half,events,held,carried,carried_low,carried_high,fair,held_fair,carried_fair,"
-         "force_p90_N,away_mm,release_mm_per_s,us_per_frame,us_per_frame_p99\n";
+         "force_p90_N,away_mm,release_mm_per_s,us_per_frame,us_per_frame_p99,taken\n";
 }
 
 void write_rows(std::ostream& csv, const Contender& contender, const std::string& row,
@@ -46,7 +46,7 @@ void write_rows(std::ostream& csv, const Contender& contender, const std::string
 void write_events_header(std::ostream& csv) {
   csv << "engine,setting,row,recording,closed_s,opens_s,held,carried,away_mm,early_mm,force_p90_N,grasp_"
          "began_s,"
-         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note\n";
+         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note,taken\n";
 }
 
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
@@ -58,7 +58,7 @@ void write_events(std::ostream& csv, const Contender& contender, const std::stri
         << kMilli * o.away << ',' << kMilli * o.early << ',' << o.force << ','
         << number_or_nothing(o.grasp_began) << ',' << number_or_nothing(o.grasp_ended) << ','
         << number_or_nothing(o.let_go) << ',' << kMilli * o.release << ',' << o.speed << ',' << quoted(o.note)
-        << '\n';
+        << ',' << o.taken << '\n';
   }
 }
 

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <iostream>
@@ -102,6 +103,13 @@ void play_windows(const Arguments& arguments, const Contender& contender) {
   }
 }
 
+/// Other engines play free bodies alone.
+Arguments free_rows(Arguments arguments) {
+  auto& rows = arguments.rows;
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const Row& row) { return row.rests; }), rows.end());
+  return arguments;
+}
+
 /// In a process of its own: engines that cannot share one need not, and what crashes there fails there.
 void play_engine(const std::vector<Recording>& recordings, const Arguments& arguments,
                  const std::string& module) {
@@ -110,7 +118,7 @@ void play_engine(const std::vector<Recording>& recordings, const Arguments& argu
   if (child == 0) {
     try {
       for (const Contender& contender : peer_settings(module, arguments.configuration))
-        play_closings(recordings, arguments, 1, contender);
+        play_closings(recordings, free_rows(arguments), 1, contender);
     } catch (const std::exception& error) {
       std::cerr << "real_grasps: " << error.what() << std::endl;
       _exit(1);

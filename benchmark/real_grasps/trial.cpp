@@ -75,6 +75,7 @@ Outcome judge(const Story& story, const Track& track, const Closing& closing, co
   outcome.force = quantile(story.forces, 0.9);
   outcome.speed = fastest(story) / closing.hand_speed;
   outcome.frame_times = story.frame_times;
+  outcome.taken = story.taken;
   outcome.grasp_began = story.grasp_began;
   outcome.grasp_ended = story.grasp_ended;
   const bool began = story.grasp_began && *story.grasp_began < closing.opens;

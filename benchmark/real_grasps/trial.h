@@ -26,6 +26,7 @@ struct Story {
   std::vector<double> frame_times;                 ///< what each frame cost [us]
   std::optional<double> grasp_began, grasp_ended;  ///< first of each [s]
   bool has_grasps = false;                         ///< the engine knows what a grasp is
+  bool taken = false;                              ///< contact/grasp_assist bore the body
 };
 
 /// What became of a body that was put where a hand closes. Times are the recording's [s].
@@ -33,6 +34,7 @@ struct Outcome {
   bool held = false;     ///< grasped, not lost, and in the hand in the last frame before it opens
   bool carried = false;  ///< in the hand in that frame, and pressed until shortly before: also told of
                          ///< engines that do not know what a grasp is, for which `held` is this
+  bool taken = false;    ///< help bore it
   double away = 0.0;     ///< of the body from the grip, in that frame [m]
   double early = 1.0;    ///< by how much it had been nudged as the hand closed [m]
   double force = 0.0;    ///< of a finger while it presses, nine frames of ten at most [N]; 0: no touch

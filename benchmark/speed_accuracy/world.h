@@ -3,8 +3,8 @@
 #include <variant>
 #include <vector>
 
-#include "mr_hand_interaction/collision/capsule.h"
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/math/capsule.h"
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi::benchmark {

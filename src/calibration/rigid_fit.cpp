@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

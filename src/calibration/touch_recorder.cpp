@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

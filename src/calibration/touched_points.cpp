@@ -6,9 +6,9 @@
 #include <locale>
 #include <sstream>
 
-#include "../scene/safe_yaml.h"
-#include "../scene/text.h"
-#include "../scene/yaml_values.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
+#include "../text/yaml_values.h"
 
 namespace mrhi {
 namespace {

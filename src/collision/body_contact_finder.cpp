@@ -1,10 +1,10 @@
-#include "mr_hand_interaction/collision/body_contact_finder.h"
+#include "body_contact_finder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "mr_hand_interaction/collision/sweep.h"
+#include "sweep.h"
 
 namespace mrhi {
 namespace {

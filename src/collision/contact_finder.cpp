@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/collision/sweep.h"
+#include "sweep.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/near_bodies.h"
+#include "near_bodies.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
-#include "mr_hand_interaction/collision/overlap.h"
+#include "overlap.h"
 
 #include <algorithm>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/way_out.h"
+#include "way_out.h"
 
 namespace mrhi {
 

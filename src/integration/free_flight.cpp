@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/integration/free_flight.h"
+#include "free_flight.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 
 #include <exception>
 
-#include "mr_hand_interaction/ros/end_in_order.h"
+#include "../ros/end_in_order.h"
+#include "../ros/master_watch.h"
+#include "../ros/node_usage.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
-#include "mr_hand_interaction/ros/master_watch.h"
-#include "mr_hand_interaction/ros/node_usage.h"
 
 namespace {
 

@@ -2,9 +2,9 @@
 
 #include <exception>
 
-#include "mr_hand_interaction/ros/end_in_order.h"
-#include "mr_hand_interaction/ros/master_watch.h"
-#include "mr_hand_interaction/ros/node_usage.h"
+#include "../ros/end_in_order.h"
+#include "../ros/master_watch.h"
+#include "../ros/node_usage.h"
 #include "mr_hand_interaction/ros/operator_publisher.h"
 
 namespace {

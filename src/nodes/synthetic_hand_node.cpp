@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/ros/end_in_order.h"
-#include "mr_hand_interaction/ros/master_watch.h"
+#include "../ros/end_in_order.h"
+#include "../ros/master_watch.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 

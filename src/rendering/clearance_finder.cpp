@@ -96,15 +96,12 @@ bool ClearanceFinder::begin(const Setting& setting, double margin) {
   return !near_.empty();
 }
 
-bool ClearanceFinder::end_shown_in(const Hand& shown, Interaction* interactions) const {
-  bool any = false;
+void ClearanceFinder::end_shown_in(const Hand& shown, Interaction* interactions) const {
   for (const Near& near : shown_in_) interactions[near.body].shown_in = false;
   each_near(shown_in_, shown, 0.0, [&](int, const Capsule& capsule, const Near& near) {
     if (finder_.closest(capsule, near.body, near.shape, near.frame, 0.0))
       interactions[near.body].shown_in = true;
   });
-  for (const Near& near : shown_in_) any = any || !interactions[near.body].shown_in;
-  return any;
 }
 
 double ClearanceFinder::fastest_body(const std::vector<BodyState>& bodies) const {

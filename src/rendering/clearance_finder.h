@@ -21,9 +21,9 @@ class ClearanceFinder {
     int slot;
     const std::vector<BodyState>& bodies;
     const std::vector<Contact>& contacts;
-    const Hand* shown_before;         ///< of the frame before, if the hand was there
-    double moved;                     ///< what hand and bodies have moved since [m]
-    const Interaction* interactions;  ///< of the hand, one per body: which of them it is shown in
+    const Hand* shown_before;   ///< of the frame before, if the hand was there
+    double moved;               ///< what hand and bodies have moved since [m]
+    Interaction* interactions;  ///< of the hand, one per body: which of them it is shown in
   };
   /// Takes the bodies within `margin` of the tracked hand [m], but for those that it is shown in; false if
   /// there are none.
@@ -31,8 +31,8 @@ class ClearanceFinder {
 
   /// Of the bodies that the hand is shown in, some are near it.
   bool shown_in_any() const { return !shown_in_.empty(); }
-  /// Ends this with those that the hand, as shown before, is clear of. True if there were any: begin anew.
-  bool end_shown_in(const Hand& shown, Interaction* interactions) const;
+  /// Ends this with those that the hand, as shown before, is clear of.
+  void end_shown_in(const Hand& shown, Interaction* interactions) const;
 
   /// Of any point of the bodies near the hand [m/s].
   double fastest_body(const std::vector<BodyState>& bodies) const;
@@ -44,6 +44,9 @@ class ClearanceFinder {
   /// already is measured anew. Returns the least gap [m], at most `margin`.
   double find(const Hand& placed, const Setting& setting, double margin,
               std::vector<Clearance>& clearances) const;
+
+  /// A body that never moves.
+  bool fixed(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].fixed; }
 
   /// True if no capsule of the hand is in any of the bodies.
   bool clear(const Hand& hand) const;

@@ -30,8 +30,8 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
   if (farthest_joint(before, placed) <= tracked_way + kPace) return;
   const Pace pace(before, tracked_way + kPace);
-  const double pushed = pushed_way(setting, placed);
-  const Pace hurried(before, tracked_way + pushed + kPace);
+  const double pushed_by = pushed_way(setting, placed);
+  const Pace hurried(before, tracked_way + pushed_by + kPace);
   double least_beyond = pace.beyond(placed);
   HandOffset best = offset;
   const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
@@ -44,16 +44,17 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
     best = offset;
   };
   const double swing = kSwingShare * setting.moved + kSwing;
-  if (least_beyond > pushed) in_step(hurried, reference, swing, kTolerated);
-  if (least_beyond > kTolerated && pushed > 0.0) in_step(pace, reference, swing, kTolerated);
+  if (least_beyond > pushed_by) in_step(hurried, reference, swing, kTolerated);
+  if (least_beyond > kTolerated && pushed_by > 0.0) in_step(pace, reference, swing, kTolerated);
   for (const bool lags : {false, true}) {
-    if (least_beyond <= kTolerated + pushed) break;
+    if (least_beyond <= kTolerated + pushed_by) break;
     const PalmLag lag = lags ? lag_staying(setting) : reference.lag;
     chain.begin(setting.tracked, lag);
     const HandOffset stay = staying(setting, lag);
     begin_anew(setting, stay, offset, placed);
     in_step(hurried, stay, kAnyway, lags ? kDeepest : kTolerated);
   }
+  leap = std::max(0.0, least_beyond - pushed_by);
   offset = best;
   chain.begin(setting.tracked, offset.lag);
   chain.place(offset, placed);
@@ -78,7 +79,7 @@ HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, 
   stay.lag = lag;
   stay.shift = before.palm.position - setting.tracked.palm.position;
   for (int f = 0; f < kFingers; ++f)
-    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, chain_before.finger(f));
+    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, finger_before(f));
   return stay;
 }
 

@@ -32,7 +32,7 @@ double HandRenderer::Impl::held_by_limits(const ClearanceFinder::Setting& settin
   double held = 0.0;
   for (int f = 0; f < kFingers; ++f) {
     const FingerChain& finger = chain.finger(f);
-    const FingerOffset wanted = finger.pointing(before, chain_before.finger(f));
+    const FingerOffset wanted = finger.pointing(before, finger_before(f));
     held += finger.way(wanted - wanted.max(finger.lower()).min(finger.upper()));
   }
   return held;

@@ -13,6 +13,13 @@ constexpr double kTolerated = 1e-4;  ///< a gap of less than -this is too deep o
 constexpr double kDeepest = 1.8e-4;  ///< what is promised is 0.2 mm: where only that keeps pace [m]
 constexpr double kAhead = 0.0015;    ///< surfaces nearer than this are kept off before they are met [m]
 
+/// What a hand was shown like. Placing it anew gives the same bits: it is kept to be quick.
+struct Shown {
+  bool known = false;
+  Hand tracked, hand;
+  HandOffset offset;
+};
+
 /// What one hand's frame is made with. `setting` is the frame's, `offset` what is looked for, `placed` the
 /// hand with it, `last` the offset of the frame before and `reference` the same on its way home.
 struct HandRenderer::Impl {
@@ -20,9 +27,14 @@ struct HandRenderer::Impl {
     clearances.reserve(256);
   }
 
-  bool end_shown_in(const HandTrack& track, const HandOffset& last, Interaction* interactions);
+  HandOffset keep_outside(ClearanceFinder::Setting& setting, const HandTrack& track, Nanoseconds stamp,
+                          const HandOffset& offset, Hand& placed);
+  bool show_in(bool fixtures, Interaction* interactions) const;
+  void end_shown_in(const ClearanceFinder::Setting& setting, const HandTrack& track, const HandOffset& last);
   void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
                  ClearanceFinder::Setting& setting);
+  void place_before();
+  FingerChain& finger_before(int index);
   void push_out(const ClearanceFinder::Setting& setting, const HandOffset& last, double least,
                 HandOffset& offset, Hand& placed);
   void keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last, const HandOffset& reference,
@@ -45,9 +57,16 @@ struct HandRenderer::Impl {
   bool left_behind(const ClearanceFinder::Setting& setting, Nanoseconds stamp, HandOffset& offset);
 
   ClearanceFinder finder;
-  HandChain chain, chain_before;
+  HandChain chain;
+  HandChain chain_before;         // set to the frame before once it is asked for
+  bool chain_before_set = false;  // for this hand and frame
   std::vector<Clearance> clearances;
   Hand before;               // as it was shown at the frame before
+  Hand tracked_before;       // and as it was tracked
+  HandOffset offset_before;  // and its offset
+  std::array<Shown, kMaxHands> kept;
+  bool pushed = false;  // bodies are in the way
+  double leap = 0.0;    // of a joint beyond what hand and bodies have moved, if there is no other way [m]
   double tracked_way = 0.0;  // of the farthest joint since then [m]
   double elapsed = 0.0;      // since then [s]
 };

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/rendering/skin.h"
+#include "skin.h"
 
 #include <algorithm>
 

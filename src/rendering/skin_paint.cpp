@@ -1,9 +1,9 @@
-#include "mr_hand_interaction/rendering/skin_paint.h"
+#include "skin_paint.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/rendering/light.h"
+#include "light.h"
 #include "skin_rig.h"
 #include "smooth_step.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

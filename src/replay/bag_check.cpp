@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "mr_hand_interaction/replay/bag_input.h"
+#include "bag_input.h"
 
 namespace mrhi {
 namespace {

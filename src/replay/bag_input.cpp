@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/bag_input.h"
+#include "bag_input.h"
 
 #include <geometry_msgs/PoseArray.h>
 #include <mr_hand_interaction/HandFrame.h>
@@ -13,11 +13,11 @@
 #include <set>
 #include <vector>
 
+#include "../ros/pose_array_hand.h"
 #include "bag_check.h"
 #include "device_frames.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "mr_hand_interaction/ros/pose_array_hand.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "open_bag.h"
 

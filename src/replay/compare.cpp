@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "csv_columns.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 
 namespace mrhi {

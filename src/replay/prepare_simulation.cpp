@@ -1,7 +1,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "mr_hand_interaction/collision/overlap.h"
+#include "../collision/overlap.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/ros/package_paths.h"

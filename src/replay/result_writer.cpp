@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "mr_hand_interaction/contact_phase.h"
+#include "../simulation/contact_phase.h"
 
 namespace mrhi {
 namespace {

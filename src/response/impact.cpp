@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/response/impact.h"
+#include "impact.h"
 
 #include <cmath>
 #include <limits>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impact.h"
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/response/impact.h"
 
 namespace mrhi {
 namespace {

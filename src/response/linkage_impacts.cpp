@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/response/impact.h"
+#include "impact.h"
 
 namespace mrhi {
 namespace {

@@ -1,9 +1,9 @@
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "penetration_force.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/response/impact.h"
+#include "impact.h"
 
 namespace mrhi {
 

@@ -1,6 +1,6 @@
 #include "penetration_model.h"
 
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "penetration_force.h"
 
 namespace mrhi {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "mr_hand_interaction/collision/way_out.h"
-#include "mr_hand_interaction/response/impact.h"
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "../collision/way_out.h"
+#include "impact.h"
+#include "penetration_force.h"
 
 namespace mrhi {
 namespace {

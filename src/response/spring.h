@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lanes.h"
-#include "mr_hand_interaction/response/release.h"
+#include "release.h"
 
 namespace mrhi {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "penetration_force.h"
 
 namespace mrhi {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "impact.h"
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/response/impact.h"
 
 namespace mrhi {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/response/impact.h"
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "impact.h"
+#include "penetration_force.h"
 
 namespace mrhi {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "mr_hand_interaction/rendering/light.h"
+#include "../rendering/light.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/end_in_order.h"
+#include "end_in_order.h"
 
 #include <ros/init.h>
 

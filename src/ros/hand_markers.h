@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "../rendering/skin_paint.h"
 #include "marker_layers.h"
-#include "mr_hand_interaction/rendering/skin_paint.h"
 
 namespace mrhi {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/pose_array_hand.h"
+#include "pose_array_hand.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/haptics.h"
+#include "haptics.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 
 #include <boost/make_shared.hpp>
 
+#include "haptics.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/haptics.h"
 
 namespace mrhi {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/object_request_message.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "object_request_message.h"
 
 namespace mrhi {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <ros/serialization.h>
 
-#include "mr_hand_interaction/ros/leap_human_encoder.h"
+#include "leap_human_encoder.h"
 
 namespace mrhi {
 

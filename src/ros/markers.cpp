@@ -8,7 +8,7 @@
 #include "body_markers.h"
 #include "hand_markers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/result_conversion.h"
+#include "result_conversion.h"
 #include "shadow_markers.h"
 
 namespace mrhi {

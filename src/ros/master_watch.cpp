@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/master_watch.h"
+#include "master_watch.h"
 
 #include <ros/console.h>
 #include <ros/init.h>

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/node_usage.h"
+#include "node_usage.h"
 
 #include <ros/init.h>
 

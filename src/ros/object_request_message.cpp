@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/object_request_message.h"
+#include "object_request_message.h"
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 

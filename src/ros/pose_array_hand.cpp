@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/pose_array_hand.h"
+#include "pose_array_hand.h"
 
 #include <algorithm>
 #include <cmath>

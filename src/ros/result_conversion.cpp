@@ -1,6 +1,6 @@
-#include "mr_hand_interaction/ros/result_conversion.h"
+#include "result_conversion.h"
 
-#include "mr_hand_interaction/contact_phase.h"
+#include "../simulation/contact_phase.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {

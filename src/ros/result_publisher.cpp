@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/result_conversion.h"
 #include "plain_messages.h"
+#include "result_conversion.h"
 
 namespace mrhi {
 namespace {

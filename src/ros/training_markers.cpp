@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "../scene/safe_yaml.h"
-#include "../scene/text.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 

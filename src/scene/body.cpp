@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../text/text.h"
 #include "body_limits.h"
-#include "text.h"
 
 namespace mrhi {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "yaml_values.h"
+#include "../text/yaml_values.h"
 
 /// What the numbers of a body may be: far beyond what hands meet, and so near that squares and quotients of
 /// them are numbers still.

@@ -5,7 +5,7 @@
 
 #include "joint_ranges.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "yaml_values.h"
+#include "../text/yaml_values.h"
 
 namespace mrhi::joint_ranges {
 

@@ -1,6 +1,6 @@
 #include "material_fields.h"
 
-#include "text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "../text/yaml_values.h"
 #include "mr_hand_interaction/scene/material.h"
-#include "yaml_values.h"
 
 namespace mrhi {
 

@@ -15,8 +15,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "limited_child.h"
-#include "text.h"
+#include "../text/limited_child.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "../text/text.h"
 #include "scene_yaml.h"
 #include "shape_kinds.h"
-#include "text.h"
 #include "urdf_scene.h"
 #include "urdf_tree.h"
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "mr_hand_interaction/collision/overlap.h"
-#include "named_file.h"
+#include "../collision/overlap.h"
+#include "../text/named_file.h"
+#include "../text/text.h"
 #include "scene_yaml.h"
-#include "text.h"
 #include "urdf_scene.h"
 
 namespace mrhi {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
+#include "../text/yaml_element.h"
 #include "body_limits.h"
 #include "material_fields.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "safe_yaml.h"
-#include "text.h"
-#include "yaml_element.h"
 
 namespace mrhi {
 namespace {

@@ -3,7 +3,7 @@
 #include <locale>
 #include <sstream>
 
-#include "text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {

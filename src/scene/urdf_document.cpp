@@ -8,11 +8,11 @@
 #include <mutex>
 #include <optional>
 
-#include "file_text.h"
+#include "../text/file_text.h"
+#include "../text/text.h"
+#include "../text/xml_danger.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "shape_kinds.h"
-#include "text.h"
-#include "xml_danger.h"
 
 namespace mrhi {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "names.h"
+#include "../text/names.h"
+#include "../text/text.h"
 #include "shape_inertia.h"
-#include "text.h"
 #include "urdf_shapes.h"
 
 namespace mrhi {

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 
+#include "../text/text.h"
 #include "body_limits.h"
 #include "convex_hull.h"
 #include "mesh_loader.h"
 #include "shape_kinds.h"
-#include "text.h"
 
 namespace mrhi {
 namespace {

@@ -1,7 +1,7 @@
 #include "urdf_tree.h"
 
+#include "../text/text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "text.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/box_symmetries.h"
+#include "box_symmetries.h"
 
 #include <variant>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "box_symmetries.h"
 #include "motions.h"
-#include "mr_hand_interaction/synthetic/box_symmetries.h"
 
 namespace mrhi {
 namespace {

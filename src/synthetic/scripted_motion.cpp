@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../math/minimum_jerk.h"
 #include "motions.h"
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
 
 namespace mrhi {
 namespace {

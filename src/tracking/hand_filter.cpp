@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/tracking/hand_filter.h"
+#include "hand_filter.h"
 
 #include <algorithm>
 #include <cmath>

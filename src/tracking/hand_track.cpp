@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
+#include "../math/minimum_jerk.h"
 
 namespace mrhi {
 

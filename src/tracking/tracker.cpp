@@ -1,11 +1,11 @@
-#include "mr_hand_interaction/tracking/tracker.h"
+#include "tracker.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
-#include "mr_hand_interaction/tracking/hand_filter.h"
+#include "../math/minimum_jerk.h"
+#include "hand_filter.h"
 
 namespace mrhi {
 namespace {

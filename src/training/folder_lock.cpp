@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "../scene/file_text.h"
-#include "../scene/text.h"
+#include "../text/file_text.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/training/session_folder.h"
 
 namespace mrhi {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "task_values.h"
 
 namespace mrhi::task_yaml {

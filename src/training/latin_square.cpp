@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/training/latin_square.h"
+#include "latin_square.h"
 
 #include <numeric>
 #include <random>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "../scene/text.h"
-#include "mr_hand_interaction/training/latin_square.h"
+#include "../text/text.h"
+#include "latin_square.h"
 
 namespace mrhi {
 namespace {

@@ -6,7 +6,7 @@
 #include <locale>
 #include <sstream>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 #include "session_header.h"
 
 namespace mrhi {

@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "../scene/names.h"
-#include "../scene/safe_yaml.h"
-#include "../scene/text.h"
-#include "../scene/yaml_values.h"
+#include "../text/names.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
+#include "../text/yaml_values.h"
 
 namespace mrhi {
 namespace {

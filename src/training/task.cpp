@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../scene/text.h"
+#include "../text/text.h"
 
 namespace mrhi {
 

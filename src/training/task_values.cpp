@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "../scene/body_limits.h"
-#include "../scene/names.h"
-#include "../scene/text.h"
+#include "../text/names.h"
+#include "../text/text.h"
 
 namespace mrhi::task_yaml {
 

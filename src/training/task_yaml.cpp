@@ -4,9 +4,9 @@
 #include <map>
 
 #include "../scene/body_limits.h"
-#include "../scene/named_file.h"
-#include "../scene/safe_yaml.h"
-#include "../scene/text.h"
+#include "../text/named_file.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
 #include "goal_yaml.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/task.h"

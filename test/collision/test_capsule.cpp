@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "collision/way_out.h"
 #include "mesh_shapes.h"
 #include "mr_hand_interaction/collision/closest_features.h"
-#include "mr_hand_interaction/collision/way_out.h"
 #include "placed_shapes.h"
 
 namespace mrhi {

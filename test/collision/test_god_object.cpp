@@ -2,7 +2,7 @@
 
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/collision/god_object.h"
-#include "mr_hand_interaction/response/impact.h"
+#include "response/impact.h"
 #include "support/fixtures.h"
 
 namespace mrhi {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/collision/way_out.h"
+#include "collision/way_out.h"
 
 namespace mrhi {
 namespace {

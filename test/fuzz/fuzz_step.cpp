@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "fuzz/step_case.h"
-#include "scene/text.h"
+#include "text/text.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mr_hand_interaction/integration/free_flight.h"
+#include "integration/free_flight.h"
 
 namespace mrhi {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/response/penetration_force.h"
+#include "response/penetration_force.h"
 #include "support/fixtures.h"
 
 namespace mrhi {

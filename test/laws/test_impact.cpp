@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/response/impact.h"
+#include "response/impact.h"
 #include "response/impact_solver.h"
 #include "support/fixtures.h"
 

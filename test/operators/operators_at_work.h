@@ -6,9 +6,9 @@
 #include <string>
 
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/synthetic/box_symmetries.h"
 #include "mr_hand_interaction/synthetic/operator.h"
 #include "mr_hand_interaction/training/operator_trial.h"
+#include "synthetic/box_symmetries.h"
 
 namespace mrhi::testing {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/rendering/skin.h"
+#include "rendering/skin.h"
 
 namespace mrhi::testing {
 

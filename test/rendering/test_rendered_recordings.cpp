@@ -47,7 +47,7 @@ TEST_P(RenderedRecording, is_one_hand_outside_everything) {
     const RenderedCheck check = testing::render_all(GetParam().scene(frames), frames);
     moved_aside += check.moved_aside > 0;
     frames_aside += check.moved_aside;
-    jumps += check.jumps + check.passed;
+    jumps += check.jumps;
     if (GetParam().steady) {
       testing::expect_one_hand(check, file);
     } else {
@@ -73,9 +73,12 @@ int seeds() {
   return set != nullptr ? std::atoi(set) : 2;
 }
 
-// Where bodies lie at random, a hand may still be caught, once in 25 000 hands held aside over twenty seeds;
-// of two seeds three in 28 544.
-constexpr int kRandomFramesPerJump = 9000;
+// Where bodies lie at random, one hand in 25 000 held aside still jumps, over twenty seeds: where the tracked
+// palm's orientation leaps, by 8 mm at most. Of two seeds none does.
+constexpr int kRandomFramesPerJump = 20000;
+constexpr double kRandomJump = 0.01;  // [m]
+// The way back from beyond a wall, 0.8 mm a frame, takes longer than 1.5 s.
+constexpr double kStillAside = 0.06;  // [m]
 
 TEST(RenderedAtRandom, is_one_hand_outside_everything) {
   const std::vector<std::string> files = testing::recordings();
@@ -86,11 +89,12 @@ TEST(RenderedAtRandom, is_one_hand_outside_everything) {
     for (int seed = 1; seed <= seeds(); ++seed) {
       const Scene scene = testing::scene_at_random(frames, static_cast<std::uint64_t>(seed));
       RenderedCheck check = testing::render_all(scene, frames);
-      check.late =
-          {};  // hands of two recordings are still on their way back after 1.5 s (docs/rendered_hand.md)
+      EXPECT_LE(check.late.value, kStillAside) << file << " with seed " << seed << " at " << check.late.time;
+      check.late = {};
       testing::expect_one_hand_outside(check, file + " with seed " + std::to_string(seed));
       aside += check.moved_aside;
       jumps += check.jumps;
+      EXPECT_LE(check.jump.value, kRandomJump) << file << " with seed " << seed << " at " << check.jump.time;
     }
   }
   EXPECT_LE(jumps * kRandomFramesPerJump, aside) << jumps << " jumps";

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "mr_hand_interaction/rendering/skin.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "rendering/skin.h"
 #include "rendering/skin_checks.h"
 #include "support/postures.h"
 #include "tracking/adult_hand.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/rendering/skin_paint.h"
+#include "rendering/skin_paint.h"
 #include "support/postures.h"
 
 namespace mrhi {

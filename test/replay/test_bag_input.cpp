@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/bag_input.h"
+#include "replay/bag_input.h"
 
 #include <geometry_msgs/PoseArray.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "mr_hand_interaction/ros/leap_human_encoder.h"
 #include "replay/replay_files.h"
+#include "ros/leap_human_encoder.h"
 
 namespace mrhi {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/rendering/skin.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "rendering/skin.h"
 
 namespace mrhi {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/ros/haptics.h"
-#include "mr_hand_interaction/ros/result_conversion.h"
+#include "ros/haptics.h"
+#include "ros/result_conversion.h"
 #include "support/pinched_cube.h"
 
 namespace mrhi {

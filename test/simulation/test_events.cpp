@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "grasp.h"
+#include "simulation/grasp.h"
 #include "support/fixtures.h"
 #include "synthetic/performance.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mr_hand_interaction/collision/near_bodies.h"
+#include "collision/near_bodies.h"
 #include "support/finger_angles.h"
 #include "support/fixtures.h"
 
@@ -43,7 +43,7 @@ class RenderedCheck {
       away.note(farthest_joint(tracked, shown), result.stamp);
       moved_aside += farthest_joint(tracked, shown) > 0.0;
       const auto before = before_.find(tracked.id);
-      Before entry{result.stamp, tracked, shown, simulation.state().offsets[slot].left > 0.0};
+      Before entry{result.stamp, tracked, shown};
       const bool near = near_anything(tracked, bodies);
       if (!near && before != before_.end() && !track.appeared) entry.near_last = before->second.near_last;
       if (to_seconds(result.stamp - entry.near_last) > kReturns)
@@ -63,15 +63,14 @@ class RenderedCheck {
   int shown_in = 0;              // of them in a body that appeared in them, or not clear of it yet
   int jumps = 0;                 // of them that jumped
   std::vector<Worst> all_jumps;  // [m]
-  int passed = 0;     // of them that were held back by a body and then given up to the tracked hand behind it
-  Worst length;       // of a bone, against the tracked one [m]
-  Worst apart;        // ends of bones that are one joint in the tracked hand [m]
-  Worst angle;        // of a joint beyond its limit and beyond where it was tracked [rad]
-  Worst thumb_angle;  // the same of the thumb, whose whole bend is measured, sideways too [rad]
-  Worst depth;        // in any body [m]
-  Worst jump;         // of a joint in a frame beyond what the farthest tracked one and bodies moved [m]
-  Worst away;         // of a joint from where it was tracked [m]
-  Worst late;         // the same though nothing has been near for long [m]
+  Worst length;                  // of a bone, against the tracked one [m]
+  Worst apart;                   // ends of bones that are one joint in the tracked hand [m]
+  Worst angle;                   // of a joint beyond its limit and beyond where it was tracked [rad]
+  Worst thumb_angle;             // the same of the thumb, whose whole bend is measured, sideways too [rad]
+  Worst depth;                   // in any body [m]
+  Worst jump;  // of a joint in a frame beyond what the farthest tracked one and bodies moved [m]
+  Worst away;  // of a joint from where it was tracked [m]
+  Worst late;  // the same though nothing has been near for long [m]
 
  private:
   static constexpr double kReturns = 1.5;  // [s]
@@ -80,7 +79,6 @@ class RenderedCheck {
   struct Before {
     Nanoseconds stamp;
     Hand tracked, shown;
-    bool held_back;
     Nanoseconds near_last = stamp;
   };
 
@@ -114,10 +112,6 @@ class RenderedCheck {
     if (beyond > kJump) {
       all_jumps.emplace_back();
       all_jumps.back().note(beyond, stamp);
-    }
-    if (beyond > kJump && before.held_back && farthest_joint(tracked, shown) == 0.0) {
-      ++passed;
-      return;
     }
     jump.note(beyond, stamp);
     jumps += beyond > kJump;

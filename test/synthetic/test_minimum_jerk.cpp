@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
+#include "math/minimum_jerk.h"
 
 #include <gtest/gtest.h>
 

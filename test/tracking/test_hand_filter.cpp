@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <random>
 
-#include "mr_hand_interaction/tracking/hand_filter.h"
 #include "support/fixtures.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi {
 namespace {

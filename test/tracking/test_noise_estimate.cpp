@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/minimum_jerk.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "mr_hand_interaction/tracking/hand_filter.h"
-#include "mr_hand_interaction/tracking/tracker.h"
 #include "support/fixtures.h"
 #include "support/white_noise.h"
+#include "tracking/hand_filter.h"
+#include "tracking/tracker.h"
 
 namespace mrhi {
 namespace {

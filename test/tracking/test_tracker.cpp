@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/tracking/tracker.h"
 #include "support/fixtures.h"
+#include "tracking/tracker.h"
 
 namespace mrhi {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "mr_hand_interaction/training/latin_square.h"
+#include "training/latin_square.h"
 
 namespace mrhi {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "mr_hand_interaction/ros/pose_array_hand.h"
 #include "mr_hand_interaction/ros/standard_outputs.h"
+#include "ros/pose_array_hand.h"
 #include "sample_hands.h"
 
 namespace mrhi {

@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "mr_hand_interaction/ros/leap_human_encoder.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "ros/leap_human_encoder.h"
 
 namespace mrhi {
 namespace {

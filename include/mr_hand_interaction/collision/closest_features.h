@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/collision/capsule.h"
+#include "mr_hand_interaction/math/capsule.h"
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {

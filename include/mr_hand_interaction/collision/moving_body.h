@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mr_hand_interaction/collision/capsule.h"
 #include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/math/capsule.h"
 
 namespace mrhi {
 

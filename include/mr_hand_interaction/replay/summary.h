@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/replay/duration_histogram.h"
+#include "mr_hand_interaction/math/duration_histogram.h"
 #include "mr_hand_interaction/scene/material.h"
 
 namespace mrhi {

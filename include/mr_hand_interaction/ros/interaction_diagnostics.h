@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "mr_hand_interaction/replay/duration_histogram.h"
+#include "mr_hand_interaction/math/duration_histogram.h"
 #include "mr_hand_interaction/ros/input_statistics.h"
 
 namespace mrhi {

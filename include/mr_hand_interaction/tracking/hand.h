@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mr_hand_interaction/collision/capsule.h"
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/math/capsule.h"
 
 namespace mrhi {
 

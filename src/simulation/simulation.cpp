@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../text/text.h"
+#include "../tracking/tracker.h"
 #include "frame_report.h"
-#include "mr_hand_interaction/scene_change.h"
-#include "joints/joint_law.h"
-#include "mr_hand_interaction/tracking/tracker.h"
-#include "response/joint_response.h"
-#include "scene/text.h"
+#include "../joints/joint_law.h"
+#include "../response/joint_response.h"
+#include "scene_change.h"
 #include "simulation_impl.h"
 
 namespace mrhi {

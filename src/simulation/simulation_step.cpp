@@ -1,5 +1,5 @@
+#include "../integration/free_flight.h"
 #include "frame_report.h"
-#include "mr_hand_interaction/integration/free_flight.h"
 #include "simulation_impl.h"
 
 namespace mrhi {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "../collision/body_contact_finder.h"
 #include "grasp_assist.h"
-#include "mr_hand_interaction/collision/body_contact_finder.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/collision/neighbours.h"
 #include "mr_hand_interaction/collision/scene_geometry.h"

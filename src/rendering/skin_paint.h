@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "mr_hand_interaction/rendering/light.h"
-#include "mr_hand_interaction/rendering/skin.h"
+#include "light.h"
+#include "skin.h"
 
 namespace mrhi {
 

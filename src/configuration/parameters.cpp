@@ -2,11 +2,11 @@
 
 #include <set>
 
+#include "../scene/material_fields.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
+#include "../text/yaml_values.h"
 #include "parameter_table.h"
-#include "scene/material_fields.h"
-#include "scene/safe_yaml.h"
-#include "scene/text.h"
-#include "scene/yaml_values.h"
 
 namespace mrhi {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "../tracking/tracker.h"
 #include "frame_report.h"
-#include "mr_hand_interaction/tracking/tracker.h"
 #include "simulation_impl.h"
 
 namespace mrhi {

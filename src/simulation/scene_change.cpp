@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/scene_change.h"
+#include "scene_change.h"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "scene/material_fields.h"
+#include "../scene/material_fields.h"
 
 namespace mrhi {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "../scene/body_limits.h"
+#include "../scene/material_fields.h"
+#include "../text/text.h"
+#include "../text/yaml_values.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/tracking/filter_memory.h"
-#include "scene/body_limits.h"
-#include "scene/material_fields.h"
-#include "scene/text.h"
-#include "scene/yaml_values.h"
 
 namespace mrhi {
 namespace {

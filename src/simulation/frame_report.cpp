@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "../collision/near_bodies.h"
 #include "grasp.h"
-#include "mr_hand_interaction/collision/near_bodies.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 
 namespace mrhi {

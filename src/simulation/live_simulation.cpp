@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "mr_hand_interaction/collision/overlap.h"
+#include "../collision/overlap.h"
+#include "../text/text.h"
+#include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/scene_change.h"
-#include "mr_hand_interaction/tracking/tracker.h"
-#include "scene/text.h"
+#include "scene_change.h"
 
 namespace mrhi {
 namespace {

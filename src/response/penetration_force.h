@@ -3,7 +3,7 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/response/release.h"
+#include "release.h"
 
 namespace mrhi {
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/contact_phase.h"
+#include "contact_phase.h"
 
 #include <algorithm>
 

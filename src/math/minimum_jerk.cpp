@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/minimum_jerk.h"
+#include "minimum_jerk.h"
 
 namespace mrhi {
 
