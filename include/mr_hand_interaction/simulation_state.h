@@ -10,6 +10,7 @@
 #include "mr_hand_interaction/joint_state.h"
 #include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/response/grip.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
@@ -32,6 +33,9 @@ struct SimulationState {
   std::vector<Grip> grips;                     ///< what hands hold, by hand and body
   std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };
+
+/// Velocity of a joint, by the motion of its bodies [rad/s, m/s].
+double joint_velocity(const Scene& scene, std::size_t joint, const std::vector<BodyState>& bodies);
 
 /// Every body awake.
 void wake_all(SimulationState& state);

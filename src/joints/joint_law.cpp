@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mr_hand_interaction/simulation_state.h"
+
 namespace mrhi {
 namespace {
 
@@ -43,6 +45,21 @@ JointState start_state(const Joint& joint) {
   if (joint.upper - joint.start <= kAtLimit) state.at_limit = 1;
   if (joint.start - joint.lower <= kAtLimit) state.at_limit = -1;
   return state;
+}
+
+double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
+  const Joint& joint = scene.joints[index];
+  const auto motion = [&](int body) {
+    const auto b = static_cast<std::size_t>(body);
+    return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[b], bodies[b]);
+  };
+  const auto pose = [&](int body) { return body == Joint::kWorld ? Pose() : bodies[static_cast<std::size_t>(body)].pose; };
+  const Pose frame = pose(joint.parent) * joint.in_parent, child = pose(joint.child);
+  const Vector3 axis = frame.orientation * joint.axis;
+  const Twist parent = motion(joint.parent), own = motion(joint.child);
+  if (joint.kind == JointKind::turning) return axis.dot(own.angular - parent.angular);
+  const Vector3 carried = parent.linear + parent.angular.cross(child.position - pose(joint.parent).position);
+  return axis.dot(own.linear - carried);
 }
 
 JointChange note_place(const Joint& joint, JointState& state) {

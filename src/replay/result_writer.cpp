@@ -41,6 +41,12 @@ const char* event_name(EventKind kind) {
       return "HAND_FOUND";
     case EventKind::out_of_bounds:
       return "OUT_OF_BOUNDS";
+    case EventKind::joint_limit:
+      return "JOINT_LIMIT";
+    case EventKind::detent:
+      return "DETENT";
+    case EventKind::latch_open:
+      return "LATCH_OPEN";
   }
   return "";
 }
@@ -53,13 +59,17 @@ ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
                 "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit"),
       hands_(folder + "/hands.csv",
              "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching"),
-      events_(folder + "/events.csv", "time,kind,object,hand_id") {}
+      events_(folder + "/events.csv", "time,kind,object,hand_id") {
+  if (!scene.joints.empty())
+    joints_.emplace(folder + "/joints.csv", "time,name,position,velocity,effort");
+}
 
 void ResultWriter::write(const FrameResult& result, const SimulationState& state) {
   if (!begun_) first_stamp_ = result.stamp;
   begun_ = true;
   const double time = to_seconds(result.stamp - first_stamp_);
   write_objects(time, state);
+  if (joints_) write_joints(time, state);
   write_contacts(time, result, state);
   for (const Hand& hand : result.tracked) write_hand(time, hand, nullptr);
   for (const RenderedHand& rendered : result.rendered) write_hand(time, rendered.hand, &rendered);
@@ -68,6 +78,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
 
 void ResultWriter::flush() {
   for (CsvFile* file : {&objects_, &contacts_, &hands_, &events_}) file->flush();
+  if (joints_) joints_->flush();
 }
 
 void ResultWriter::write_objects(double time, const SimulationState& state) {
@@ -79,6 +90,15 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
     add_quaternion(objects_, state.bodies[i].pose.orientation);
     objects_ << twist.linear << twist.angular;
     objects_.end_row();
+  }
+}
+
+void ResultWriter::write_joints(double time, const SimulationState& state) {
+  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+    const JointState& joint = state.joints[i];
+    *joints_ << time << scene_.joints[i].name << joint.position << joint_velocity(scene_, i, state.bodies)
+             << joint.effort;
+    joints_->end_row();
   }
 }
 

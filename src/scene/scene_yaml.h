@@ -6,7 +6,7 @@
 
 namespace mrhi {
 
-/// Sets gravity, bounds and materials of a scene whose bodies are known, from its YAML file. A material keeps
+/// Sets gravity, bounds, materials and joints of a scene whose bodies and joints are known, from its YAML file. A material keeps
 /// what the file does not name. Throws SceneError.
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
 
