@@ -14,8 +14,7 @@ struct JointState {
   double still = 0.0;     ///< for how long its tree has been as good as at rest [s]
   std::uint8_t detent = 0;      ///< index in Detents::at of the one that it is in
   std::int8_t at_limit = 0;     ///< -1 at the lower one, 1 at the upper one
-  bool latched = false;
-  bool may_latch = false;  ///< has been out of the latch's reach since it opened
+  bool latched = false;  ///< within the latch's reach
 };
 
 }  // namespace mrhi

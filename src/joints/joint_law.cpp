@@ -8,7 +8,7 @@
 namespace mrhi {
 namespace {
 
-/// Limits are springs that answer this much more stiffly than the joint's inertia does within a step: what
+/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step: what
 /// would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
 constexpr double kStopOverInertia = 1e4;
 
@@ -41,7 +41,6 @@ JointState start_state(const Joint& joint) {
   state.position = state.anchor = joint.start;
   if (joint.detents) state.detent = static_cast<std::uint8_t>(nearest(joint.detents->at, joint.start));
   state.latched = joint.latch && catches(*joint.latch, joint.start);
-  state.may_latch = !state.latched;
   if (joint.upper - joint.start <= kAtLimit) state.at_limit = 1;
   if (joint.start - joint.lower <= kAtLimit) state.at_limit = -1;
   return state;
@@ -74,13 +73,9 @@ JointChange note_place(const Joint& joint, JointState& state) {
     state.detent = now;
   }
   if (!joint.latch) return change;
-  const bool near = catches(*joint.latch, state.position);
-  change.opened_latch = !state.latched && !state.may_latch && !near;
-  if (!near) state.may_latch = true;
-  if (near && state.may_latch) {
-    state.latched = true;
-    state.may_latch = false;
-  }
+  const bool latched = catches(*joint.latch, state.position);
+  change.opened_latch = state.latched && !latched;
+  state.latched = latched;
   return change;
 }
 
@@ -110,11 +105,10 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double velocit
   };
   if (joint.spring) spring(joint.spring->stiffness, joint.spring->rest);
   if (joint.detents) spring(detent_stiffness(*joint.detents), joint.detents->at[state.detent]);
-  friction_ = {joint.friction / kYield, state.anchor - state.position, joint.friction};
-  latch_ = {};
-  if (joint.latch && state.latched)
-    latch_ = {joint.latch->force / kYield, joint.latch->at - state.position, joint.latch->force};
   stop_ = kStopOverInertia * inertia / (step * step);
+  friction_ = latch_ = {};
+  if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
+  if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
   const auto stop = [&](double room, double sign) {
     // One that is met within this step answers by Newton's law.
     const double speed = sign * velocity;
@@ -160,10 +154,6 @@ void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
   state.effort = force(velocity);
   if (friction_.stiffness > 0.0) state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
-  if (latch_.stiffness > 0.0 && std::abs(latch_.wanted(way)) > latch_.most) {
-    state.latched = false;
-    state.may_latch = false;
-  }
 }
 
 }  // namespace mrhi

@@ -7,13 +7,10 @@ namespace mrhi {
 
 /// What a joint's own forces give, as functions of its velocity at the step's end: spring, detents, latch,
 /// damping, friction, limits. Each of them falls as the velocity grows, so that the step's problem stays
-/// convex. Friction and the latch hold by a stiff spring to a place, up to their force: what they hold does not
-/// creep, and gives by at most kYield.
+/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as the
+/// joint's inertia within a step, the last two up to their force: what they hold does not creep.
 class JointLaw {
  public:
-  /// By which friction or a latch gives before it yields [rad, m].
-  static constexpr double kYield = 1e-5;
-
   /// `velocity`: at the step's start; `inertia`: of the joint alone, its entry of the mass matrix.
   void begin(const Joint& joint, const JointState& state, double velocity, double inertia, double step);
 
@@ -26,8 +23,7 @@ class JointLaw {
   /// What limits and holds bear, and springs draw: the size of what acts [N m].
   double size(double velocity) const;
 
-  /// What lasts of it once the joint moves at `velocity` to the step's end; where it has been pulled out of
-  /// the latch, it is latched no more.
+  /// What lasts of it once the joint moves at `velocity` to the step's end.
   void settle(double velocity, JointState& state) const;
 
  private:
@@ -48,7 +44,7 @@ class JointLaw {
   double constant_ = 0.0, linear_ = 0.0;  // force = constant - linear * velocity, of springs and damping
   Hold friction_, latch_;
   Stop lower_, upper_;
-  double stop_ = 0.0;  // stiffness of the limits
+  double stop_ = 0.0;  // stiffness of what holds
   double step_ = 0.0;
 };
 

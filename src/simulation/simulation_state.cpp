@@ -36,7 +36,6 @@ void add_joint(const JointState& joint, Fnv1a& hash) {
   hash.add(joint.detent);
   hash.add(joint.at_limit);
   hash.add(joint.latched);
-  hash.add(joint.may_latch);
 }
 
 void add_hand(const Hand& hand, Fnv1a& hash) {

@@ -28,11 +28,12 @@ struct Detents {
   double force = 0.0;      ///< that takes it out of the closest ones [N m]
 };
 
-/// Holds the joint at one place until more than a force pulls, and catches it when it comes back.
+/// Holds the joint at one place by up to a force, within a reach; what is drawn further is let go, and is caught
+/// when it comes back.
 struct Latch {
   double at = 0.0;     ///< [rad]
-  double force = 0.0;  ///< most that it holds, and what it draws with when it catches [N m]
-  double reach = 0.0;  ///< within which it catches what has been beyond [rad]
+  double force = 0.0;  ///< most that it holds and draws with [N m]
+  double reach = 0.0;  ///< [rad]
 };
 
 /// A joint by which a body hangs on another one, on a fixture, or on the world.
