@@ -16,7 +16,7 @@ except ImportError:
 # Okabe and Ito's palette, told apart by the colour-blind; markers differ too.
 OURS = 'mr_hand_interaction'
 STYLES = {
-    'implicit': ('#D55E00', 'o'), 'soft_pad': ('#E69F00', 'h'), 'virtual_spring': ('#CC79A7', 'v'),
+    'implicit': ('#D55E00', 'o'), "implicit, the paper's hand": ('#882255', 'p'), 'soft_pad': ('#E69F00', 'h'), 'virtual_spring': ('#CC79A7', 'v'),
     'seed': ('#999999', '<'), 'penetration': ('#666666', '>'),
     'bullet_f32': ('#56B4E9', 's'), 'bullet_f64': ('#0072B2', 'D'), 'ode': ('#009E73', '^'), 'mujoco': ('#000000', 'X'),
 }
@@ -66,7 +66,7 @@ def draw(axes, families, title):
     for name, values in families.items():
         colour, marker = STYLES.get(name, OTHER)
         forces, shares, lows, highs = zip(*values)
-        ours = name in ('implicit', 'soft_pad', 'virtual_spring', 'seed', 'penetration')
+        ours = name.split(',')[0] in ('implicit', 'soft_pad', 'virtual_spring', 'seed', 'penetration')
         axes.errorbar(forces, [100 * s for s in shares],
                       yerr=[[100 * max(0.0, s - l) for s, l in zip(shares, lows)], [100 * max(0.0, h - s) for s, h in zip(shares, highs)]],
                       color=colour, marker=marker, markersize=5, linewidth=1.2 if ours else 0, elinewidth=0.6, capsize=2,

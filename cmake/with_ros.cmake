@@ -5,7 +5,7 @@ target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DI
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
-set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/replay/replay.cpp PROPERTIES
+set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/replay/run.cpp src/replay/world.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 # Scenes are found from a devel space even where no environment has been sourced.
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
@@ -26,10 +26,13 @@ install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthe
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
-set(scripts analyse_study ask_ratings doctor run_when set training_keys)
+set(scripts analyse_study ask_participant ask_ratings calibrate_study doctor explain plan_study power_study run_when set
+  training_keys)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
 install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+include(cmake/panel.cmake)
+install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -1,7 +1,8 @@
 # What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
 set(replay_parts
-  arguments compare csv_columns csv_file frame_source prepare_simulation progress_bar recording_csv replay
-  result_writer summary)
+  arguments change change_yaml compare csv_columns csv_file demonstration dictionary explain_html explain_json explain_losses explain_watch
+  frame_source json_text prepare_simulation progress_bar
+  recording_csv replay replay_log result_writer run summary urdf_meshes world)
 file(GLOB without_ros src/without_ros/*.cpp)
 set(replay_library_sources src/ros/package_paths.cpp ${without_ros})
 foreach(part ${replay_parts})
@@ -10,7 +11,7 @@ endforeach()
 add_library(${PROJECT_NAME}_replay STATIC ${replay_library_sources})
 target_link_libraries(${PROJECT_NAME}_replay PUBLIC ${PROJECT_NAME}_core PRIVATE yaml-cpp)
 # Scenes are found from where it was built, too.
-set_source_files_properties(src/replay/replay.cpp PROPERTIES
+set_source_files_properties(src/replay/run.cpp src/replay/world.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")

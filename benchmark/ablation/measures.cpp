@@ -2,6 +2,7 @@
 #include "support/deep_squeeze.h"
 #include "support/edge_pinch.h"
 #include "support/noisy_pinch.h"
+#include "support/one_side_leaves.h"
 #include "support/pinch_ride.h"
 #include "support/slap.h"
 #include "variant.h"
@@ -130,6 +131,8 @@ const std::vector<Measure>& measures() {
       {"damping", "(a) in raw noise: jitter of the cube", "µm",
        [](V v) { return 1e6 * in_raw_noise(v).cube.rms(); }},
       {"damping", "(a) in raw noise: true slip", "mm", [](V v) { return 1e3 * in_raw_noise(v).true_slip; }},
+      {"release_fade", "(a), the fingers leave at 2 m/s: speed by the thumb's push", "m/s",
+       [](V v) { return testing::speed_as_one_side_leaves(stepped(v, kFine)); }},
       {"edge_grip", "bar pinched by its edges and shaken: off its place", "mm",
        [](V v) { return 1e3 * testing::squeezed_out(v.configuration); }},
       {"entry_face", "plate squeezed 15 mm deep: off its place", "mm",

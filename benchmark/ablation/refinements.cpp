@@ -18,6 +18,7 @@ const std::vector<Refinement>& refinements() {
       part("torsion", &ContactConfiguration::torsion),
       part("two_points", &ContactConfiguration::two_points),
       part("damping", &ContactConfiguration::damping),
+      part("release_fade", &ContactConfiguration::release_fade),
       part("edge_grip", &ContactConfiguration::edge_grip),
       part("entry_face", &ContactConfiguration::entry_face),
       part("swing_back", &ContactConfiguration::swing_back),

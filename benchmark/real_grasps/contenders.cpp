@@ -14,19 +14,24 @@ namespace {
 
 struct OurSetting {
   const char* model;
-  double stiffness;  // [N/m], 0: the model's own
+  double stiffness;          // [N/m], 0: the model's own
+  bool papers_hand = false;  // unlimited, hard, without help
 };
 
-constexpr OurSetting kOurs[] = {{"implicit", 0.0},       {"implicit", 500.0},       {"implicit", 1000.0},
-                                {"implicit", 5000.0},    {"implicit", 20000.0},     {"seed", 0.0},
-                                {"seed", 500.0},         {"seed", 2000.0},          {"penetration", 0.0},
-                                {"soft_pad", 0.0},       {"soft_pad", 2000.0},      {"soft_pad", 5000.0},
-                                {"virtual_spring", 0.0}, {"virtual_spring", 2000.0}};
+constexpr OurSetting kOurs[] = {
+    {"implicit", 0.0},       {"implicit", 500.0},        {"implicit", 1000.0},
+    {"implicit", 5000.0},    {"implicit", 20000.0},      {"seed", 0.0},
+    {"seed", 500.0},         {"seed", 2000.0},           {"penetration", 0.0},
+    {"soft_pad", 0.0},       {"soft_pad", 2000.0},       {"soft_pad", 5000.0},
+    {"virtual_spring", 0.0}, {"virtual_spring", 2000.0}, {"implicit", 500.0, true},
+    {"implicit", 0.0, true}, {"implicit", 20000.0, true}};
 
 std::string named(const Configuration& configuration) {
+  const bool helped = configuration.contact.grasp_assist;
+  const bool papers = configuration.contact.hand.finger == HandStrength::kUnlimited && !helped;
   char text[80];
-  std::snprintf(text, sizeof text, "%s; %g N/m", parameter_text(configuration, "contact_model").c_str(),
-                default_material(configuration).stiffness);
+  std::snprintf(text, sizeof text, "%s%s; %g N/m", parameter_text(configuration, "contact_model").c_str(),
+                papers ? ", the paper's hand" : "", default_material(configuration).stiffness);
   return text;
 }
 
@@ -45,6 +50,10 @@ std::vector<Contender> our_settings(const Configuration& configuration) {
     Configuration next = configuration;
     set_parameter(next, "contact_model", setting.model);
     if (setting.stiffness > 0.0) next.stiffness = setting.stiffness;
+    if (setting.papers_hand) {
+      next.contact.hand = HandStrength();
+      next.contact.grasp_assist = false;
+    }
     contenders.push_back(ours(next));
   }
   return contenders;

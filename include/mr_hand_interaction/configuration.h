@@ -70,11 +70,12 @@ struct ContactConfiguration {
   bool two_points = true;       ///< a phalanx that lies flat touches at two points; off: at one
   bool swing_back = true;       ///< a phalanx pressed in deep holds as if pushed back the way it came
   bool impact_friction = true;  ///< a blow may also stop the sliding (`implicit`)
-  bool damping = true;          ///< a pressed spring has a dashpot beside it (`implicit`)
-  bool torsion = true;          ///< a fingertip resists twisting about its contact normal (`implicit`)
-  bool edge_grip = true;        ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
-  bool grasp_assist = true;     ///< a hand that closes round a body and through it holds it (`implicit`)
-  bool sleep = true;            ///< bodies that lie still on others cost nothing until something comes near
+  bool damping = true;       ///< a pressed spring has a dashpot beside it (`implicit`, `seed`, `penetration`)
+  bool release_fade = true;  ///< it gives back ever less as the two part (`implicit`, `seed`, `penetration`)
+  bool torsion = true;       ///< a fingertip resists twisting about its contact normal (`implicit`)
+  bool edge_grip = true;     ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
+  bool grasp_assist = true;  ///< a hand that closes round a body and through it holds it (`implicit`)
+  bool sleep = true;         ///< bodies that lie still on others cost nothing until something comes near
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
   HandStrength hand = HandStrength::of_a_person();
 };

@@ -28,7 +28,7 @@ class LiveSimulation {
   /// Both throw std::invalid_argument for a name that is not known.
   void remove(const std::string& name);
   /// The events with which hands would leave a body if it were removed now.
-  std::vector<Event> farewell(const std::string& name) const;
+  std::vector<Event> events_if_removed(const std::string& name) const;
   /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
   /// place out of bounds.
   void place(const std::string& name, const Pose& pose);

@@ -7,25 +7,34 @@ import numpy as np
 import pandas
 from scipy import stats
 
-from . import pairwise
+from . import exact, pairwise, permutation
 from .anova import mixed_anova
+from .linear import ORDER, PERIOD, Model
 from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, plain
+from .questions import scale_of
 from .study_data import SIMULATED, measures_in, of_part, parts
 
-Results = collections.namedtuple('Results', 'bars comparison anova sphericity post_hoc ratings rating_tests notes')
+Results = collections.namedtuple('Results', 'bars comparison effects post_hoc any anova sphericity classical_pairs ratings '
+                                            'rating_tests notes')
+PAIRS = ('source gravity_g condition measure at a b test n_a n_b centre_a centre_b difference statistic df p '
+         'comparisons p_bonferroni stars effect_name effect low high')
 COLUMNS = {
     'bars': 'source gravity_g condition group object measure unit n mean sd ci95',
     'comparison': 'source gravity_g condition quantity unit n mean sd',
     'anova': 'source gravity_g condition within measure effect n df df_error f epsilon correction p p_uncorrected '
              'p_greenhouse_geisser p_huynh_feldt partial_eta_squared',
     'sphericity': 'source gravity_g condition within measure n w chi_squared df p greenhouse_geisser huynh_feldt',
-    'post_hoc': 'source gravity_g condition measure at a b test n_a n_b centre_a centre_b difference statistic df p '
-                'comparisons p_bonferroni stars effect_name effect',
+    'effects': 'source gravity_g condition within measure effect test scale n values statistic df df_error p terms '
+               'variances',
+    'any': 'source gravity_g condition measure at a b test had_a n_a low_a high_a had_b n_b low_b high_b p comparisons '
+           'p_bonferroni stars',
+    'post_hoc': PAIRS,
+    'classical_pairs': PAIRS,
     'ratings': 'source gravity_g condition question n mean sd median quartile_1 quartile_3',
     'rating_tests': 'source gravity_g condition question a b test n_a n_b centre_a centre_b difference statistic p '
                     'comparisons p_bonferroni stars effect_name effect',
 }
-EVERY = 'all'
+EVERY, OVERALL = 'all', 'all objects'
 
 
 def analyse(data):
@@ -39,6 +48,8 @@ def analyse(data):
         _analyse_conditions(tables, notes, dict(head, condition=EVERY), cells)
         _compare(tables['comparison'], head, of_part(data.trials, part), cells, ratings)
         _analyse_ratings(tables, head, ratings)
+    for source in sorted(set(data.cells['source'])):
+        _analyse_gravities(tables, notes, data.cells[data.cells['source'] == source], source)
     frames = {name: pandas.DataFrame(rows, columns=COLUMNS[name].split()) for name, rows in tables.items()}
     return Results(notes=notes.lines(), **frames)
 
@@ -51,6 +62,8 @@ class _Notes:
 
     def add(self, head, measure, what):
         where = '%s%g g, %s conditions' if head['condition'] == EVERY else '%s%g g, %s'
+        if np.isnan(head['gravity_g']):
+            where = '%sgravities, %.0s%s'
         simulated = 'simulated, ' if head['source'] == SIMULATED else ''
         key = where % (simulated, head['gravity_g'], head['condition']), what
         self.measures.setdefault(key, []).append(plain(measure))
@@ -79,10 +92,106 @@ def _analyse_objects(tables, notes, head, cells):
             values = wide.loc[group][name].dropna()
             tables['bars'].append(dict(head_of, group=group, object=name, unit=OF[measure].unit, **summary(values)))
         _test(tables, notes, head_of, 'object', wide)
-        between = [('at ' + name, a, b, pairwise.independent(wide.loc[a][name].dropna(), wide.loc[b][name].dropna()))
+        model = _test_effects(tables, notes, head_of, 'object', wide, of_measure)
+        between = [('at ' + name, a, b, wide.loc[a][name].dropna(), wide.loc[b][name].dropna())
                    for name in wide.columns for a, b in _pairs(wide)]
-        _add_comparisons(tables['post_hoc'], head_of, between)
-        _add_comparisons(tables['post_hoc'], head_of, _paired_columns(wide, 'objects', pairwise.paired))
+        overall = [(OVERALL, a, b, *[wide.loc[g].mean(axis=1).dropna() for g in (a, b)]) for a, b in _pairs(wide)]
+        within = [('objects', a, b, *_both(wide, a, b)) for a, b in itertools.combinations(wide.columns, 2)]
+        _add_pairs(tables, head_of, model, between, 'group')
+        _add_pairs(tables, head_of, model, overall, 'group')
+        _add_pairs(tables, head_of, model, within, 'object')
+
+
+def _both(wide, a, b):
+    both = wide[[a, b]].dropna()
+    return both[a], both[b]
+
+
+def _add_pairs(tables, head, model, family, factor):
+    """`family`: (at, a, b, values of a, values of b). Counts by permutation, the rest by contrasts of the model; and the
+    classical tests."""
+    between = factor == 'group'
+    classical = pairwise.independent if between else pairwise.paired
+    _add_comparisons(tables['classical_pairs'], head, [
+        (at, a, b, classical(of_a, of_b)) for at, a, b, of_a, of_b in family])
+    if OF[head['measure']].kind == 'count':
+        test = pairwise.counts_of_groups if between else pairwise.counts_of_pairs
+        rows = [(at, a, b, test(of_a, of_b)) for at, a, b, of_a, of_b in family]
+        _add_any(tables['any'], head, family, between)
+    else:
+        rows = [(at, a, b, pairwise.modelled(of_a, of_b, _contrast(model, factor, at, a, b),
+                                             model is not None and model.logarithm))
+                for at, a, b, of_a, of_b in family]
+    _add_comparisons(tables['post_hoc'], head, rows)
+
+
+def _contrast(model, factor, at, a, b):
+    if model is None or not {a, b} <= set(model.factors.get(factor, ())):
+        return None
+    of = {'object': at[len('at '):]} if at.startswith('at ') and 'object' in model.factors else {}
+    return model.difference(dict(of, **{factor: a}), dict(of, **{factor: b}))
+
+
+def _add_any(table, head, family, between):
+    """Who had any at all: exact, also where all of one group had and none of the other."""
+    rows = []
+    for at, a, b, of_a, of_b in family:
+        had_a, had_b = np.asarray(of_a) > 0, np.asarray(of_b) > 0
+        of_a, of_b = exact.share(had_a), exact.share(had_b)
+        p = exact.fisher(had_a, had_b) if between else exact.mcnemar(had_a, had_b)
+        rows.append(dict(head, at=at, a=a, b=b, test='Fisher, exact' if between else 'McNemar, exact',
+                         had_a=of_a.had, n_a=of_a.n, low_a=of_a.low, high_a=of_a.high, had_b=of_b.had, n_b=of_b.n,
+                         low_b=of_b.low, high_b=of_b.high, p=p))
+    corrected = pairwise.bonferroni([row['p'] for row in rows])
+    for row, p in zip(rows, corrected):
+        table.append(dict(row, comparisons=int(np.isfinite(corrected).sum()), p_bonferroni=p, stars=pairwise.stars(p)))
+
+
+def _test_effects(tables, notes, head, factor, wide, cells):
+    """Of group, factor and both: nobody is left out for what is missing. Gives the mixed model, if there is one."""
+    head = dict(head, within=factor)
+    values = wide.values[~np.isnan(wide.values)]
+    if len(values) < 2 or np.ptp(values) == 0:
+        return None
+    if OF[head['measure']].kind == 'count':
+        _add_permutations(tables['effects'], head, factor, wide)
+        return None
+    alone = [group for group, some in cells.groupby('group') if some['participant'].nunique() < 2]
+    some = cells[~cells['group'].isin(alone)]
+    factors = collections.OrderedDict([('group', in_order(some['group'], GROUPS)),
+                                       ('object', in_order(some['object'], OBJECTS))])
+    if factor == 'condition':
+        factors['condition'] = in_order(some['condition'], CONDITIONS)
+    logarithm = OF[head['measure']].kind == 'time' and bool((some['value'] > 0).all())
+    covariates = [ORDER] + [PERIOD] * (factor == 'condition')
+    try:
+        model = Model(some, factors, covariates, logarithm)
+        for names, test in model.effects():
+            tables['effects'].append(dict(
+                head, effect=' x '.join(names), test='mixed model F', scale='logarithm' if logarithm else 'as it is',
+                n=some['participant'].nunique(), values=len(some), statistic=test.f, df=test.df,
+                df_error=test.df_error, p=test.p, terms=' + '.join([' x '.join(t) for t in model.terms[1:]] +
+                                                                   model.covariates),
+                variances='; '.join('%s %.6g' % item for item in model.variances().items())))
+        return model
+    except (ValueError, np.linalg.LinAlgError) as error:
+        notes.add(head, head['measure'], 'no mixed model: %s' % error)
+        return None
+
+
+def _add_permutations(table, head, factor, wide):
+    """Columns of `wide` are the factor's levels."""
+    wide = wide.dropna(axis=1, how='all')
+    labels = wide.index.get_level_values('group')
+    tests = (('group', lambda: permutation.several_groups(wide.values, labels, profile=False)),
+             (factor, lambda: permutation.levels(wide.values)),
+             ('group x ' + factor, lambda: permutation.several_groups(wide.values, labels, profile=True)))
+    for effect, test in tests:
+        p = test()
+        if np.isfinite(p):
+            table.append(dict(head, effect=effect, test='permutation', scale='as it is', n=len(wide),
+                              values=int(wide.notna().values.sum()), statistic=np.nan, df=np.nan, df_error=np.nan, p=p,
+                              terms='', variances=''))
 
 
 def _analyse_conditions(tables, notes, head, cells):
@@ -100,13 +209,38 @@ def _analyse_conditions(tables, notes, head, cells):
                       % (', '.join(common) or 'none'))
         wide = of_measure.pivot_table(index=['group', 'participant'], columns=['condition', 'object'], values='value')
         conditions = in_order(of_measure['condition'], CONDITIONS)
+        model = None
         if common:
             means = pandas.DataFrame({condition: wide[condition][common].dropna().mean(axis=1)
                                       for condition in conditions}, index=wide.index)
             _test(tables, notes, head_of, 'condition', means)
-        _add_comparisons(tables['post_hoc'], head_of, [
-            ('conditions', a, b, pairwise.paired(*_means_over_shared(wide[a], wide[b])))
-            for a, b in itertools.combinations(conditions, 2)])
+            shown = pandas.DataFrame({condition: wide[condition].reindex(columns=common).mean(axis=1)
+                                      for condition in conditions}, index=wide.index)
+            model = _test_effects(tables, notes, head_of, 'condition', shown,
+                                  of_measure[of_measure['object'].isin(common)])
+        family = [('conditions', a, b, *_means_over_shared(wide[a], wide[b]))
+                  for a, b in itertools.combinations(conditions, 2)]
+        _add_pairs(tables, head_of, model, family, 'condition')
+
+
+def _analyse_gravities(tables, notes, cells, source):
+    """Gravity within participants, under each condition, where the same people were at several: in `effects` and the
+    tables of pairs, gravity_g is empty."""
+    for condition in in_order(cells['condition'], CONDITIONS):
+        some = cells[cells['condition'] == condition]
+        strengths = some.groupby('participant')['gravity_g'].nunique()
+        some = some[some['participant'].isin(strengths[strengths > 1].index)]
+        if some.empty:
+            continue
+        some = some.assign(condition=['%g g' % gravity for gravity in some['gravity_g']])
+        made = {name: [] for name in COLUMNS}
+        _analyse_conditions(made, notes, {'source': source, 'gravity_g': np.nan, 'condition': condition}, some)
+        for name, rows in made.items():
+            for row in rows:
+                for key in ('within', 'effect', 'at', 'terms'):
+                    if key in row and isinstance(row[key], str):
+                        row[key] = row[key].replace('conditions', 'gravities').replace('condition', 'gravity')
+                tables[name].append(row)
 
 
 def _means_over_shared(a, b):
@@ -187,16 +321,16 @@ def _compare(table, head, trials, cells, ratings):
             row = summary(some.groupby('participant')['value'].mean())
             row.pop('ci95')
             table.append(dict(head_of, quantity=measure, unit=OF[measure].unit, **row))
-        for question in QUESTIONS:
+        for question in in_order(ratings['question'], QUESTIONS):
             some = ratings[(ratings['condition'] == condition) & (ratings['question'] == question)]
             if len(some):
-                row = summary(some['score'])
+                row = summary(some['score'].astype(float))
                 row.pop('ci95')
-                table.append(dict(head_of, quantity=question, unit='0 to 10', **row))
+                table.append(dict(head_of, quantity=question, unit=scale_of(question), **row))
 
 
 def _analyse_ratings(tables, head, ratings):
-    for question in QUESTIONS:
+    for question in in_order(ratings['question'], QUESTIONS):
         some = ratings[ratings['question'] == question]
         if some.empty:
             continue

@@ -1,19 +1,10 @@
-"""The two questions of the paper, and the file that the answers go to."""
+"""The file that the answers go to."""
 
-import collections
 import csv
 import io
 import os
 
-from .session_folder import RATING_COLUMNS, RATINGS, StudyError, read_header, read_table
-
-TEXTS = collections.OrderedDict((
-    ('naturalness', ('How natural did the sensation of the average task completion experience feel?',
-                     'Extremely unnatural', 'Extremely natural')),
-    ('efficiency', ('How would you rate the efficiency of the average task completion experience?',
-                    'Extremely inefficient', 'Extremely efficient')),
-))
-
+from .session_folder import RATING_COLUMNS, StudyError, read_header, read_ratings
 
 class Answers:
     """The answers of one participant about one condition, in the session's ratings.csv. Lines are only ever added, and
@@ -30,7 +21,7 @@ class Answers:
         if not os.path.exists(self.path) or os.path.getsize(self.path) == 0:
             return list(RATING_COLUMNS), {}
         notes = []
-        rows = read_table(self.path, RATINGS, notes)
+        rows = read_ratings(self.path, notes)
         if notes:
             raise StudyError('%s; complete or delete that line first' % notes[0].replace(': left out', ''))
         with open(self.path, encoding='utf-8-sig', newline='') as file:
@@ -40,9 +31,9 @@ class Answers:
     def given(self):
         return self._read()[1]
 
-    def missing(self):
+    def missing(self, asked):
         given = self.given()
-        return [question for question in TEXTS if question not in given]
+        return [question for question in asked if question not in given]
 
     def add(self, scores):
         """`scores`: question to whole number; all go into the file in one write."""

@@ -3,10 +3,10 @@
 import numpy as np
 
 from .measures import GROUPS, OBJECTS, OF, in_order, plain, with_unit
-from .style import DARK, GROUP_COLOURS, INK, PALE, finish, new_figure, save
+from .style import INK, PALE, colours, finish, new_figure, save
 
 CAPTION = ('Bars: mean of the participants. Lines: 95 % confidence interval. Dots: participants. '
-           'Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
+           'Mixed model or permutation, Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
 ROOM = 0.09  # of the axis, for each bracket above the bars
 
 
@@ -26,16 +26,16 @@ def draw_bars(results, cells, measures, title, folder, name):
 
 def _draw_panel(axes, measure, bars, post_hoc, cells):
     groups, objects = in_order(bars['group'], GROUPS), in_order(bars['object'], OBJECTS)
-    width = 0.8 / len(groups)
+    width, colour_of = 0.8 / len(groups), colours(groups)
     for row in bars[bars['n'] > 0].itertuples():
         x = objects.index(row.object) + (groups.index(row.group) - (len(groups) - 1) / 2) * width
-        axes.bar(x, row.mean, 0.94 * width, color=GROUP_COLOURS[row.group], zorder=1)
+        axes.bar(x, row.mean, 0.94 * width, color=colour_of[row.group][0], zorder=1)
         values = np.sort(cells[(cells['group'] == row.group) & (cells['object'] == row.object)]['value'])
         beside = x + width * _aside(values, cells['value'].max())
-        axes.plot(beside, values, '.', color=DARK[row.group], markersize=3.5, alpha=0.75, zorder=2, clip_on=False)
+        axes.plot(beside, values, '.', color=colour_of[row.group][1], markersize=3.5, alpha=0.75, zorder=2, clip_on=False)
         axes.errorbar(x, row.mean, 0 if np.isnan(row.ci95) else row.ci95, color=INK, capsize=3, lw=1.2, zorder=3)
         axes.text(x, -0.015, '%s\nn = %d' % (row.group, row.n), ha='center', va='top', fontsize=7.5,
-                  color=DARK[row.group], transform=axes.get_xaxis_transform())
+                  color=colour_of[row.group][1], transform=axes.get_xaxis_transform())
     axes.set_xticks(range(len(objects)))
     axes.set_xticklabels([plain(name) for name in objects])
     axes.tick_params(axis='x', length=0, pad=25)
@@ -59,6 +59,7 @@ def _aside(values, top):
 def _brackets(post_hoc, groups, objects, width):
     """(level, from, to, stars) of the significant pairs: groups in the first level, objects in further ones."""
     found, level = [], 0
+    post_hoc = post_hoc[post_hoc['at'] != 'all objects']
     for row in post_hoc[post_hoc['stars'] != ''].itertuples():
         if row.at != 'objects':
             middle = objects.index(row.at[len('at '):])

@@ -3,10 +3,11 @@
 import numpy as np
 
 from .measures import CONDITIONS, GROUPS, OF, QUESTIONS, in_order, plain, with_unit
-from .session_folder import HIGHEST_SCORE
-from .style import DARK, GROUP_COLOURS, INK, finish, new_figure, save
+from .questions import PAPER
+from .style import INK, colours, finish, new_figure, save
 from .analysis import summary
 
+HIGHEST_SCORE = PAPER['naturalness'].highest
 COLOURS = dict(zip(QUESTIONS, ('#009E73', '#CC79A7')))
 WORDS = {'naturalness': ('unnatural', 'natural'), 'efficiency': ('inefficient', 'efficient')}
 
@@ -55,7 +56,8 @@ def draw_conditions(cells, measures, title, folder, name):
         groups = in_order(of_measure['group'], GROUPS)
         for i, group in enumerate(groups):
             _draw_group(axes, of_measure[of_measure['group'] == group], conditions, group,
-                        0.16 * ((len(groups) - 1) / 2 - i) * 2, named=axes is panels.flat[0])
+                        0.64 / max(2, len(groups)) * ((len(groups) - 1) / 2 - i), colours(groups)[group],
+                        named=axes is panels.flat[0])
         axes.set_title(with_unit(OF[measure]), loc='left')
         axes.set_ylim(-0.6, len(conditions) - 0.25)
         axes.set_yticks(range(len(conditions)))
@@ -68,7 +70,7 @@ def draw_conditions(cells, measures, title, folder, name):
     return save(figure, folder, name)
 
 
-def _draw_group(axes, cells, conditions, group, shift, named):
+def _draw_group(axes, cells, conditions, group, shift, colour, named):
     for row, condition in enumerate(reversed(conditions)):
         means = cells[cells['condition'] == condition].groupby('participant')['value'].mean()
         if means.empty:
@@ -77,8 +79,8 @@ def _draw_group(axes, cells, conditions, group, shift, named):
         ends = of['mean'] + np.nan_to_num(of['ci95']) * np.array([-1, 1])
         ends = np.clip(ends, 0, 1 if cells['measure'].iloc[0] == 'completed' else None)
         axes.errorbar(of['mean'], row + shift, xerr=np.abs(ends - of['mean'])[:, None], fmt='o', markersize=6,
-                      color=DARK[group], markerfacecolor=GROUP_COLOURS[group], capsize=2.5, lw=1.2, clip_on=False)
+                      color=colour[1], markerfacecolor=colour[0], capsize=2.5, lw=1.2, clip_on=False)
         if named and row == len(conditions) - 1:
             axes.annotate(group, (of['mean'], row + shift), xytext=(0, 6 if shift >= 0 else -6),
                           textcoords='offset points', ha='center', va='bottom' if shift >= 0 else 'top', fontsize=7.5,
-                          color=DARK[group])
+                          color=colour[1])

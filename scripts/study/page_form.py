@@ -8,8 +8,8 @@ import socketserver
 import threading
 import urllib.parse
 
-from .answers import TEXTS
-from .session_folder import HIGHEST_SCORE, StudyError, score
+from .questions import ALL, score_of
+from .session_folder import StudyError
 
 LOCALHOST = '127.0.0.1'
 LONGEST = 4096  # bytes of a form
@@ -65,7 +65,7 @@ class Form(socketserver.ThreadingMixIn, http.server.HTTPServer):
     def form(self, chosen, wrong=''):
         fields = ''.join(_fieldset(question, chosen.get(question)) for question in self.questions)
         problem = '<p class="wrong" role="alert">%s</p>' % html.escape(wrong) if wrong else ''
-        return page('Two questions' if len(self.questions) == 2 else 'A question',
+        return page({1: 'A question', 2: 'Two questions'}.get(len(self.questions), 'Questions'),
                     '<form method="post" action="/">%s<input type="hidden" name="token" value="%s">%s'
                     '<button type="submit">Save</button></form>' % (problem, self.token, fields))
 
@@ -87,21 +87,23 @@ def _checked(questions, fields):
     chosen, wrong = collections.OrderedDict(), ''
     for question in questions:
         try:
-            chosen[question] = score(fields.get(question, ''))
+            chosen[question] = score_of(question, fields.get(question, ''))
         except ValueError as error:
-            said = str(error) if fields.get(question) else 'please choose a number from 0 to %d' % HIGHEST_SCORE
+            said = str(error) if fields.get(question) else 'please choose a number from %d to %d' % (
+                ALL[question].lowest, ALL[question].highest)
             wrong = wrong or '%s: %s.' % (question.capitalize(), said)
     return chosen, wrong
 
 
 def _fieldset(question, chosen):
-    text, low, high = TEXTS[question]
+    asked = ALL[question]
     choices = ''.join(
         '<label><input type="radio" name="%s" id="%s_%d" value="%d" required%s>%d</label>'
         % (question, question, value, value, ' checked' if value == chosen else '', value)
-        for value in range(HIGHEST_SCORE + 1))
-    return ('<fieldset><legend>%s</legend><div class="scale">%s</div><div class="ends"><span>0: %s</span>'
-            '<span>%d: %s</span></div></fieldset>' % (text, choices, low, HIGHEST_SCORE, high))
+        for value in range(asked.lowest, asked.highest + 1))
+    return ('<fieldset><legend>%s</legend><div class="scale">%s</div><div class="ends"><span>%d: %s</span>'
+            '<span>%d: %s</span></div></fieldset>' % (html.escape(asked.text), choices, asked.lowest, asked.low,
+                                                      asked.highest, asked.high))
 
 
 class _Handler(http.server.BaseHTTPRequestHandler):

@@ -5,9 +5,13 @@ import collections
 import numpy as np
 from scipy import stats
 
-# `effect` is of the kind `effect_name`; `difference` is a's mean (or median) less b's. nan: cannot be computed.
+from . import exact, permutation
+
+# `effect` is of the kind `effect_name`, with the 95 % interval from `low` to `high`; `difference` is a's mean (or
+# median) less b's. nan: cannot be computed.
 Comparison = collections.namedtuple('Comparison', 'test n_a n_b centre_a centre_b difference statistic df p '
-                                                  'effect_name effect')
+                                                  'effect_name effect low high')
+Comparison.__new__.__defaults__ = (np.nan, np.nan)
 
 
 def independent(a, b):
@@ -36,6 +40,32 @@ def paired(a, b):
         p = 2 * stats.t.sf(abs(statistic), len(a) - 1)
     df = len(a) - 1 if spread > 0 else np.nan
     return _of_means('paired t', a, b, statistic, df, p, 'd_z', effect)
+
+
+def counts_of_groups(a, b):
+    """Permutation test; the effect is the ratio of the means, with the interval of resampled participants."""
+    return _of_counts(a, b, permutation.groups, permutation.ratio_of_groups)
+
+
+def counts_of_pairs(a, b):
+    return _of_counts(a, b, permutation.pairs, permutation.ratio_of_pairs)
+
+
+def _of_counts(a, b, test, ratio):
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    p = test(a, b) if len(a) and len(b) else np.nan
+    return _of_means('permutation', a, b, np.nan, np.nan, p, 'ratio of means', *ratio(a, b))
+
+
+def modelled(a, b, difference, logarithm):
+    """`difference`: a contrast of a mixed model, or None; `a` and `b`: what there is to be seen of it."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    name = 'ratio of geometric means' if logarithm else 'difference'
+    if difference is None:
+        return _of_means('mixed model t', a, b, np.nan, np.nan, np.nan, name, np.nan)
+    shown = np.exp if logarithm else float
+    return _of_means('mixed model t', a, b, difference.estimate / difference.se, difference.df, difference.p, name,
+                     *[float(shown(x)) for x in (difference.estimate, difference.low, difference.high)])
 
 
 def cohens_d(a, b):
@@ -71,7 +101,7 @@ def _signed_rank_p(ranks, smaller):
 
 
 def rank_sum(a, b):
-    """Mann and Whitney's test for two groups; the effect is the rank-biserial correlation."""
+    """Mann and Whitney's test for two groups, exact with ties; the effect is the rank-biserial correlation."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     statistic = p = effect = np.nan
     if len(a) and len(b):
@@ -79,7 +109,7 @@ def rank_sum(a, b):
         statistic = float(np.sum(ranks[:len(a)]) - len(a) * (len(a) + 1) / 2)
         effect = 2 * statistic / (len(a) * len(b)) - 1
         same = np.ptp(ranks) == 0
-        p = 1.0 if same else float(stats.mannwhitneyu(a, b, alternative='two-sided').pvalue)
+        p = 1.0 if same else exact.rank_sum_p(ranks, len(a))
     return _of_medians('rank sum', a, b, statistic, p, effect)
 
 

@@ -6,6 +6,7 @@ import html
 import numpy as np
 
 from .measures import CONDITIONS, MAIN, OF, in_order, plain, with_unit
+from .questions import scale_of
 from .study_data import SIMULATED, label_of
 
 STYLE = '''body{font:15px/1.5 sans-serif;color:#222;max-width:62rem;margin:2rem auto;padding:0 1rem}
@@ -22,16 +23,23 @@ PAGE = '''<!DOCTYPE html>
 </body></html>
 '''
 NO_PERSON = 'Simulated operators: no person took part. These figures describe a program that plays a person.'
+EFFECT_COLUMNS = ('Effect', 'Test', 'p', 'Scale', 'n')
 ANOVA_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Correction')
 SPHERICITY_COLUMNS = ('Measure', 'W', 'Test', 'p', 'Greenhouse-Geisser \u03b5', 'Huynh-Feldt \u03b5')
-METHODS = '''<p>Each participant's repetitions are averaged first. Groups (between participants) and objects, or
-conditions (within), are tested in a mixed analysis of variance with type III sums of squares; sphericity by Mauchly's
-test. Where it is violated (p &lt; 0.05, or too few participants to tell) the degrees of freedom are corrected: by
-Greenhouse and Geisser's &epsilon; if that is at most 0.75, else by Huynh and Feldt's. Pairs: Welch's t-test with
-Cohen's d between groups, paired t-test with d<sub>z</sub> within participants; ratings: Wilcoxon's and Mann and
-Whitney's tests with the rank-biserial correlation. p-values of pairs are Bonferroni-corrected within a measure and a
-family of comparisons (the groups at each object; the objects; the conditions). Completion time and attempts are the
-measures named in advance; the others are exploratory, and no correction is made for how many they are.</p>'''
+METHODS = '''<p>Each participant's repetitions are averaged first; nobody is left out for what is missing. Times (their
+logarithm) and other amounts: linear mixed models with random participants, by restricted maximum likelihood, tested by
+Kenward and Roger's F and t. Counts (drops, grasps, tracking losses, trials completed): permutation tests, in which
+participants change groups, or a participant's values change places; ratios with the intervals of resampled
+participants; and exact tests of who had any (Fisher's, McNemar's). Ratings: Wilcoxon's and Mann and Whitney's tests, exact
+with ties, and the rank-biserial correlation. p-values of pairs are Bonferroni-corrected within a measure and a family of
+comparisons (the groups at each object; the objects; the conditions), and stars are by these.</p>
+<p>Beside them, as the paper did: a mixed analysis of variance with type III sums of squares of the participants with a
+value everywhere; sphericity by Mauchly's test, and where it is violated (p &lt; 0.05, or too few participants to tell)
+Greenhouse and Geisser's correction of the degrees of freedom if its &epsilon; is at most 0.75, else Huynh and Feldt's;
+Welch's t-test with Cohen's d between groups, the paired t-test with d<sub>z</sub> within participants. Of counts that are
+mostly 0 their p-values are not to be trusted.</p>
+<p>Completion time and drops during manipulation (the paper's attempts) are the measures named in advance; the others are
+exploratory, and no correction is made for how many they are.</p>'''
 
 
 class Report:
@@ -98,6 +106,8 @@ def write_report(path, results, sessions, figures, notes):
         report.text(some + NO_PERSON, 'simulated')
     for part in sorted(set(map(tuple, results.comparison[['source', 'gravity_g']].values))) if results else ():
         _part(report, part, results, figures)
+    if results is not None:
+        _gravities(report, results)
     for (part, name, kind), file in figures.items():
         if kind == 'trajectory':
             report.heading('Trajectories: ' + name)
@@ -105,6 +115,17 @@ def write_report(path, results, sessions, figures, notes):
     if sessions:
         _account(report, sessions, notes)
     report.write(path)
+
+
+def _gravities(report, results):
+    """Of participants who were at several gravities."""
+    effects, pairs = (table[table['gravity_g'].isna()] for table in (results.effects, results.post_hoc))
+    if len(effects) or len(pairs):
+        report.heading('Gravity, within participants')
+        report.table('Effects', EFFECT_COLUMNS, [[plain(name) + ', ' + row[0]] + row[1:] for name, row in zip(
+            effects['condition'], _effect_rows(effects))])
+        _pairs(report, pairs[pairs['p'].notna()], 'Pairs',
+               lambda row: '%s, %s' % (plain(row.condition), OF[row.measure].label))
 
 
 def _account(report, sessions, notes):
@@ -132,12 +153,15 @@ def _part(report, part, results, figures):
     _tests(report, results, part, 'all', 'conditions')
     for condition in in_order(_rows(results.bars, part)['condition'], CONDITIONS):
         report.heading('Groups and objects: ' + plain(condition), 3)
-        _figure_of(report, figures, part, condition, 'bars', 'Attempts and completion time')
+        _figure_of(report, figures, part, condition, 'bars', 'Drops during manipulation and completion time')
         _tests(report, results, part, condition, 'objects and groups')
         if (part, condition, 'further') in figures:
             with report.folded('Further measures'):
                 _figure_of(report, figures, part, condition, 'further', 'Further measures')
     _ratings(report, results, part, figures)
+    if (part, None, 'learning') in figures:
+        report.heading('Learning', 3)
+        _figure_of(report, figures, part, None, 'learning', 'Learning curves')
 
 
 def _figure_of(report, figures, part, condition, kind, description):
@@ -147,7 +171,7 @@ def _figure_of(report, figures, part, condition, kind, description):
 
 def _comparison(report, rows):
     quantities = list(dict.fromkeys(rows['quantity']))
-    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else q.capitalize() + ' [0 to 10]' for q in quantities]
+    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else '%s [%s]' % (plain(q).capitalize(), scale_of(q)) for q in quantities]
     table = []
     for condition in dict.fromkeys(rows['condition']):
         some = rows[rows['condition'] == condition]
@@ -159,25 +183,53 @@ def _comparison(report, rows):
 
 
 def _tests(report, results, part, condition, what):
-    anova = _rows(results.anova, part, condition=condition)
-    pairs = _rows(results.post_hoc, part, condition=condition)
-    pairs = pairs[pairs['p'].notna()]
-    main = anova[anova['measure'].isin(MAIN)]
+    effects = _rows(results.effects, part, condition=condition)
+    main, rest = (effects[effects['measure'].isin(MAIN) == wanted] for wanted in (True, False))
     if len(main):
-        report.table('Analysis of variance', ANOVA_COLUMNS, _anova_rows(main))
+        report.table('Effects', EFFECT_COLUMNS, _effect_rows(main))
+    pairs = _rows(results.post_hoc, part, condition=condition)
+    any_had = _rows(results.any, part, condition=condition)
+    with report.folded('Pairs, and effects on further measures: ' + what):
+        if len(rest):
+            report.table('Effects, exploratory', EFFECT_COLUMNS, _effect_rows(rest))
+        _pairs(report, pairs[pairs['p'].notna()], 'Pairs',
+               lambda row: '%s, %s' % (OF[row.measure].label, plain(row.at)))
+        _any(report, any_had[any_had['p'].notna()])
+    with report.folded('Classical analysis of variance and t-tests, as in the paper: ' + what):
+        _classical(report, results, part, condition)
+
+
+def _effect_rows(effects):
+    return [['%s: %s' % (OF[row.measure].label, row.effect.replace(' x ', ' \u00d7 ')),
+             row.test if np.isnan(row.statistic) else
+             'F(%d, %s) = %.2f' % (row.df, number(row.df_error, 4), row.statistic),
+             p_text(row.p), row.scale, str(row.n)] for row in effects.itertuples()]
+
+
+def _any(report, rows):
+    def had(count, n, low, high):
+        return '%d of %d (%.0f to %.0f %%)' % (count, n, 100 * low, 100 * high)
+    if len(rows):
+        report.table('Participants who had any, with exact 95 % intervals', ['Of', 'a', 'b', 'a', 'b', 'Test',
+                                                                             'p, Bonferroni', ''], [
+            ['%s, %s' % (OF[row.measure].label, plain(row.at)), plain(row.a), plain(row.b),
+             had(row.had_a, row.n_a, row.low_a, row.high_a), had(row.had_b, row.n_b, row.low_b, row.high_b), row.test,
+             p_text(row.p_bonferroni), row.stars] for row in rows.itertuples()])
+
+
+def _classical(report, results, part, condition):
+    anova = _rows(results.anova, part, condition=condition)
+    if len(anova):
+        report.table('Analysis of variance', ANOVA_COLUMNS, _anova_rows(anova))
     sphericity = _rows(results.sphericity, part, condition=condition)
-    sphericity = sphericity[sphericity['measure'].isin(MAIN)]
     if len(sphericity):
         report.table("Sphericity (Mauchly's test)", SPHERICITY_COLUMNS, [
             [OF[row.measure].label, number(row.w), '\u03c7\u00b2(%d) = %s' % (row.df, number(row.chi_squared)),
              p_text(row.p), number(row.greenhouse_geisser), number(row.huynh_feldt)]
             for row in sphericity.itertuples()])
-    rest = anova[~anova['measure'].isin(MAIN)]
-    if len(rest) or len(pairs):
-        with report.folded('Pairs, and the analysis of variance of further measures: ' + what):
-            if len(rest):
-                report.table('Analysis of variance, exploratory', ANOVA_COLUMNS, _anova_rows(rest))
-            _pairs(report, pairs, 'Pairs', lambda row: '%s, %s' % (OF[row.measure].label, plain(row.at)))
+    pairs = _rows(results.classical_pairs, part, condition=condition)
+    _pairs(report, pairs[pairs['p'].notna()], 'Pairs',
+           lambda row: '%s, %s' % (OF[row.measure].label, plain(row.at)))
 
 
 def _anova_rows(anova):
@@ -192,10 +244,21 @@ def _pairs(report, pairs, caption, where):
     if len(pairs):
         report.table(caption, ['Of', 'a', 'b', 'a', 'b', 'Test', 'p, Bonferroni', '', 'Effect'], [
             [where(row), plain(row.a), plain(row.b), number(row.centre_a), number(row.centre_b),
-             '%s%s = %.2f' % (row.test, '(%s)' % number(row.df, 4) if 'df' in row._fields and row.df == row.df else '',
-                              row.statistic),
-             p_text(row.p_bonferroni), row.stars, '%s = %.2f' % (row.effect_name.replace('_', ''), row.effect)]
+             _test_text(row), p_text(row.p_bonferroni), row.stars, _effect_text(row)]
             for row in pairs.itertuples()])
+
+
+def _test_text(row):
+    if np.isnan(row.statistic):
+        return row.test
+    df = '(%s)' % number(row.df, 4) if 'df' in row._fields and row.df == row.df else ''
+    return '%s%s = %.2f' % (row.test, df, row.statistic)
+
+
+def _effect_text(row):
+    text = '%s = %s' % (row.effect_name.replace('_', ''), number(row.effect))
+    known = 'low' in row._fields and not np.isnan(row.low)
+    return text + (' (%s to %s)' % (number(row.low), number(row.high)) if known else '')
 
 
 def _ratings(report, results, part, figures):
@@ -204,8 +267,8 @@ def _ratings(report, results, part, figures):
         return
     report.heading('Ratings', 3)
     _figure_of(report, figures, part, None, 'ratings', 'Distributions of the ratings')
-    report.table('Ratings, 0 to 10', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
-        [plain(row.condition), row.question, str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
+    report.table('Ratings', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
+        [plain(row.condition), '%s [%s]' % (plain(row.question), scale_of(row.question)), str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
          '%s to %s' % (number(row.quartile_1), number(row.quartile_3))] for row in ratings.itertuples()])
     pairs = _rows(results.rating_tests, part)
     _pairs(report, pairs[pairs['p'].notna()], 'Pairs: medians',

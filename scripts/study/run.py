@@ -3,33 +3,55 @@
 import collections
 import os
 
-from . import bars, distributions, trajectories
+import pandas
+
+from . import bars, demographics, dictionary, distributions, learning, progress, trajectories, with_r
 from .analysis import analyse
-from .measures import COMPARED, CONDITIONS, MAIN, OF, in_order, plain
+from .measures import COMPARED, CONDITIONS, MAIN, OF, QUESTIONS, in_order, plain
 from .report import write_report
 from .session_folder import find_sessions, read_session
 from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
 
 
-def run(folders, output, pairs):
-    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn."""
+def run(folders, output, pairs, ask_r=False):
+    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn. `ask_r`: for its models too."""
     sessions = [read_session(folder) for folder in find_sessions(folders)]
+    people, of_people, refused = demographics.table(sessions)
+    sessions = [session for session in sessions if session.participant not in refused or session.simulated]
     paths, notes = _read_paths(sessions, pairs)
+    notes = of_people + notes
     data = gather(sessions) if sessions else None
     results = analyse(data) if data else None
+    of_r = _models_of_r(data, notes) if data and ask_r else None
     os.makedirs(output, exist_ok=True)
     figures, pictures = collections.OrderedDict(), os.path.join(output, 'figures')
     if data:
         notes = data.notes + results.notes + notes
-        _write_tables(output, data, results, notes)
+        blocks = learning.blocks(data.trials)
+        _write_tables(output, data, results, notes, blocks, people)
+        progress.write_pages(blocks, output)
+        if of_r is not None:
+            of_r.to_csv(os.path.join(output, 'r_models.csv'), index=False, float_format='%.10g')
         for part in parts(data):
             _draw_part(figures, pictures, part, data, results)
+            some = of_part(blocks, part)
+            if some['block'].nunique() > 1 and set(some['measure']) & set(learning.CURVES):
+                figures[part, None, 'learning'] = learning.draw(
+                    learning.curves(some), 'Learning: ' + label_of(part), part[0], pictures, 'learning_' + file_label(part))
     for label, source, raw, filtered in paths:
         file = 'trajectory_' + label.replace(os.sep, '_').replace(' ', '_')
         figures[None, label, 'trajectory'] = trajectories.draw_trajectories(
             raw, filtered, 'Trajectories: ' + label, source, pictures, file)
     write_report(os.path.join(output, 'report.html'), results, sessions, figures, notes)
     return notes
+
+
+def _models_of_r(data, notes):
+    lacking = with_r.missing()
+    if lacking:
+        notes.append('R: %s not installed: %s' % (lacking, with_r.WITHOUT))
+        return None
+    return with_r.models(data.cells)
 
 
 def _read_paths(sessions, pairs):
@@ -56,16 +78,31 @@ def _read_paths(sessions, pairs):
     return [(label, source, read(raw), read(filtered)) for label, source, raw, filtered in found], notes
 
 
-def _write_tables(output, data, results, notes):
+def _write_tables(output, data, results, notes, blocks, people):
     tables = dict(results._asdict(), trials=data.trials)
     tables.pop('notes')
     keys = HEAD + ['object']
     wide = data.cells.pivot_table(index=keys, columns='measure', values='value')
     tables['participants'] = wide[measures_in(data.cells)].reset_index()
+    tables['tidy'] = _tidy(data)
+    tables['learning'], tables['learning_tests'] = learning.curves(blocks), learning.slopes(blocks)
+    tables['demographics'] = pandas.DataFrame(people, columns=('participant', 'group') + demographics.FIELDS)
+    tables['data_dictionary'] = dictionary.table(tables)
     for name, table in tables.items():
         table.to_csv(os.path.join(output, name + '.csv'), index=False, float_format='%.10g')
     with open(os.path.join(output, 'left_out.txt'), 'w', encoding='utf-8') as file:
         file.writelines(note + '\n' for note in notes)
+
+
+def _tidy(data):
+    """All values and answers, each in a row of its own."""
+    keys = [c for c in HEAD if c != 'handedness'] + ['session_number', 'period', 'trial', 'order', 'object', 'repetition',
+                                                     'result']
+    trials = data.trials.assign(completed=(data.trials['result'] == 'completed').astype(int))
+    values = trials.melt(keys, [m for m in OF if m in trials.columns], 'measure').dropna(subset=['value'])
+    answers = data.ratings.rename(columns={'question': 'measure', 'score': 'value'})
+    answers = answers.reindex(columns=[c for c in keys if c in answers.columns and c != 'order'] + ['measure', 'value'])
+    return pandas.concat([values, answers], ignore_index=True)[keys + ['measure', 'value']]
 
 
 def _draw_part(figures, folder, part, data, results):
@@ -87,7 +124,7 @@ def _draw_part(figures, folder, part, data, results):
                 figures[part, condition, kind] = bars.draw_bars(
                     of_condition, some, measures, '%s: %s, %s' % (title, plain(condition), label), folder,
                     '_'.join((kind, condition, file)))
-    if len(ratings):
+    if ratings['question'].isin(QUESTIONS).any():
         figures[part, None, 'ratings'] = distributions.draw_ratings(ratings, 'Ratings: ' + label, folder,
                                                                     'ratings_' + file)
 

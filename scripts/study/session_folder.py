@@ -8,17 +8,16 @@ import os
 
 import yaml
 
-from .measures import GROUPS, QUESTIONS
+from .questions import score_of
 
 GRAVITY = 9.80665  # m/s^2
 VERSION = 1
 RESULTS = ('completed', 'skipped', 'timed_out', 'aborted')
 RATING_COLUMNS = ('condition', 'question', 'score')
-HIGHEST_SCORE = 10
 
 # `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` tells what was passed over.
 Session = collections.namedtuple('Session', 'folder participant group handedness condition gravity simulated '
-                                            'trials ratings notes')
+                                            'session seed started trials ratings notes')
 
 
 class StudyError(Exception):
@@ -65,13 +64,6 @@ def number(text):
     return value
 
 
-def score(text):
-    value = _number(int, text, 'a whole number from 0 to %d' % HIGHEST_SCORE)
-    if not 0 <= value <= HIGHEST_SCORE:
-        raise ValueError("'%s' is not a whole number from 0 to %d" % (text, HIGHEST_SCORE))
-    return value
-
-
 def _number(kind, text, what):
     try:
         return kind(text)
@@ -87,11 +79,15 @@ TRIALS = collections.OrderedDict(
     [(column, amount) for column in ('path_length', 'grip_force_mean', 'grip_force_max', 'release_drift',
                                      'release_speed')] +
     [('tracking_losses', count)])
-RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, one_of(*QUESTIONS), score)))
+# Of sessions since they are measured; before, grasps are the attempts, and these drops are counted in events.csv.
+ADDED = collections.OrderedDict([('grasps', count), ('manipulation_drops', count)])
+EVENTS = collections.OrderedDict([('trial', count), ('stage', str), ('event', str)])
+RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 
 
-def read_table(path, columns, notes):
-    """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash."""
+def read_table(path, columns, notes, added=()):
+    """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash.
+    `added`: columns that may all be missing."""
     try:
         with open(path, encoding='utf-8-sig', newline='') as file:
             text = file.read()
@@ -102,6 +98,8 @@ def read_table(path, columns, notes):
     missing = [column for column in columns if column not in header]
     if missing:
         raise StudyError("%s: line 1: no column '%s'" % (path, missing[0]))
+    if set(added) <= set(header):
+        columns = collections.OrderedDict(list(columns.items()) + list(dict(added).items()))
     places, rows = [(column, header.index(column), parse) for column, parse in columns.items()], []
     whole = text.endswith(('\n', '\r'))
     lines = list(_lines(reader, path))
@@ -131,6 +129,17 @@ def _parse_row(path, line, cells, header, places):
         except ValueError as error:
             raise StudyError('%s: line %d: %s: %s' % (path, line, column, error)) from None
     return row
+
+
+def read_ratings(path, notes):
+    """Rows with scores in the range of their question."""
+    rows = read_table(path, RATINGS, notes)
+    for line, row in enumerate(rows, 2):
+        try:
+            row['score'] = score_of(row['question'], row['score'])
+        except ValueError as error:
+            raise StudyError('%s: line %d: score: %s' % (path, line, error)) from None
+    return rows
 
 
 def read_header(folder):
@@ -179,25 +188,50 @@ def _flag(value):
     return value
 
 
+def _session(value):
+    if type(value) is not int or value < 1:
+        raise ValueError("'%s' is not a whole number of at least 1" % (value,))
+    return value
+
+
+def _seed(value):
+    if type(value) is not int or value < 0:
+        raise ValueError("'%s' is not a whole number of at least 0" % (value,))
+    return value
+
+
 def _text(parse):
     return lambda value: parse(str(value))
 
 
-HEADER = (('version', None, _version), ('participant', None, _text(name)), ('group', None, _text(one_of(*GROUPS))),
+HEADER = (('version', None, _version), ('participant', None, _text(name)), ('group', None, _text(name)),
           ('handedness', 'unknown', _text(one_of('left', 'right'))), ('condition', None, _text(name)),
-          ('gravity', None, _strength), ('simulated', False, _flag))
+          ('gravity', None, _strength), ('simulated', False, _flag),
+          ('session', 1, _session), ('seed', 1, _seed), ('started', '', str))
 
 
 def read_session(folder):
     header, notes = read_header(folder), []
-    tables = []
-    for file, columns in (('trials.csv', TRIALS), ('ratings.csv', RATINGS)):
-        path = os.path.join(folder, file)
-        tables.append(read_table(path, columns, notes) if os.path.exists(path) else [])
-    trials, ratings = tables
+    trials_file, ratings_file = (os.path.join(folder, file) for file in ('trials.csv', 'ratings.csv'))
+    trials = read_table(trials_file, TRIALS, notes, ADDED) if os.path.exists(trials_file) else []
+    ratings = read_ratings(ratings_file, notes) if os.path.exists(ratings_file) else []
+    _add_counts(folder, trials, notes)
     _check_trial_numbers(os.path.join(folder, 'trials.csv'), trials)
     header.pop('version')
     return Session(folder=folder, trials=trials, ratings=_last_answers(ratings, folder, notes), notes=notes, **header)
+
+
+def _add_counts(folder, trials, notes):
+    """What older sessions do not have in trials.csv."""
+    if trials and 'manipulation_drops' in trials[0]:
+        return
+    path, dropped = os.path.join(folder, 'events.csv'), None
+    if os.path.exists(path):
+        dropped = collections.Counter(row['trial'] for row in read_table(path, EVENTS, notes)
+                                      if row['stage'] == 'manipulation' and row['event'] in ('dropped', 'missed'))
+    for row in trials:
+        row['grasps'] = row['attempts']
+        row['manipulation_drops'] = None if dropped is None else dropped[row['trial']]
 
 
 def _check_trial_numbers(path, trials):

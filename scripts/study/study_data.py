@@ -6,9 +6,11 @@ import os
 import pandas
 
 from .measures import MEASURES, OF
-from .session_folder import StudyError, TRIALS
+from .questions import NASA_TLX, SUS, derived
+from .session_folder import ADDED, StudyError, TRIALS
 
 PEOPLE, SIMULATED = 'people', 'simulated operators, no person took part'
+PLACES = ['order', 'period', 'session_number']  # of a trial in its session, of the session among all, as it says
 HEAD = ['source', 'gravity_g', 'condition', 'participant', 'group', 'handedness']
 
 # `trials` and `ratings` as they were read, with HEAD before their own columns; `cells` has the mean over repetitions
@@ -17,26 +19,65 @@ StudyData = collections.namedtuple('StudyData', 'trials ratings cells notes')
 
 
 def gather(sessions):
+    sessions = _with_seeds(sessions)
     _check_participants(sessions)
+    periods = _periods(sessions)
     notes = [note for session in sessions for note in session.notes]
-    trials = _pooled(sessions, 'trials', list(TRIALS))
-    ratings = _pooled(sessions, 'ratings', ['question', 'score'])
+    trials = _pooled(sessions, periods, 'trials', list(TRIALS) + list(ADDED) + PLACES)
+    ratings = _with_scales(_pooled(sessions, periods, 'ratings', ['question', 'score']))
     if trials.empty and ratings.empty:
         raise StudyError('no trials and no ratings in %d sessions' % len(sessions))
     notes += _notes_on_trials(trials)
     silent = sorted({s.participant for s in sessions if not s.ratings and not s.simulated})
     if silent:
         notes.append('no ratings from %s' % ', '.join(silent))
-    return StudyData(trials, ratings, _cells(trials), notes)
+    practice = (trials['repetition'] == 0).sum()
+    if practice:
+        notes.append('%d trials were practice: left out of all but the table of trials' % practice)
+    return StudyData(trials, ratings, _cells(trials[trials['repetition'] != 0]), notes)
 
 
-def _pooled(sessions, table, columns):
+def _with_scales(ratings):
+    """NASA-TLX and SUS in the place of their single questions."""
+    if ratings.empty:
+        return ratings
+    rows = []
+    for _, some in ratings.groupby(['session', 'condition'], sort=False):
+        scores = dict(zip(some['question'], some['score']))
+        head = some.iloc[0].to_dict()
+        rows += [dict(head, question=question, score=score) for question, score in derived(scores).items()]
+    single = ratings[~ratings['question'].isin(list(NASA_TLX) + list(SUS))]
+    return pandas.concat([single, pandas.DataFrame(rows, columns=ratings.columns)], ignore_index=True)
+
+
+def _with_seeds(sessions):
+    """A simulated operator is another one with another seed."""
+    if len({s.seed for s in sessions if s.simulated}) < 2:
+        return sessions
+    return [s._replace(participant='%s seed %d' % (s.participant, s.seed)) if s.simulated else s for s in sessions]
+
+
+def _periods(sessions):
+    """Of each session its place among those of its participant, from 1, by when they were started; nan: not known."""
+    of_person = collections.defaultdict(list)
+    for session in sessions:
+        of_person[session.participant, session.simulated].append(session)
+    periods = {}
+    for some in of_person.values():
+        known = len({s.started for s in some} - {''}) == len(some)
+        for place, session in enumerate(sorted(some, key=lambda s: (s.started, s.folder)), 1):
+            periods[session.folder] = place if known else float('nan')
+    return periods
+
+
+def _pooled(sessions, periods, table, columns):
     rows = []
     for session in sessions:
         head = {'source': SIMULATED if session.simulated else PEOPLE, 'gravity_g': session.gravity,
                 'participant': session.participant, 'group': session.group, 'handedness': session.handedness,
                 'session': session.folder}
-        rows += [dict(row, **head) for row in getattr(session, table)]
+        place = {'period': periods[session.folder], 'session_number': session.session}
+        rows += [dict(row, order=order, **place, **head) for order, row in enumerate(getattr(session, table), 1)]
     return pandas.DataFrame(rows, columns=HEAD + [c for c in columns if c not in HEAD] + ['session'])
 
 
@@ -52,7 +93,8 @@ def _check_participants(sessions):
                 os.path.join(first.folder, 'session.yaml')))
         for table in ('trials', 'ratings'):
             for condition in {row['condition'] for row in getattr(session, table)}:
-                other = folders.setdefault(who + (session.gravity, table, condition), session.folder)
+                key = who + (session.gravity, table, condition, session.session)
+                other = folders.setdefault(key, session.folder)
                 if other != session.folder:
                     raise StudyError("%s: %s of participant '%s' in condition '%s' are also in %s" % (
                         os.path.join(session.folder, table + '.csv'), table, session.participant, condition,
@@ -71,22 +113,23 @@ def _notes_on_trials(trials):
 
 
 def _cells(trials):
-    """Long table: HEAD, object, measure, value, trials (how many the mean is of)."""
+    """Long table: HEAD, object, measure, value, order and period (means too), trials (how many the mean is of)."""
     trials = trials.assign(completed=(trials['result'] == 'completed').astype(float))
     keys, tables = HEAD + ['object'], []
     for measure in MEASURES:
         rows = trials[trials['result'].isin(measure.trials)]
         values = pandas.to_numeric(rows[measure.name]).astype(float)
-        rows = rows[keys].assign(value=values).dropna(subset=['value'])
+        rows = rows[keys + PLACES[:2]].assign(value=values).dropna(subset=['value'])
         if rows.empty:
             continue
-        means = rows.groupby(keys)['value'].agg(['mean', 'size']).reset_index()
-        means = means.rename(columns={'mean': 'value', 'size': 'trials'})
+        of_cells = rows.groupby(keys)
+        means = of_cells[['value'] + PLACES[:2]].mean()
+        means = means.assign(trials=of_cells.size()).reset_index()
         means.insert(len(keys), 'measure', measure.name)
         tables.append(means)
     # Numbers where there is none either: pandas 1.1 takes no mean of what might be anything.
     return pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame(
-        columns=keys + ['measure', 'value', 'trials']).astype({'value': float, 'trials': int})
+        columns=keys + ['measure', 'value'] + PLACES[:2] + ['trials']).astype({'value': float, 'trials': int})
 
 
 def parts(data):

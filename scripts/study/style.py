@@ -11,6 +11,7 @@ from .study_data import SIMULATED  # noqa: E402
 
 GROUP_COLOURS = {'beginner': '#E69F00', 'veteran': '#56B4E9'}
 DARK = {'beginner': '#8A5A00', 'veteran': '#00527A'}  # the same hues, dark enough for dots and text
+FURTHER = (('#009E73', '#005C43'), ('#CC79A7', '#7A3F60'), ('#F0E442', '#6B6400'), ('#D55E00', '#7F3800'))
 LETTERS = 15  # of a caption, to the inch
 INK, PALE = '#222222', '#BBBBBB'
 RAW, FILTERED = '#D55E00', '#0072B2'
@@ -22,6 +23,14 @@ plt.rcParams.update({
     'axes.labelcolor': INK, 'xtick.color': INK, 'ytick.color': INK, 'svg.fonttype': 'none',
     'svg.hashsalt': 'mr_hand_interaction', 'savefig.dpi': 150, 'figure.facecolor': 'white',
 })
+
+
+def colours(groups):
+    """{group: (colour, dark one of the same hue)}; what has no colour of its own gets the next one, again and again."""
+    others = [group for group in groups if group not in GROUP_COLOURS]
+    found = {group: (GROUP_COLOURS[group], DARK[group]) for group in groups if group in GROUP_COLOURS}
+    found.update((group, FURTHER[i % len(FURTHER)]) for i, group in enumerate(others))
+    return found
 
 
 def new_figure(columns, width, height, rows=1, **arguments):

@@ -1,20 +1,20 @@
 """The questions asked in the terminal."""
 
-from .answers import TEXTS
-from .session_folder import HIGHEST_SCORE, score
+from .questions import ALL, score_of
 
 
 def ask(answers, questions, read=input, write=print):
     """Each answer is saved before the next question is asked. EOFError or KeyboardInterrupt ends it."""
     for question in questions:
-        text, low, high = TEXTS[question]
-        write('\n%s\n(0: %s, %d: %s)' % (text, low, HIGHEST_SCORE, high))
-        answers.add({question: _read_score(read, write)})
+        asked = ALL[question]
+        write('\n%s\n(%d: %s, %d: %s)' % (asked.text, asked.lowest, asked.low, asked.highest, asked.high))
+        answers.add({question: _read_score(question, read, write)})
 
 
-def _read_score(read, write):
+def _read_score(question, read, write):
+    asked = ALL[question]
     while True:
         try:
-            return score(read('0 to %d: ' % HIGHEST_SCORE).strip())
+            return score_of(question, read('%d to %d: ' % (asked.lowest, asked.highest)).strip())
         except ValueError as error:
             write('%s; please answer again.' % error)

@@ -161,6 +161,7 @@ std::vector<ParameterEntry> refinements() {
                                                                {"entry_face", &C::entry_face},
                                                                {"grasp_assist", &C::grasp_assist},
                                                                {"impact_friction", &C::impact_friction},
+                                                               {"release_fade", &C::release_fade},
                                                                {"sleep", &C::sleep},
                                                                {"sweep", &C::sweep},
                                                                {"swing_back", &C::swing_back},

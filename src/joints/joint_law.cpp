@@ -19,6 +19,10 @@ double detent_stiffness(const Detents& detents) {
   return detents.force / (0.5 * least);
 }
 
+double place_of(const Detents& detents, std::size_t index) {
+  return detents.at[std::min(index, detents.at.size() - 1)];
+}
+
 /// At a limit is what is so near it; what has been there has left when this far off [rad, m].
 constexpr double kAtLimit = 1e-5, kOffLimit = 1e-3;
 
@@ -104,7 +108,7 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double velocit
     linear_ += stiffness * step;
   };
   if (joint.spring) spring(joint.spring->stiffness, joint.spring->rest);
-  if (joint.detents) spring(detent_stiffness(*joint.detents), joint.detents->at[state.detent]);
+  if (joint.detents) spring(detent_stiffness(*joint.detents), place_of(*joint.detents, state.detent));
   stop_ = kStopOverInertia * inertia / (step * step);
   friction_ = latch_ = {};
   if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};

@@ -1,6 +1,8 @@
 #include <ros/ros.h>
 
+#include <cstdint>
 #include <exception>
+#include <utility>
 
 #include "../ros/end_in_order.h"
 #include "../ros/master_watch.h"
@@ -31,7 +33,9 @@ int main(int argc, char** argv) {
     const ros::NodeHandle node;
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
     mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
-    tracking.pass_to([&server](const mr_hand_interaction::HandFrame& frame, const ros::Time& arrival) {
+    std::uint64_t lost = 0;  // that the server has been told of
+    tracking.pass_to([&](const mr_hand_interaction::HandFrame& frame, const ros::Time& arrival) {
+      server.note_lost(tracking.lost() - std::exchange(lost, tracking.lost()));
       server.take(frame, arrival);
     });
     ros::spin();

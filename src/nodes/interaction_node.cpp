@@ -13,7 +13,7 @@ constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
 Takes hand_frame, and publishes what the hands do to the objects: rendered_hands, tracked_hands, objects, contacts,
-interaction_events, haptics, markers, /tf, /diagnostics. Services: ~reset, ~pause, ~spawn, ~delete, ~set.
+interaction_events, haptics, markers, /tf, simulation_input, /diagnostics. Services: ~reset, ~pause, ~spawn, ~delete, ~set.
 
   ~scene              NAME|FILE; default cube
   ~fixed_frame        default world

@@ -19,7 +19,9 @@ using namespace mrhi;
 const char* const kHelp =
     "usage: simulated_study --output DIR [options]\n\n"
     "Lets simulated operators (no person takes part) do a task, and writes a session's folder for each of\n"
-    "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with.\n\n"
+    "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with, if their "
+    "task,\n"
+    "parameters, scenes, version and revision are the same.\n\n"
     "  --operators FIRST-LAST   of those with these numbers; default 1-30\n"
     "  --group-size N           the first N operators are beginners, all others veterans; default 15\n"
     "  --model NAME             contact model; again for more; default: all\n"
@@ -146,7 +148,9 @@ void play_session(const Study& study, int person, const std::string& model, doub
   const OperatorSkill skill = draw_skill(header.group, seeds.bits());
   const std::uint64_t trials = seeds.bits();
   const std::string folder = study.output + "/" + model + "_" + strength + "/" + name;
-  Session session(task, header, static_cast<std::uint64_t>(person - 1), folder, 0);
+  const SessionSetup setup = session_setup(study.task, task, stage.configuration, stage.scene_folders,
+                                           stage.scene_options, MR_HAND_INTERACTION_VERSION);
+  Session session(task, header, static_cast<std::uint64_t>(person - 1), folder, 0, setup);
   Nanoseconds stamp = 0;
   while (session.phase() == SessionPhase::ready) {
     stamp = play_trial(session, skill, trials + session.position(), stage, stamp) + 1'000'000'000;
@@ -158,9 +162,10 @@ void play_session(const Study& study, int person, const std::string& model, doub
   }
 }
 
-void play(const Study& study) {
+void play(Study study) {
+  study.task = find_task_file(study.task, task_folders());
   for (const std::string& model : study.models) configuration_of(study, model);  // before anything is played
-  const Task task = load_task(find_task_file(study.task, task_folders()));
+  const Task task = load_task(study.task);
   for (int person = study.first; person <= study.last; ++person) {
     for (const std::string& model : study.models) {
       for (const double gravity : study.gravities) play_session(study, person, model, gravity, task);

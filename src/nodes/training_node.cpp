@@ -17,7 +17,7 @@ all that it needs. Publishes training/status and training/markers. Services: ~ne
 
   ~participant, ~folder        who takes part, and the session's folder; must be given
   ~task                        NAME|FILE; default pick_and_place
-  ~group, ~handedness, ~condition, ~seed, ~number, ~simulated, ~simulation, ~auto_next, ~auto_start
+  ~group, ~handedness, ~condition, ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_next, ~auto_start
                                see docs/training.md
 )";
 

@@ -61,7 +61,7 @@ Hand bent(double even, double odd) {
 /// no farther out than is unseen in what is touched.
 void settle(TriangleMesh& mesh) {
   constexpr int kPasses = 6;
-  constexpr double kProud = 0.0003;  // [m]
+  constexpr double kStandsOut = 0.0003;  // [m]
   std::vector<double> off(mesh.vertices.size());
   std::vector<int> counts(mesh.vertices.size());
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -79,7 +79,7 @@ void settle(TriangleMesh& mesh) {
     }
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       Vector3& vertex = mesh.vertices[v];
-      const double out = std::min(-off[v] / counts[v], kProud - skin_distance(vertex));
+      const double out = std::min(-off[v] / counts[v], kStandsOut - skin_distance(vertex));
       vertex += out * gradient(skin_distance, vertex).normalized();
     }
   }

@@ -77,6 +77,13 @@ const std::map<std::string, Option>& options() {
       {"--topic", {"TOPIC", false, [](A& a, const OptionText& v) { a.topic = v.text; }}},
       {"--params", {"FILE.yaml", false, [](A& a, const OptionText& v) { a.parameter_file = v.text; }}},
       {"--set", {"KEY=VALUE", true, read_setting}},
+      {"--export",
+       {"HZ", false,
+        [](A& a, const OptionText& v) {
+          a.demonstration = v.numbers({v.text}, 0, 1).front();
+          if (!(*a.demonstration == 0.0 || (*a.demonstration >= 1.0 && *a.demonstration <= 1000.0)))
+            v.refuse("is no rate from 1 to 1000 Hz, and not 0 for the recording's");
+        }}},
       {"--object-pose",
        {"NAME,x,y,z,qx,qy,qz,qw", true,
         [](A& a, const OptionText& v) {
@@ -96,25 +103,31 @@ const std::map<std::string, Option>& options() {
 }
 
 std::string option_names() {
-  std::string names = "--help, --compare";
+  std::string names = "--help, --compare, --explain";
   for (const auto& entry : options()) names += ", " + entry.first;
   return names;
 }
 
-void check(const ReplayArguments& arguments) {
-  for (const auto& [option, value] : {std::pair<const char*, const std::string&>{"--scene", arguments.scene},
-                                      {"--input", arguments.input},
-                                      {"--output", arguments.output}}) {
-    if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
-  }
-  const auto ends_with = [&](const std::string& end) {
-    const std::string& input = arguments.input;
-    return input.size() > end.size() && input.compare(input.size() - end.size(), end.size(), end) == 0;
-  };
-  if (!ends_with(".bag") && !ends_with(".csv")) {
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void require(const char* option, const std::string& value) {
+  if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
+}
+
+/// A bag may tell its scene, and has a place for what comes of it.
+void check(ReplayArguments& arguments) {
+  require("--input", arguments.input);
+  const bool bag = ends_with(arguments.input, ".bag");
+  if (!bag && !ends_with(arguments.input, ".csv")) {
     throw UsageError("--input " + arguments.input + ": unknown kind of file; allowed: FILE.bag or FILE.csv");
   }
-  if (arguments.topic && !ends_with(".bag")) throw UsageError("--topic: only a bag has topics");
+  if (arguments.topic && !bag) throw UsageError("--topic: only a bag has topics");
+  if (!bag) require("--scene", arguments.scene);
+  if (!bag) require("--output", arguments.output);
+  if (arguments.output.empty())
+    arguments.output = arguments.input.substr(0, arguments.input.size() - 4) + "_replay";
 }
 
 }  // namespace
@@ -134,6 +147,10 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
       parsed.compare = {arguments[1], arguments[2]};
       return parsed;
     }
+    if (name == "--explain") {
+      parsed.explain = true;
+      continue;
+    }
     const auto option = options().find(name);
     if (option == options().end()) {
       throw UsageError("unknown argument '" + name + "'; allowed: " + option_names());
@@ -150,15 +167,18 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
 }
 
 const char* replay_help() {
-  return R"(usage: replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
+  return R"(usage: replay --input FILE.bag [options]
+       replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
        replay --compare DIR DIR
 
-Runs a recording of hands through a scene as fast as the machine goes; needs no ROS master.
+Does again what a live simulation did, from a bag of record.launch; or runs a recording of hands through a scene. As
+fast as the machine goes; needs no ROS master.
 
-  --scene NAME|FILE         a shipped scene, or a URDF file
+  --scene NAME|FILE         a shipped scene, or a URDF file; else as recorded
   --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray or HandFrame)
-  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json
-  --topic TOPIC             of the bag; else /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
+  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json;
+                            of a bag FILE_replay where none is given
+  --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
   --params FILE.yaml        parameters, under the names of the parameter server
   --set KEY=VALUE           one parameter; stands above --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw
@@ -168,6 +188,9 @@ Runs a recording of hands through a scene as fast as the machine goes; needs no 
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else the bag's /tf_static, else at the origin
                             and turned by +90 degrees about x
+  --export HZ               demonstration.csv and demonstration.bag too, of standard messages alone; 0: a row for
+                            each frame
+  --explain                 explain.html and explain.json too: when each object was held, how, and why it was lost
   --compare DIR DIR         when and where the objects of two runs part, and by how much
   --help                    this text
 

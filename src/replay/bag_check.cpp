@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -147,6 +148,15 @@ class Walk {
 
 void check_bag(const std::string& file) {
   Walk(file).all();
+}
+
+/// The bag library says no more than that it cannot open it.
+void check_readable(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw BagError(file + ": there is no such file");
+  if (!std::filesystem::is_regular_file(file, error)) throw BagError(file + ": is no file; allowed: a bag");
+  if (!std::ifstream(file)) throw BagError(file + ": cannot be read; allowed: a file that may be read");
+  check_bag(file);
 }
 
 }  // namespace mrhi

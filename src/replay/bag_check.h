@@ -10,4 +10,7 @@ namespace mrhi {
 /// to the library, which says so.
 void check_bag(const std::string& file);
 
+/// The same of a file that may not be there, or not to be read.
+void check_readable(const std::string& file);
+
 }  // namespace mrhi

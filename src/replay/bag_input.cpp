@@ -6,8 +6,6 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -66,13 +64,8 @@ SourceFrame refused(const std::string& reason, const std::string& detail) {
   return frame;
 }
 
-/// The bag library says no more than that it cannot open it.
 const std::string& readable(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw BagError(file + ": there is no such file");
-  if (!std::filesystem::is_regular_file(file, error)) throw BagError(file + ": is no file; allowed: a bag");
-  if (!std::ifstream(file)) throw BagError(file + ": cannot be read; allowed: a file that may be read");
-  check_bag(file);
+  check_readable(file);
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "log_source.h"
 #include "mr_hand_interaction/replay/arguments.h"
 #include "mr_hand_interaction/replay/frame_source.h"
 
@@ -16,5 +17,14 @@ struct ReplayInput {
 
 /// Throws BagError; where this was built without ROS, UsageError.
 ReplayInput open_bag(const ReplayArguments& arguments);
+
+/// The log of a live simulation, if the recording has one; else why not.
+struct OpenLog {
+  std::unique_ptr<LogSource> source;
+  std::string topic, why_not;
+};
+
+/// Throws BagError.
+OpenLog open_log(const ReplayArguments& arguments);
 
 }  // namespace mrhi

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "../simulation/contact_phase.h"
+#include "dictionary.h"
 
 namespace mrhi {
 namespace {
@@ -52,16 +53,16 @@ const char* event_name(EventKind kind) {
 }
 
 ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
-    : scene_(scene),
-      objects_(made_folder(folder) + "/objects.csv", "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"),
-      contacts_(folder + "/contacts.csv",
-                "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
-                "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit"),
-      hands_(folder + "/hands.csv",
-             "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching"),
-      events_(folder + "/events.csv", "time,kind,object,hand_id") {
-  if (!scene.joints.empty())
-    joints_.emplace(folder + "/joints.csv", "time,name,position,velocity,effort");
+    : scene_(&scene),
+      objects_(made_folder(folder) + "/objects.csv", table_of("objects.csv").header()),
+      contacts_(folder + "/contacts.csv", table_of("contacts.csv").header()),
+      hands_(folder + "/hands.csv", table_of("hands.csv").header()),
+      events_(folder + "/events.csv", table_of("events.csv").header()) {
+  const std::string path = folder + "/schema.json";
+  std::ofstream schema(path);
+  schema << schema_json() << std::flush;
+  if (!schema) throw std::runtime_error("cannot write " + path);
+  if (!scene.joints.empty()) joints_.emplace(folder + "/joints.csv", table_of("joints.csv").header());
 }
 
 void ResultWriter::write(const FrameResult& result, const SimulationState& state) {
@@ -82,8 +83,8 @@ void ResultWriter::flush() {
 }
 
 void ResultWriter::write_objects(double time, const SimulationState& state) {
-  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    const Body& body = scene_.bodies[i];
+  for (std::size_t i = 0; i < scene_->bodies.size(); ++i) {
+    const Body& body = scene_->bodies[i];
     if (body.fixed) continue;
     const Twist twist = twist_of(body, state.bodies[i]);
     objects_ << time << body.name << state.bodies[i].pose.position;
@@ -94,9 +95,9 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
 }
 
 void ResultWriter::write_joints(double time, const SimulationState& state) {
-  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+  for (std::size_t i = 0; i < scene_->joints.size(); ++i) {
     const JointState& joint = state.joints[i];
-    *joints_ << time << scene_.joints[i].name << joint.position << joint_velocity(scene_, i, state.bodies)
+    *joints_ << time << scene_->joints[i].name << joint.position << joint_velocity(*scene_, i, state.bodies)
              << joint.effort;
     joints_->end_row();
   }
@@ -104,14 +105,14 @@ void ResultWriter::write_joints(double time, const SimulationState& state) {
 
 void ResultWriter::write_contacts(double time, const FrameResult& result, const SimulationState& state) {
   for (const Contact& contact : result.contacts) {
-    const Body& body = scene_.bodies[contact.key.body];
+    const Body& body = scene_->bodies[contact.key.body];
     const int capsule = contact.key.capsule;
     const FrictionUse use = friction_use(contact, body.material);
     contacts_ << time << body.name << hand_id(contact, state) << finger_of(capsule) << bone_of(capsule)
               << static_cast<int>(phase(contact)) << contact.point << contact.normal << contact.depth
               << contact.impulse << contact.force << std::string(finger_name(capsule))
               << std::string(bone_name(capsule)) << std::string(phase_name(phase(contact))) << use.normal
-              << use.tangential << use.limit;
+              << use.tangential << use.limit << (use.limit > 0.0 ? use.tangential / use.limit : 0.0);
     contacts_.end_row();
   }
 }
@@ -132,7 +133,7 @@ void ResultWriter::write_events(const FrameResult& result) {
   for (const Event& event : result.events) {
     const bool has_body = event.body >= 0;
     events_ << to_seconds(event.stamp - first_stamp_) << std::string(event_name(event.kind))
-            << (has_body ? scene_.bodies[static_cast<std::size_t>(event.body)].name : std::string())
+            << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
             << event.hand_id;
     events_.end_row();
   }

@@ -3,30 +3,13 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "json_text.h"
+
 namespace mrhi {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    char escaped[8];
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", c);
-      result += escaped;
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
+using json::number;
+using json::quoted;
 
 /// With what `as_json` makes of each value.
 template <typename Value, typename AsJson>
@@ -64,6 +47,26 @@ std::string step_times(const DurationHistogram& times) {
          ", \"max\": " + number(times.max_us()) + "}";
 }
 
+std::string live_run(const LiveRun& live) {
+  return "{\"version\": " + quoted(live.version) + ", \"entries\": " + std::to_string(live.entries) +
+         ", \"missing\": " + std::to_string(live.missing) +
+         ", \"compared\": " + std::to_string(live.compared) + ", \"same\": " + std::to_string(live.same) +
+         ", \"parts_at\": " + (live.parts_at ? number(*live.parts_at) : "null") +
+         ", \"lost_by_queue\": " + std::to_string(live.lost_by_queue) +
+         ", \"changes\": " + list(live.changes) + ", \"overridden\": " + list(live.overridden) + "}";
+}
+
+/// By a queue on the way to the live simulation; and by stamps, which this run has judged itself.
+std::string lost(const ReplaySummary& summary) {
+  const auto count = [&](const char* reason) {
+    const auto found = summary.rejected.find(reason);
+    return found == summary.rejected.end() ? 0 : found->second;
+  };
+  return object({{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
+                 {"by_order", count("stamp not increasing")},
+                 {"by_stamp", count("stamp far ahead") + count("stamp out of range")}});
+}
+
 }  // namespace
 
 std::string to_json(const ReplaySummary& summary) {
@@ -85,10 +88,13 @@ std::string to_json(const ReplaySummary& summary) {
       {"deepest_rendered_penetration_m", number(summary.deepest_rendered)},
       {"restarts", std::to_string(summary.restarts)},
       {"rejected", object(summary.rejected)},
+      {"frames_lost", lost(summary)},
       {"hands_left_out", std::to_string(summary.hands_left_out)},
       {"events", object(summary.events)},
       {"objects_held_at_end", list(summary.held_at_end)},
-      {"state_hash", quoted(hash)}};
+      {"state_hash", quoted(hash)},
+      {"not_known", list(summary.not_known)}};
+  if (summary.live) fields.emplace_back("live_run", live_run(*summary.live));
   if (!summary.error.empty()) fields.emplace_back("error", quoted(summary.error));
   std::string text = "{";
   for (const auto& [name, value] : fields)

@@ -4,12 +4,17 @@
 #include <cmath>
 
 #include "impact.h"
+#include "release.h"
 
 namespace mrhi {
 
-double normal_force(double stiffness, double depth, double normal_velocity) {
+PenetrationLaw penetration_law(const ContactConfiguration& configuration) {
+  return {configuration.damping, configuration.release_fade};
+}
+
+double normal_force(double stiffness, double depth, double normal_velocity, double fade) {
   if (depth <= 0.0) return 0.0;
-  const double parting = std::max(normal_velocity, 0.0) / kReleaseSpeed;
+  const double parting = std::max(normal_velocity, 0.0) * fade;
   return stiffness * depth * std::max(1.0 - parting, 0.0);
 }
 
@@ -23,13 +28,14 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
   return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
 }
 
-Vector3 penetration_force(const Body& body, const BodyState& state, double damping, Contact& contact) {
+Vector3 penetration_force(const Body& body, const BodyState& state, double damping, double fade,
+                          Contact& contact) {
   contact.force.setZero();
   const double stiffness = body.material.stiffness * contact.share;
   if (!contact.touching() || stiffness <= 0.0) return contact.force;
   const Vector3& n = contact.normal;
   const Vector3 velocity = relative_velocity(contact, body, state);
-  const double push = normal_force(stiffness, contact.depth, n.dot(velocity));
+  const double push = normal_force(stiffness, contact.depth, n.dot(velocity), fade);
 
   const Vector3 reach = contact.hand_point - contact.point;
   const Vector3 stretch = reach - n.dot(reach) * n;
@@ -44,7 +50,8 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
   return contact.force;
 }
 
-void penetration_phase(ContactStep& step) {
+void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
+  const double fade = release_fade(law.release_fade);
   auto first = step.contacts.begin();
   while (first != step.contacts.end()) {
     const std::size_t index = first->key.body;
@@ -56,11 +63,11 @@ void penetration_phase(ContactStep& step) {
     for (auto contact = first; contact != last; ++contact)
       share += contact->touching() ? contact->share : 0.0;
     const double damping =
-        body.fixed || share == 0.0
+        body.fixed || share == 0.0 || !law.damping
             ? 0.0
             : kTangentialDamping * 2.0 * std::sqrt(body.material.stiffness * body.mass / share);
     for (auto contact = first; contact != last; ++contact) {
-      const Vector3 force = penetration_force(body, state, damping, *contact);
+      const Vector3 force = penetration_force(body, state, damping, fade, *contact);
       if (!body.fixed) apply_impulse(step.step * force, contact->point, state);
     }
     first = last;

@@ -7,4 +7,10 @@ namespace mrhi {
 /// never pulls [m/s].
 constexpr double kReleaseSpeed = 0.1;
 
+/// 1 / kReleaseSpeed where contact/release_fade is on, else 0: the spring gives back all that it has taken
+/// [s/m].
+constexpr double release_fade(bool on) {
+  return on ? 1.0 / kReleaseSpeed : 0.0;
+}
+
 }  // namespace mrhi

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "lanes.h"
-#include "release.h"
 
 namespace mrhi {
 
@@ -35,6 +34,7 @@ struct Spring {
   Real half_over_pad;    ///< 1/2 over that; 0 where it is 0 [1/m]
   Real yields;           ///< as deep as this at full stiffness it begins to give way [m]
   Real ahead;            ///< how far ahead the spring is evaluated: the step, and what damping adds [s]
+  Real fade;             ///< one over the parting speed at which it gives no push any more, or 0 [s/m]
   Real stiffness;        ///< [N/m]
   Real twist_stiffness;  ///< [N m/rad], 0: a point that turns freely
   Real friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
@@ -85,13 +85,13 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real rate = u.dot(normal);
   const Real deep = greater(zero, depth - ahead * rate);
-  const Real parting = lesser(greater(rate, zero) * constant<Real>(1.0 / kReleaseSpeed), one);
+  const Real parting = lesser(greater(rate, zero) * fade, one);
   const Real kept = one - parting * parting;
   Real pressed, steepness;
   press(deep, pressed, steepness);
   const Real push = stiffness * pressed * kept;
   response.push = push;
-  const Real steep = steepness * ahead * kept + pressed * parting * constant<Real>(2.0 / kReleaseSpeed);
+  const Real steep = steepness * ahead * kept + pressed * parting * (constant<Real>(2.0) * fade);
   response.across = where_at_most(push, zero, zero, stiffness * steep);
   if (renew_limits) {
     slip_limit = friction * push + bond;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "penetration_force.h"
+#include "release.h"
 
 namespace mrhi {
 namespace {
@@ -42,6 +43,7 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.depth = each(&Contact::pressed);
   spring.twist = each(&Contact::twist);
   spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
+  spring.fade = constant<Real>(release_fade(configuration.release_fade));
   const HandStrength& hand = configuration.hand;
   spring.pad = constant<Real>(hand.pad);
   spring.half_over_pad = constant<Real>(hand.pad > 0.0 ? 0.5 / hand.pad : 0.0);
@@ -68,6 +70,7 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.stretch = each(&BodyContact::stretch);
   spring.depth = each(&BodyContact::depth);
   spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
+  spring.fade = constant<Real>(release_fade(configuration.release_fade));
   spring.stiffness = constant<Real>(configuration.object_stiffness) * each(&BodyContact::share);
   spring.friction =
       each([](const BodyContact& contact) { return friction_of(contact.material, contact.friction); });

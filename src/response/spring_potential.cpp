@@ -22,7 +22,7 @@ double integral(double from, double to, Function function) {
 
 double push(const Spring<double>& spring, double rate) {
   const double deep = std::max(0.0, spring.depth - spring.ahead * rate);
-  const double parting = std::min(std::max(rate, 0.0) / kReleaseSpeed, 1.0);
+  const double parting = std::min(std::max(rate, 0.0) * spring.fade, 1.0);
   double pressed, steepness;
   spring.press(deep, pressed, steepness);
   return spring.stiffness * pressed * (1.0 - parting * parting);
@@ -37,7 +37,7 @@ double yielding_depth(const Spring<double>& spring) {
 /// Integral of the push from the rate up, until it is none any more: piece by piece, a polynomial each.
 double push_energy(const Spring<double>& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
-  const double end = std::min(rate_at(0.0), kReleaseSpeed);
+  const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
   std::array<double, 4> kinks{rate_at(yielding_depth(spring)), rate_at(spring.pad), 0.0, end};
   std::sort(kinks.begin(), kinks.end());
   double energy = 0.0, from = rate;

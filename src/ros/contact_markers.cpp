@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../simulation/contact_phase.h"
 #include "marker_layers.h"
 
 namespace mrhi {
@@ -54,15 +55,35 @@ void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {
   arrow.points = {to_message(Vector3(end - length * direction)), to_message(end)};
 }
 
+/// Blue to orange by way of white, which colour-blind people tell apart.
+std_msgs::ColorRGBA share_color(double share) {
+  const Vector3 blue(0.000, 0.447, 0.698), white(1.0, 1.0, 1.0), orange(0.835, 0.369, 0.000);
+  const double s = std::clamp(share, 0.0, 1.0);
+  const Vector3 mixed = s < 0.5 ? Vector3(blue + 2.0 * s * (white - blue))
+                                : Vector3(white + (2.0 * s - 1.0) * (orange - white));
+  return color(mixed.x(), mixed.y(), mixed.z());
+}
+
+void add_shares(const Scene& scene, const FrameResult& result, MarkerLayer& layer) {
+  Marker& balls =
+      layer.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(2.0 * kPointSize), color(1.0, 1.0, 1.0));
+  for (const Contact& contact : result.contacts) {
+    const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
+    balls.points.push_back(to_message(contact.point));
+    balls.colors.push_back(share_color(use.limit > 0.0 ? use.tangential / use.limit : 0.0));
+  }
+}
+
 }  // namespace
 
-void add_contacts(const FrameResult& result, ContactLayers layers) {
+void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers layers) {
   if (result.contacts.empty()) return;
   Marker& points =
       layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), color(1.0, 1.0, 1.0));
   for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
   for (int state = 0; state < kFrictionStates; ++state)
     add_rings(result.contacts, static_cast<FrictionState>(state), layers.friction);
+  add_shares(scene, result, layers.share);
   int id = 0;
   for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers.forces);
 }

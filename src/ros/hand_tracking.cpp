@@ -52,7 +52,7 @@ HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& p
   diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
   timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
     diagnostics_.force_update();
-    welcome_other_versions();
+    accept_other_versions();
   });
 }
 
@@ -68,15 +68,16 @@ void HandTracking::subscribe_pose_arrays(const std::string& topic) {
   using Event = ros::MessageEvent<const geometry_msgs::PoseArray>;
   const std::optional<Side> of_topic = side_by_name(topic);
   pose_array_subscribers_.push_back(node_.subscribe<geometry_msgs::PoseArray>(
-      topic, kQueue, boost::function<void(const Event&)>([this, of_topic](const Event& event) {
+      topic, kQueue, boost::function<void(const Event&)>([this, of_topic, topic](const Event& event) {
         const geometry_msgs::PoseArray& message = *event.getConstMessage();
+        statistics_.lost(sequences_.missing(event.getPublisherName() + " " + topic, message.header.seq));
         const std::optional<Side> side = of_topic ? of_topic : side_by_name(message.header.frame_id);
         take_pose_array(message, side.value_or(pose_array_side_), event.getReceiptTime());
       }),
       nullptr, ros::TransportHints().tcpNoDelay()));
 }
 
-void HandTracking::welcome_other_versions() {
+void HandTracking::accept_other_versions() {
   const bool connected = leap_subscriber_.getNumPublishers() > 0;
   leap_seen_ = leap_seen_ || connected;
   if (!leap_seen_ || connected) return;
@@ -89,6 +90,7 @@ void HandTracking::take_leap(const LeapEvent& event) {
   leap_seen_ = true;
   try {
     LeapHumanDecoder::Frame frame = leap_reader_.read(message);
+    statistics_.lost(sequences_.missing(event.getPublisherName(), frame.sequence));
     take(place(std::move(frame.joints), frame.frame_id, event.getReceiptTime()), event.getReceiptTime());
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), message.getDataType() + ": " + error.what());

@@ -5,6 +5,11 @@
 #include <algorithm>
 
 namespace mrhi {
+namespace {
+
+constexpr double kLate = 0.05;  // a frame that is done with so long after it came is late [s]
+
+}  // namespace
 
 InputStatistics::InputStatistics(const std::vector<std::string>& reasons)
     : period_start_(ros::WallTime::now()) {
@@ -16,6 +21,10 @@ void InputStatistics::taken(double latency) {
   ++taken_in_period_;
   latency_sum_ += latency;
   latency_max_ = std::max(latency_max_, latency);
+}
+
+void InputStatistics::waited(double seconds) {
+  if (seconds > kLate) ++late_;
 }
 
 void InputStatistics::rejected(const std::string& reason, const std::string& detail) {
@@ -38,6 +47,15 @@ void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status
   status.add("rate [Hz]", frames / std::max((now - period_start_).toSec(), 1e-3));
   status.add("latency mean [ms]", taken_in_period_ > 0 ? 1e3 * latency_sum_ / frames : 0.0);
   status.add("latency max [ms]", 1e3 * latency_max_);
+  status.add("frames lost by queue", lost_);
+  status.add("frames late by more than 50 ms", late_);
+  if (lost_ > lost_reported_)
+    status.mergeSummary(DiagnosticStatus::WARN, std::to_string(lost_) + " frames have not arrived");
+  if (late_ > late_reported_)
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        std::to_string(late_) + " frames were late by more than 50 ms");
+  lost_reported_ = lost_;
+  late_reported_ = late_;
   for (auto& [reason, refusals] : rejected_) {
     status.add("rejected: " + reason, refusals.count);
     if (refusals.count > refusals.reported)

@@ -22,6 +22,7 @@ void InteractionDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("hand to markers p50 [ms]", 1e-3 * picture_latency_.quantile_us(0.5));
   status.add("hand to markers p99 [ms]", 1e-3 * picture_latency_.quantile_us(0.99));
   picture_latency_.clear();
+  if (teller_) teller_(status);
 }
 
 }  // namespace mrhi

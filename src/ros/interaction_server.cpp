@@ -1,6 +1,8 @@
 #include "mr_hand_interaction/ros/interaction_server.h"
 
 #include <chrono>
+#include <cinttypes>
+#include <cstdio>
 #include <stdexcept>
 
 #include "mr_hand_interaction/parameters.h"
@@ -27,6 +29,12 @@ Scene scene_of(const ServerParameters& parameters) {
       load_scene(find_scene_file(parameters.scene, scene_folders()), options_of(parameters.configuration));
   for (const auto& [name, twist] : parameters.object_twists) free_body(scene, name).start_twist = twist;
   return scene;
+}
+
+World world_of(const ServerParameters& parameters) {
+  World world = world_of_file(find_scene_file(parameters.scene, scene_folders()), parameters.configuration);
+  world.twists = parameters.object_twists;
+  return world;
 }
 
 std::string without_slash(const std::string& frame_id) {
@@ -60,6 +68,7 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
                                      const ServerParameters& parameters)
     : fixed_frame_(parameters.fixed_frame),
       live_(scene_of(parameters), parameters.configuration),
+      log_(node, world_of(parameters), live_, clock_),
       results_(node, fixed_frame_, parameters.haptics_rate, clock_),
       diagnostics_(node, private_node, live_.now().scene().name),
       placing_(private_node, fixed_frame_),
@@ -67,6 +76,7 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
               {[this](const Tuning::Values& values) { change_parameters(values); },
                [this](bool on) { placing_.turn(on, live_.now()); },
                [this]() -> const Simulation& { return live_.now(); }}) {
+  diagnostics_.watch([this](auto& status) { tell_state(status); });
   if (parameters.standard_outputs) results_.add_standard_outputs(node);
   results_.show(live_.now());
   placing_.turn(parameters.place_by_mouse, live_.now());
@@ -77,11 +87,21 @@ InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle priva
 void InteractionServer::subscribe(ros::NodeHandle& node) {
   using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
   const auto handler = [this](const Arrival& arrival) {
-    take(*arrival.getConstMessage(), arrival.getReceiptTime());
+    const auto& message = *arrival.getConstMessage();
+    note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
+    take(message, arrival.getReceiptTime());
   };
   hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
                                                           boost::function<void(const Arrival&)>(handler),
                                                           nullptr, ros::TransportHints().tcpNoDelay());
+}
+
+void InteractionServer::tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.now().state()));
+  status.add("state hash", text);
+  status.add("state stamp [ns]", clock_.to_stamp(live_.now().state().time));
+  status.add("simulation input", log_.sequence());
 }
 
 void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
@@ -101,6 +121,11 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
                               [this](auto& request, auto& response) { return set(request, response); })};
 }
 
+void InteractionServer::note_lost(std::uint64_t frames) {
+  diagnostics_.lost(frames);
+  log_.lost(diagnostics_.lost());
+}
+
 void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
   const Nanoseconds stamp = from_ros_time(message.header.stamp);
   const StampVerdict verdict = arrivals_.judge(stamp);
@@ -113,11 +138,13 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message, cons
   if (!begin(message)) return;
   while (timed_step()) results_.note_step();
   const FrameResult& result = live_.now().end();
+  log_.frame(message, frame_stamp_, frame_expected_);
   place_dragged();
   for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
   results_.publish(result);
   if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
+  diagnostics_.waited((now - arrival).toSec());
   diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
   clock_.take(stamp, now);
 }
@@ -130,9 +157,11 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
   try {
     HandFrame frame = from_message(message);
     frame.stamp = clock_.to_simulation(frame.stamp);
-    const Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-    const Rejection rejection = live_.now().begin(frame, expected);
+    frame_stamp_ = frame.stamp;
+    frame_expected_ = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+    const Rejection rejection = live_.now().begin(frame, frame_expected_);
     if (rejection == Rejection::none) return true;
+    log_.frame(message, frame_stamp_, frame_expected_);
     diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
   } catch (const std::invalid_argument& error) {
     diagnostics_.rejected("unusable hand", error.what());
@@ -151,7 +180,9 @@ bool InteractionServer::timed_step() {
 void InteractionServer::idle() {
   const Nanoseconds stamp = clock_.stamp(ros::Time::now());
   const bool running = !clock_.paused() && live_.now().state().started;
-  if (running && live_.now().advance_without_hands(clock_.to_simulation(stamp) - kSlack)) {
+  const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
+  if (running && live_.now().advance_without_hands(until)) {
+    log_.silence(until);
     place_dragged();
     results_.publish(live_.now().result());
   } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
@@ -162,7 +193,7 @@ void InteractionServer::idle() {
 }
 
 bool InteractionServer::reset(std_srvs::Trigger::Response& response) {
-  live_.reset();
+  make(Reset{});
   results_.show(live_.now());
   FrameResult start;
   start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
@@ -174,6 +205,7 @@ bool InteractionServer::reset(std_srvs::Trigger::Response& response) {
 
 bool InteractionServer::pause(bool paused, std_srvs::SetBool::Response& response) {
   paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
+  make(Pause{paused});
   response.success = true;
   response.message = paused ? "paused" : "running";
   return true;
@@ -182,18 +214,20 @@ bool InteractionServer::pause(bool paused, std_srvs::SetBool::Response& response
 bool InteractionServer::spawn(const mr_hand_interaction::SpawnObject::Request& request,
                               mr_hand_interaction::SpawnObject::Response& response) {
   return answer(response, [&] {
-    const Body body = requested_body(from_message(request), options_of(live_.now().configuration()));
-    live_.add(body);
+    Spawn spawn{from_message(request)};
+    if (spawn.request.name.empty())
+      spawn.request.name = requested_body(spawn.request, options_of(live_.now().configuration())).name;
+    make(spawn);
     show_change();
-    return "'" + body.name + "' is there";
+    return "'" + spawn.request.name + "' is there";
   });
 }
 
 bool InteractionServer::remove(const std::string& name,
                                mr_hand_interaction::DeleteObject::Response& response) {
   return answer(response, [&] {
-    results_.publish_events(live_.farewell(name));
-    live_.remove(name);
+    results_.publish_events(live_.events_if_removed(name));
+    make(Delete{name});
     show_change();
     return "'" + name + "' is gone";
   });
@@ -208,8 +242,13 @@ bool InteractionServer::set(const mr_hand_interaction::SetParameter::Request& re
   });
 }
 
+void InteractionServer::make(const Change& change) {
+  mrhi::make(change, live_);
+  log_.change(change);
+}
+
 void InteractionServer::change_parameters(const Tuning::Values& values) {
-  live_.set_parameters(values);
+  make(SetParameters{values});
   show_change();
 }
 
@@ -225,7 +264,7 @@ void InteractionServer::show_change() {
 void InteractionServer::place_dragged() {
   for (const auto& [name, pose] : placing_.dragged()) {
     try {
-      live_.place(name, pose);
+      make(PlaceObject{name, pose});
     } catch (const std::invalid_argument&) {
       // The mouse is out of bounds, or its object is gone: what was good stays.
     }

@@ -76,6 +76,7 @@ LeapHumanDecoder::Frame LeapHumanDecoder::decode(const std::uint8_t* data, std::
                       "message has " + std::to_string(reader.left()) + " bytes more than its definition");
   Frame frame;
   frame.frame_id = human.header.frame_id;
+  frame.sequence = human.header.sequence;
   frame.joints.stamp = Nanoseconds(human.header.stamp.seconds) * 1000000000 + human.header.stamp.nanoseconds;
   if (human.right.present) frame.joints.hands.push_back(joints_of(human.right, Side::right));
   if (human.left.present) frame.joints.hands.push_back(joints_of(human.left, Side::left));

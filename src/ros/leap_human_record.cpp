@@ -121,6 +121,7 @@ StructReader<HandRecord> hand_reader(const MessageLayout& layout, const TypeLayo
 
 StructReader<HeaderRecord> header_reader(const TypeLayout& type) {
   StructReader<HeaderRecord> header(type);
+  header.store<std::uint32_t>("seq", "uint32", &HeaderRecord::sequence);
   header.store<Stamp>("stamp", "time", &HeaderRecord::stamp);
   header.on("frame_id", "string", FieldArray::none,
             [](WireReader& reader, const FieldLayout& field, HeaderRecord& record) {

@@ -17,6 +17,7 @@ struct Stamp {
   std::uint32_t seconds, nanoseconds;
 };
 struct HeaderRecord {
+  std::uint32_t sequence = 0;
   Stamp stamp{};
   std::string frame_id;
 };

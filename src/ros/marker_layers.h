@@ -54,8 +54,9 @@ struct ContactLayers {
   MarkerLayer& points;    ///< a dot at each contact
   MarkerLayer& friction;  ///< a ring on the surface around it: green where it sticks, yellow where it slips
   MarkerLayer& forces;    ///< an arrow behind the finger that presses; its length grows with the force
+  MarkerLayer& share;  ///< a ball: how much of what friction bears is used, from blue (none) to orange (all)
 };
-void add_contacts(const FrameResult& result, ContactLayers layers);
+void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers layers);
 
 /// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
 /// z, starting at x.

@@ -63,6 +63,10 @@ mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const Fra
     touch.depth = contact.depth;
     touch.impulse = vector_message(contact.impulse);
     touch.force = vector_message(contact.force);
+    const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
+    touch.normal_force = use.normal;
+    touch.tangential_force = use.tangential;
+    touch.friction_limit = use.limit;
     message.contacts.push_back(touch);
   }
   return message;

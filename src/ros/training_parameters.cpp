@@ -52,6 +52,8 @@ const std::map<std::string, Setter>& setters() {
          p.header.seed =
              static_cast<std::uint64_t>(number<int>(name, text, 0, "a whole number of at least 0"));
        }},
+      {"session", [](Text name, Text text,
+                     P p) { p.header.session = number<int>(name, text, 1, "a whole number of at least 1"); }},
       {"simulated", [](Text name, Text text, P p) { p.header.simulated = truth(name, text); }},
       {"number", [](Text name, Text text,
                     P p) { p.number = number<int>(name, text, 1, "a whole number of at least 1"); }},

@@ -5,11 +5,14 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/ros/server_parameters.h"
 #include "training_markers.h"
 
 namespace mrhi {
@@ -36,6 +39,26 @@ SessionHeader header_of(const TrainingParameters& parameters) {
   return header;
 }
 
+std::string utc_now() {
+  using std::chrono::milliseconds;
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  const auto ms = std::chrono::duration_cast<milliseconds>(since).count();
+  const std::time_t seconds = static_cast<std::time_t>(ms / 1000);
+  char whole[32], text[48];
+  std::strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", std::gmtime(&seconds));
+  std::snprintf(text, sizeof text, "%s.%03dZ", whole, static_cast<int>(ms % 1000));
+  return text;
+}
+
+/// As the node with the objects was told to be.
+SessionSetup setup_of(const ros::NodeHandle& node, const TrainingParameters& parameters) {
+  const std::string file = find_task_file(parameters.task, task_folders());
+  const Configuration configuration =
+      read_server_parameters(ros::NodeHandle(node, parameters.simulation)).configuration;
+  return session_setup(file, load_task(file), configuration, scene_folders(), scene_options(configuration),
+                       MR_HAND_INTERACTION_VERSION);
+}
+
 std::uint64_t place_of(const TrainingParameters& parameters) {
   if (parameters.number) return static_cast<std::uint64_t>(*parameters.number - 1);
   return participant_place(parameters.header.participant);
@@ -49,7 +72,9 @@ Nanoseconds now() {
 
 TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node,
                                const TrainingParameters& parameters)
-    : session_(task_of(parameters), header_of(parameters), place_of(parameters), parameters.folder, now()),
+    : event_(node.advertise<mr_hand_interaction::TrainingEvent>("training/events", kQueue)),
+      session_(task_of(parameters), header_of(parameters), place_of(parameters), parameters.folder, now(),
+               setup_of(node, parameters), {utc_now, [this](const EventRow& row) { publish(row); }}),
       scene_(node, parameters.simulation, session_.task()),
       participant_(parameters.header.participant),
       auto_next_(parameters.auto_next) {
@@ -255,7 +280,7 @@ mr_hand_interaction::TrainingStatus TrainingServer::status() const {
   status.object = session_.object().name;
   status.trials = static_cast<std::uint32_t>(session_.trials());
   status.trial = std::min(static_cast<std::uint32_t>(session_.position() + 1), status.trials);
-  status.repetition = static_cast<std::uint32_t>(session_.position() / task.objects.size() + 1);
+  status.repetition = static_cast<std::uint32_t>(session_.position() / task.objects.size()) + (task.practice ? 0U : 1U);
   status.goal = static_cast<std::uint32_t>(trial.goal() + 1);
   status.goals = static_cast<std::uint32_t>(task.goals.size());
   status.place = static_cast<std::uint32_t>(task.place_number(trial.goal()));
@@ -269,6 +294,19 @@ mr_hand_interaction::TrainingStatus TrainingServer::status() const {
   status.instruction = instruction_now(session_, paused_, !next_.isZero());
   if (session_.last()) status.result = to_string(session_.last()->result);
   return status;
+}
+
+void TrainingServer::publish(const EventRow& row) const {
+  mr_hand_interaction::TrainingEvent event;
+  event.header.stamp = to_ros_time(row.stamp);
+  event.utc = row.utc;
+  event.time = row.time;
+  event.trial = static_cast<std::uint32_t>(row.trial);
+  event.stage = to_string(row.stage);
+  event.event = row.event;
+  event.object = row.object;
+  event.detail = row.detail;
+  event_.publish(event);
 }
 
 void TrainingServer::publish() {

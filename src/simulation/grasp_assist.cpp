@@ -9,19 +9,6 @@ namespace {
 
 /// As deep as a pulp gives, the springs of contact hold a body [m].
 constexpr double kPulp = 0.003;
-/// A finger closes if its opening shrinks faster than this [m/s], and than this part of the speed at which it
-/// or what it closes against moves: a hand that slaps or nudges does not close.
-constexpr double kClosingSpeed = 0.03;
-constexpr double kClosingPart = 0.5;
-/// A hand that opens faster than this takes nothing [m/s].
-constexpr double kOpeningSpeed = 0.1;
-/// Of a body from the line between a finger and what it closes against, at most [m].
-constexpr double kBeside = 0.01;
-/// Beyond this a body is not looked at [m].
-constexpr double kFar = 0.1;
-/// The normals under both are as far from each other (cosine). A fingertip that taps on a cube has the thumb
-/// beside the next face.
-constexpr double kOpposite = -0.3;
 /// Normals nearer to the way of gravity than this (cosine) bear the weight of a body: there nothing gives
 /// way.
 constexpr double kBears = 0.3;
@@ -46,13 +33,12 @@ constexpr double kGripStiffness = 5.0;
 constexpr double kSmallest = 0.04, kLargest = 0.06;
 /// Of that way, fingers that have parted by more do not carry what they held any more.
 constexpr double kOpens = 0.5;
+/// Nor do those that open faster than this: half of it would be a kick [m/s].
+constexpr double kLeaves = 0.35;
 /// Bond of a hand that nothing limits [N].
 constexpr double kUnlimited = 1e5;
 /// Grip force over what slip needs, in people 1.2 to 2 (Johansson & Westling 1984).
 constexpr double kMargin = 1.5;
-/// Normals may be so far from opposite at the most, whatever the friction [rad].
-constexpr double kWidest = 1.5;
-
 bool holds(const Grip& grip, const ContactKey& key) {
   return grip.hand == key.hand && grip.body == key.body;
 }
@@ -64,25 +50,10 @@ const Grip* bearing_grip(const std::vector<Grip>& grips, const ContactKey& key) 
   return nullptr;
 }
 
-bool is_base(bool by_palm, int capsule) {
-  if (by_palm) return capsule == kPalm || bone_of(capsule) == 0;
-  return finger_of(capsule) == 0;
-}
-
 bool slips(const std::vector<Contact>& contacts, const Grip& grip) {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
     return contact.friction == Friction::slipping && contact.touching() && holds(grip, contact.key);
   });
-}
-
-double distance_from_axis(const Vector3& point, const Capsule& capsule) {
-  const Vector3 along = capsule.end - capsule.start;
-  const double s = (point - capsule.start).dot(along) / std::max(along.squaredNorm(), 1e-30);
-  return (point - capsule.axis_point(std::clamp(s, 0.0, 1.0))).norm();
-}
-
-bool has_tip(const Hand& hand, int finger) {
-  return hand.has(capsule_index(finger, 3));
 }
 
 /// As far as the hand opens to let go: most of the way to where both sides just touch.
@@ -91,10 +62,11 @@ double way_to_let_go(const Grip& grip, double part) {
 }
 
 /// The body goes with the fingers, but not with those that open: they leave it where the palm has it.
-void follow(const HandTrack& track, Grip& grip) {
+void follow(const HandTrack& track, double seconds, Grip& grip) {
   grip.middle_before = grip.middle;
-  const double opened = opening(grip, track.current) - grip.least;
-  if (opened <= way_to_let_go(grip, kOpens)) grip.middle = middle(grip, track.current);
+  const double now = opening(grip, track.current), opened = now - grip.least;
+  const bool leaves = now - opening(grip, track.previous) > kLeaves * seconds;
+  if (!leaves && opened <= way_to_let_go(grip, kOpens)) grip.middle = middle(grip, track.current);
 }
 
 /// Contacts of one side of a grip.
@@ -126,13 +98,14 @@ struct Sides {
 
 GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Vector3& gravity,
                          const ContactConfiguration& configuration)
-    : scene_(scene), finder_(finder), gravity_(gravity), configuration_(configuration) {
+    : scene_(scene), closing_hand_(scene, finder), gravity_(gravity), configuration_(configuration) {
   closing_.reserve(kMaxHands * scene.bodies.size());
 }
 
 void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state) {
   if (!configuration_.grasp_assist) return;
   seconds_ = seconds;
+  closing_hand_.begin_frame(seconds);
   let_go(state);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active || state.hands[slot].appeared || buried(slot, state)) continue;
@@ -161,9 +134,10 @@ void GraspAssist::let_go(SimulationState& state) {
     const HandTrack& track = state.hands[grip.hand];
     grip.closes = false;
     for (int finger = 0; finger < kFingers; ++finger)
-      grip.closes = grip.closes || (grip.takes_part(finger) && closes(track, grip.by_palm, finger));
+      grip.closes =
+          grip.closes || (grip.takes_part(finger) && closing_hand_.closes(track, grip.by_palm, finger));
     if (track.active && !track.appeared && !opens(state, grip)) {
-      follow(track, grip);
+      follow(track, seconds_, grip);
       // Between a wall and what it holds no hand would find room.
       if (grip.bears && buried(grip.hand, state))
         state.interactions[grip.hand * state.bodies.size() + grip.body].shown_in = true;
@@ -186,74 +160,9 @@ bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
   return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
 }
 
-/// At which the opening between a finger and what it closes against shrinks over the frame [m/s].
-double GraspAssist::closing_speed(const HandTrack& track, bool by_palm, int finger) const {
-  const Hand &from = track.previous, &to = track.current;
-  const double before = (tip_of(from, finger) - base_of(from, by_palm)).norm();
-  return (before - (tip_of(to, finger) - base_of(to, by_palm)).norm()) / seconds_;
-}
-
-/// It shrinks, and not by the way while the hand sweeps.
-bool GraspAssist::closes(const HandTrack& track, bool by_palm, int finger) const {
-  if (seconds_ <= 0.0) return false;
-  const Hand &from = track.previous, &to = track.current;
-  const double tip = (tip_of(to, finger) - tip_of(from, finger)).norm() / seconds_;
-  const double base = (base_of(to, by_palm) - base_of(from, by_palm)).norm() / seconds_;
-  return closing_speed(track, by_palm, finger) > std::max(kClosingSpeed, kClosingPart * std::max(tip, base));
-}
-
-std::optional<ClosestFeatures> GraspAssist::nearest(const Capsule& capsule, int body, const Pose& pose,
-                                                    double margin) const {
-  std::optional<ClosestFeatures> result;
-  const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
-  for (int shape = 0; shape < shapes; ++shape) {
-    const auto features = finder_.closest(capsule, body, shape, pose, margin);
-    if (features && (!result || features->distance < result->distance)) result = features;
-  }
-  return result;
-}
-
-bool GraspAssist::on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body,
-                                    const Pose& pose) const {
-  const auto under = [&](int capsule) {
-    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], body, pose, kFar);
-  };
-  const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
-  return tip && base && tip->normal.dot(base->normal) < kOpposite;
-}
-
-/// What a finger does about a body that is near the line to what it closes against.
-void GraspAssist::look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
-                             Look& look) const {
-  const Hand& hand = track.current;
-  const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
-  const double reach = scene_.bodies[static_cast<std::size_t>(body)].bounding_radius + kBeside;
-  if (distance_from_axis(pose.position, line) > reach) return;
-  const auto beside = nearest(line, body, pose, kBeside);
-  if (!beside) return;
-  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, body, pose))
-    look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
-  if (beside->distance > 0.0 || closing_speed(track, by_palm, finger) < -kOpeningSpeed) return;
-  if (!look.touches) look.touches = touches(hand, body, pose);
-  const double friction = scene_.bodies[static_cast<std::size_t>(body)].material.static_friction;
-  const auto here = opposed(*look.touches, by_palm, finger, friction);
-  std::optional<Opposed>& found = look.opposed;
-  if (!here || (found && found->by_palm != by_palm)) return;
-  const std::uint8_t others = found ? found->taking_part : std::uint8_t(0);
-  if (!found || here->depth > found->depth) found = here;
-  found->taking_part = static_cast<std::uint8_t>(others | 1 << finger);
-}
-
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
-  const HandTrack& track = state.hands[slot];
-  const Pose& pose = state.bodies[static_cast<std::size_t>(body)].pose;
-  Look look;
-  for (const bool by_palm : {false, true}) {
-    for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger) {
-      if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)))
-        look_along(track, by_palm, finger, body, pose, look);
-    }
-  }
+  const auto look =
+      closing_hand_.look_at(state.hands[slot], body, state.bodies[static_cast<std::size_t>(body)].pose);
   if (look.opposed) {
     if (look.opposed->depth > kPulp) take(slot, body, *look.opposed, state);
   } else if (look.closing != 0) {
@@ -263,38 +172,9 @@ void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   }
 }
 
-GraspAssist::Touches GraspAssist::touches(const Hand& hand, int body, const Pose& pose) const {
-  Touches result;
-  for (std::size_t c = 0; c < kCapsules; ++c) {
-    if (hand.capsules[c].radius <= 0.0) continue;
-    const auto features = nearest(hand.capsules[c], body, pose, 0.0);
-    if (features) result[c] = {true, -features->distance, features->normal, features->point};
-  }
-  return result;
-}
-
-/// Two points hold a body if the friction cones of both contain the other (Nguyen 1988): their normals are
-/// then at most two friction angles from opposite. Points deep in the body tell no more than this.
-std::optional<GraspAssist::Opposed> GraspAssist::opposed(const Touches& touches, bool by_palm, int finger,
-                                                         double friction) const {
-  double most = -std::cos(std::min(2.0 * std::atan(friction), kWidest));
-  std::optional<Opposed> result;
-  for (int c = 0; c < kCapsules; ++c) {
-    const Touch& base = touches[static_cast<std::size_t>(c)];
-    if (!base.touches || !is_base(by_palm, c)) continue;
-    for (int bone = 1; bone < kBonesPerFinger; ++bone) {
-      const Touch& other = touches[static_cast<std::size_t>(capsule_index(finger, bone))];
-      if (!other.touches || base.normal.dot(other.normal) > most) continue;
-      most = base.normal.dot(other.normal);
-      result = Opposed{
-          std::max(base.depth, other.depth), base.depth + other.depth, base.point, other.point, by_palm, 0};
-    }
-  }
-  return result;
-}
-
 /// What the hand has taken before and has not had to bear is taken anew, but is off by where it was then.
-void GraspAssist::take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const {
+void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& opposed,
+                       SimulationState& state) const {
   const auto b = static_cast<std::size_t>(body);
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
   const Pose& pose = state.bodies[b].pose;

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <array>
-#include <optional>
 #include <vector>
 
-#include "mr_hand_interaction/collision/contact_finder.h"
+#include "closing_hand.h"
 #include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
@@ -40,40 +38,9 @@ class GraspAssist {
     std::size_t hand, body;
     bool grabs;  // with several fingers
   };
-  /// A capsule of the hand that is in the body, by the way out that is nearest.
-  struct Touch {
-    bool touches = false;
-    double depth = 0.0;  // [m]
-    Vector3 normal, point;
-  };
-  using Touches = std::array<Touch, kCapsules>;
-  /// Two sides of a hand that could hold a body between them.
-  struct Opposed {
-    double depth;           // of the deeper side [m]
-    double squeeze;         // of both sides together [m]
-    Vector3 base, fingers;  // where they touch
-    bool by_palm;
-    std::uint8_t taking_part;
-  };
-  /// What a hand's fingers do about a body.
-  struct Look {
-    std::optional<Touches> touches;  // found when first asked for
-    std::optional<Opposed> opposed;
-    std::uint8_t closing = 0;  // fingers that close on it, a bit each
-  };
-
   bool buried(std::size_t slot, const SimulationState& state) const;
   void look_at(std::size_t slot, int body, SimulationState& state);
-  void look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
-                  Look& look) const;
-  double closing_speed(const HandTrack& track, bool by_palm, int finger) const;
-  bool closes(const HandTrack& track, bool by_palm, int finger) const;
-  std::optional<ClosestFeatures> nearest(const Capsule& capsule, int body, const Pose& pose,
-                                         double margin) const;
-  bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const;
-  Touches touches(const Hand& hand, int body, const Pose& pose) const;
-  std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger, double friction) const;
-  void take(std::size_t slot, int body, const Opposed& opposed, SimulationState& state) const;
+  void take(std::size_t slot, int body, const ClosingHand::Opposed& opposed, SimulationState& state) const;
   bool opens(const SimulationState& state, Grip& grip) const;
   void place(double fraction, const HandTrack& track, Grip& grip) const;
   double off(const SimulationState& state, const Grip& grip) const;
@@ -81,7 +48,7 @@ class GraspAssist {
   bool gives_way(const Contact& contact, const SimulationState& state) const;
 
   const Scene& scene_;
-  const ContactFinder& finder_;
+  ClosingHand closing_hand_;
   const Vector3 gravity_;
   const ContactConfiguration configuration_;
   double seconds_ = 0.0;            // of the frame

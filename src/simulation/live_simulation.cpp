@@ -128,7 +128,7 @@ void LiveSimulation::remove(const std::string& name) {
   go_on_with(scene, simulation_->configuration());
 }
 
-std::vector<Event> LiveSimulation::farewell(const std::string& name) const {
+std::vector<Event> LiveSimulation::events_if_removed(const std::string& name) const {
   SimulationState state = simulation_->state();
   return end_interactions_with(known_body(simulation_->scene(), name, false), state);
 }

@@ -99,7 +99,7 @@ Simulation::~Simulation() = default;
 Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected) {
   Impl& s = *impl_;
   s.result.restarted = false;
-  const Rejection rejection = s.judge(frame.stamp, expected);
+  const Rejection rejection = s.check_stamp(frame.stamp, expected);
   if (rejection != Rejection::none) return rejection;
   s.clear_result();
   if (!s.state.started) {
@@ -107,7 +107,7 @@ Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseco
     s.state.time = s.state.last_frame = frame.stamp;
   }
   if (to_seconds(frame.stamp - s.state.last_frame) > s.configuration.tracking.hold_time)
-    s.silence(frame.stamp);
+    s.pass_without_frames(frame.stamp);
   s.lose_hands(frame.stamp);
   track_hands(frame, s.configuration, s.state.hands, s.result.events);
   s.lose_hands_that_are_not_finite(frame.stamp);
@@ -166,7 +166,7 @@ bool Simulation::advance_without_hands(Nanoseconds time) {
   if (time < state.time + s.step_length) return false;
   s.result.restarted = false;
   s.clear_result();
-  s.silence(time);
+  s.pass_without_frames(time);
   s.finish(state.time);
   return true;
 }
@@ -197,6 +197,10 @@ Nanoseconds Simulation::time() const {
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
   impl_->state.asleep.resize(impl_->scene.bodies.size(), 0);
+  if (state.joints.size() != impl_->scene.joints.size()) {
+    impl_->state.joints.clear();
+    for (const Joint& joint : impl_->scene.joints) impl_->state.joints.push_back(start_state(joint));
+  }
   impl_->steps = impl_->steps_done = 0;
 }
 void Simulation::go_on_from(const Simulation& other) {

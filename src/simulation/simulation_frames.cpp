@@ -15,7 +15,7 @@ constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 
 }  // namespace
 
-Rejection Simulation::Impl::judge(Nanoseconds stamp, const std::optional<Nanoseconds>& expected) {
+Rejection Simulation::Impl::check_stamp(Nanoseconds stamp, const std::optional<Nanoseconds>& expected) {
   switch (state.stamps.judge(stamp, state.time, expected)) {
     case StampVerdict::late:
     case StampVerdict::behind:
@@ -66,7 +66,7 @@ void Simulation::Impl::begin_hands(double seconds) {
 
 /// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
 /// frame.
-void Simulation::Impl::silence(Nanoseconds until) {
+void Simulation::Impl::pass_without_frames(Nanoseconds until) {
   if (until - state.time > kLongestSilence) state.time = until;
   for (HandTrack& track : state.hands) {
     track.held = track.active;

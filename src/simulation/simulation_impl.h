@@ -26,11 +26,11 @@ struct Simulation::Impl {
   void clear_result();
 
   // Frames.
-  Rejection judge(Nanoseconds stamp, const std::optional<Nanoseconds>& expected);
+  Rejection check_stamp(Nanoseconds stamp, const std::optional<Nanoseconds>& expected);
   void plan(Nanoseconds from, Nanoseconds to);
   int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
-  void silence(Nanoseconds until);
+  void pass_without_frames(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void finish(Nanoseconds stamp);
 

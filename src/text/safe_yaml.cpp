@@ -54,9 +54,12 @@ class Guard : public YAML::EventHandler {
 }  // namespace
 
 YAML::Node load_yaml(const std::string& source, const std::string& yaml) {
-  if (yaml.size() > kMostBytes)
-    throw YamlError(source + ": is longer than " + std::to_string(kMostBytes) +
-                    " bytes; allowed: at most that");
+  return load_yaml(source, yaml, kMostBytes);
+}
+
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most) {
+  if (yaml.size() > most)
+    throw YamlError(source + ": is longer than " + std::to_string(most) + " bytes; allowed: at most that");
   try {
     std::istringstream text(yaml);
     YAML::Parser parser(text);

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -20,5 +21,7 @@ YAML::Node load_yaml_file(const std::string& file);
 
 /// The same from a text; `source` names it in messages.
 YAML::Node load_yaml(const std::string& source, const std::string& yaml);
+/// Or of at most that many bytes.
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most);
 
 }  // namespace mrhi

@@ -41,13 +41,14 @@ std::uint64_t participant_place(const std::string& participant) {
 }
 
 Session::Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
-                 Nanoseconds now)
+                 Nanoseconds now, const SessionSetup& setup, SessionHooks hooks)
     : task_(std::make_unique<const Task>(std::move(task))),
-      folder_(folder, complete_header(header, *task_, place)),
+      folder_(folder, complete_header(header, *task_, place), setup),
+      hooks_(std::move(hooks)),
       first_(now),
       number_(folder_.last_trial()),
       trial_(*task_) {
-  for (int repetition = 1; repetition <= task_->repetitions; ++repetition) {
+  for (int repetition = task_->practice ? 0 : 1; repetition <= task_->repetitions; ++repetition) {
     for (const std::size_t object : object_order(*task_, header.seed, place))
       plan_.push_back({object, repetition, false});
   }
@@ -145,20 +146,39 @@ void Session::note_result() {
 
 void Session::log_trial_events() {
   for (const TrialEvent& event : trial_.events()) {
-    const bool ended = event.kind == TrialEventKind::ended;
-    const bool detailed = event.detail > 0.0;
-    folder_.log(EventRow{time(event.stamp), number_, event.stage, to_string(event.kind), object().name,
-                         ended      ? to_string(trial_.result())
-                         : detailed ? text::number(event.detail)
-                                    : ""});
+    EventRow row;
+    row.time = time(event.stamp);
+    row.stamp = event.stamp;
+    row.trial = number_;
+    row.stage = event.stage;
+    row.event = to_string(event.kind);
+    row.object = object().name;
+    if (event.kind == TrialEventKind::ended) {
+      row.detail = to_string(trial_.result());
+    } else if (event.detail > 0.0) {
+      row.detail = text::number(event.detail);
+    }
+    log(std::move(row));
   }
 }
 
 void Session::log_event(const char* event, Nanoseconds now) {
-  const bool of_trial = active();
-  folder_.log(EventRow{time(now), of_trial ? number_ : 0,
-                       of_trial ? trial_.stage() : TrainingStage::manipulation, event,
-                       of_trial ? object().name : "", ""});
+  EventRow row;
+  row.time = time(now);
+  row.stamp = now;
+  row.event = event;
+  if (active()) {
+    row.trial = number_;
+    row.stage = trial_.stage();
+    row.object = object().name;
+  }
+  log(std::move(row));
+}
+
+void Session::log(EventRow row) {
+  if (hooks_.utc) row.utc = hooks_.utc();
+  folder_.log(row);
+  if (hooks_.on_event) hooks_.on_event(row);
 }
 
 }  // namespace mrhi

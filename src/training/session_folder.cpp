@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 const char* const kTrialColumns =
     "trial,object,condition,repetition,result,start,completion_time,manipulation_time,maintenance_time,"
     "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
-    "tracking_losses";
-const char* const kEventColumns = "time,trial,stage,event,object,detail";
+    "tracking_losses,grasps,manipulation_drops";
+const char* const kEventColumns = "time,trial,stage,event,object,detail,stamp,utc";
 const char* const kHandColumns = "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching";
 
 /// A line of a table, of numbers with six decimals.
@@ -48,6 +48,14 @@ std::string read_all(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+/// In seconds, with all nine decimals: a double has too few digits for those since 1970.
+std::string stamp_text(Nanoseconds stamp) {
+  constexpr Nanoseconds kSecond = 1'000'000'000;
+  std::string decimals = std::to_string(stamp % kSecond);
+  decimals.insert(0, 9 - decimals.size(), '0');
+  return std::to_string(stamp / kSecond) + '.' + decimals;
+}
+
 void write_now(std::ofstream& out, const std::string& text, const std::string& file) {
   out << text << std::flush;
   if (!out) throw SessionError(file + ": cannot be written; allowed: a folder to write to with space left");
@@ -71,14 +79,15 @@ TrialResult result_named(const std::string& name) {
 
 }  // namespace
 
-SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& header)
+SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& header,
+                             const SessionSetup& setup)
     : path_(folder), condition_(header.condition) {
   check_header(header);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SessionError(folder + ": cannot be made: " + error.message());
   lock_ = std::make_unique<FolderLock>(folder);
-  open_header(header);
+  open_header(header, setup);
 
   for (const auto& row : open_table("trials.csv", kTrialColumns, trials_)) {
     earlier_.push_back({whole_number(row[0]), row[1], whole_number(row[3]), result_named(row[4]), 0.0, {}});
@@ -92,13 +101,15 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
   }
 }
 
-void SessionFolder::open_header(const SessionHeader& header) {
+void SessionFolder::open_header(const SessionHeader& header, const SessionSetup& setup) {
   const fs::path file = fs::path(path_) / "session.yaml";
   resumed_ = fs::exists(file);
   if (resumed_) {
     check_same_session(file.string(), header);
+    check_same_setup(path_, setup);
     return;
   }
+  write_setup(path_, setup);
   const fs::path unfinished = fs::path(path_) / "session.yaml.part";
   std::ofstream out(unfinished, std::ios::binary);
   write_now(out, header_text(header), file.string());
@@ -145,6 +156,7 @@ void SessionFolder::log(const EventRow& row) {
   line.add(row.time);
   row.trial > 0 ? line.add(row.trial) : line.add("");
   line.add(to_string(row.stage)).add(row.event).add(row.object).add(row.detail);
+  line.add(stamp_text(row.stamp)).add(row.utc);
   write_now(events_, line.text(), path_ + "/events.csv");
 }
 
@@ -156,6 +168,7 @@ void SessionFolder::log(const TrialRow& row) {
   for (const std::optional<double>& time : m.stage_times) line.add(time);
   line.add(m.attempts).add(m.drops).add(m.path_length).add(m.grip_force_mean).add(m.grip_force_max);
   line.add(m.release_drift).add(m.release_speed).add(m.tracking_losses);
+  line.add(m.attempts).add(m.manipulation_drops);
   write_now(trials_, line.text(), path_ + "/trials.csv");
 }
 

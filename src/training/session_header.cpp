@@ -24,6 +24,7 @@ std::vector<Field> identity(const SessionHeader& header) {
           {"condition", header.condition},
           {"seed", std::to_string(header.seed)},
           {"task", header.task},
+          {"session", std::to_string(header.session)},
           {"simulated", header.simulated ? "true" : "false"},
           {"order", "[" + text::joined(header.order) + "]"}};
 }
@@ -52,8 +53,7 @@ void check_word(const char* key, const std::string& value) {
 void check_header(const SessionHeader& header) {
   check_word("participant", header.participant);
   check_word("condition", header.condition);
-  if (header.group != "veteran" && header.group != "beginner")
-    throw SessionError("group '" + header.group + "' is not allowed; allowed: veteran or beginner");
+  check_word("group", header.group);
   if (header.handedness != "right" && header.handedness != "left")
     throw SessionError("handedness '" + header.handedness + "' is not allowed; allowed: right or left");
 }
@@ -65,13 +65,14 @@ std::string header_text(const SessionHeader& header) {
     out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
   };
   quoted("participant", header.participant);
-  out << YAML::Key << "group" << YAML::Value << header.group;
+  quoted("group", header.group);
   out << YAML::Key << "handedness" << YAML::Value << header.handedness;
   quoted("condition", header.condition);
   out << YAML::Key << "gravity" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (const double g : {header.gravity.x(), header.gravity.y(), header.gravity.z()}) out << g;
   out << YAML::EndSeq << YAML::Key << "seed" << YAML::Value << header.seed;
   quoted("task", header.task);
+  out << YAML::Key << "session" << YAML::Value << header.session;
   out << YAML::Key << "simulated" << YAML::Value << header.simulated;
   quoted("started", header.started);
   out << YAML::Key << "order" << YAML::Value << YAML::Flow << header.order;
@@ -86,7 +87,8 @@ void check_same_session(const std::string& file, const SessionHeader& header) {
     if (!there.IsMap())
       throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
     for (const auto& [key, here] : identity(header)) {
-      const std::string said = field_text(there[key]);
+      const bool first = std::string(key) == "session" && !there[key];  // before there were several
+      const std::string said = first ? "1" : field_text(there[key]);
       if (said != here) refuse(file, key, "'" + said + "'", "'" + here + "'");
     }
     const std::optional<Vector3> gravity = yaml_vector(there["gravity"]);

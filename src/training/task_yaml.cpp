@@ -87,6 +87,7 @@ const std::map<std::string, std::function<void(const Element&, Task&)>>& task_ke
       {"fixtures", [](E e, Task& t) { t.fixtures = read_list(e, read_fixture); }},
       {"order",
        [](E e, Task& t) { t.latin_square = choice(e, "latin_square", "as_listed") == "latin_square"; }},
+      {"practice", [](E e, Task& t) { t.practice = choice(e, "true", "false") == "true"; }},
       {"repetitions", [](E e, Task& t) { t.repetitions = repetitions(e); }},
       {"time_out", [](E e, Task& t) { t.time_out = number(e, kAboveZero, " [s]"); }},
       {"goals", [](E e, Task& t) { t.goals = read_list(e, read_goal), check_order(e, t.goals); }},

@@ -85,7 +85,7 @@ void Trial::note_grasp(const Observation& seen) {
   if (!loose_ || (elapsed_ - *loose_ < kDropped && !seen.put_back)) return;
   loose_.reset();
   add(TrialEventKind::dropped);
-  ++measures_.drops;
+  note_drop();
 }
 
 void Trial::note_touch(const Observation& seen, Nanoseconds passed) {
@@ -124,8 +124,13 @@ void Trial::strike(const Observation& seen) {
     achieve();
   } else {
     add(TrialEventKind::missed, speed);
-    ++measures_.drops;
+    note_drop();
   }
+}
+
+void Trial::note_drop() {
+  ++measures_.drops;
+  measures_.manipulation_drops += stage() == TrainingStage::manipulation;
 }
 
 void Trial::release(const Observation& seen) {

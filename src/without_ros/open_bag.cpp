@@ -7,4 +7,9 @@ ReplayInput open_bag(const ReplayArguments& arguments) {
                    ": this replay was built without ROS and reads no bags; allowed: a recording in CSV");
 }
 
+OpenLog open_log(const ReplayArguments& arguments) {
+  open_bag(arguments);
+  return {};
+}
+
 }  // namespace mrhi

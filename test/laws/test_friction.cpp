@@ -2,6 +2,7 @@
 
 #include "response/penetration_force.h"
 #include "support/fixtures.h"
+#include "support/one_side_leaves.h"
 
 namespace mrhi {
 namespace {
@@ -42,11 +43,29 @@ TEST(Coulomb, what_slips_sticks_again_well_below_the_dynamic_cone) {
 }
 
 TEST(NormalForce, is_stiffness_times_depth_at_rest_and_never_pulls) {
-  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, 0.0), 0.4);
-  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, -1.0), 0.4);
-  EXPECT_EQ(normal_force(100.0, 0.004, 10.0), 0.0);
-  EXPECT_EQ(normal_force(100.0, -0.004, 0.0), 0.0);
-  EXPECT_EQ(normal_force(100.0, 0.0, 0.0), 0.0);
+  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, 0.0, 10.0), 0.4);
+  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, -1.0, 10.0), 0.4);
+  EXPECT_EQ(normal_force(100.0, 0.004, 10.0, 10.0), 0.0);
+  EXPECT_EQ(normal_force(100.0, -0.004, 0.0, 10.0), 0.0);
+  EXPECT_EQ(normal_force(100.0, 0.0, 0.0, 10.0), 0.0);
+}
+
+// The paper's spring gives back all that it has taken (Eq. 17).
+TEST(NormalForce, fades_as_the_surfaces_part_or_keeps_to_the_paper) {
+  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, 0.05, 10.0), 0.2);
+  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, 0.05, 0.0), 0.4);
+  EXPECT_DOUBLE_EQ(normal_force(100.0, 0.004, 10.0, 0.0), 0.4);
+}
+
+// Four fingers against the thumb, each drawn 5 mm deep: the thumb's spring has 4/5 of the 10 mm between them.
+// At 1 ms a step the explicit spring is right to 5 %, and the fingers take a while to be gone.
+TEST(Seed, gives_back_what_a_spring_has_taken_where_it_keeps_to_the_letter) {
+  Configuration configuration = unfiltered(ContactModelKind::seed);
+  configuration.stiffness = 2000.0;
+  const double all = 0.8 * 0.01 * std::sqrt(2000.0 / testing::PinchScene().mass);
+  EXPECT_LE(testing::speed_as_one_side_leaves(configuration), 0.15);  // 0.1 and half a step of the push
+  configuration.contact.damping = configuration.contact.release_fade = false;
+  EXPECT_NEAR(testing::speed_as_one_side_leaves(configuration), all, 0.1 * all);
 }
 
 /// A block that slides at `speed` between two still fingers that press it from both sides along z by

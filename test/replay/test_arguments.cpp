@@ -62,10 +62,10 @@ TEST(ReplayArguments, help_needs_nothing_else) {
 }
 
 TEST(ReplayArguments, what_is_required_is_named_when_missing) {
-  expect_refused({"--input", "a.bag", "--output", "o"}, "--scene");
+  expect_refused({"--input", "a.csv", "--output", "o"}, "--scene");
   expect_refused({"--scene", "cube", "--output", "o"}, "--input");
-  expect_refused({"--scene", "cube", "--input", "a.bag"}, "--output");
-  expect_refused({}, "--scene");
+  expect_refused({"--scene", "cube", "--input", "a.csv"}, "--output");
+  expect_refused({}, "--input");
 }
 
 TEST(ReplayArguments, unknown_options_are_refused_with_those_allowed) {
@@ -115,6 +115,12 @@ TEST(ReplayArguments, poses_have_finite_numbers_and_a_direction) {
 TEST(ReplayArguments, twists_have_six_finite_numbers) {
   expect_refused(with({"--object-twist", "cube,1,2,3,4,5"}), "6 fields instead of 7");
   expect_refused(with({"--object-twist", "cube,1,2,3,4,5,1e999"}), "'1e999'");
+}
+
+TEST(ReplayArguments, a_bag_alone_is_enough) {
+  const ReplayArguments parsed = parse_replay_arguments({"--input", "folder/a.bag"});
+  EXPECT_EQ(parsed.scene, "");
+  EXPECT_EQ(parsed.output, "folder/a_replay");
 }
 
 }  // namespace

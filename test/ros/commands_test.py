@@ -35,16 +35,17 @@ PAGES = [os.path.join(PACKAGE, "README.md")] + sorted(glob.glob(os.path.join(PAC
 BEGINNINGS = re.compile(r"(roslaunch|rosrun|rosservice|rostopic|rosbag|rosdep|rosparam|snakemake|make|source|export|cd|git|"
                         r"apt-get|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
 
-PROGRAMS = ("analyse_study", "ask_ratings", "calibrate_mount", "doctor", "hand_interaction_node", "hand_tracking_node",
-            "interaction_node", "marker_relay_node", "replay", "run_when", "set", "simulated_operator_node", "simulated_study",
-            "synthetic_hand_node", "training_keys", "training_node")
+PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "doctor", "explain",
+            "hand_interaction_node", "hand_tracking_node", "interaction_node", "marker_relay_node", "plan_study",
+            "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
+            "training_keys", "training_node")
 
 EXCEPTED = (  # what the command begins with, and why it is not run here
     ("git clone|cd ~/catkin_ws|rosdep", "fetches and builds a workspace"),
     ("apt-get install", "installs packages"),
     ("source devel/setup.bash", "this test would not be found without"),
     ("export ROS_", "addresses of the user's machines"),
-    ("rosrun rqt_reconfigure", "Debian 12 does not have it"),
+    ("rosrun rqt_(reconfigure|plot)", "Debian 12 does not have it"),
     ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
     ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
     ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 from xmlrpc.client import ServerProxy
 
@@ -260,6 +261,23 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"participant", answer.stdout)
         self.assertIn(b"'P02'", answer.stdout)
+
+    def test_refuses_to_go_on_with_another_contact_model_under_the_same_condition(self):
+        """The folder keeps what the session was begun with, and the events have the time of the clock."""
+        with self.training("record:=false"):
+            self.wait_for(TrainingStatus.READY)
+        with open(os.path.join(self.folder, "events.csv"), newline="") as file:
+            begun = next(csv.DictReader(file))
+        self.assertLess(abs(float(begun["stamp"]) - time.time()), 600.0)
+        self.assertRegex(begun["utc"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z$")
+        command = roslib.packages.find_node("mr_hand_interaction", "training_node") + [
+            "_participant:=P01", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
+            "_simulation:=other_node", "_folder:=" + self.folder, "__name:=refused"]
+        rospy.set_param("/other_node/contact_model", "soft_pad")
+        answer = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
+        rospy.delete_param("/other_node")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn(b"'contact_model: implicit', this one has 'contact_model: soft_pad'", answer.stdout)
 
 
 if __name__ == "__main__":

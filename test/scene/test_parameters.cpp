@@ -83,19 +83,8 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
-  c.contact = {false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               false,
-               1,
-               {7, 8, 0.001, 0.03, 0.5}};
+  c.contact = {false, false, false, false, false, false, false,
+               false, false, false, false, false, 1,     {7, 8, 0.001, 0.03, 0.5}};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -129,6 +118,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "contact/grasp_assist",
                                           "contact/impact_friction",
                                           "contact/object_stiffness",
+                                          "contact/release_fade",
                                           "contact/sleep",
                                           "contact/sweep",
                                           "contact/swing_back",

@@ -144,7 +144,7 @@ TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) 
   held.play(0.7);
   ASSERT_TRUE(held.holds());
   const std::size_t cube = held.index("object");
-  const std::vector<Event> events = held.live().farewell("object");
+  const std::vector<Event> events = held.live().events_if_removed("object");
   EXPECT_TRUE(held.holds());
   held.live().remove("object");
   ASSERT_EQ(events.size(), 3u);

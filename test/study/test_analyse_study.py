@@ -7,11 +7,13 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
+import pandas
+
 import paths
 import made_up_study
-from study import trajectories
+from study import trajectories, with_r
 
-TABLES = {'anova.csv', 'bars.csv', 'comparison.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
+TABLES = {'any.csv', 'anova.csv', 'bars.csv', 'classical_pairs.csv', 'comparison.csv', 'effects.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
           'rating_tests.csv', 'report.html', 'sphericity.csv', 'trials.csv', 'figures'}
 SOME = ('attempts', 'completion_time', 'drops')
 NO_PERSON = 'no person took part'
@@ -78,6 +80,21 @@ class Program(unittest.TestCase):
             self.assertEqual(self.run_program(os.path.join(self.root, 'a')).returncode, 0)
             kept.append([self.read('report.html'), self.read('anova.csv'), self.read('left_out.txt')])
         self.assertTrue(kept[0] == kept[1])
+
+    def test_with_r_its_models_are_there_and_agree(self):
+        """Or what is lost without R is said. lme4's optimiser leaves some five digits."""
+        made_up_study.write_study(os.path.join(self.root, 'a'), 8, conditions=('implicit', 'seed'), measures=SOME)
+        done = self.run_program(os.path.join(self.root, 'a'), '--r')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        if with_r.missing():
+            self.assertIn('no Poisson or negative binomial mixed models of counts', self.read('left_out.txt'))
+            return
+        theirs = pandas.read_csv(os.path.join(self.output, 'r_models.csv')).set_index(['condition', 'measure', 'effect'])
+        ours = pandas.read_csv(os.path.join(self.output, 'effects.csv')).set_index(['condition', 'measure', 'effect'])
+        for condition, effect in (('implicit', 'group'), ('all', 'condition'), ('all', 'group x condition')):
+            a, b = (table.loc[condition, 'completion_time', effect] for table in (ours, theirs))
+            self.assertLess(abs(a.p - b.p), 2e-3, (a, b))
+        self.assertTrue(any(test.startswith('glmmTMB') for test in theirs['test']))
 
     def test_one_participant_with_one_trial(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 1, objects=('cube',), repetitions=1,

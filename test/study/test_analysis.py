@@ -78,7 +78,7 @@ class Numbers(Studies):
         results = self.study(10, conditions=('implicit', 'soft_pad'), condition_effect=2.0)
         cells = self.select(self.data.cells, measure='completion_time')
         means = cells.groupby(['participant', 'condition'])['value'].mean().unstack()
-        pair = self.select(results.post_hoc, condition='all', measure='completion_time').iloc[0]
+        pair = self.select(results.classical_pairs, condition='all', measure='completion_time').iloc[0]
         t, p = stats.ttest_rel(means['implicit'], means['soft_pad'])
         self.assertEqual((pair.a, pair.b, pair.comparisons), ('implicit', 'soft_pad', 1))
         self.assertAlmostEqual(pair.statistic, t, places=9)
@@ -87,7 +87,7 @@ class Numbers(Studies):
 
     def test_pairs_are_corrected_within_their_family(self):
         pairs = self.select(self.study(12, object_effect=1.0).post_hoc, measure='completion_time')
-        for family in (pairs[pairs['at'] == 'objects'], pairs[pairs['at'] != 'objects']):
+        for family in (pairs[pairs['at'] == 'objects'], pairs[pairs['at'].str.startswith('at ')]):
             self.assertEqual(list(family['comparisons']), [3, 3, 3])
             np.testing.assert_allclose(family['p_bonferroni'], np.minimum(1, 3 * family['p']))
 
@@ -96,6 +96,48 @@ class Numbers(Studies):
         self.assertLess(effects.loc['object'].p, 1e-6)
         self.assertGreater(effects.loc['group'].p, 0.05)
         self.assertGreater(effects.loc['group x object'].p, 0.05)
+
+    def test_drops_in_all_of_one_group_and_none_of_the_other(self):
+        """Welch's t has no variance to go by; exact tests have."""
+        for i in range(8):
+            made_up_study.write_session(os.path.join(self.root, str(i)), str(i), ('beginner', 'veteran')[i % 2], trials=[
+                {'object': name, 'completion_time': 10 + i, 'attempts': 1, 'drops': 1 - i % 2} for name in 'ab'])
+        results = self.analyse()
+        for table, measure, at, p in ((results.any, 'drops', 'at a', 2 / 70), (results.post_hoc, 'drops', 'at b', 2 / 70),
+                                      (results.post_hoc, 'drops', 'all objects', 2 / 70)):
+            row = self.select(table, measure=measure, at=at).iloc[0]
+            self.assertAlmostEqual(row.p, p)
+        self.assertTrue(self.select(results.classical_pairs, measure='drops', at='at a')['p'].isna().all())
+
+    def test_three_groups(self):
+        for i in range(12):
+            made_up_study.write_session(os.path.join(self.root, str(i)), str(i), ('beginner', 'pilot', 'veteran')[i % 3],
+                                        trials=[{'object': name, 'completion_time': 10 + i * j + i % 5 + 9 * (i % 3 == 1),
+                                                 'drops': i % 4} for j, name in enumerate('ab')])
+        results = self.analyse()
+        pairs = self.select(results.post_hoc, measure='completion_time', at='all objects')
+        self.assertEqual(list(zip(pairs['a'], pairs['b'])), [('beginner', 'veteran'), ('beginner', 'pilot'),
+                                                             ('veteran', 'pilot')])
+        self.assertEqual(self.select(results.effects, measure='completion_time', effect='group')['df'].iloc[0], 2)
+
+    def test_simulated_operators_of_two_seeds_are_two_people(self):
+        for seed in (1, 2):
+            made_up_study.write_session(os.path.join(self.root, str(seed)), simulated=True, seed=seed,
+                                        trials=[{'completion_time': 10 + seed}])
+        results = self.analyse()
+        self.assertEqual(self.select(results.bars, measure='completion_time')['n'].iloc[0], 2)
+
+    def test_the_paper_s_attempts_are_drops_during_manipulation(self):
+        """In sessions from before they had a column they are counted from the events."""
+        folder = made_up_study.write_session(os.path.join(self.root, 'a'), trials=[
+            {'completion_time': 10, 'attempts': 4, 'drops': 3}])
+        made_up_study.write_table(os.path.join(folder, 'events.csv'), ['trial', 'stage', 'event'], [
+            {'trial': 1, 'stage': stage, 'event': event} for stage, event in (
+                ('manipulation', 'dropped'), ('manipulation', 'grasped'), ('maintenance', 'dropped'),
+                ('maintenance', 'dropped'))])
+        results = self.analyse()
+        means = {row.quantity: row.mean for row in results.comparison.itertuples()}
+        self.assertEqual((means['grasps'], means['manipulation_drops'], means['drops']), (4, 1, 3))
 
     def test_simulated_operators_and_gravities_are_analysed_apart_and_marked(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 4)
@@ -119,6 +161,8 @@ class LeftOut(Studies):
         self.rewrite('P03', lambda rows: [row for row in rows if row['object'] != 'flat_cuboid'])
         results = self.analyse()
         self.assertEqual(self.effects(results).loc['object'].n, 7)
+        mixed = self.select(results.effects, measure='completion_time')
+        self.assertEqual((set(mixed['n']), set(mixed['values'])), ({8}, {3 * 8 - 1}), 'the mixed model leaves nobody out')
         self.assert_noted(results, '0 g, implicit', 'completion_time'.replace('_', ' '),
                           'no value for every object from P03: left out of the analysis of variance')
         self.assertEqual(self.select(results.bars, measure='completion_time', object='cube',

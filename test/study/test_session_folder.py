@@ -125,14 +125,16 @@ class Refusals(Folders):
                 self.edit('ratings.csv', ',7$', ',' + written)
                 self.assert_refused('ratings.csv: line 2: score', 'whole number from 0 to 10')
 
-    def test_unknown_question(self):
-        self.folder()
+    def test_a_question_of_the_lab_s_own_stops_nothing(self):
+        folder = self.folder()
         self.edit('ratings.csv', 'efficiency', 'fun')
-        self.assert_refused("ratings.csv: line 3: question: 'fun' is not naturalness or efficiency")
+        self.assertIn('fun', [row['question'] for row in session_folder.read_session(folder).ratings])
+        self.edit('ratings.csv', 'fun,', 'fun,10')
+        self.assert_refused('ratings.csv: line 3: score', 'is not a whole number from 0 to 100')
 
     def test_session_without_what_is_needed(self):
         for key, replacement, words in (('participant', '', "no 'participant'"),
-                                        ('group', 'group: expert', "'expert' is not beginner or veteran"),
+                                        ('group', 'group: " "', "group: is empty"),
                                         ('version', 'version: 2', "'2' is not 1"),
                                         ('gravity', 'gravity: 9.81', 'is not three numbers'),
                                         ('simulated', 'simulated: perhaps', 'is not true or false'),

@@ -4,13 +4,16 @@ import csv
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import paths  # noqa: F401: does not leave bytecode behind
 
 WORKFLOW = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'workflow')
+SUMMARY = '{"frames": 7, "step_time_us": {"p50": 1, "p99": 2}, "events": {}, "objects_held_at_end": []}'
 SNAKEMAKE = shutil.which('snakemake')
 
 
@@ -57,13 +60,15 @@ class Workflow(unittest.TestCase):
 
     def snakemake(self, *arguments):
         environment = dict(os.environ, HOME=self.root, XDG_CACHE_HOME=self.root)
-        command = [SNAKEMAKE, '-s', os.path.join(WORKFLOW, 'Snakefile'), '--directory', self.root, '--cores', '1',
-                   '--configfile', os.path.join(self.root, 'config.json'), *arguments]
-        return subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        return subprocess.run(self.command(*arguments), env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               universal_newlines=True)
 
+    def command(self, *arguments):
+        return [SNAKEMAKE, '-s', os.path.join(WORKFLOW, 'Snakefile'), '--directory', self.root,
+                '--configfile', os.path.join(self.root, 'config.json')] + list(arguments or ['--cores', '1'])
+
     def planned(self, rule):
-        done = self.snakemake('--dry-run', '--quiet')
+        done = self.snakemake('--dry-run', '--quiet', '--cores', '1')
         self.assertEqual(done.returncode, 0, done.stdout)
         rows = [line.split() for line in done.stdout.splitlines()]  # job and count; the other way round before 6
         counts = [int(next(filter(str.isdigit, row))) for row in rows if len(row) in (2, 4) and rule in row]
@@ -92,9 +97,47 @@ class Workflow(unittest.TestCase):
         os.mkdir(os.path.join(self.root, 'x'))
         recordings = [self.write_recording('a.csv'), self.write_recording(os.path.join('x', 'a.csv'))]
         self.configure(study={'operators': 0}, replay={'recordings': recordings})
-        done = self.snakemake('--dry-run')
+        done = self.snakemake('--dry-run', '--cores', '1')
         self.assertNotEqual(done.returncode, 0)
         self.assertIn('have the same name', done.stdout)
+
+    def test_dry_run_plans_each_seed(self):
+        self.configure(study={'operators': 4, 'batch': 4, 'models': ['implicit'], 'gravities': [0], 'seed': [1, 2, 3]})
+        self.assertEqual(self.planned('operators'), 3)
+
+    def test_each_job_runs_on_a_node_of_its_own(self):
+        """The profile `separate`: an empty folder and environment for each job, as on a cluster."""
+        fake = self.write('replay', '#!/bin/sh\nwhile [ "$1" != --output ]; do shift; done\nmkdir -p "$2"\n'
+                          'echo \'%s\' > "$2/summary.json"\npwd > "$2/node.txt"\n' % SUMMARY)
+        os.chmod(fake, 0o755)
+        self.configure(programs=self.root, study={'operators': 0}, replay={
+            'recordings': [self.write_recording('a.csv')], 'scenes': ['cube', 'ball']})
+        done = self.snakemake('--profile', os.path.join(WORKFLOW, 'profiles', 'separate'))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual([row['frames'] for row in self.rows('out', 'replays.csv')], ['7', '7'])
+        self.assertEqual(done.stdout.count('Submitted job'), 3, done.stdout)
+
+    def test_after_a_kill_it_wants_to_be_unlocked_and_then_goes_on(self):
+        fake = self.write('replay', '#!/bin/sh\nwhile [ "$1" != --output ]; do shift; done\nmkdir -p "$2"\n'
+                          'touch "%s/begun"\n[ -e "%s/let" ] || exec sleep 600\necho \'%s\' > "$2/summary.json"\n'
+                          % (self.root, self.root, SUMMARY))
+        os.chmod(fake, 0o755)
+        self.configure(programs=self.root, study={'operators': 0}, replay={'recordings': [self.write_recording('a.csv')]})
+        environment = dict(os.environ, HOME=self.root, XDG_CACHE_HOME=self.root)
+        running = subprocess.Popen(self.command(), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   start_new_session=True)
+        deadline = time.monotonic() + 300
+        while not os.path.exists(os.path.join(self.root, 'begun')) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        os.killpg(running.pid, signal.SIGKILL)
+        running.wait()
+        self.write('let', '')
+        done = self.snakemake('--rerun-incomplete', '--cores', '1')
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('--unlock', done.stdout)
+        self.assertEqual(self.snakemake('--unlock', '--cores', '1').returncode, 0)
+        done = self.snakemake('--rerun-incomplete', '--cores', '1')
+        self.assertEqual(done.returncode, 0, done.stdout)
 
     @unittest.skipUnless(programs(), 'simulated_study is in no sourced catkin space: source devel/setup.bash')
     def test_a_small_run_makes_one_table_of_each_and_goes_on_where_it_was(self):
@@ -110,7 +153,7 @@ class Workflow(unittest.TestCase):
                          {('empty', scene, setting, '100')
                           for scene in ('cube', 'ball') for setting in ('default', 'raw')})
         self.assertEqual(self.planned('all'), 0)
-        for lost in (('sessions', 'implicit', '0g', 'from_2'), ('results',)):
+        for lost in (('sessions', 'seed_1', 'implicit', '0g', 'from_2'), ('results',)):
             shutil.rmtree(os.path.join(self.root, 'out', *lost))
         self.assertEqual(self.planned('operators'), 1)
         self.assertEqual(self.planned('replay'), 0)

@@ -345,8 +345,8 @@ TEST_F(SessionTest, a_folder_that_cannot_be_is_refused_in_one_line) {
 
 TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
   SessionHeader bad = header();
-  bad.group = "expert";
-  test::expect_words(refusal(bad), {"'expert'", "veteran or beginner"});
+  bad.group = "two words";
+  test::expect_words(refusal(bad), {"group", "'two words'", "allowed: a name"});
   bad = header();
   bad.handedness = "both";
   test::expect_words(refusal(bad), {"'both'", "right or left"});
@@ -379,7 +379,7 @@ TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
 TEST_F(SessionTest, goes_on_counting_whatever_numbers_are_in_its_tables) {
   open();
   std::ofstream(events_, std::ios::app)
-      << "0.1,2147483647,manipulation,drop,cube,\n-5,x,manipulation,drop,cube,\n";
+      << "0.1,2147483647,manipulation,drop,cube,,,\n-5,x,manipulation,drop,cube,,,\n";
   Session session = open();
   session.begin(0);
   session.abort(1);
@@ -409,6 +409,21 @@ TEST_F(SessionTest, repetitions_go_through_the_order_again) {
   EXPECT_EQ("cube", session.object().name);
   session.skip(0);
   EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,2,skipped,"));
+}
+
+TEST_F(SessionTest, practice_is_a_repetition_before_the_first_and_is_not_done_twice) {
+  Task task = three_objects();
+  task.practice = true;
+  {
+    Session session(task, header(), 0, path_, 0);
+    EXPECT_EQ(6u, session.trials());
+    session.skip(0);
+    EXPECT_EQ(0u, lines(trials_)[1].find("1,cube,implicit,0,skipped,"));
+  }
+  Session session(task, header(), 0, path_, 0);
+  EXPECT_EQ(1u, session.position());
+  for (int i = 0; i < 3; ++i) session.skip(0);
+  EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,1,skipped,"));
 }
 
 TEST(ParticipantPlace, is_the_number_at_the_end_of_the_name) {

@@ -19,6 +19,9 @@ class UsageError : public std::runtime_error {
 /// The command line of `replay`.
 struct ReplayArguments {
   bool help = false;
+  std::optional<double>
+      demonstration;     ///< demonstration.csv and .bag too, at this rate [Hz]; 0: the frames' own
+  bool explain = false;  ///< explain.json and explain.html too
   std::optional<std::pair<std::string, std::string>>
       compare;         ///< folders of two runs; nothing is played then
   std::string scene;   ///< name or URDF file

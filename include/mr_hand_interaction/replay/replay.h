@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "mr_hand_interaction/replay/arguments.h"
 #include "mr_hand_interaction/replay/frame_source.h"
 #include "mr_hand_interaction/replay/progress_bar.h"
@@ -13,10 +15,13 @@ namespace mrhi {
 /// command line that is not allowed, SceneError and ParameterError for files.
 Simulation prepare_simulation(const ReplayArguments& arguments);
 
+/// Who looks at each result.
+using FrameWatcher = std::function<void(const Simulation&)>;
+
 /// Runs all frames through the simulation; each result is written. The summary grows as it goes on, so that
 /// it holds if this throws.
 void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
-                ReplaySummary& summary);
+                ReplaySummary& summary, const FrameWatcher& watcher = {});
 
 /// The whole program after its arguments are known. Throws UsageError, else std::exception with one line for
 /// bad data; what had been written stays.

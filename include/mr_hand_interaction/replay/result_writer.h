@@ -44,6 +44,8 @@ class ResultWriter {
   ResultWriter(const std::string& folder, const Scene& scene);
 
   void write(const FrameResult& result, const SimulationState& state);
+  /// The scene is another one from now on.
+  void follow(const Scene& scene) { scene_ = &scene; }
   void flush();
 
  private:
@@ -53,7 +55,7 @@ class ResultWriter {
   void write_hand(double time, const Hand& hand, const RenderedHand* rendered);
   void write_events(const FrameResult& result);
 
-  const Scene& scene_;
+  const Scene* scene_;
   bool begun_ = false;
   Nanoseconds first_stamp_ = 0;
   CsvFile objects_, contacts_, hands_, events_;

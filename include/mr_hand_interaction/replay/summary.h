@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,19 @@
 #include "mr_hand_interaction/scene/material.h"
 
 namespace mrhi {
+
+/// How a replay stands to the live run that it does again.
+struct LiveRun {
+  std::string version;                  ///< of the package that ran
+  std::uint64_t entries = 0;            ///< of the log that have been done again
+  std::uint64_t missing = 0;            ///< entries that the recording has lost
+  std::uint64_t compared = 0;           ///< entries after which the state was compared with the live one's
+  std::uint64_t same = 0;               ///< of these, with the same hash
+  std::optional<double> parts_at;       ///< where it was first another one [s]
+  std::uint64_t lost_by_queue = 0;      ///< frames that did not reach the live simulation
+  std::vector<std::string> changes;     ///< that were made while it ran, with their time
+  std::vector<std::string> overridden;  ///< by hand, so that this is another run
+};
 
 /// What summary.json says of a replay.
 struct ReplaySummary {
@@ -28,7 +42,9 @@ struct ReplaySummary {
   std::map<std::string, std::uint64_t> events;
   std::vector<std::string> held_at_end;
   std::uint64_t state_hash = 0;
-  std::string error;  ///< why it ended early; empty if it did not
+  std::optional<LiveRun> live;         ///< where the recording tells
+  std::vector<std::string> not_known;  ///< what the outcome hangs on that the recording does not tell
+  std::string error;                   ///< why it ended early; empty if it did not
 };
 
 /// As JSON. All but step_time_us is the same for the same input.

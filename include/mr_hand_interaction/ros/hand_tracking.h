@@ -16,6 +16,7 @@
 
 #include "mr_hand_interaction/ros/input_statistics.h"
 #include "mr_hand_interaction/ros/leap_reader.h"
+#include "mr_hand_interaction/ros/sequence_watch.h"
 #include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 
@@ -32,6 +33,8 @@ class HandTracking {
   /// arrived.
   using Sink = std::function<void(const mr_hand_interaction::HandFrame&, const ros::Time& arrival)>;
   void pass_to(Sink sink) { sink_ = std::move(sink); }
+  /// Frames of trackers that were sent and have not arrived, so far.
+  std::uint64_t lost() const { return statistics_.lost(); }
 
  private:
   using LeapEvent = ros::MessageEvent<const topic_tools::ShapeShifter>;
@@ -39,7 +42,7 @@ class HandTracking {
   void subscribe_leap();
   /// roscpp keeps a topic to the version that it met first, so a driver of another version needs a new
   /// subscription.
-  void welcome_other_versions();
+  void accept_other_versions();
   void take_leap(const LeapEvent& event);
   void subscribe_pose_arrays(const std::string& topic);
   void take_pose_array(const geometry_msgs::PoseArray& message, Side side, const ros::Time& receipt);
@@ -60,6 +63,7 @@ class HandTracking {
   bool leap_seen_ = false;  ///< a driver, by the present subscription
   LeapReader leap_reader_;
   InputStatistics statistics_;
+  SequenceWatch sequences_;
 
   ros::NodeHandle node_;
   tf2_ros::Buffer transforms_;

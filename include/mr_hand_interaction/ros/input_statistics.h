@@ -20,6 +20,11 @@ class InputStatistics {
   /// Latency: from the frame's stamp until now.
   void taken(double latency);
   void rejected(const std::string& reason, const std::string& detail);
+  /// Frames that were sent and have not arrived.
+  void lost(std::uint64_t frames) { lost_ += frames; }
+  std::uint64_t lost() const { return lost_; }
+  /// A frame was here for so long before it was done with [s].
+  void waited(double seconds);
   /// Counts since the start; rate and latency since the last report.
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -32,6 +37,8 @@ class InputStatistics {
   };
 
   std::uint64_t taken_ = 0;
+  std::uint64_t lost_ = 0, late_ = 0;
+  std::uint64_t lost_reported_ = 0, late_reported_ = 0;
   std::map<std::string, Refusals> rejected_;
   std::uint64_t taken_in_period_ = 0;
   double latency_sum_ = 0.0, latency_max_ = 0.0;

@@ -4,7 +4,9 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "mr_hand_interaction/math/duration_histogram.h"
 #include "mr_hand_interaction/ros/input_statistics.h"
@@ -22,12 +24,20 @@ class InteractionDiagnostics {
   /// From the arrival of the hand's message until its markers were published [s].
   void picture(double latency) { picture_latency_.add(static_cast<Nanoseconds>(1e9 * latency)); }
   void rejected(const std::string& reason, const std::string& detail) { input_.rejected(reason, detail); }
+  void lost(std::uint64_t frames) { input_.lost(frames); }
+  std::uint64_t lost() const { return input_.lost(); }
+  /// From the arrival of a frame until it was done with [s].
+  void waited(double seconds) { input_.waited(seconds); }
   void dropped_while_paused() { ++dropped_; }
+  /// Adds what else there is to tell.
+  using Teller = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
+  void watch(Teller teller) { teller_ = std::move(teller); }
   void step(Nanoseconds duration) { step_times_.add(duration); }
 
  private:
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  Teller teller_;
   InputStatistics input_;
   DurationHistogram step_times_, picture_latency_;  ///< since the last report
   std::uint64_t dropped_ = 0;

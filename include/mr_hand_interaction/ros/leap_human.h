@@ -38,8 +38,9 @@ class LeapHumanDecoder {
   ~LeapHumanDecoder();
 
   struct Frame {
-    std::string frame_id;  ///< of the header
-    JointsFrame joints;    ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
+    std::string frame_id;        ///< of the header
+    std::uint32_t sequence = 0;  ///< likewise
+    JointsFrame joints;  ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
   };
   /// Throws DecodeError (truncated message, wrong finger or bone count, ...).
   Frame decode(const std::uint8_t* data, std::size_t size) const;

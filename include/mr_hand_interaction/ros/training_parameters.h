@@ -12,7 +12,7 @@ namespace mrhi {
 /// What the training node is told on the parameter server.
 struct TrainingParameters {
   std::string task = "pick_and_place";  ///< ~task: name or YAML file
-  SessionHeader header;                 ///< ~participant, ~group, ~handedness, ~condition, ~seed, ~simulated
+  SessionHeader header;       ///< ~participant, ~group, ~handedness, ~condition, ~seed, ~session, ~simulated
   std::optional<int> number;  ///< ~number: of the participant, from 1; else the one that ends the name
   std::string folder;         ///< ~folder: of the session; a ~ at its beginning is the home directory
   std::string simulation = "interaction_node";  ///< ~simulation: name of the node with the objects

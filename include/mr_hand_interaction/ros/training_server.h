@@ -4,6 +4,7 @@
 #include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/TrainingEvent.h>
 #include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
 
@@ -43,7 +44,9 @@ class TrainingServer {
 
   mr_hand_interaction::TrainingStatus status() const;
   void publish();
+  void publish(const EventRow& row) const;
 
+  ros::Publisher event_;  ///< before the session, which has events as it begins
   Session session_;
   TrainingScene scene_;
   std::string participant_, fixed_frame_ = "world";

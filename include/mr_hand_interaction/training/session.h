@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,12 @@ namespace mrhi {
 /// Numbers are those of TrainingStatus.msg.
 enum class SessionPhase : std::uint8_t { ready, running, paused, finished };
 
+/// What a session asks of and tells to the program that runs it; both may be empty.
+struct SessionHooks {
+  std::function<std::string()> utc;                   ///< what time it is, for EventRow::utc
+  std::function<void(const EventRow& row)> on_event;  ///< after each row of events.csv
+};
+
 /// Place of a participant in the Latin square: the number at the end of the name ("P07": 7), counted from 0
 /// where it is counted from 1 by people. Throws SessionError for a name without one.
 std::uint64_t participant_place(const std::string& participant);
@@ -25,7 +32,7 @@ class Session {
   /// `header`: gravity, task and order are those of the task. `place`: see participant_place. `now`: stamps
   /// are counted from here; a session that goes on counts on from its last event.
   Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
-          Nanoseconds now);
+          Nanoseconds now, const SessionSetup& setup = {}, SessionHooks hooks = {});
 
   SessionPhase phase() const { return phase_; }
   const Task& task() const { return *task_; }
@@ -66,11 +73,13 @@ class Session {
   void go_on_from(std::size_t position);
   void log_trial_events();
   void log_event(const char* event, Nanoseconds now);
+  void log(EventRow row);
   void note_result();
 
   std::unique_ptr<const Task> task_;
   std::vector<Planned> plan_;
   SessionFolder folder_;
+  SessionHooks hooks_;
   Nanoseconds first_;
   SessionPhase phase_ = SessionPhase::ready;
   std::size_t position_ = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/training/folder_lock.h"
+#include "mr_hand_interaction/training/session_setup.h"
 #include "mr_hand_interaction/training/trial.h"
 
 namespace mrhi {
@@ -25,6 +26,7 @@ struct SessionHeader {
   std::uint64_t seed = 1;
   std::string task;
   bool simulated = false;
+  int session = 1;                 ///< of this participant with this task and condition, from 1
   std::string started;             ///< UTC, as 2024-05-06T10:00:00Z
   std::vector<std::string> order;  ///< of objects
   std::string software;
@@ -34,7 +36,7 @@ struct SessionHeader {
 struct TrialRow {
   int trial = 0;
   std::string object;
-  int repetition = 1;  ///< from 1
+  int repetition = 1;  ///< from 1; 0: practice
   TrialResult result = TrialResult::none;
   double start = 0.0;  ///< since the session's start [s]
   TrialMeasures measures;
@@ -42,8 +44,10 @@ struct TrialRow {
 
 /// A row of events.csv.
 struct EventRow {
-  double time = 0.0;  ///< since the session's start [s]
-  int trial = 0;      ///< 0: none
+  double time = 0.0;      ///< since the session's start [s]
+  Nanoseconds stamp = 0;  ///< on the clock of the session
+  std::string utc;        ///< as 2024-05-06T10:00:00.123Z; empty: not known
+  int trial = 0;          ///< 0: none
   TrainingStage stage = TrainingStage::manipulation;
   std::string event, object, detail;
 };
@@ -59,15 +63,15 @@ struct HandRow {
   double radius = 0.0;
 };
 
-/// A session's folder: session.yaml, trials.csv, events.csv, and once there are hands hands.csv and
+/// A session's folder: session.yaml, setup/, trials.csv, events.csv, and once there are hands hands.csv and
 /// hands_raw.csv. What is logged is in the file when the call
 /// returns, whatever becomes of this program.
 class SessionFolder {
  public:
   /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
-  /// Throws SessionError if it is that of another session, in use by another program, or cannot be read or
-  /// written.
-  SessionFolder(const std::string& folder, const SessionHeader& header);
+  /// Throws SessionError if it is that of another session or of another setup, in use by another program, or
+  /// cannot be read or written.
+  SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
 
   const std::string& path() const { return path_; }
   bool resumed() const { return resumed_; }
@@ -83,7 +87,7 @@ class SessionFolder {
   void log(const HandRow& row);
 
  private:
-  void open_header(const SessionHeader& header);
+  void open_header(const SessionHeader& header, const SessionSetup& setup);
   std::string open_file(const char* name, const char* columns, std::ofstream& out);
   std::vector<std::vector<std::string>> open_table(const char* name, const char* columns, std::ofstream& out);
 

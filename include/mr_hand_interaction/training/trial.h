@@ -17,10 +17,11 @@ const char* to_string(TrialResult result);  ///< as in trials.csv
 struct TrialMeasures {
   double completion_time = 0.0;                                    ///< [s] until the object was let go
   std::array<std::optional<double>, kTrainingStages> stage_times;  ///< [s]; empty: never got there
-  int attempts = 0;  ///< times grasped (nudge_into, strike: touched)
-  int drops =
-      0;  ///< times lost, for 0.1 s at least, while it should have been held (strike: left at another speed)
-  double path_length = 0.0;                               ///< way of the object while held [m]
+  int attempts = 0;  ///< times grasped (nudge_into, strike: touched); `grasps` in trials.csv too
+  /// Times lost, for 0.1 s at least, while it should have been held (strike: left at another speed).
+  int drops = 0;
+  int manipulation_drops = 0;  ///< of the drops those in the stage of manipulation: the paper's attempts
+  double path_length = 0.0;    ///< way of the object while held [m]
   std::optional<double> grip_force_mean, grip_force_max;  ///< while held [N]; the mean over time
   std::optional<double> release_drift;                    ///< from where it was let go, drift_time later [m]
   std::optional<double> release_speed;                    ///< as it was let go [m/s]
@@ -89,6 +90,7 @@ class Trial {
   void hold(const Observation& seen, Nanoseconds passed);
   void note_touch(const Observation& seen, Nanoseconds passed);
   void strike(const Observation& seen);
+  void note_drop();
   void release(const Observation& seen);
   Vector3 position_at(Nanoseconds elapsed, const Observation& seen) const;
   void achieve();

@@ -1,0 +1,13 @@
+# The experimenter's panel, where rviz can be built against (Debian: librviz-dev).
+find_package(rviz QUIET)
+if(NOT rviz_FOUND)
+  message(STATUS "rviz's development files not found (librviz-dev): no training panel")
+  return()
+endif()
+find_package(Qt5 REQUIRED COMPONENTS Core Widgets)
+add_library(${PROJECT_NAME}_panel src/panel/training_panel.cpp)
+target_include_directories(${PROJECT_NAME}_panel SYSTEM PRIVATE ${rviz_INCLUDE_DIRS} ${catkin_INCLUDE_DIRS} /usr/include/OGRE)
+target_compile_definitions(${PROJECT_NAME}_panel PRIVATE QT_NO_KEYWORDS)
+target_link_libraries(${PROJECT_NAME}_panel PRIVATE ${rviz_LIBRARIES} ${catkin_LIBRARIES} Qt5::Widgets)
+add_dependencies(${PROJECT_NAME}_panel ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+install(TARGETS ${PROJECT_NAME}_panel LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})

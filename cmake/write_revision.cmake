@@ -1,0 +1,27 @@
+# Run at each build: writes OUTPUT with the git revision of SOURCE, and a hash of what is changed in it; the file is
+# touched only if that is another one.
+set(revision unknown)
+find_program(GIT git)
+if(GIT)
+  execute_process(COMMAND ${GIT} rev-parse --show-toplevel WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE top
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  get_filename_component(here ${SOURCE} REALPATH)
+  if(NOT failed AND top STREQUAL here)
+    execute_process(COMMAND ${GIT} rev-parse HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE revision
+      OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    execute_process(COMMAND ${GIT} diff HEAD --no-ext-diff WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(NOT changes STREQUAL "")
+      string(SHA256 hash "${changes}")
+      string(SUBSTRING ${hash} 0 12 hash)
+      string(APPEND revision "+changes-${hash}")
+    endif()
+  endif()
+endif()
+set(text "#pragma once\n#define MR_HAND_INTERACTION_REVISION \"${revision}\"\n")
+set(written "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} written)
+endif()
+if(NOT written STREQUAL text)
+  file(WRITE ${OUTPUT} "${text}")
+endif()

@@ -1,0 +1,117 @@
+"""How participants get better: over blocks (repetitions) and sessions, and what is left after a break."""
+
+import collections
+
+import numpy as np
+import pandas
+
+from . import mixed_model
+from .measures import CONDITIONS, MEASURES, OF, in_order
+from .style import INK, colours, finish, new_figure, save
+
+CURVES = ('completion_time', 'drops', 'grip_force_mean', 'release_drift')
+COLUMNS = ('source', 'gravity_g', 'condition', 'group', 'session', 'block', 'measure', 'n', 'mean', 'sd')
+SLOPES = ('source', 'gravity_g', 'condition', 'measure', 'scale', 'effect', 'n', 'values', 'estimate', 'low', 'high', 'df',
+          'p')
+
+
+def blocks(trials):
+    """A row for each participant, condition, session and block, with each measure's mean over the objects. `block`
+    counts on over the sessions."""
+    parts = []
+    keys = ['source', 'gravity_g', 'condition', 'group', 'participant', 'session_number', 'repetition']
+    for measure in MEASURES:
+        if measure.name not in trials.columns:
+            continue
+        some = trials[trials['result'].isin(measure.trials) & (trials['repetition'] != 0)]
+        values = pandas.to_numeric(some[measure.name]).astype(float)
+        of_objects = some[keys].assign(value=values, measure=measure.name).dropna(subset=['value'])
+        if len(of_objects):
+            parts.append(of_objects.groupby(keys + ['measure'])['value'].mean().reset_index())
+    if not parts:
+        return pandas.DataFrame(columns=keys + ['measure', 'value', 'block'])
+    table = pandas.concat(parts, ignore_index=True)
+    places = sorted(set(zip(table['session_number'], table['repetition'])))
+    number = {place: i for i, place in enumerate(places, 1)}
+    return table.assign(block=[number[place] for place in zip(table['session_number'], table['repetition'])])
+
+
+def curves(table):
+    """Mean and standard deviation over the participants of each block."""
+    rows = []
+    keys = ['source', 'gravity_g', 'condition', 'group', 'session_number', 'block', 'measure']
+    for key, some in table.groupby(keys):
+        values = some['value'].values
+        rows.append(dict(zip(COLUMNS, key + (len(values), values.mean(),
+                                             values.std(ddof=1) if len(values) > 1 else np.nan))))
+    return pandas.DataFrame(rows, columns=COLUMNS)
+
+
+def slopes(table):
+    """Of each condition and measure: the change with each doubling of the blocks (a power law of practice), and the change
+    from the last block of a session to the first of the next (retention). Times as ratios."""
+    rows = []
+    for key, some in table.groupby(['source', 'gravity_g', 'condition', 'measure']):
+        if some['block'].nunique() < 2 or OF[key[3]].kind == 'count' or some['participant'].nunique() < 2:
+            continue
+        logarithm = OF[key[3]].kind == 'time' and bool((some['value'] > 0).all())
+        for effect, contrast, used in _contrasts(some, logarithm):
+            shown = np.exp if logarithm else float
+            rows.append(dict(zip(SLOPES, key[:4] + (
+                'ratio' if logarithm else 'difference', effect, used['participant'].nunique(), len(used),
+                *[float(shown(x)) for x in (contrast.estimate, contrast.low, contrast.high)], contrast.df, contrast.p))))
+    return pandas.DataFrame(rows, columns=SLOPES)
+
+
+def _contrasts(some, logarithm):
+    yield from _fitted('each doubling of blocks', some, np.log2(some['block'].values.astype(float)), logarithm)
+    sessions = sorted(some['session_number'].unique())
+    for before, after in zip(sessions, sessions[1:]):
+        last = some[some['session_number'] == before]['block'].max()
+        first = some[some['session_number'] == after]['block'].min()
+        pair = some[some['block'].isin((last, first))]
+        yield from _fitted('retention: first of session %d after last of %d' % (after, before), pair,
+                           (pair['block'] == first).values.astype(float), logarithm)
+
+
+def _fitted(effect, some, column, logarithm):
+    values = np.log(some['value'].values) if logarithm else some['value'].values
+    try:
+        model = mixed_model.fit(values, np.column_stack([np.ones(len(some)), column]), some['participant'].values,
+                                {'participant': np.zeros(len(some))})
+        yield effect, mixed_model.contrast(model, [0.0, 1.0]), some
+    except (ValueError, np.linalg.LinAlgError):
+        return
+
+
+def draw(table, title, source, folder, name):
+    """Learning curves: a panel for each measure, a line for each condition and group, a gap between sessions."""
+    measures = [measure for measure in CURVES if measure in set(table['measure'])]
+    figure, panels = new_figure(len(measures), 1.3 + 2.6 * len(measures), 3.4)
+    groups, conditions = sorted(set(table['group'])), in_order(table['condition'], CONDITIONS)
+    hues, styles = colours(groups), ('-', '--', ':', '-.')
+    for axes, measure in zip(panels.flat, measures):
+        for group in groups:
+            for i, condition in enumerate(conditions):
+                some = table[(table['measure'] == measure) & (table['group'] == group) & (table['condition'] == condition)]
+                for _, session in some.groupby('session'):
+                    axes.errorbar(session['block'], session['mean'],
+                                  (session['sd'] / np.sqrt(session['n'])).fillna(0), color=hues[group][1],
+                                  linestyle=styles[i % len(styles)], marker='o', markersize=3, capsize=2)
+        axes.set_title(OF[measure].label + (' [%s]' % OF[measure].unit if OF[measure].unit else ''), loc='left')
+        axes.set_xlabel('block')
+        axes.set_ylim(0, None)
+    lines = [axes.plot([], [], color=hues[group][1], label=group)[0] for group in groups]
+    lines += [axes.plot([], [], color=INK, linestyle=styles[i % len(styles)], label=condition)[0]
+              for i, condition in enumerate(conditions)]
+    axes.legend(handles=lines, fontsize=7, frameon=False)
+    finish(figure, title, 'Mean of the participants and its standard error. Lines end where a session ends.', source)
+    return save(figure, folder, name)
+
+
+def of_people(table):
+    """{(participant, simulated): blocks}, for a page of each."""
+    people = collections.OrderedDict()
+    for (participant, source), some in table.groupby(['participant', 'source']):
+        people[participant, source] = some
+    return people

@@ -1,0 +1,54 @@
+# Called by study/with_r.py: mixed_models.R CELLS.csv OUTPUT.csv. Times and amounts: lme4 with pbkrtest's tests (the same
+# models as study/linear.py). Counts: glmmTMB, Poisson or negative binomial, whichever has the lower AIC.
+suppressPackageStartupMessages({library(lme4); library(lmerTest); library(pbkrtest); library(emmeans); library(glmmTMB)})
+options(contrasts = c("contr.sum", "contr.poly"))
+emm_options(lmer.df = "kenward-roger", msg.interaction = FALSE)
+arguments <- commandArgs(trailingOnly = TRUE)
+cells <- read.csv(arguments[1], stringsAsFactors = FALSE, check.names = FALSE)
+
+factors_of <- function(some)
+  Filter(function(name) length(unique(some[[name]])) > 1, c("group", "object", "condition"))
+
+formula_of <- function(some, response) {
+  used <- factors_of(some)
+  within <- setdiff(used, "group")
+  random <- c("(1 | participant)", if (length(within) > 1) sprintf("(1 | participant:%s)", within))
+  as.formula(paste(response, "~", paste(c(if (length(used)) paste(used, collapse = " * ") else "1", random), collapse = " + ")))
+}
+
+with_factors <- function(some) {
+  for (name in c("group", "object", "condition", "participant")) some[[name]] <- factor(some[[name]])
+  some
+}
+
+of_amounts <- function(some) {
+  some <- with_factors(some)
+  some$response <- if (some$logarithm[1] == 1) log(some$value) else some$value
+  model <- lmer(formula_of(some, "response"), some, control = lmerControl(check.conv.singular = "ignore"))
+  tests <- anova(model, ddf = "Kenward-Roger", type = 3)
+  data.frame(effect = gsub(":", " x ", rownames(tests)), test = "lme4, Kenward-Roger", statistic = tests[["F value"]],
+             df = tests$NumDF, df_error = tests$DenDF, p = tests[["Pr(>F)"]])
+}
+
+of_counts <- function(some) {
+  some <- with_factors(some)
+  some$response <- round(some$value * some$trials)
+  formula <- update(formula_of(some, "response"), . ~ . + offset(log(trials)))
+  fits <- lapply(list(poisson = poisson, nbinom2 = nbinom2), function(family) tryCatch(
+    suppressWarnings(glmmTMB(formula, some, family = family)), error = function(e) NULL))
+  known <- Filter(function(fit) !is.null(fit) && is.finite(AIC(fit)) && isTRUE(fit$sdr$pdHess), fits)
+  if (!length(known)) return(data.frame())
+  best <- names(known)[which.min(sapply(known, AIC))]
+  tests <- joint_tests(known[[best]])
+  data.frame(effect = gsub(":", " x ", tests[["model term"]]), test = paste("glmmTMB,", best),
+             statistic = tests$F.ratio, df = tests$df1, df_error = tests$df2, p = tests$p.value)
+}
+
+all <- list()
+keys <- c("source", "gravity_g", "condition_of", "measure")
+for (some in split(cells, cells[keys], drop = TRUE)) {
+  if (!length(factors_of(some)) || length(unique(some$value)) < 2) next
+  rows <- tryCatch(if (some$kind[1] == "count") of_counts(some) else of_amounts(some), error = function(e) data.frame())
+  if (nrow(rows)) all[[length(all) + 1]] <- cbind(some[1, keys], n = length(unique(some$participant)), rows, row.names = NULL)
+}
+write.csv(do.call(rbind, all), arguments[2], row.names = FALSE)

@@ -1,0 +1,166 @@
+"""Tests that are right for any distribution: what could as well have been otherwise is counted.
+
+All arrangements are gone through where they are few, else seeded random ones are drawn, so that the same data give the
+same p-value. Whoever is exchanged keeps what is missing.
+"""
+
+import itertools
+import math
+
+import numpy as np
+
+MOST_EXACT = 40000  # arrangements
+DRAWN = 9999  # with the observed one: p is a multiple of 1 / 10000
+BOOTSTRAPPED = 10000
+SEED = 20231
+CLOSE = 1e-9  # statistics that differ by rounding alone are as extreme as each other
+
+
+def groups(a, b):
+    """Two groups' means differ: p. The group's label could be anyone's."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    if len(a) < 1 or len(b) < 1 or len(a) + len(b) < 3:
+        return np.nan
+    values = np.concatenate([a, b])
+    values = values - values.mean()
+    n, exact = len(a), math.comb(len(values), len(a)) <= MOST_EXACT
+    if exact:
+        sums = values[np.array(list(itertools.combinations(range(len(values)), n)))].sum(axis=1)
+    else:
+        sums = np.concatenate([values[order[:, :n]].sum(axis=1) for order in _orders(len(values))])
+    return _share(np.abs(sums), abs(values[:n].sum()), exact)
+
+
+def pairs(a, b):
+    """Two values of the same participants differ: p. Each could have had them the other way round."""
+    differences = np.asarray(a, float) - np.asarray(b, float)
+    differences = differences[differences != 0]
+    if len(a) < 1:
+        return np.nan
+    if not len(differences):
+        return 1.0
+    exact = 2 ** len(differences) <= MOST_EXACT
+    if exact:
+        sums = np.array(list(itertools.product((1, -1), repeat=len(differences)))) @ differences
+    else:
+        random = np.random.RandomState(SEED)
+        sums = np.concatenate([(random.randint(0, 2, (count, len(differences))) * 2 - 1) @ differences
+                               for count in _portions(len(differences))])
+    return _share(np.abs(sums), abs(differences.sum()), exact)
+
+
+def levels(table):
+    """Levels of a within factor differ (columns; nan: missing): p. Each participant's values could be of any level
+    that the participant has."""
+    table = np.asarray(table, float)
+    table = table[np.isfinite(table).sum(axis=1) > 1]
+    if not len(table) or table.shape[1] < 2:
+        return np.nan
+    centred = np.nan_to_num(table - np.nanmean(table, axis=1, keepdims=True))
+    return _share(_drawn(centred, np.isfinite(table)), np.sum(centred.sum(axis=0) ** 2), False)
+
+
+def _drawn(centred, there):
+    random, sums = np.random.RandomState(SEED), np.zeros((DRAWN, centred.shape[1]))
+    for row, known in zip(centred, there):
+        places = np.flatnonzero(known)
+        order = np.argsort(random.rand(DRAWN, len(places)), axis=1)
+        sums[:, places] += row[places][order]
+    return np.sum(sums ** 2, axis=1)
+
+
+def several_groups(table, labels, profile):
+    """Groups differ over the columns of a table with missing values: p. `profile`: not in their levels but in how a
+    participant's values differ between the columns (the interaction)."""
+    table, labels = np.asarray(table, float), np.asarray(labels)
+    known = np.isfinite(table).sum(axis=1) > (1 if profile else 0)
+    table, labels = table[known], labels[known]
+    names = np.unique(labels)
+    if len(names) < 2 or len(table) < 3 or (profile and table.shape[1] < 2):
+        return np.nan
+    centred = table - np.nanmean(table, axis=0)
+    means = np.nanmean(centred, axis=1, keepdims=True)
+    rows = np.nan_to_num(centred - means) if profile else means
+    member = (labels[:, None] == names).astype(float)
+    return _groups_of_rows(rows, member)
+
+
+def _groups_of_rows(rows, member):
+    sizes = member.sum(axis=0)
+
+    def statistic(of):
+        return np.sum((of.T @ rows) ** 2 / sizes[:, None])
+
+    n = len(rows)
+    exact = len(sizes) == 2 and math.comb(n, int(sizes[0])) <= MOST_EXACT
+    if exact:
+        first = np.zeros((math.comb(n, int(sizes[0])), n))
+        chosen = np.array(list(itertools.combinations(range(n), int(sizes[0]))))
+        first[np.arange(len(first))[:, None], chosen] = 1.0
+        sums = first @ rows
+        drawn = np.sum(sums ** 2, axis=1) / sizes[0] + np.sum((rows.sum(axis=0) - sums) ** 2, axis=1) / sizes[1]
+    else:
+        drawn = np.concatenate([
+            np.sum(np.einsum('dng,np->dgp', member[order], rows, optimize=True) ** 2 / sizes[None, :, None], axis=(1, 2))
+            for order in _orders(n)])
+    return _share(drawn, statistic(member), exact)
+
+
+def _orders(n):
+    """Random orders of n, DRAWN altogether."""
+    random = np.random.RandomState(SEED)
+    for count in _portions(n):
+        yield np.argsort(random.rand(count, n), axis=1)
+
+
+def _portions(n):
+    """How many to draw at once, so that there is memory for them."""
+    most = max(1, 2000000 // n)
+    return [min(most, DRAWN - first) for first in range(0, DRAWN, most)]
+
+
+def _share(drawn, observed, exact):
+    """Of the arrangements those that are as extreme; the observed one is among all of them, and added to a draw."""
+    extreme = np.count_nonzero(drawn >= observed - CLOSE * max(1.0, abs(observed)))
+    return float(extreme / len(drawn) if exact else (extreme + 1) / (len(drawn) + 1))
+
+
+def ratio_of_groups(a, b):
+    """Mean of a over mean of b, and the 95 % interval that resampled participants give; nan where none can be."""
+    return _ratio(np.asarray(a, float), np.asarray(b, float), None)
+
+
+def ratio_of_pairs(a, b):
+    """The same where a and b are of the same participants, who are resampled with both values."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    return _ratio(a, b, len(a))
+
+
+def _ratio(a, b, paired):
+    if not len(a) or not len(b) or b.sum() == 0:
+        return np.nan, np.nan, np.nan
+    random = np.random.RandomState(SEED)
+    means = [_resampled(random, a, b, paired) for _ in range(BOOTSTRAPPED // 100)]
+    of_a, of_b = (np.concatenate(part) for part in zip(*means))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        ratios = of_a / of_b
+    ratios = ratios[~np.isnan(ratios)]
+    low, high = _percentiles(ratios) if _finite_enough(ratios) else (np.nan, np.nan)
+    return float(a.mean() / b.mean()), float(low), float(high)
+
+
+def _finite_enough(ratios):
+    return len(ratios) and np.isfinite(ratios).mean() > 0.975
+
+
+def _percentiles(ratios):
+    """Of a sorted list, without a mean of neighbours, one of which may be infinite."""
+    ratios = np.sort(ratios)
+    return [ratios[int(round(share * (len(ratios) - 1)))] for share in (0.025, 0.975)]
+
+
+def _resampled(random, a, b, paired):
+    """Means of 100 resamples of each."""
+    of_a = random.randint(0, len(a), (100, len(a)))
+    of_b = of_a if paired else random.randint(0, len(b), (100, len(b)))
+    return a[of_a].mean(axis=1), b[of_b].mean(axis=1)

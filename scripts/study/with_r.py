@@ -1,0 +1,52 @@
+"""The same mixed models by R, and Poisson or negative binomial ones of counts, which there is no library for here."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+
+import pandas
+
+from .measures import OF
+from .session_folder import StudyError
+
+PACKAGES = ('lme4', 'lmerTest', 'pbkrtest', 'emmeans', 'glmmTMB')
+WITHOUT = ('no Poisson or negative binomial mixed models of counts (rate models with random participants), and no second '
+           'opinion on the mixed models of times')
+LONGEST = 1800.0  # s
+
+
+def missing():
+    """What is not there of R and its packages; empty: nothing."""
+    program = shutil.which('Rscript')
+    if program is None:
+        return 'Rscript (r-base-core)'
+    lacking = [name for name in PACKAGES if subprocess.run(
+        [program, '-e', 'if (!requireNamespace("%s", quietly = TRUE)) quit(status = 1)' % name],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=LONGEST).returncode != 0]
+    return ', '.join('r-cran-' + name.lower() for name in lacking)
+
+
+def models(cells):
+    """A row for each effect. Raises StudyError if R fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        given, made = os.path.join(folder, 'cells.csv'), os.path.join(folder, 'models.csv')
+        _long(cells).to_csv(given, index=False, float_format='%.17g')
+        script = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'mixed_models.R')
+        done = subprocess.run(['Rscript', '--vanilla', script, given, made], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=LONGEST)
+        if done.returncode != 0 or not os.path.exists(made):
+            raise StudyError('Rscript: ' + ' '.join(done.stderr.split())[-300:])
+        table = pandas.read_csv(made)
+    return table.rename(columns={'condition_of': 'condition'})
+
+
+def _long(cells):
+    """Each condition by itself, and all conditions together where there are several."""
+    kinds = cells['measure'].map(lambda name: OF[name].kind)
+    parts = [cells.assign(kind=kinds, condition_of=cells['condition'])]
+    several = cells.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1
+    parts.append(cells[several].assign(kind=kinds[several], condition_of='all'))
+    table = pandas.concat(parts, ignore_index=True)
+    positive = table.groupby(['source', 'gravity_g', 'condition_of', 'measure'])['value'].transform('min') > 0
+    return table.assign(logarithm=((table['kind'] == 'time') & positive).astype(int))

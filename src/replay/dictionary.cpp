@@ -1,0 +1,141 @@
+#include "dictionary.h"
+
+#include <stdexcept>
+
+#include "json_text.h"
+
+namespace mrhi {
+namespace {
+
+using Columns = std::vector<Column>;
+
+Columns vector_columns(const std::vector<std::string>& names, const std::string& unit,
+                       const std::string& meaning) {
+  Columns columns;
+  for (const std::string& name : names)
+    columns.push_back({name, unit, meaning + ", " + (name == "w" ? "w" : name.substr(name.size() - 1))});
+  return columns;
+}
+
+Columns joined(const std::vector<Columns>& parts) {
+  Columns all;
+  for (const Columns& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+const Column kTime{"time", "s", "stamp of the frame relative to the first"};
+const Column kHand{"hand_id", "", "the tracker's number of the hand"};
+const Column kFinger{"finger", "", "0 thumb, 1 index, 2 middle, 3 ring, 4 little, 5 palm"};
+const Column kBone{"bone", "", "0 metacarpal, 1 proximal, 2 intermediate, 3 distal; of the palm 0"};
+
+Table objects() {
+  return {"objects.csv", "each object that moves, and frame",
+          joined({{kTime, {"name", "", "of the object"}},
+                  vector_columns({"px", "py", "pz"}, "m", "place of the centre of mass in world"),
+                  vector_columns({"qx", "qy", "qz", "qw"}, "", "orientation, unit quaternion"),
+                  vector_columns({"vx", "vy", "vz"}, "m/s", "velocity of the centre of mass"),
+                  vector_columns({"wx", "wy", "wz"}, "rad/s", "spin, world axes")})};
+}
+
+Table contacts() {
+  return {"contacts.csv", "each point at which a hand touches an object in the last step of a frame",
+          joined({{kTime,
+                   {"object", "", "its name"},
+                   kHand,
+                   kFinger,
+                   kBone,
+                   {"phase", "", "0 blow, 1 sticking, 2 slipping"}},
+                  vector_columns({"x", "y", "z"}, "m", "place on the object's surface in world"),
+                  vector_columns({"nx", "ny", "nz"}, "", "unit normal, from the object to the hand"),
+                  {{"depth", "m", "of the finger in the object"}},
+                  vector_columns({"jx", "jy", "jz"}, "N s", "impulse of a blow on the object"),
+                  vector_columns({"fx", "fy", "fz"}, "N", "force on the object"),
+                  {{"finger_name", "", "thumb, index, middle, ring, little, palm"},
+                   {"bone_name", "", "metacarpal, proximal, intermediate, distal, palm"},
+                   {"phase_name", "", "the phase in words"},
+                   {"normal_force", "N", "push along the normal"},
+                   {"tangential_force", "N", "size of the force along the surface"},
+                   {"friction_limit", "N",
+                    "what friction bears: the object's coefficient, static while it sticks, times the push"},
+                   {"friction_share", "", "tangential_force over friction_limit; 0 where that is 0"}}})};
+}
+
+Table hands() {
+  return {"hands.csv", "each phalanx that there is, tracked and rendered, and frame",
+          joined({{kTime,
+                   kHand,
+                   {"side", "", "0 left, 1 right"},
+                   kFinger,
+                   kBone,
+                   {"rendered", "", "0 tracked and filtered, 1 rendered"}},
+                  vector_columns({"sx", "sy", "sz"}, "m", "start of its axis in world"),
+                  vector_columns({"ex", "ey", "ez"}, "m", "end of its axis in world"),
+                  {{"radius", "m", "of the phalanx"}, {"touching", "", "1 if it touches an object"}}})};
+}
+
+Table joints() {
+  return {"joints.csv",
+          "each joint per frame, of a scene that has any; of one that slides m and N in place of rad and N m",
+          {kTime,
+           {"name", "", "of the joint"},
+           {"position", "rad", "from where its link is in the URDF"},
+           {"velocity", "rad/s", ""},
+           {"effort", "N m", "of its own spring, friction, limits and the like in the last step"}}};
+}
+
+Table events() {
+  return {"events.csv",
+          "each event, in their order",
+          {{"time", "s", "stamp of the event relative to the first frame"},
+           {"kind", "", "as in InteractionEvent.msg: GRASP_BEGIN"},
+           {"object", "", "its name; empty for events of hands"},
+           kHand}};
+}
+
+Table hashes() {
+  return {"hashes.csv",
+          "each message of simulation_input that has been done again",
+          {{"sequence", "", "its number"},
+           {"stamp", "ns", "of the hands' stream"},
+           {"state_hash", "", "of the state after it, 16 hexadecimal digits"}}};
+}
+
+std::string column_json(const Column& column) {
+  std::vector<std::pair<std::string, std::string>> members{{"name", json::quoted(column.name)}};
+  if (!column.unit.empty()) members.emplace_back("unit", json::quoted(column.unit));
+  members.emplace_back("meaning", json::quoted(column.meaning));
+  return json::object(members);
+}
+
+}  // namespace
+
+std::string Table::header() const {
+  std::string names;
+  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
+  return names;
+}
+
+const std::vector<Table>& tables() {
+  static const std::vector<Table> all{objects(), joints(), contacts(), hands(), events(), hashes()};
+  return all;
+}
+
+const Table& table_of(const std::string& file) {
+  for (const Table& table : tables())
+    if (table.file == file) return table;
+  throw std::out_of_range("no table " + file);
+}
+
+std::string schema_json() {
+  std::string text = "{";
+  for (const Table& table : tables()) {
+    text += (text == "{" ? "\n  " : ",\n  ") + json::quoted(table.file) +
+            ": {\"a row for\": " + json::quoted(table.rows) + ", \"columns\": [";
+    for (const Column& column : table.columns)
+      text += (&column == &table.columns.front() ? "\n    " : ",\n    ") + column_json(column);
+    text += "]}";
+  }
+  return text + "\n}\n";
+}
+
+}  // namespace mrhi

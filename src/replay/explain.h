@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "../simulation/contact_phase.h"
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi {
+
+/// What one finger, or the palm, does to an object in a frame: of all its contacts together.
+struct FingerTouch {
+  std::uint32_t hand_id = 0;
+  int finger = 0;                     ///< 0 thumb to 4 little, 5 palm
+  double normal = 0.0;                ///< push [N]
+  double tangential = 0.0;            ///< force along the surface [N]
+  double limit = 0.0;                 ///< of that by friction [N]
+  double depth = 0.0;                 ///< of the deepest [m]
+  bool slips = false;                 ///< all of it
+  Vector3 outward = Vector3::Zero();  ///< from the object to the finger, world, unit
+  std::string face;                   ///< axis of the object that this is nearest to: "+x"
+
+  double share() const { return limit > 0.0 ? tangential / limit : 0.0; }
+};
+
+enum class Course : std::uint8_t { free, contact, hold, slip, drop };
+const char* to_string(Course course);
+
+struct ObjectSample {
+  double time = 0.0;  ///< since the first frame [s]
+  Course course = Course::free;
+  InteractionLevel level = InteractionLevel::none;  ///< the highest of any hand
+  std::vector<FingerTouch> fingers;
+  Vector3 position = Vector3::Zero();  ///< of the centre of mass [m]
+  Quaternion orientation = Quaternion::Identity();
+  Vector3 velocity = Vector3::Zero();  ///< [m/s]
+  double torque = 0.0;                 ///< of the hands' forces about the line through the grip [N m]
+  double margin = 0.0;  ///< what friction could bear along the surfaces beyond what it bears [N]
+};
+
+struct HandSample {
+  double time = 0.0;
+  std::uint32_t id = 0;
+  double speed = 0.0;       ///< of the palm [m/s]
+  double confidence = 1.0;  ///< as the tracker has it
+  bool lost = false;        ///< not in this frame: keeps its pose
+  Hand hand;                ///< filtered
+};
+
+enum class LossCause : std::uint8_t {
+  tracking_lost,
+  blow,
+  hand_opened,
+  wrong_faces,
+  too_little_friction,
+  too_little_force,
+  not_known
+};
+const char* to_string(LossCause cause);
+
+/// An object that a hand had, or tried to have, and has no longer.
+struct Loss {
+  std::string object;
+  std::uint32_t hand_id = 0;
+  bool grasped = true;             ///< false: the fingers pressed, and it never was a grasp
+  double from = 0.0, until = 0.0;  ///< [s]
+  LossCause cause = LossCause::not_known;
+  std::string by;                ///< of a blow: what struck
+  double push = 0.0;             ///< of all fingers together as it began to go [N]
+  double load = 0.0;             ///< most that had to be borne along the surfaces [N]
+  double friction = 0.0;         ///< of the object, static
+  double friction_needed = 0.0;  ///< with that push
+  double push_needed = 0.0;      ///< with that friction, more than there was [N]
+  std::string text;              ///< one paragraph
+};
+
+struct ObjectStory {
+  double mass = 0.0;
+  Material material;
+  double radius = 0.0;             ///< bounding [m]
+  Vector3 half = Vector3::Zero();  ///< of a box; else 0
+  std::vector<ObjectSample> samples;
+};
+
+struct Explanation {
+  std::string input;
+  Vector3 gravity = Vector3::Zero();
+  std::map<std::string, ObjectStory> objects;  ///< free ones
+  std::map<std::uint32_t, std::vector<HandSample>> hands;
+  std::vector<Loss> losses;
+};
+
+/// Watches a run, frame by frame, and says in the end why what was lost was lost.
+class Explainer {
+ public:
+  /// After each frame.
+  void watch(const Simulation& simulation);
+  Explanation explain(const std::string& input);
+
+ private:
+  void watch_object(const Simulation& simulation, std::size_t body, double time);
+
+  bool begun_ = false;
+  Nanoseconds first_ = 0;
+  Explanation story_;
+};
+
+/// Finds the losses in what has been watched.
+std::vector<Loss> find_losses(const Explanation& story);
+
+std::string to_json(const Explanation& explanation);
+/// One page that needs nothing else.
+std::string to_html(const Explanation& explanation);
+
+}  // namespace mrhi

@@ -1,0 +1,104 @@
+#include "run.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "mr_hand_interaction/parameters.h"
+
+namespace mrhi {
+
+bool timed_step(Simulation& simulation, ReplaySummary& summary) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (!simulation.step()) return false;
+  const auto time = std::chrono::steady_clock::now() - begin;
+  summary.step_time.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  ++summary.steps;
+  return true;
+}
+
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
+                ReplaySummary& summary) {
+  const FrameResult& result = simulation.result();
+  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
+  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
+  if (result.restarted) ++summary.restarts;
+  if (since && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *since);
+}
+
+void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
+            ReplaySummary& summary) {
+  if (++summary.rejected[reason] > 1) return;
+  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
+}
+
+void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
+  const Configuration& configuration = simulation.configuration();
+  summary.contact_model = configuration.contact_model.name;
+  summary.version = MR_HAND_INTERACTION_VERSION;
+  summary.gravity = configuration.gravity.value_or(simulation.scene().gravity);
+  for (const std::string& name : parameter_names()) {
+    const std::string text = parameter_text(configuration, name);
+    if (text != parameter_text(Configuration(), name)) summary.parameters[name] = text;
+  }
+  for (const Body& body : simulation.scene().bodies) summary.materials[body.name] = body.material;
+}
+
+void tell_end(const Simulation& simulation, ReplaySummary& summary) {
+  const Scene& scene = simulation.scene();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+  }
+  summary.state_hash = hash(simulation.state());
+}
+
+namespace {
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text << std::flush;
+  if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace
+
+void write_summary(const std::string& folder, const ReplaySummary& summary) {
+  write_text(folder + "/summary.json", to_json(summary));
+}
+
+FrameWatcher Explaining::watcher() {
+  if (!arguments_.explain && !arguments_.demonstration) return {};
+  return [this](const Simulation& simulation) {
+    if (arguments_.explain) explainer_.watch(simulation);
+    if (arguments_.demonstration) demonstration_.watch(simulation);
+  };
+}
+
+void Explaining::write() {
+  if (arguments_.demonstration) {
+    const double rate = *arguments_.demonstration;
+    const Demonstration even = rate > 0.0 ? demonstration_.at_rate(rate) : demonstration_;
+    write_demonstration_csv(even, arguments_.output + "/demonstration.csv");
+    write_demonstration_bag(even, arguments_.output + "/demonstration.bag");
+  }
+  if (!arguments_.explain) return;
+  const Explanation explanation = explainer_.explain(arguments_.input);
+  write_text(arguments_.output + "/explain.json", to_json(explanation));
+  write_text(arguments_.output + "/explain.html", to_html(explanation));
+}
+
+ScratchFolder::ScratchFolder() {
+  path_ = (std::filesystem::temp_directory_path() / "replay_XXXXXX").string();
+  if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace mrhi

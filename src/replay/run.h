@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "demonstration.h"
+#include "explain.h"
+#include "log_source.h"
+#include "mr_hand_interaction/replay/replay.h"
+
+namespace mrhi {
+
+// What replays of frames and of logs have in common: they run frames, and count.
+
+/// One step, its time noted; false if there is none to make.
+bool timed_step(Simulation& simulation, ReplaySummary& summary);
+/// A frame that has been run, or what came of a silence. `since`: the stamp of the one before.
+void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
+                ReplaySummary& summary);
+/// Counts; the first of each kind is told.
+void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
+            ReplaySummary& summary);
+/// What the outcome hangs on beside the hands.
+void tell_setting(const Simulation& simulation, ReplaySummary& summary);
+/// What is held, and the state's hash.
+void tell_end(const Simulation& simulation, ReplaySummary& summary);
+/// Throws std::runtime_error naming the file if it cannot be written.
+void write_summary(const std::string& folder, const ReplaySummary& summary);
+
+/// Explains and exports a run, as far as that is asked for.
+class Explaining {
+ public:
+  explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
+  /// Nothing, if neither is.
+  FrameWatcher watcher();
+  /// explain.json and explain.html, demonstration.csv and demonstration.bag. Throws std::runtime_error naming
+  /// what cannot be written.
+  void write();
+
+ private:
+  const ReplayArguments& arguments_;
+  Explainer explainer_;
+  Demonstration demonstration_;
+};
+
+/// A folder that is gone with all that is in it when this is.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Does again what a live simulation did. Throws as replay() does.
+void replay_log(const ReplayArguments& arguments, LogSource& log, const std::string& topic);
+
+}  // namespace mrhi

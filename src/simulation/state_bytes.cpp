@@ -1,0 +1,291 @@
+#include "state_bytes.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace mrhi {
+namespace {
+
+/// Another one for each change of what follows.
+constexpr std::uint64_t kFormat = 0x6d72686900000002ull;
+
+[[noreturn]] void refuse(const char* what) {
+  throw std::invalid_argument(std::string("recorded state: ") + what +
+                              "; allowed: a whole one of this version");
+}
+
+std::uint64_t checksum(const char* data, std::size_t size) {
+  std::uint64_t sum = 14695981039346656037ull;
+  for (std::size_t i = 0; i < size; ++i) sum = (sum ^ static_cast<unsigned char>(data[i])) * 1099511628211ull;
+  return sum;
+}
+
+struct Out {
+  std::string bytes;
+
+  void raw(void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
+  std::size_t count(std::size_t size) {
+    auto number = static_cast<std::uint64_t>(size);
+    raw(&number, sizeof number);
+    return size;
+  }
+};
+
+struct In {
+  const char* at;
+  const char* end;
+
+  void raw(void* data, std::size_t size) {
+    if (static_cast<std::size_t>(end - at) < size) refuse("ends early");
+    std::memcpy(data, at, size);
+    at += size;
+  }
+  /// Each item has a byte at least.
+  std::size_t count(std::size_t) {
+    std::uint64_t number = 0;
+    raw(&number, sizeof number);
+    if (number > static_cast<std::uint64_t>(end - at)) refuse("ends early");
+    return static_cast<std::size_t>(number);
+  }
+};
+
+/// Every member of every part, in order, out or in. Where members are bound by name, a part that gets a
+/// further one does not compile until it stands here too.
+template <class Way>
+class Parts {
+ public:
+  explicit Parts(Way& way) : way_(way) {}
+
+  template <class... Items>
+  void all(Items&... items) {
+    (one(items), ...);
+  }
+
+  template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
+  void one(Number& number) {
+    way_.raw(&number, sizeof number);
+  }
+  void one(bool& truth) {
+    std::uint8_t number = truth ? 1 : 0;
+    one(number);
+    truth = number != 0;
+  }
+  template <class Enum>
+  void one_of(Enum& value, Enum last) {
+    auto number = static_cast<std::uint8_t>(value);
+    one(number);
+    if (number > static_cast<std::uint8_t>(last)) refuse("has a value of no meaning");
+    value = static_cast<Enum>(number);
+  }
+  void up_to(int& number, int most) {
+    one(number);
+    if (number < 0 || number > most) refuse("has a number that is too large");
+  }
+  template <class Item>
+  void one(std::vector<Item>& items) {
+    items.resize(way_.count(items.size()));
+    for (Item& item : items) one(item);
+  }
+  template <class Item, std::size_t size>
+  void one(std::array<Item, size>& items) {
+    for (Item& item : items) one(item);
+  }
+  template <class Item>
+  void one(std::optional<Item>& item) {
+    bool there = item.has_value();
+    one(there);
+    if (!there) item.reset();
+    if (there && !item) item.emplace();
+    if (there) one(*item);
+  }
+  void one(Vector3& v) { all(v[0], v[1], v[2]); }
+  void one(FingerOffset& a) { all(a[0], a[1], a[2], a[3]); }
+  void one(Quaternion& q) { all(q.x(), q.y(), q.z(), q.w()); }
+  void one(Pose& part) {
+    auto& [position, orientation] = part;
+    all(position, orientation);
+  }
+  void one(Twist& part) {
+    auto& [linear, angular] = part;
+    all(linear, angular);
+  }
+  void one(Material& part) {
+    auto& [restitution, static_friction, dynamic_friction, stiffness] = part;
+    all(restitution, static_friction, dynamic_friction, stiffness);
+  }
+  void one(StampJudge& part) {
+    auto& [started, last, interval, stray, strays] = part;
+    all(started, last, interval, stray, strays);
+  }
+  void one(BodyState& part) {
+    auto& [pose, linear_momentum, angular_momentum, pushed, appeared] = part;
+    all(pose, linear_momentum, angular_momentum, pushed, appeared);
+  }
+  void one(Capsule& part) {
+    auto& [start, end, radius] = part;
+    all(start, end, radius);
+  }
+  void one(Hand& part) {
+    auto& [id, side, confidence, grab, pinch, palm, palm_width, wrist, capsules] = part;
+    one(id);
+    one_of(side, Side::right);
+    all(confidence, grab, pinch, palm, palm_width, wrist, capsules);
+  }
+  void one(SampleHistory& part) {
+    auto& [samples, elapsed, size] = part;
+    all(samples, elapsed);
+    up_to(size, kMaxFilterWindow);
+  }
+  void one(HandVelocity& part) {
+    auto& [points, turn] = part;
+    all(points, turn);
+  }
+  void one(MotionVariance& part) {
+    auto& [position, mixed, speed] = part;
+    all(position, mixed, speed);
+  }
+  void one(SeenNoise& part) {
+    auto& [variances, size, variance] = part;
+    one(variances);
+    up_to(size, kNoiseWindow);
+    one(variance);
+  }
+  void one(FilterMemory& part) {
+    auto& [history, filtered, velocity, variance, noise] = part;
+    all(history, filtered, velocity, variance, noise);
+  }
+  void one(Rejoin& part) {
+    auto& [from, begin, duration] = part;
+    all(from, begin, duration);
+  }
+  void one(FilterConfiguration& part) {
+    auto& [type, window, min_cutoff, beta, derivative_cutoff, noise, acceleration, agility] = part;
+    one_of(type, FilterKind::constant_velocity);
+    up_to(window, kMaxFilterWindow);
+    all(min_cutoff, beta, derivative_cutoff, noise, acceleration, agility);
+  }
+  void one(FilterChange& part) {
+    auto& [from, memory, begin] = part;
+    all(from, memory, begin);
+  }
+  void one(HandTrack& part) {
+    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change] = part;
+    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change);
+  }
+  void one(ContactKey& part) {
+    auto& [point, shape, capsule, hand, body] = part;
+    all(point, shape, capsule, hand, body);
+  }
+  void one(ContactMemory& part) {
+    auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge,
+           depth, twist, given, force] = part;
+    one(key);
+    one_of(friction, Friction::slipping);
+    all(struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge, depth, twist, given,
+        force);
+  }
+  void one(Contact& c) {
+    one(static_cast<ContactMemory&>(c));
+    all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
+        c.grip, c.share, c.strength, c.inverse_mass, c.impulse, c.time_of_impact);
+  }
+  void one(BodyContactKey& part) {
+    auto& [a, b, shape_a, shape_b, feature] = part;
+    all(a, b, shape_a, shape_b, feature);
+  }
+  void one(BodyContact& part) {
+    auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, stretch, material,
+           depth, share, first_touch, force, impulse] = part;
+    all(key, anchor_a, anchor_b);
+    one_of(friction, Friction::slipping);
+    all(struck, still, point, normal, arm_a, arm_b, stretch, material, depth, share, first_touch, force,
+        impulse);
+  }
+  void one(PalmLag& part) {
+    auto& [whole, frame] = part;
+    all(whole, frame);
+  }
+  void one(HandOffset& part) {
+    auto& [shift, fingers, lag, stamp, left, left_since] = part;
+    all(shift, fingers, lag, stamp, left, left_since);
+  }
+  void one(Grip& part) {
+    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, middle_before,
+           middle, slips, in_hand, in_body, force, point, velocity] = part;
+    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, middle_before,
+        middle, slips, in_hand, in_body, force, point, velocity);
+  }
+  void one(Interaction& part) {
+    auto& [level, agreed, shown_in] = part;
+    one_of(level, InteractionLevel::grasp);
+    all(agreed, shown_in);
+  }
+  void one(JointState& part) {
+    auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = part;
+    all(position, anchor, pushed, effort, still, detent, at_limit, latched);
+  }
+  void one(SimulationState& part) {
+    auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
+           sleeping_contacts, offsets, grips, interactions] = part;
+    all(started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts, sleeping_contacts,
+        offsets, grips, interactions);
+  }
+
+ private:
+  Way& way_;
+};
+
+bool fits(const std::vector<BodyContact>& contacts, std::size_t bodies) {
+  for (const BodyContact& contact : contacts)
+    if (contact.key.a >= bodies || contact.key.b >= bodies) return false;
+  return true;
+}
+
+bool fits(const SimulationState& state, std::size_t bodies) {
+  constexpr std::size_t kHands = kMaxHands;
+  for (const Contact& contact : state.contacts)
+    if (contact.key.body >= bodies || contact.key.hand >= kHands || contact.key.capsule >= kCapsules)
+      return false;
+  for (const Grip& grip : state.grips)
+    if (grip.body >= bodies || grip.hand >= kHands) return false;
+  return fits(state.body_contacts, bodies) && fits(state.sleeping_contacts, bodies) &&
+         state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == kHands &&
+         state.offsets.size() == kHands && state.interactions.size() == kHands * bodies;
+}
+
+}  // namespace
+
+std::string to_bytes(const SimulationState& state) {
+  SimulationState copy = state;
+  std::uint64_t format = kFormat;
+  Out out;
+  out.raw(&format, sizeof format);
+  Parts<Out>(out).one(copy);
+  std::uint64_t sum = checksum(out.bytes.data(), out.bytes.size());
+  out.raw(&sum, sizeof sum);
+  return out.bytes;
+}
+
+SimulationState state_from_bytes(const std::string& bytes, std::size_t bodies) {
+  std::uint64_t format = 0, sum = 0;
+  if (bytes.size() < sizeof format + sizeof sum) refuse("ends early");
+  const std::size_t size = bytes.size() - sizeof sum;
+  std::memcpy(&format, bytes.data(), sizeof format);
+  std::memcpy(&sum, bytes.data() + size, sizeof sum);
+  if (format != kFormat) refuse("is of another version");
+  if (sum != checksum(bytes.data(), size)) refuse("is damaged");
+  In in{bytes.data() + sizeof format, bytes.data() + size};
+  SimulationState state;
+  Parts<In>(in).one(state);
+  if (in.at != in.end) refuse("is too long");
+  if (!fits(state, bodies)) refuse("does not fit the scene");
+  return state;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "mr_hand_interaction/simulation_state.h"
+
+namespace mrhi {
+
+/// A state as bytes that hold every bit of it, for a recording that begins while a simulation runs. They are
+/// those of this version and of machines of the same byte order.
+std::string to_bytes(const SimulationState& state);
+
+/// Throws std::invalid_argument for bytes that are not whole, of another version, or of a scene that has
+/// another number of bodies than `bodies`.
+SimulationState state_from_bytes(const std::string& bytes, std::size_t bodies);
+
+}  // namespace mrhi

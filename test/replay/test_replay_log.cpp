@@ -1,0 +1,261 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/replay/world.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "replay/replay_files.h"
+#include "replay/run.h"
+#include "simulation/state_bytes.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kRate = 100.0;
+
+class Entries : public LogSource {
+ public:
+  explicit Entries(std::vector<LogEntry> entries) : entries_(std::move(entries)) {}
+  std::optional<LogEntry> next() override {
+    if (position_ == entries_.size()) return std::nullopt;
+    return entries_[position_++];
+  }
+  std::size_t position() const override { return position_; }
+  std::size_t size() const override { return entries_.size(); }
+
+ private:
+  std::vector<LogEntry> entries_;
+  std::size_t position_ = 0;
+};
+
+/// A live simulation, and what a recorder beside it gets.
+class Live {
+ public:
+  Live(const std::string& urdf, const Configuration& configuration)
+      : world_(world_of_file(urdf, configuration)),
+        live_(load_scene(urdf, scene_options(configuration)), configuration) {}
+
+  void begin_recording() {
+    if (!recorded_) entries.clear();
+    recorded_ = true;
+    LogEntry& entry = add(LogEntry::Kind::begin);
+    entry.text = to_yaml(world_);
+    entry.files = world_.files;
+    entry.state = to_bytes(live_.now().state());
+  }
+
+  /// The frames of a motion from one time to another.
+  void play(const std::vector<JointsFrame>& frames, double from, double to) {
+    for (const JointsFrame& joints : frames) {
+      const double time = to_seconds(joints.stamp - frames.front().stamp);
+      if (time < from || time >= to) continue;
+      HandFrame hands = *placed(joints, default_device_mount()).frame;
+      hands.stamp = joints.stamp + 1'000'000'000;
+      if (live_.now().begin(hands, hands.stamp) != Rejection::none) throw std::runtime_error("frame refused");
+      while (live_.now().step()) {
+      }
+      live_.now().end();
+      ++sequence_;
+      LogEntry& entry = add(LogEntry::Kind::frame);
+      entry.hands = hands;
+      entry.expected = hands.stamp;
+    }
+  }
+
+  void silence(double seconds) {
+    const Nanoseconds until = live_.now().state().last_frame + static_cast<Nanoseconds>(1e9 * seconds);
+    if (!live_.now().advance_without_hands(until)) throw std::runtime_error("no silence");
+    ++sequence_;
+    add(LogEntry::Kind::silence).time = until;
+  }
+
+  void change(const Change& change) {
+    make(change, live_);
+    note(change, live_, world_);
+    ++sequence_;
+    LogEntry& entry = add(LogEntry::Kind::change);
+    entry.text = to_yaml(change);
+    entry.files = files_of(change);
+  }
+
+  std::vector<LogEntry> entries;
+
+ private:
+  LogEntry& add(LogEntry::Kind kind) {
+    LogEntry entry;
+    entry.kind = kind;
+    entry.run = 7;
+    entry.sequence = sequence_;
+    entry.stamp = live_.now().state().time;
+    entry.state_hash = hash(live_.now().state());
+    entries.push_back(entry);
+    return entries.back();
+  }
+
+  World world_;
+  LiveSimulation live_;
+  std::uint64_t sequence_ = 0;
+  bool recorded_ = false;
+};
+
+Spawn box(const std::string& name, const Vector3& place) {
+  Spawn spawn;
+  spawn.request.name = name;
+  spawn.request.shape = "box";
+  spawn.request.size = {0.03, 0.04, 0.05};
+  spawn.request.mass = 0.05;
+  spawn.request.pose.position = place;
+  spawn.request.twist.angular = {0.0, 0.1, 1.0 / 3.0};
+  spawn.request.material = "{static_friction: 0.9}";
+  return spawn;
+}
+
+Spawn spanner(const std::string& name, const Vector3& place) {
+  Spawn spawn;
+  spawn.request.name = name;
+  spawn.request.urdf =
+      "<robot name='m'><link name='m'><inertial><mass value='0.1'/><inertia ixx='1e-4' iyy='1e-4' izz='1e-4' "
+      "ixy='0' ixz='0' iyz='0'/></inertial><collision><geometry><mesh "
+      "filename='package://mr_hand_interaction/config/meshes/spanner.stl'/></geometry></collision></link></"
+      "robot>";
+  spawn.request.pose.position = place;
+  return spawn;
+}
+
+/// A cube is taken and carried; the recorder comes while it is held, and then everything is changed.
+Live eventful() {
+  const auto frames = test::motion_frames("grasp_cube", kRate, 0);
+  Configuration configuration;
+  set_parameter(configuration, "gravity", "[0, 0, -0.1]");
+  Live live("config/scenes/cube.urdf", configuration);
+  live.change(box("early", {0.4, 0.0, 0.3}));
+  live.change(spanner("mesh", {-0.5, 0.0, 0.3}));
+  live.change(box("gone", {0.4, 0.3, 0.3}));
+  live.change(Delete{"gone"});
+  live.play(frames, 0.0, 3.0);
+  live.begin_recording();
+  live.play(frames, 3.0, 3.5);
+  live.change(SetParameters{{{"filter/window", "5"}, {"filter/type", "window"}, {"gravity", "[0, 0, 0.1]"}}});
+  live.play(frames, 3.5, 4.0);
+  live.change(PlaceObject{"early", {{0.1, -0.3, 0.4}, Quaternion(0.6, 0.0, 0.8, 0.0)}});
+  live.change(spanner("late", {-0.5, 0.5, 0.3}));
+  live.change(Delete{"mesh"});
+  live.play(frames, 4.0, 4.5);
+  live.silence(0.6);
+  live.change(Reset{});
+  live.play(frames, 6.0, 6.5);
+  return live;
+}
+
+struct Replayed {
+  YAML::Node run(const Live& live) {
+    arguments.input = "hand.bag";
+    arguments.output = folder / "out";
+    Entries log(live.entries);
+    replay_log(arguments, log, "simulation_input");
+    return YAML::LoadFile(folder / "out/summary.json");
+  }
+
+  test::TemporaryFolder folder;
+  ReplayArguments arguments;
+};
+
+TEST(ReplayLog, a_recording_that_begins_in_the_middle_gives_the_live_run_s_hash_after_every_entry) {
+  Replayed replayed;
+  const Live live = eventful();
+  const YAML::Node summary = replayed.run(live), run = summary["live_run"];
+  EXPECT_EQ(run["compared"].as<std::size_t>(), live.entries.size());
+  EXPECT_EQ(run["same"].as<std::size_t>(), live.entries.size());
+  EXPECT_TRUE(run["parts_at"].IsNull());
+  EXPECT_EQ(run["changes"].size(), 5u);
+  EXPECT_EQ(summary["not_known"].size(), 0u);
+  EXPECT_EQ(summary["gravity"][2].as<double>(), -0.1);
+}
+
+TEST(ReplayLog, what_is_left_out_of_the_log_is_told_with_the_time_from_which_all_is_other) {
+  Live live = eventful();
+  const auto change = std::find_if(live.entries.begin(), live.entries.end(), [](const LogEntry& entry) {
+    return entry.kind == LogEntry::Kind::change;
+  });
+  change->text = "set: [[gravity, \"[0, 0, 5]\"]]";  // as if something had not been recorded
+  const YAML::Node run = Replayed().run(live)["live_run"];
+  EXPECT_NEAR(run["parts_at"].as<double>(), 0.49, 0.02);  // half a second after the recording's first frame
+  EXPECT_LT(run["same"].as<int>(), run["compared"].as<int>());
+}
+
+TEST(ReplayLog, lost_entries_are_counted_and_the_next_beginning_is_gone_on_from) {
+  Live live = eventful();
+  live.begin_recording();  // who listens next
+  live.play(test::motion_frames("grasp_cube", kRate, 0), 6.5, 6.8);
+  live.entries.erase(live.entries.begin() + 20, live.entries.begin() + 30);
+  const YAML::Node run = Replayed().run(live)["live_run"];
+  EXPECT_EQ(run["missing"].as<int>(), 10);
+  EXPECT_EQ(run["same"].as<int>(), run["compared"].as<int>());
+  EXPECT_GT(run["compared"].as<int>(), 20 + 25);
+}
+
+TEST(ReplayLog, options_given_by_hand_stand_above_what_was_recorded_and_are_told) {
+  Replayed replayed;
+  replayed.arguments.scene = "cube";  // as recorded: nothing is other by this
+  replayed.arguments.settings = {{"gravity", "[0, 0, -2]"}};
+  const YAML::Node summary = replayed.run(eventful());
+  ASSERT_EQ(summary["live_run"]["overridden"].size(), 1u);
+  EXPECT_EQ(summary["live_run"]["overridden"][0].as<std::string>(),
+            "gravity=[0, 0, -2] instead of [0, 0, -0.1]");
+  EXPECT_EQ(summary["live_run"]["compared"].as<int>(), 0);
+  EXPECT_EQ(summary["gravity"][2].as<double>(), -2.0);
+}
+
+TEST(ReplayLog, another_version_s_state_or_parameters_are_told_and_the_rest_is_done) {
+  Live live = eventful();
+  LogEntry& begin = live.entries.front();
+  begin.state[0] = static_cast<char>(begin.state[0] ^ 1);
+  begin.text.replace(begin.text.find("version: "), 9, "version: 9");
+  begin.text.replace(begin.text.find("hand/pad"), 8, "hand/pud");
+  const YAML::Node summary = Replayed().run(live);
+  EXPECT_EQ(summary["not_known"].size(), 3u);
+  EXPECT_GT(summary["frames"].as<int>(), 100);
+  EXPECT_EQ(summary["error"].IsDefined(), false);
+}
+
+TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "scene");
+  std::filesystem::copy("config/meshes/spanner.stl", folder / "scene/part.stl");
+  std::ofstream(folder / "scene/own.urdf")
+      << "<robot name='own'><link name='world'/><link name='part'><inertial><mass value='0.1'/><inertia "
+         "ixx='1e-4' "
+         "iyy='1e-4' izz='1e-4' ixy='0' ixz='0' iyz='0'/></inertial><collision><geometry><mesh "
+         "filename=\"part.stl\"/>"
+         "</geometry></collision></link><joint name='j' type='floating'><parent link='world'/><child "
+         "link='part'/>"
+         "</joint></robot>";
+  std::ofstream(folder / "scene/own.yaml")
+      << "materials: {part: {static_friction: 0.7, dynamic_friction: 0.5}}";
+  Live live(folder / "scene/own.urdf", Configuration());
+  live.begin_recording();
+  live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 1.0);
+  std::filesystem::remove_all(folder / "scene");
+  const YAML::Node summary = Replayed().run(live);
+  EXPECT_EQ(summary["live_run"]["same"].as<std::size_t>(), live.entries.size());
+  EXPECT_EQ(summary["materials"]["part"]["static_friction"].as<double>(), 0.7);
+}
+
+TEST(ReplayLog, changes_keep_their_bits_as_text) {
+  const Spawn spawn = box("a_box", {0.1, 1.0 / 3.0, -1e-17});
+  const Change read = change_from_yaml(to_yaml(Change(spawn)), files_of(spawn));
+  const ObjectRequest& request = std::get<Spawn>(read).request;
+  EXPECT_EQ(request.pose.position, spawn.request.pose.position);
+  EXPECT_EQ(request.twist.angular, spawn.request.twist.angular);
+  EXPECT_EQ(request.material, spawn.request.material);
+  EXPECT_EQ(to_yaml(read), to_yaml(Change(spawn)));
+  for (const char* bad :
+       {"", "[", "jump: 1", "place: x", "place: x\npose: [1, 2]", "set: [a]", "spawn: {name: x}",
+        "spawn: {name: x, urdf: nowhere, pose: [0,0,0,0,0,0,1], twist: [0,0,0,0,0,0]}"})
+    EXPECT_THROW(change_from_yaml(bad, {}), std::invalid_argument) << bad;
+}
+
+}  // namespace
+}  // namespace mrhi

@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""record.launch and replay: a replay of a bag alone is the live run, by the hash that the node told at the same stamp."""
+import csv
+import glob
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rosgraph
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from std_srvs.srv import SetBool, Trigger
+
+from mr_hand_interaction.msg import InteractionEvent, SimulationInput, TrainingStatus
+from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, SpawnObjectRequest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from launching import Launch  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+NODE = "interaction_node/"
+RUN = 120.0  # s; a run of the scripted hand lasts 9
+CHANGES_APART = 40  # entries, so that each change has frames before and after it
+MESH = """<robot name="m"><link name="m"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0"
+ixz="0" iyz="0"/></inertial><collision><geometry><mesh filename="package://mr_hand_interaction/config/meshes/%s"
+scale="1 1 1"/></geometry></collision></link></robot>"""
+
+
+def subscribed(node, topic):
+    subscribers = rosgraph.Master("/replay_test").getSystemState()[1]
+    return any(name == topic and node in nodes for name, nodes in subscribers)
+
+
+def told_by_the_node(bag):
+    """By the number of the last input: (stamp [ns], state hash), as /diagnostics had them."""
+    told = {}
+    for _, message, _ in bag.read_messages(["/diagnostics"]):
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            if "state hash" in values:
+                told[int(values["simulation input"])] = (int(values["state stamp [ns]"]), values["state hash"])
+    return told
+
+
+class ReplayTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("replay_test")
+        cls.subscribers = [rospy.Subscriber("simulation_input", SimulationInput, cls.take_input),
+                           rospy.Subscriber("interaction_events", InteractionEvent, cls.take_event),
+                           rospy.Subscriber("training/status", TrainingStatus, cls.take_status)]
+
+    @classmethod
+    def take_input(cls, message):
+        cls.taken += 1
+
+    @classmethod
+    def take_event(cls, message):
+        cls.kinds.append(message.kind)
+
+    @classmethod
+    def take_status(cls, message):
+        cls.status = message
+
+    def setUp(self):
+        type(self).taken, type(self).kinds, type(self).status = 0, [], None
+        for name in ("interaction_node", "synthetic_hand_node"):  # what an earlier launch has left
+            if rospy.has_param(name):
+                rospy.delete_param(name)
+        self.folder = tempfile.mkdtemp()
+        self.bag = os.path.join(self.folder, "hand.bag")
+
+    def tearDown(self):
+        shutil.rmtree(self.folder)
+
+    def recording(self):
+        return Launch("record.launch", "bag:=" + self.bag)
+
+    def wait_for_recorder(self):
+        wait_until(lambda: subscribed("/rosbag_record", "/simulation_input"), "rosbag record")
+
+    def wait_for_inputs(self, more=CHANGES_APART):
+        end = self.taken + more
+        wait_until(lambda: self.taken >= end, "%d more inputs" % more)
+
+    def call(self, name, kind, *values):
+        rospy.wait_for_service(NODE + name, 60.0)
+        answer = rospy.ServiceProxy(NODE + name, kind)(*values)
+        self.assertTrue(answer.success, answer.message)
+        self.wait_for_inputs()
+
+    def replay(self, bag, *arguments):
+        output = os.path.join(self.folder, "out")
+        subprocess.check_call(["rosrun", "mr_hand_interaction", "replay", "--input", bag, "--output", output] +
+                              list(arguments))
+        with open(output + "/summary.json") as file:
+            summary = json.load(file)
+        with open(output + "/hashes.csv") as file:
+            hashes = {int(row["sequence"]): (int(row["stamp"]), row["state_hash"]) for row in csv.DictReader(file)}
+        return summary, hashes, output
+
+    def check_it_is_the_live_run(self, bag):
+        summary, hashes, output = self.replay(bag)
+        live = summary["live_run"]
+        self.assertEqual((live["missing"], live["parts_at"], live["overridden"], summary["not_known"]),
+                         (0, None, [], []))
+        self.assertEqual(live["same"], live["compared"])
+        self.assertGreater(live["compared"], 100)
+        with rosbag.Bag(bag) as recorded:
+            told = {number: what for number, what in told_by_the_node(recorded).items() if number in hashes}
+            events = [event.kind for _, event, _ in recorded.read_messages(["/interaction_events"])]
+        self.assertGreater(len(told), 0)
+        for number, (stamp, state_hash) in told.items():
+            self.assertEqual(hashes[number], (stamp, state_hash), "input %d" % number)
+        with open(output + "/events.csv") as file:
+            kinds = [getattr(InteractionEvent, row["kind"]) for row in csv.DictReader(file)]
+        for kind in (InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END):
+            self.assertEqual(kinds.count(kind), events.count(kind))
+        return summary
+
+    def test_the_demo_recorded_while_it_runs(self):
+        with Launch("demo.launch", "rviz:=false"):
+            wait_until(lambda: InteractionEvent.CONTACT_BEGIN in self.kinds, "the first touch", RUN)
+            with self.recording():
+                self.wait_for_recorder()
+                del self.kinds[:]
+                wait_until(lambda: InteractionEvent.GRASP_BEGIN in self.kinds, "a grasp", RUN)
+                wait_until(lambda: InteractionEvent.GRASP_END in self.kinds, "the end of the grasp", RUN)
+                self.wait_for_inputs(300)  # some seconds, as the node tells its state once in each
+        summary = self.check_it_is_the_live_run(self.bag)
+        self.assertIn("GRASP_END", summary["events"])
+
+    def test_a_tuned_and_disturbed_run(self):
+        mesh = os.path.basename(sorted(glob.glob(os.path.join(self.package(), "config", "meshes", "*.stl")))[0])
+        with self.recording():
+            with Launch("demo.launch", "rviz:=false", "gravity:=[0, 0, -0.2]", "noise:=1"):
+                self.wait_for_recorder()
+                self.wait_for_inputs()
+                self.call("set", SetParameter, "material/static_friction", "1.1")
+                Client("interaction_node/tune", timeout=30.0).update_configuration(
+                    {"filter_window": 5, "contact_model": "seed", "gravity_z": -0.1})
+                self.wait_for_inputs()
+                box = SpawnObjectRequest(name="box", shape="box", size=[0.03, 0.04, 0.05], mass=0.05,
+                                         material="{static_friction: 0.9}")
+                box.pose.position.x, box.pose.position.z, box.twist.angular.z = 0.3, 0.3, 1.0
+                self.call("spawn", SpawnObject, box)
+                of_mesh = SpawnObjectRequest(name="of_mesh", urdf=MESH % mesh)
+                of_mesh.pose.position.x, of_mesh.pose.position.z = -0.5, 0.5
+                self.call("spawn", SpawnObject, of_mesh)
+                Client("interaction_node/tune", timeout=30.0).update_configuration({"contact_model": "implicit"})
+                self.call("pause", SetBool, False)
+                rospy.ServiceProxy(NODE + "pause", SetBool)(True)
+                rospy.ServiceProxy(NODE + "pause", SetBool)(False)
+                self.call("delete", DeleteObject, "box")
+                self.call("reset", Trigger)
+                self.wait_for_inputs(100)
+        live = self.check_it_is_the_live_run(self.bag)["live_run"]
+        said = "\n".join(live["changes"])
+        for what in ("material/static_friction=1.1", "contact_model=seed", "gravity", "spawn 'box'", "spawn 'of_mesh'",
+                     "pause", "go on", "delete 'box'", "reset"):
+            self.assertIn(what, said)
+        summary, _, _ = self.replay(self.bag, "--set", "material/dynamic_friction=0.3")
+        self.assertEqual(summary["live_run"]["compared"], 0)
+        self.assertIn("material/dynamic_friction=0.3 instead of 0.6", "\n".join(summary["live_run"]["overridden"]))
+
+    def test_a_training_session_with_three_objects(self):
+        session = os.path.join(self.folder, "session")
+        objects = []
+        with Launch("training.launch", "participant:=P01", "rviz:=false", "folder:=" + session, "hands:=operator",
+                    "auto_next:=-1", "auto_start:=false"):
+            self.wait_for_recorder()
+            for _ in range(3):
+                wait_until(lambda: self.status and self.status.phase == TrainingStatus.READY, "the next trial")
+                objects.append(self.status.object)
+                rospy.wait_for_service("training_node/next", 60.0)
+                self.assertTrue(rospy.ServiceProxy("training_node/next", Trigger)().success)
+                wait_until(lambda: self.status.phase == TrainingStatus.RUNNING, "the trial")
+                self.wait_for_inputs(200)
+                self.assertTrue(rospy.ServiceProxy("training_node/skip", Trigger)().success)
+        (bag,) = glob.glob(session + "/hands_*.bag")
+        said = "\n".join(self.check_it_is_the_live_run(bag)["live_run"]["changes"])
+        self.assertEqual(len(set(objects)), 3)
+        for name in objects[1:]:  # the first may have come before the recorder did
+            self.assertIn("spawn '%s'" % name, said)
+        with open(os.path.join(self.folder, "out", "objects.csv")) as file:
+            self.assertLessEqual(set(objects), {row["name"] for row in csv.DictReader(file)})
+
+    @staticmethod
+    def package():
+        return os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "replay", ReplayTest)

@@ -1,0 +1,168 @@
+#include <filesystem>
+#include <fstream>
+
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/training/session.h"
+#include "scene/scene_files.h"
+#include "training/sha256.h"
+#include "training/trials.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+// FIPS 180-4's examples, and lengths about a block's end (by sha256sum).
+TEST(Sha256, is_that_of_the_standard) {
+  EXPECT_EQ("e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855", sha256(""));
+  EXPECT_EQ("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad", sha256("abc"));
+  EXPECT_EQ("248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1",
+            sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"));
+  EXPECT_EQ("cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0",
+            sha256(std::string(1000000, 'a')));
+}
+
+SessionHeader header() {
+  SessionHeader header;
+  header.participant = "P01";
+  header.group = "beginner";
+  header.handedness = "right";
+  header.condition = "implicit";
+  return header;
+}
+
+class SessionSetupTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("thing.urdf", test::thing(test::kInertial + std::string(test::kBox)));
+    folder_.write("thing.yaml", "gravity: [0, 0, 0]\n");
+    folder_.write("task.yaml", "name: two_places\nhold: 3.0\n");
+    task_.objects = {{"thing", folder_.path() + "/thing.urdf", {}, {}}};
+  }
+  SessionSetup setup(const std::string& version = "0.1.0") const {
+    return session_setup(folder_.path() + "/task.yaml", task_, configuration_, {}, {}, version);
+  }
+  void open(const SessionSetup& setup) const { Session(task_, header(), 0, session_, 0, setup); }
+  std::string refusal(const SessionSetup& setup) const {
+    try {
+      open(setup);
+    } catch (const SessionError& error) {
+      EXPECT_EQ(std::string::npos, std::string(error.what()).find('\n'));
+      return error.what();
+    }
+    return "";
+  }
+  void expect_refused(const SessionSetup& setup, const std::vector<std::string>& words) const {
+    const std::string said = refusal(setup);
+    for (const std::string& word : words)
+      EXPECT_NE(std::string::npos, said.find(word)) << word << "\n" << said;
+  }
+
+  test::Folder folder_;
+  std::string session_ = folder_.path() + "/P01";
+  Task task_ = test::two_places();
+  Configuration configuration_;
+};
+
+TEST_F(SessionSetupTest, the_folder_keeps_task_parameters_scene_and_software_with_their_hashes) {
+  open(setup());
+  for (const char* name : {"task.yaml", "parameters.yaml", "software.yaml", "scenes/thing.urdf",
+                           "scenes/thing.yaml", "SHA256SUMS"})
+    EXPECT_TRUE(fs::exists(session_ + "/setup/" + name)) << name;
+  const std::string check = "cd '" + session_ + "/setup' && sha256sum --quiet --strict -c SHA256SUMS";
+  EXPECT_EQ(0, std::system(check.c_str())) << "sha256sum reads the list, and finds the same";
+}
+
+TEST_F(SessionSetupTest, goes_on_with_the_same) {
+  open(setup());
+  EXPECT_EQ("", refusal(setup()));
+}
+
+TEST_F(SessionSetupTest, another_parameter_is_refused_and_named_with_both_values) {
+  open(setup());
+  set_parameter(configuration_, "contact_model", "soft_pad");
+  expect_refused(setup(), {"setup/parameters.yaml:", "'contact_model: implicit'", "'contact_model: soft_pad'",
+                           "allowed: the same, or another folder"});
+}
+
+TEST_F(SessionSetupTest, an_edited_task_is_refused_with_its_line) {
+  open(setup());
+  folder_.write("task.yaml", "name: two_places\nhold: 2.0\n");
+  expect_refused(setup(), {"setup/task.yaml:2:", "'hold: 3.0'", "'hold: 2.0'"});
+  folder_.write("task.yaml", "name: two_places\nhold: 3.0\nrepetitions: 2\n");
+  expect_refused(setup(), {"setup/task.yaml:3:", "'no such line'", "'repetitions: 2'"});
+}
+
+TEST_F(SessionSetupTest, another_scene_is_refused) {
+  open(setup());
+  folder_.write("thing.yaml", "gravity: [0, 0, -1]\n");
+  expect_refused(setup(), {"setup/scenes/thing.yaml:1:", "-1"});
+}
+
+TEST_F(SessionSetupTest, another_version_or_revision_is_refused) {
+  open(setup());
+  expect_refused(setup("0.2.0"), {"setup/software.yaml:1:", "'version: 0.1.0'", "'version: 0.2.0'"});
+  SessionSetup other = setup();
+  other.files["software.yaml"] = "version: 0.1.0\nrevision: another\n";
+  expect_refused(other, {"setup/software.yaml:2:", "another"});
+}
+
+TEST_F(SessionSetupTest, what_was_kept_and_edited_since_is_refused) {
+  open(setup());
+  std::ofstream(session_ + "/setup/task.yaml", std::ios::app) << "# edited\n";
+  folder_.write("task.yaml", "name: two_places\nhold: 3.0\n# edited\n");
+  expect_refused(setup(), {"setup/SHA256SUMS:"});
+}
+
+TEST_F(SessionSetupTest, a_session_without_a_record_is_refused) {
+  open({});
+  expect_refused(setup(), {"without a record of its task"});
+}
+
+TEST_F(SessionSetupTest, a_record_without_a_session_is_of_a_start_that_was_cut_off_and_is_written_anew) {
+  write_setup(session_, setup("0.0.9"));
+  EXPECT_EQ("", refusal(setup()));
+  EXPECT_EQ("", refusal(setup()));
+}
+
+TEST_F(SessionSetupTest, refused_sessions_are_left_as_they_were) {
+  open(setup());
+  const auto size = fs::file_size(session_ + "/events.csv");
+  refusal(setup("0.2.0"));
+  EXPECT_EQ(size, fs::file_size(session_ + "/events.csv"));
+  EXPECT_EQ("", refusal(setup()));
+}
+
+TEST_F(SessionSetupTest, a_second_session_has_a_folder_of_its_own) {
+  open(setup());
+  SessionHeader second = header();
+  second.session = 2;
+  try {
+    Session(task_, second, 0, session_, 0, setup());
+    ADD_FAILURE() << "taken for the first session";
+  } catch (const SessionError& error) {
+    EXPECT_NE(std::string::npos,
+              std::string(error.what()).find("session: the session in this folder has '1'"));
+  }
+}
+
+TEST_F(SessionSetupTest, the_mesh_files_are_known_by_their_hashes) {
+  const std::string kStl =
+      "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0.1 0\nvertex 0.1 0 "
+      "0\nendloop\nendfacet\n"
+      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
+      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0.1\nvertex 0 0.1 0\nendloop\nendfacet\n"
+      "facet normal 0 0 0\nouter loop\nvertex 0.1 0 0\nvertex 0 0.1 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
+      "endsolid t\n";
+  folder_.write("part.stl", kStl);
+  folder_.write(
+      "thing.urdf",
+      test::thing(test::kInertial +
+                  std::string(R"(<collision><geometry><mesh filename="part.stl"/></geometry></collision>)")));
+  const SessionSetup whole = setup();
+  ASSERT_EQ(1u, whole.files.count("meshes.txt"));
+  EXPECT_EQ(sha256(kStl) + "  part.stl\n", whole.files.at("meshes.txt"));
+}
+
+}  // namespace
+}  // namespace mrhi
