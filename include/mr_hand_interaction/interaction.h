@@ -36,7 +36,7 @@ enum class EventKind : std::uint8_t {
 struct Event {
   Nanoseconds stamp = 0;
   EventKind kind = EventKind::hover_begin;
-  int body = -1;              ///< index in Scene::bodies, the one that hangs on it for joint events, -1 for hand events
+  int body = -1;  ///< index in Scene::bodies, the one that hangs on it for joint events, -1 for hand events
   std::uint32_t hand_id = 0;  ///< 0 for out_of_bounds and joint events
 };
 

@@ -144,7 +144,8 @@ void Neighbours::list_pairs() {
   }
   std::sort(pairs_.begin(), pairs_.end());
   for (const Joint& joint : scene_.joints) {
-    const std::pair<int, int> joined = std::minmax(joint.parent, joint.child), turned{joined.second, joined.first};
+    const std::pair<int, int> joined = std::minmax(joint.parent, joint.child),
+                              turned{joined.second, joined.first};
     pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
                                 [&](const auto& pair) { return pair == joined || pair == turned; }),
                  pairs_.end());

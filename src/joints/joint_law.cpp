@@ -8,8 +8,8 @@
 namespace mrhi {
 namespace {
 
-/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step: what
-/// would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
+/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step:
+/// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
 constexpr double kStopOverInertia = 1e4;
 
 double detent_stiffness(const Detents& detents) {
@@ -56,7 +56,9 @@ double joint_velocity(const Scene& scene, std::size_t index, const std::vector<B
     const auto b = static_cast<std::size_t>(body);
     return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[b], bodies[b]);
   };
-  const auto pose = [&](int body) { return body == Joint::kWorld ? Pose() : bodies[static_cast<std::size_t>(body)].pose; };
+  const auto pose = [&](int body) {
+    return body == Joint::kWorld ? Pose() : bodies[static_cast<std::size_t>(body)].pose;
+  };
   const Pose frame = pose(joint.parent) * joint.in_parent, child = pose(joint.child);
   const Vector3 axis = frame.orientation * joint.axis;
   const Twist parent = motion(joint.parent), own = motion(joint.child);
@@ -116,7 +118,8 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double velocit
   const auto stop = [&](double room, double sign) {
     // One that is met within this step answers by Newton's law.
     const double speed = sign * velocity;
-    if (joint.restitution > 0.0 && room > 0.0 && step * speed > room) room = -joint.restitution * step * speed;
+    if (joint.restitution > 0.0 && room > 0.0 && step * speed > room)
+      room = -joint.restitution * step * speed;
     return Stop{room, sign};
   };
   lower_ = stop(state.position - joint.lower, -1.0);
@@ -144,7 +147,8 @@ double JointLaw::slope(double velocity) const {
 
 double JointLaw::energy(double velocity) const {
   const double way = step_ * velocity, lower = lower_.over(way), upper = upper_.over(way);
-  const double held = friction_.energy(way) + latch_.energy(way) + 0.5 * stop_ * (lower * lower + upper * upper);
+  const double held =
+      friction_.energy(way) + latch_.energy(way) + 0.5 * stop_ * (lower * lower + upper * upper);
   return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
 }
 
@@ -157,7 +161,8 @@ double JointLaw::size(double velocity) const {
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
   state.effort = force(velocity);
-  if (friction_.stiffness > 0.0) state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
+  if (friction_.stiffness > 0.0)
+    state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
 }
 
 }  // namespace mrhi

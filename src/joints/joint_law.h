@@ -7,8 +7,8 @@ namespace mrhi {
 
 /// What a joint's own forces give, as functions of its velocity at the step's end: spring, detents, latch,
 /// damping, friction, limits. Each of them falls as the velocity grows, so that the step's problem stays
-/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as the
-/// joint's inertia within a step, the last two up to their force: what they hold does not creep.
+/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as
+/// the joint's inertia within a step, the last two up to their force: what they hold does not creep.
 class JointLaw {
  public:
   /// `velocity`: at the step's start; `inertia`: of the joint alone, its entry of the mass matrix.
@@ -17,9 +17,9 @@ class JointLaw {
   /// Whether it gives anything up to this speed either way.
   bool acts(double speed) const;
 
-  double force(double velocity) const;       ///< [N m]
-  double slope(double velocity) const;       ///< -d force / d velocity, >= 0
-  double energy(double velocity) const;      ///< whose slope is -force [W]
+  double force(double velocity) const;   ///< [N m]
+  double slope(double velocity) const;   ///< -d force / d velocity, >= 0
+  double energy(double velocity) const;  ///< whose slope is -force [W]
   /// What limits and holds bear, and springs draw: the size of what acts [N m].
   double size(double velocity) const;
 
@@ -27,7 +27,8 @@ class JointLaw {
   void settle(double velocity, JointState& state) const;
 
  private:
-  /// A spring that bears at most `most`, whose end moves with the joint: stiffness * (stretch - step * velocity).
+  /// A spring that bears at most `most`, whose end moves with the joint: stiffness * (stretch - step *
+  /// velocity).
   struct Hold {
     double stiffness = 0.0, stretch = 0.0, most = 0.0;
     double wanted(double way) const { return stiffness * (stretch - way); }

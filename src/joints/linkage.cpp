@@ -30,7 +30,8 @@ std::vector<Linkage> linkages_of(const Scene& scene) {
   std::vector<Linkage> linkages;
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     const Joint& joint = scene.joints[j];
-    const bool alone = joint.parent == Joint::kWorld || scene.bodies[static_cast<std::size_t>(joint.parent)].fixed;
+    const bool alone =
+        joint.parent == Joint::kWorld || scene.bodies[static_cast<std::size_t>(joint.parent)].fixed;
     Linkage& linkage = linkage_of(scene, alone ? LinkageBody::kNone : joint.parent, linkages);
     LinkageBody link{joint.child, static_cast<int>(j)};
     link.parent = alone ? LinkageBody::kNone : place_of(linkage, joint.parent);
@@ -159,8 +160,7 @@ void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
     const Placed& placed = placed_[at_i];
     const double mass = body(i).mass;
     const Vector3 momentum = mass * placed.linear;
-    carried_[at_i] = {mass, momentum,
-                      placed.inertia * placed.angular + placed.pose.position.cross(momentum),
+    carried_[at_i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
                       mass * placed.pose.position};
   }
   for (int i = size() - 1; i >= 0; --i) {

@@ -11,14 +11,14 @@ namespace mrhi {
 /// A body of a linkage.
 struct LinkageBody {
   static constexpr int kNone = -1;
-  int body;                 ///< index in Scene::bodies
-  int joint = kNone;        ///< index in Scene::joints of the one it hangs on; none of a root that is free
-  int parent = kNone;       ///< index in Linkage::bodies; none on a fixture or the world
-  int fixture = kNone;      ///< index in Scene::bodies of that fixture
+  int body;             ///< index in Scene::bodies
+  int joint = kNone;    ///< index in Scene::joints of the one it hangs on; none of a root that is free
+  int parent = kNone;   ///< index in Linkage::bodies; none on a fixture or the world
+  int fixture = kNone;  ///< index in Scene::bodies of that fixture
 };
 
-/// Bodies that hang together on joints: on a fixture or the world, or on a root that is free. Its unknowns are
-/// the velocities of its joints in their order, after the six of a free root: of its centre of mass, and
+/// Bodies that hang together on joints: on a fixture or the world, or on a root that is free. Its unknowns
+/// are the velocities of its joints in their order, after the six of a free root: of its centre of mass, and
 /// angular, in world axes.
 struct Linkage {
   std::vector<LinkageBody> bodies;  ///< parents first, so that a free root is the first
@@ -39,10 +39,10 @@ class LinkageMotion {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
   struct Placed {
-    Pose pose;                   // of the body
-    Vector3 axis, origin;        // of its joint, world
-    Matrix3 inertia;             // world axes
-    Vector3 linear, angular;     // velocity
+    Pose pose;                // of the body
+    Vector3 axis, origin;     // of its joint, world
+    Matrix3 inertia;          // world axes
+    Vector3 linear, angular;  // velocity
   };
 
   LinkageMotion(const Scene& scene, const Linkage& linkage);

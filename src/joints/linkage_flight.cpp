@@ -37,8 +37,8 @@ Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
 LinkageFlight::LinkageFlight(const Scene& scene, const Linkage& linkage)
     : linkage_(linkage), motion_(scene, linkage), velocity_(linkage.unknowns()) {
   const auto count = static_cast<Eigen::Index>(linkage.joints());
-  for (Point* point : {&now_, &next_, &guess_, &stages_[0].point, &stages_[0].rate, &stages_[1].point,
-                       &stages_[1].rate})
+  for (Point* point :
+       {&now_, &next_, &guess_, &stages_[0].point, &stages_[0].rate, &stages_[1].point, &stages_[1].rate})
     *point = {Vector::Zero(count), Vector::Zero(count), Vector3::Zero()};
 }
 
@@ -93,8 +93,7 @@ void LinkageFlight::go(const Point& from, double a, const Point& first, double b
 /// Largest difference, each against its own size.
 double LinkageFlight::distance(const Point& a, const Point& b) {
   const auto of = [](const auto& x, const auto& y) {
-    return (x - y).template lpNorm<Eigen::Infinity>() /
-           (x.template lpNorm<Eigen::Infinity>() + 1e-300);
+    return (x - y).template lpNorm<Eigen::Infinity>() / (x.template lpNorm<Eigen::Infinity>() + 1e-300);
   };
   return std::max({of(a.positions, b.positions), of(a.momenta, b.momenta), of(a.turn, b.turn)});
 }

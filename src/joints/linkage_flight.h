@@ -8,11 +8,11 @@
 
 namespace mrhi {
 
-/// Moves what hangs together on joints under gravity alone: joints and a free root are the unknowns, so that no
-/// joint can come apart. Their momenta and places go on by Gauss's method of two stages (Hairer, Lubich, Wanner,
-/// Geometric Numerical Integration, II.1.3: symplectic, symmetric, of fourth order). A linkage that floats
-/// keeps its momentum and its angular momentum about its centre of mass to rounding, which flies as a body's
-/// does.
+/// Moves what hangs together on joints under gravity alone: joints and a free root are the unknowns, so that
+/// no joint can come apart. Their momenta and places go on by Gauss's method of two stages (Hairer, Lubich,
+/// Wanner, Geometric Numerical Integration, II.1.3: symplectic, symmetric, of fourth order). A linkage that
+/// floats keeps its momentum and its angular momentum about its centre of mass to rounding, which flies as a
+/// body's does.
 class LinkageFlight {
  public:
   LinkageFlight(const Scene& scene, const Linkage& linkage);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mr_hand_interaction/simulation_state.h"
 #include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
 

@@ -48,7 +48,8 @@ void BlockSystem::clear() {
 
 void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
   result.setZero(6 * bodies(), 6 * bodies());
-  for (int i = 0; i < bodies(); ++i) result.block<6, 6>(6 * i, 6 * i) = diagonal_[static_cast<std::size_t>(i)];
+  for (int i = 0; i < bodies(); ++i)
+    result.block<6, 6>(6 * i, 6 * i) = diagonal_[static_cast<std::size_t>(i)];
   for (const Coupling& c : couplings_) result.block<6, 6>(6 * c.row, 6 * c.column) = c.value;
 }
 

@@ -40,31 +40,21 @@ class WithObjects : public ContactModel {
   std::vector<Grip> no_grips_;
 };
 
-/// A model of what hands do to objects, with joints after it, and `implicit` for what objects do to each other
-/// if the model does not say.
+/// A model of what hands do to objects, with joints after it, and `implicit` for what objects do to each
+/// other if the model does not say.
 class WithJoints : public ContactModel {
  public:
   WithJoints(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> joints)
       : hands_(std::move(hands)), of_objects_(of_objects), joints_(std::move(joints)) {}
 
   void respond(ContactStep& step) override {
-    ContactStep of_hands{step.scene,
-                         step.gravity,
-                         step.step,
-                         step.contacts,
-                         of_objects_ ? step.body_contacts : nothing_,
-                         step.bodies,
-                         step.changes,
-                         no_grips_};
+    ContactStep of_hands{
+        step.scene,  step.gravity, step.step, step.contacts, of_objects_ ? step.body_contacts : nothing_,
+        step.bodies, step.changes, no_grips_};
     hands_->respond(of_hands);
-    ContactStep of_joints{step.scene,
-                          step.gravity,
-                          step.step,
-                          no_hand_,
-                          of_objects_ ? nothing_ : step.body_contacts,
-                          step.bodies,
-                          step.changes,
-                          no_grips_};
+    ContactStep of_joints{
+        step.scene,  step.gravity, step.step, no_hand_, of_objects_ ? nothing_ : step.body_contacts,
+        step.bodies, step.changes, no_grips_};
     joints_->respond(of_joints);
   }
 

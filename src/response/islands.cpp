@@ -109,9 +109,8 @@ void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>&
   divide();
   apart_.clear();
   const auto flies = [&](const Island& island) {
-    return std::all_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
-      return step.scene.bodies[body.body].flies;
-    });
+    return std::all_of(island.bodies.begin(), island.bodies.end(),
+                       [&](const IslandBody& body) { return step.scene.bodies[body.body].flies; });
   };
   std::copy_if(islands_.begin(), islands_.end(), std::back_inserter(apart_), std::not_fn(flies));
   islands_.erase(std::remove_if(islands_.begin(), islands_.end(), std::not_fn(flies)), islands_.end());

@@ -140,7 +140,8 @@ void JointedModel::fly(const ContactStep& step) {
   }
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!at_work_[i]) continue;
-    flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints, step.bodies);
+    flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
+                    step.bodies);
     rest(step, i);
     for (const LinkageBody& link : linkages_[i].bodies) {
       step.changes.forget(link.body);

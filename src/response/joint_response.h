@@ -13,9 +13,9 @@
 
 namespace mrhi {
 
-/// The implicit model for scenes with joints. What hangs on joints is solved in their coordinates, with all that
-/// touches it, and moved on through the step as well: its free flight is its joints'. Scenes without joints never
-/// meet it, and pay nothing.
+/// The implicit model for scenes with joints. What hangs on joints is solved in their coordinates, with all
+/// that touches it, and moved on through the step as well: its free flight is its joints'. Scenes without
+/// joints never meet it, and pay nothing.
 class JointedModel : public ImplicitModel {
  public:
   /// Keeps references: to the state for what joints remember, to the events for what they do.

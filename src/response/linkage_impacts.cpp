@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/collision/god_object.h"
 #include "impact.h"
+#include "mr_hand_interaction/collision/god_object.h"
 
 namespace mrhi {
 namespace {
@@ -71,7 +71,8 @@ void LinkageImpacts::add(Strike strike, const Vector3&, double step, const Linka
   const double rate = strike.normal.dot(strike.relative_velocity(problem.start()));
   if (classify(rate) != Approach::colliding) return;
   strike.time = time_to_close(strike.gap, rate, 0.0);
-  if (strike.between != nullptr && strike.between->first_touch >= 0.0) strike.time = strike.between->first_touch;
+  if (strike.between != nullptr && strike.between->first_touch >= 0.0)
+    strike.time = strike.between->first_touch;
   if (strike.time < step) strikes_.push_back(std::move(strike));
 }
 
@@ -99,8 +100,7 @@ void LinkageImpacts::prepare(const LinkageProblem& problem, Strike& strike) {
   const Matrix3 tangential = across * inverse * across;
   const double trace = tangential.trace();
   strike.along_mass.setZero();
-  if (trace > 0.0)
-    strike.along_mass = across / trace;
+  if (trace > 0.0) strike.along_mass = across / trace;
 }
 
 void LinkageImpacts::Strike::push(const Vector3& on_first, LinkageProblem::Vector& velocity) {

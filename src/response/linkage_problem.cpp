@@ -15,8 +15,9 @@ constexpr int kNoJoint = -1;
 
 /// Of a body in the island, or -1.
 int place_in(const Island& island, int body) {
-  const auto found = std::lower_bound(island.bodies.begin(), island.bodies.end(), static_cast<std::size_t>(body),
-                                      [](const IslandBody& x, std::size_t y) { return x.body < y; });
+  const auto found =
+      std::lower_bound(island.bodies.begin(), island.bodies.end(), static_cast<std::size_t>(body),
+                       [](const IslandBody& x, std::size_t y) { return x.body < y; });
   const bool there = found != island.bodies.end() && found->body == static_cast<std::size_t>(body);
   return there ? static_cast<int>(found - island.bodies.begin()) : -1;
 }
@@ -50,8 +51,8 @@ void LinkageProblem::begin(ContactStep& step, const Island& island, const Contac
   start_with(Vector(start_), step, joints);
 }
 
-void LinkageProblem::number(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
-                            std::vector<LinkageMotion>& motions) {
+void LinkageProblem::number(const ContactStep& step, const Island& island,
+                            const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions) {
   int count = 0;
   for (const Linkage& linkage : linkages) {
     if (place_in(island, linkage.bodies.front().body) >= 0) count += linkage.unknowns();
@@ -179,7 +180,8 @@ void LinkageProblem::find_direction() {
 double LinkageProblem::energy() const {
   double sum = several_.energy();
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (unknowns_[i].joint != kNoJoint) sum += step_ * laws_[i].energy(velocity_[static_cast<Eigen::Index>(i)]);
+    if (unknowns_[i].joint != kNoJoint)
+      sum += step_ * laws_[i].energy(velocity_[static_cast<Eigen::Index>(i)]);
   }
   return sum;
 }

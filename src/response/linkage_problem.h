@@ -8,10 +8,10 @@
 
 namespace mrhi {
 
-/// An island in which bodies hang on joints: the unknowns are the joints' velocities, and six of each body that
-/// is free, M (u - u*) = h (J' sum f(J u) + sum of what joints give by themselves). A Problem for Newton. What
-/// contacts are to bodies is the IslandProblem's; J makes of it what they are to joints, which so cannot come
-/// apart.
+/// An island in which bodies hang on joints: the unknowns are the joints' velocities, and six of each body
+/// that is free, M (u - u*) = h (J' sum f(J u) + sum of what joints give by themselves). A Problem for
+/// Newton. What contacts are to bodies is the IslandProblem's; J makes of it what they are to joints, which
+/// so cannot come apart.
 class LinkageProblem {
  public:
   static constexpr bool kTrustsLastStep = false;
@@ -23,8 +23,7 @@ class LinkageProblem {
              const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
              const std::vector<JointState>& joints);
   /// Takes other velocities at the step's start, as blows have left them.
-  void start_with(const Vector& velocity, const ContactStep& step,
-                  const std::vector<JointState>& joints);
+  void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
 
   Effort effort() const { return several_.effort(); }
   void restart() { velocity_ = start_; }
@@ -51,8 +50,8 @@ class LinkageProblem {
 
  private:
   struct Unknown {
-    int joint;  // index in Scene::joints, or -1 of the six of a free body
-    int body;   // that it moves
+    int joint;                // index in Scene::joints, or -1 of the six of a free body
+    int body;                 // that it moves
     double gyration_squared;  // by which a torque counts as a force; 1 of a force [m^2]
   };
   void number(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "../text/text.h"
 #include "joint_ranges.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "../text/text.h"
 
 namespace mrhi {
 namespace {
@@ -25,7 +25,8 @@ void check_limits(const Joint& joint) {
   if (joint.lower > -Joint::kUnlimited) check(joint, "lower limit", joint.lower, kPlace);
   if (joint.upper < Joint::kUnlimited) check(joint, "upper limit", joint.upper, kPlace);
   if (!(joint.lower < joint.upper)) {
-    refuse(joint, "lower limit " + text::number(joint.lower) + " and upper limit " + text::number(joint.upper),
+    refuse(joint,
+           "lower limit " + text::number(joint.lower) + " and upper limit " + text::number(joint.upper),
            "lower below upper");
   }
   check(joint, "start", joint.start, kPlace);
@@ -83,7 +84,8 @@ const Joint* joint_of(const Scene& scene, int body) {
 
 void check_tree(const Scene& scene, const Joint& joint) {
   if (joint_of(scene, joint.child) != &joint) {
-    refuse(joint, "is a second one of body '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
+    refuse(joint,
+           "is a second one of body '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
            "one joint to each body");
   }
   std::size_t depth = 0;

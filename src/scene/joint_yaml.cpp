@@ -39,8 +39,8 @@ Latch read_latch(const YamlElement& element) {
 }
 
 void read_joint(const YamlElement& element, Joint& joint) {
-  for (const std::string& key : checked_keys(
-           element, {"start", "damping", "friction", "restitution", "spring", "detents", "latch"})) {
+  for (const std::string& key :
+       checked_keys(element, {"start", "damping", "friction", "restitution", "spring", "detents", "latch"})) {
     const YamlElement given = element.at(key);
     if (key == "start") joint.start = read_number(given);
     if (key == "damping") joint.damping = read_number(given);

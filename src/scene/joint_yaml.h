@@ -5,8 +5,8 @@
 
 namespace mrhi {
 
-/// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is arrange_joints()'s to
-/// say. Throws YamlError.
+/// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is
+/// arrange_joints()'s to say. Throws YamlError.
 void read_joint_settings(const YamlElement& element, Scene& scene);
 
 }  // namespace mrhi

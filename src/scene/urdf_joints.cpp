@@ -59,7 +59,8 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
 
 }  // namespace
 
-std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document, const Scene& scene) {
+std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document,
+                               const Scene& scene) {
   std::vector<Joint> joints;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
     if (link->parent_joint && moves(*link->parent_joint))

@@ -70,10 +70,9 @@ class Tree {
     }
     const urdf::JointSharedPtr above = model_.getLink(joint.parent_link_name)->parent_joint;
     if (above && above->type != urdf::Joint::FIXED) {
-      fail(
-          what + "is fixed to " + (moves(*above) ? "the body '" : "the free body '") + joint.parent_link_name +
-          (moves(*above) ? "', which moves" : "'") +
-          "; allowed: fixed joints on the root or on fixtures (a body may have several collision elements)");
+      fail(what + "is fixed to " + (moves(*above) ? "the body '" : "the free body '") +
+           joint.parent_link_name + (moves(*above) ? "', which moves" : "'") +
+           "; allowed: fixed joints on the root or on fixtures (a body may have several collision elements)");
     }
   }
 

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../joints/joint_law.h"
+#include "../response/joint_response.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "frame_report.h"
-#include "../joints/joint_law.h"
-#include "../response/joint_response.h"
 #include "scene_change.h"
 #include "simulation_impl.h"
 

@@ -233,8 +233,8 @@ class Parts {
   void one(SimulationState& part) {
     auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
            sleeping_contacts, offsets, grips, interactions] = part;
-    all(started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts, sleeping_contacts,
-        offsets, grips, interactions);
+    all(started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
+        sleeping_contacts, offsets, grips, interactions);
   }
 
  private:

@@ -125,7 +125,8 @@ TEST(JointDetents, draw_to_the_nearest_and_click) {
   scene.bodies[0].start_twist.linear = {0, 0, 0.3};
   Simulation simulation = running(scene);
   int clicks = 0;
-  let_go_on(simulation, 0.0, 5.0, 100.0, [&](const Simulation& now) { clicks += count(now, EventKind::detent); });
+  let_go_on(simulation, 0.0, 5.0, 100.0,
+            [&](const Simulation& now) { clicks += count(now, EventKind::detent); });
   EXPECT_NEAR(position(simulation), 0.02, 1e-6);
   EXPECT_EQ(clicks, 1);
 }
@@ -162,8 +163,8 @@ TEST(JointLimit, holds_a_thousand_times_the_mass) {
   Body weight = box_body({0.3, 0.3, 0.3}, 1000.0);
   weight.name = "weight";
   scene.bodies.push_back(weight);
-  scene.joints.push_back(hinge(0, 1, {{0, 0, -0.05}, Quaternion::Identity()},
-                               {{0, 0, 0.3}, Quaternion::Identity()}, 0.3));
+  scene.joints.push_back(
+      hinge(0, 1, {{0, 0, -0.05}, Quaternion::Identity()}, {{0, 0, 0.3}, Quaternion::Identity()}, 0.3));
   scene.joints[1].damping = 50.0;
   Simulation simulation = running(scene, 0.0083);
   let_go_on(simulation, 0.0, 20.0, 60.0);

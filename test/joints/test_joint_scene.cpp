@@ -11,8 +11,9 @@ const std::string kPart = std::string(test::kInertial) + test::kBox;
 
 std::string joint(const std::string& name, const std::string& type, const std::string& parent,
                   const std::string& child, const std::string& more = "", const std::string& origin = "") {
-  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" +
-         child + "\"/><origin " + origin + "/><axis xyz=\"0 0 1\"/>" + more + "</joint>\n";
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin " + origin + "/><axis xyz=\"0 0 1\"/>" + more +
+         "</joint>\n";
 }
 
 const std::string kLimit = R"(<limit lower="-0.5" upper="1.5" effort="1" velocity="1"/>)";
@@ -20,8 +21,8 @@ const std::string kDynamics = R"(<dynamics damping="0.2" friction="0.3"/>)";
 
 /// A frame, a door on it, a lever on the door; a free ball with an arm.
 std::string workshop() {
-  return test::robot(test::link("frame", test::kBox) + test::link("door", kPart) + test::link("lever", kPart) +
-                     test::link("base", kPart) + test::link("arm", kPart) +
+  return test::robot(test::link("frame", test::kBox) + test::link("door", kPart) +
+                     test::link("lever", kPart) + test::link("base", kPart) + test::link("arm", kPart) +
                      joint("f", "fixed", "world", "frame", "", R"(xyz="1 0 0")") +
                      joint("hinge", "revolute", "frame", "door", kLimit + kDynamics, R"(xyz="0 0.2 0")") +
                      joint("rail", "prismatic", "door", "lever", kLimit, R"(xyz="0.2 0 0")") +
@@ -68,9 +69,10 @@ TEST(JointScene, begins_where_its_yaml_has_it) {
 }
 
 TEST(JointScene, has_springs_detents_and_latches_of_its_yaml) {
-  const Scene scene = load(workshop(),
-                           "joints:\n  hinge: {spring: {stiffness: 2, rest: 0.1}, restitution: 0.4}\n"
-                           "  rail: {detents: {at: [0, 0.02], force: 3}, latch: {at: 0, force: 5, reach: 0.01}}\n");
+  const Scene scene =
+      load(workshop(),
+           "joints:\n  hinge: {spring: {stiffness: 2, rest: 0.1}, restitution: 0.4}\n"
+           "  rail: {detents: {at: [0, 0.02], force: 3}, latch: {at: 0, force: 5, reach: 0.01}}\n");
   const Joint& hinge = scene.joints[static_cast<std::size_t>(*find_joint(scene, "hinge"))];
   const Joint& rail = scene.joints[static_cast<std::size_t>(*find_joint(scene, "rail"))];
   EXPECT_EQ(hinge.spring->stiffness, 2.0);
@@ -83,9 +85,10 @@ TEST(JointScene, has_springs_detents_and_latches_of_its_yaml) {
 TEST(JointScene, refuses_in_one_line_what_makes_no_tree_or_is_out_of_limits) {
   const std::string door = test::link("frame", test::kBox) + test::link("door", kPart) +
                            joint("f", "fixed", "world", "frame", "", R"(xyz="1 0 0")");
-  test::expect_words(error(test::robot(door + joint("hinge", "revolute", "frame", "door",
-                                                    R"(<limit lower="1" upper="0" effort="1" velocity="1"/>)"))),
-                     {"'hinge'", "lower"});
+  test::expect_words(
+      error(test::robot(door + joint("hinge", "revolute", "frame", "door",
+                                     R"(<limit lower="1" upper="0" effort="1" velocity="1"/>)"))),
+      {"'hinge'", "lower"});
   const std::string good = test::robot(door + joint("hinge", "revolute", "frame", "door", kLimit));
   test::expect_words(error(good, "joints: {hnge: {start: 0}}"), {"'hnge'", "hinge"});
   test::expect_words(error(good, "joints: {hinge: {start: 3}}"), {"'hinge'", "start 3"});

@@ -28,15 +28,17 @@ Ride ride(const Lid& lid, const Configuration& configuration, double rate, doubl
   Simulation simulation(lid.scene(), configuration);
   Ride result;
   double t = 0.0;
-  play(simulation, 0.0, seconds, rate, [&](double now) { return lid.hand(carried(t = now, to), smooth(now, 0.3)); },
-       [&](const Simulation& now) {
-         const double off = std::abs(angle_of(now) - carried(t, to));
-         if (t > 0.5) result.worst_angle = std::max(result.worst_angle, off);
-         result.largest_speed =
-             std::max(result.largest_speed, std::abs(joint_velocity(now.scene(), 0, now.state().bodies)));
-         result.apart = std::max({result.apart, testing::apart(now, 0).place, testing::apart(now, 0).turn});
-         result.sound = result.sound && std::isfinite(angle_of(now)) && now.result().not_finite.empty();
-       });
+  play(
+      simulation, 0.0, seconds, rate,
+      [&](double now) { return lid.hand(carried(t = now, to), smooth(now, 0.3)); },
+      [&](const Simulation& now) {
+        const double off = std::abs(angle_of(now) - carried(t, to));
+        if (t > 0.5) result.worst_angle = std::max(result.worst_angle, off);
+        result.largest_speed =
+            std::max(result.largest_speed, std::abs(joint_velocity(now.scene(), 0, now.state().bodies)));
+        result.apart = std::max({result.apart, testing::apart(now, 0).place, testing::apart(now, 0).turn});
+        result.sound = result.sound && std::isfinite(angle_of(now)) && now.result().not_finite.empty();
+      });
   return result;
 }
 
@@ -92,18 +94,19 @@ TEST(JointsByHand, every_contact_model_moves_a_joint_and_keeps_it_together) {
     Simulation simulation(scene, unfiltered({model->name}));
     // One finger from below pushes the lid open.
     double t = 0.0;
-    play(simulation, 0.0, 1.0, 120.0,
-         [&](double now) {
-           t = now;
-           const Hand both = lid.hand(0.0, 0.0);
-           Capsule below = both.capsules[static_cast<std::size_t>(capsule_index(0, 3))];
-           const Vector3 up(0, 0, 0.1 * now - 0.02);
-           return finger(below.start + up, below.end + up, below.radius);
-         },
-         [&](const Simulation& now) {
-           ASSERT_LT(testing::apart(now, 0).place, 1e-12) << model->name;
-           ASSERT_TRUE(now.result().not_finite.empty()) << model->name;
-         });
+    play(
+        simulation, 0.0, 1.0, 120.0,
+        [&](double now) {
+          t = now;
+          const Hand both = lid.hand(0.0, 0.0);
+          Capsule below = both.capsules[static_cast<std::size_t>(capsule_index(0, 3))];
+          const Vector3 up(0, 0, 0.1 * now - 0.02);
+          return finger(below.start + up, below.end + up, below.radius);
+        },
+        [&](const Simulation& now) {
+          ASSERT_LT(testing::apart(now, 0).place, 1e-12) << model->name;
+          ASSERT_TRUE(now.result().not_finite.empty()) << model->name;
+        });
     EXPECT_GT(angle_of(simulation), 0.1) << model->name;
     EXPECT_LT(angle_of(simulation), 3.0) << model->name;
   }
@@ -117,14 +120,15 @@ TEST(JointsByHand, a_struck_lid_leaves_by_newtons_law) {
   Configuration configuration = unfiltered(ContactModelKind::implicit);
   Simulation simulation(scene, configuration);
   double left = 0.0;
-  play(simulation, 0.0, 0.06, 1000.0,
-       [&](double now) {
-         const Vector3 place(lid.at, 0, -0.05 + std::min(now, 0.045));
-         return finger(place - Vector3(0, 0.01, 0), place + Vector3(0, 0.01, 0), lid.radius);
-       },
-       [&](const Simulation& now) {
-         left = std::max(left, joint_velocity(now.scene(), 0, now.state().bodies));
-       });
+  play(
+      simulation, 0.0, 0.06, 1000.0,
+      [&](double now) {
+        const Vector3 place(lid.at, 0, -0.05 + std::min(now, 0.045));
+        return finger(place - Vector3(0, 0.01, 0), place + Vector3(0, 0.01, 0), lid.radius);
+      },
+      [&](const Simulation& now) {
+        left = std::max(left, joint_velocity(now.scene(), 0, now.state().bodies));
+      });
   EXPECT_NEAR(left, 1.5 / lid.at, 0.02 * 1.5 / lid.at);
 }
 
@@ -136,15 +140,16 @@ TEST(JointsByHand, the_force_at_the_rim_is_the_closed_form) {
   scene.joints[0].friction = 0.36;
   Simulation simulation(scene, unfiltered(ContactModelKind::implicit));
   Vector3 force = Vector3::Zero();
-  play(simulation, 0.0, 2.0, 240.0,
-       [&](double now) {
-         const Vector3 place(lid.at, 0, -0.014 + 0.01 * now);
-         return finger(place - Vector3(0, 0.01, 0), place + Vector3(0, 0.01, 0), lid.radius);
-       },
-       [&](const Simulation& now) {
-         force.setZero();
-         for (const Contact& contact : now.state().contacts) force += contact.force;
-       });
+  play(
+      simulation, 0.0, 2.0, 240.0,
+      [&](double now) {
+        const Vector3 place(lid.at, 0, -0.014 + 0.01 * now);
+        return finger(place - Vector3(0, 0.01, 0), place + Vector3(0, 0.01, 0), lid.radius);
+      },
+      [&](const Simulation& now) {
+        force.setZero();
+        for (const Contact& contact : now.state().contacts) force += contact.force;
+      });
   const double angle = angle_of(simulation);
   ASSERT_GT(angle, 0.02);
   const Vector3 normal(-std::sin(angle), 0, std::cos(angle));

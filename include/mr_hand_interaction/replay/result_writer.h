@@ -36,8 +36,8 @@ class CsvFile {
   bool row_begun_ = false;
 };
 
-/// The tables that replay writes, a frame at a time: objects.csv, contacts.csv, hands.csv, events.csv and, of a
-/// scene with joints, joints.csv.
+/// The tables that replay writes, a frame at a time: objects.csv, contacts.csv, hands.csv, events.csv and, of
+/// a scene with joints, joints.csv.
 class ResultWriter {
  public:
   /// Makes the folder if need be. Throws std::runtime_error naming what cannot be written.

@@ -28,8 +28,8 @@ struct Detents {
   double force = 0.0;      ///< that takes it out of the closest ones [N m]
 };
 
-/// Holds the joint at one place by up to a force, within a reach; what is drawn further is let go, and is caught
-/// when it comes back.
+/// Holds the joint at one place by up to a force, within a reach; what is drawn further is let go, and is
+/// caught when it comes back.
 struct Latch {
   double at = 0.0;     ///< [rad]
   double force = 0.0;  ///< most that it holds and draws with [N m]
@@ -43,17 +43,17 @@ struct Joint {
 
   std::string name;
   JointKind kind = JointKind::turning;
-  int parent = kWorld;                ///< index in Scene::bodies
-  int child = 0;                      ///< likewise: of a body that is no fixture
-  Vector3 axis = Vector3::UnitX();    ///< unit, joint's frame, which is the child's link frame
-  Pose in_parent;                     ///< of the joint's frame at 0, in the parent's body frame
-  Pose in_child;                      ///< of the joint's frame, in the child's body frame
-  double start = 0.0;                 ///< where it begins [rad]
-  double lower = -kUnlimited;         ///< [rad]
-  double upper = kUnlimited;          ///< [rad]
-  double restitution = 0.0;           ///< of the limits, 0..1
-  double damping = 0.0;               ///< viscous [N m s/rad]
-  double friction = 0.0;              ///< Coulomb's, static as sliding [N m]
+  int parent = kWorld;              ///< index in Scene::bodies
+  int child = 0;                    ///< likewise: of a body that is no fixture
+  Vector3 axis = Vector3::UnitX();  ///< unit, joint's frame, which is the child's link frame
+  Pose in_parent;                   ///< of the joint's frame at 0, in the parent's body frame
+  Pose in_child;                    ///< of the joint's frame, in the child's body frame
+  double start = 0.0;               ///< where it begins [rad]
+  double lower = -kUnlimited;       ///< [rad]
+  double upper = kUnlimited;        ///< [rad]
+  double restitution = 0.0;         ///< of the limits, 0..1
+  double damping = 0.0;             ///< viscous [N m s/rad]
+  double friction = 0.0;            ///< Coulomb's, static as sliding [N m]
   std::optional<JointSpring> spring;
   std::optional<Detents> detents;
   std::optional<Latch> latch;
