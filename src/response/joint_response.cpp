@@ -22,6 +22,11 @@ bool has_touch(const ContactStep& step, const Island& island) {
          });
 }
 
+bool has(const Island& island, int body) {
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [body](const IslandBody& one) { return static_cast<int>(one.body) == body; });
+}
+
 /// An island that a hand presses.
 bool is_held(const ContactStep& step, const Island& island) {
   for (const IslandBody& body : island.bodies) {
@@ -72,10 +77,23 @@ bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
   };
   if (std::any_of(island.bodies.begin(), island.bodies.end(), moves)) return false;
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (groups_[i].front() != static_cast<int>(island.bodies.begin()->body)) continue;
+    if (!has(island, groups_[i].front())) continue;
     return state_.joints[static_cast<std::size_t>(linkages_[i].bodies.back().joint)].still >= kTired;
   }
   return false;
+}
+
+/// Where its joints have it now.
+void JointedModel::place(const ContactStep& step, std::size_t index) {
+  const Linkage& linkage = linkages_[index];
+  positions_.resize(linkage.joints());
+  int joint = 0;
+  for (const LinkageBody& link : linkage.bodies) {
+    if (link.joint != LinkageBody::kNone)
+      positions_[joint++] = state_.joints[static_cast<std::size_t>(link.joint)].position;
+  }
+  motions_[index].place(step.bodies[static_cast<std::size_t>(groups_[index].front())].pose, positions_);
+  motions_[index].weigh();
 }
 
 void JointedModel::begin(ContactStep& step) {
@@ -85,20 +103,9 @@ void JointedModel::begin(ContactStep& step) {
   for (const Island& island : islands_.apart()) {
     if (sleeps(step, island)) continue;
     for (std::size_t i = 0; i < linkages_.size(); ++i) {
-      const auto is_front = [&](const IslandBody& body) {
-        return static_cast<int>(body.body) == groups_[i].front();
-      };
-      if (std::none_of(island.bodies.begin(), island.bodies.end(), is_front)) continue;
+      if (!has(island, groups_[i].front())) continue;
       at_work_[i] = 1;
-      const Linkage& linkage = linkages_[i];
-      positions_.resize(linkage.joints());
-      int joint = 0;
-      for (const LinkageBody& link : linkage.bodies) {
-        if (link.joint != LinkageBody::kNone)
-          positions_[joint++] = state_.joints[static_cast<std::size_t>(link.joint)].position;
-      }
-      motions_[i].place(step.bodies[static_cast<std::size_t>(linkage.bodies.front().body)].pose, positions_);
-      motions_[i].weigh();
+      place(step, i);
     }
     LinkageProblem& problem = *problems_[islands_apart_.size()];
     islands_apart_.push_back(&island);
@@ -125,8 +132,7 @@ void JointedModel::solve(ContactStep& step) {
     const bool agree = Newton<LinkageProblem>(problem).solve();
     problem.finish(agree, step, island, state_.joints);
     for (std::size_t l = 0; l < linkages_.size(); ++l) {
-      for (const IslandBody& body : island.bodies)
-        if (static_cast<int>(body.body) == groups_[l].front()) solved_[l] = 1;
+      if (has(island, groups_[l].front())) solved_[l] = 1;
     }
   }
 }

@@ -25,6 +25,7 @@ class JointedModel : public ImplicitModel {
 
  private:
   bool sleeps(const ContactStep& step, const Island& island) const;
+  void place(const ContactStep& step, std::size_t linkage);
   void begin(ContactStep& step);
   void strike(ContactStep& step, const Island& island, LinkageProblem& problem);
   void solve(ContactStep& step);

@@ -44,7 +44,7 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       strike.friction = material(body.body).static_friction;
       strike.inverse_mass = contact.inverse_mass;
       strike.rows = -point_rows(problem, place, contact.point - step.bodies[body.body].pose.position);
-      add(std::move(strike), step.gravity, step.step, problem);
+      add(std::move(strike), step.step, problem);
     }
   }
   for (const Link& link : island.links) {
@@ -59,14 +59,14 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
     strike.rows = -point_rows(problem, place_in(island, contact.key.b), contact.arm_b);
     if (!step.scene.bodies[contact.key.a].fixed)
       strike.rows += point_rows(problem, place_in(island, contact.key.a), contact.arm_a);
-    add(std::move(strike), step.gravity, step.step, problem);
+    add(std::move(strike), step.step, problem);
   }
   return !strikes_.empty();
 }
 
 /// Gravity acts within the step only as far as it lets what is at rest fall: a strike has the velocity of the
 /// step's start.
-void LinkageImpacts::add(Strike strike, const Vector3&, double step, const LinkageProblem& problem) {
+void LinkageImpacts::add(Strike strike, double step, const LinkageProblem& problem) {
   strike.drag.setZero(), strike.recoil.setZero();
   const double rate = strike.normal.dot(strike.relative_velocity(problem.start()));
   if (classify(rate) != Approach::colliding) return;

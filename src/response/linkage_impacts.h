@@ -38,7 +38,7 @@ class LinkageImpacts {
     double relax_normal(LinkageProblem::Vector& velocity);
     double relax_tangential(LinkageProblem::Vector& velocity);
   };
-  void add(Strike strike, const Vector3& gravity, double step, const LinkageProblem& problem);
+  void add(Strike strike, double step, const LinkageProblem& problem);
   static void prepare(const LinkageProblem& problem, Strike& strike);
 
   std::vector<Strike> strikes_;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../scene/remove_body.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
@@ -120,11 +121,7 @@ void LiveSimulation::remove(const std::string& name) {
   Scene scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, false);
   check_no_joint(scene, static_cast<int>(body), "be removed");
-  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(body));
-  for (Joint& joint : scene.joints) {
-    if (joint.parent > static_cast<int>(body)) --joint.parent;
-    if (joint.child > static_cast<int>(body)) --joint.child;
-  }
+  remove_body(body, scene);
   go_on_with(scene, simulation_->configuration());
 }
 
