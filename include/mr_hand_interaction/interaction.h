@@ -27,14 +27,17 @@ enum class EventKind : std::uint8_t {
   grasp_end,
   hand_lost,
   hand_found,
-  out_of_bounds
+  out_of_bounds,
+  joint_limit,  ///< a joint has come to one of its limits
+  detent,       ///< has snapped into another detent
+  latch_open    ///< has been pulled out of its latch
 };
 
 struct Event {
   Nanoseconds stamp = 0;
   EventKind kind = EventKind::hover_begin;
-  int body = -1;              ///< index in Scene::bodies, -1 for hand events
-  std::uint32_t hand_id = 0;  ///< 0 for out_of_bounds
+  int body = -1;  ///< index in Scene::bodies, the one that hangs on it for joint events, -1 for hand events
+  std::uint32_t hand_id = 0;  ///< 0 for out_of_bounds and joint events
 };
 
 /// Moves `interaction` towards the level that the contacts say now, one event per level in their fixed order.

@@ -7,8 +7,10 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/joint_state.h"
 #include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/response/grip.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
@@ -21,6 +23,7 @@ struct SimulationState {
   Nanoseconds last_frame = 0;                  ///< stamp of the last frame taken
   StampJudge stamps;                           ///< of the frames taken, and of those that were refused
   std::vector<BodyState> bodies;               ///< one per Scene::bodies, fixtures too
+  std::vector<JointState> joints;              ///< one per Scene::joints
   std::vector<char> asleep;                    ///< likewise: lies still, and is not looked at until disturbed
   std::vector<HandTrack> hands;                ///< slots; see HandTrack::active
   std::vector<Contact> contacts;               ///< of hands with bodies, sorted by key
@@ -30,6 +33,9 @@ struct SimulationState {
   std::vector<Grip> grips;                     ///< what hands hold, by hand and body
   std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };
+
+/// Velocity of a joint, by the motion of its bodies [rad/s, m/s].
+double joint_velocity(const Scene& scene, std::size_t joint, const std::vector<BodyState>& bodies);
 
 /// Every body awake.
 void wake_all(SimulationState& state);

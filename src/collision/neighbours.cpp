@@ -143,6 +143,13 @@ void Neighbours::list_pairs() {
     pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
+  for (const Joint& joint : scene_.joints) {
+    const std::pair<int, int> joined = std::minmax(joint.parent, joint.child),
+                              turned{joined.second, joined.first};
+    pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
+                                [&](const auto& pair) { return pair == joined || pair == turned; }),
+                 pairs_.end());
+  }
   paired_.clear();
   for (const auto& [a, b] : pairs_) paired_.push_back(a), paired_.push_back(b);
   std::sort(paired_.begin(), paired_.end());

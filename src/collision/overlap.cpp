@@ -11,6 +11,13 @@ bool are_near(const Body& a, const Body& b) {
   return (a.start.position - b.start.position).norm() < a.bounding_radius + b.bounding_radius;
 }
 
+bool are_joined(const Scene& scene, std::size_t a, std::size_t b) {
+  const auto ia = static_cast<int>(a), ib = static_cast<int>(b);
+  return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& joint) {
+    return (joint.parent == ia && joint.child == ib) || (joint.parent == ib && joint.child == ia);
+  });
+}
+
 std::vector<BodyState> start_states(const Scene& scene) {
   std::vector<BodyState> states;
   states.reserve(scene.bodies.size());
@@ -47,7 +54,7 @@ std::string overlaps_at_start(const Scene& scene) {
   for (std::size_t a = 0; a < scene.bodies.size() && named < kNamed; ++a) {
     for (std::size_t b = 0; b < a && named < kNamed; ++b) {
       const Body &one = scene.bodies[a], &other = scene.bodies[b];
-      if ((one.fixed && other.fixed) || !are_near(one, other)) continue;
+      if ((one.fixed && other.fixed) || !are_near(one, other) || are_joined(scene, a, b)) continue;
       const double depth = overlap(scene, geometry, states, a, b);
       if (depth <= kOverlap) continue;
       all += (all.empty() ? "'" : ", '") + one.name + "' is " + text::number(depth) + " m in '" + other.name +

@@ -40,7 +40,7 @@ void turn(const Body& body, const Vector3& angular_momentum, double step, Quater
 }  // namespace
 
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
-  if (body.fixed) return;
+  if (!body.flies) return;
   const Vector3 velocity = state.linear_momentum / body.mass;
   state.pose.position += step * velocity + (0.5 * step * step) * gravity;
   state.linear_momentum += (body.mass * step) * gravity;

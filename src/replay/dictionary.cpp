@@ -73,6 +73,16 @@ Table hands() {
                   {{"radius", "m", "of the phalanx"}, {"touching", "", "1 if it touches an object"}}})};
 }
 
+Table joints() {
+  return {"joints.csv",
+          "each joint per frame, of a scene that has any; of one that slides m and N in place of rad and N m",
+          {kTime,
+           {"name", "", "of the joint"},
+           {"position", "rad", "from where its link is in the URDF"},
+           {"velocity", "rad/s", ""},
+           {"effort", "N m", "of its own spring, friction, limits and the like in the last step"}}};
+}
+
 Table events() {
   return {"events.csv",
           "each event, in their order",
@@ -106,7 +116,7 @@ std::string Table::header() const {
 }
 
 const std::vector<Table>& tables() {
-  static const std::vector<Table> all{objects(), contacts(), hands(), events(), hashes()};
+  static const std::vector<Table> all{objects(), joints(), contacts(), hands(), events(), hashes()};
   return all;
 }
 

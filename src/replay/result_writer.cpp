@@ -42,6 +42,12 @@ const char* event_name(EventKind kind) {
       return "HAND_FOUND";
     case EventKind::out_of_bounds:
       return "OUT_OF_BOUNDS";
+    case EventKind::joint_limit:
+      return "JOINT_LIMIT";
+    case EventKind::detent:
+      return "DETENT";
+    case EventKind::latch_open:
+      return "LATCH_OPEN";
   }
   return "";
 }
@@ -56,6 +62,7 @@ ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
   std::ofstream schema(path);
   schema << schema_json() << std::flush;
   if (!schema) throw std::runtime_error("cannot write " + path);
+  if (!scene.joints.empty()) joints_.emplace(folder + "/joints.csv", table_of("joints.csv").header());
 }
 
 void ResultWriter::write(const FrameResult& result, const SimulationState& state) {
@@ -63,6 +70,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
   begun_ = true;
   const double time = to_seconds(result.stamp - first_stamp_);
   write_objects(time, state);
+  if (joints_) write_joints(time, state);
   write_contacts(time, result, state);
   for (const Hand& hand : result.tracked) write_hand(time, hand, nullptr);
   for (const RenderedHand& rendered : result.rendered) write_hand(time, rendered.hand, &rendered);
@@ -71,6 +79,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
 
 void ResultWriter::flush() {
   for (CsvFile* file : {&objects_, &contacts_, &hands_, &events_}) file->flush();
+  if (joints_) joints_->flush();
 }
 
 void ResultWriter::write_objects(double time, const SimulationState& state) {
@@ -82,6 +91,15 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
     add_quaternion(objects_, state.bodies[i].pose.orientation);
     objects_ << twist.linear << twist.angular;
     objects_.end_row();
+  }
+}
+
+void ResultWriter::write_joints(double time, const SimulationState& state) {
+  for (std::size_t i = 0; i < scene_->joints.size(); ++i) {
+    const JointState& joint = state.joints[i];
+    *joints_ << time << scene_->joints[i].name << joint.position << joint_velocity(*scene_, i, state.bodies)
+             << joint.effort;
+    joints_->end_row();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "../scene/remove_body.h"
 #include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -144,10 +145,10 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
   options.gravity.reset();
   Scene scene = scene_of_files(world, options, folder);
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
-  const auto removed = [&](const Body& body) {
-    return std::find(world.removed.begin(), world.removed.end(), body.name) != world.removed.end();
-  };
-  scene.bodies.erase(std::remove_if(scene.bodies.begin(), scene.bodies.end(), removed), scene.bodies.end());
+  for (const std::string& name : world.removed) {
+    if (const std::optional<int> body = find_body(scene, name))
+      remove_body(static_cast<std::size_t>(*body), scene);
+  }
   for (ObjectRequest request : world.added) {
     request.urdf = with_meshes_in(folder, request.urdf, world.files);
     scene.bodies.push_back(requested_body(request, options));

@@ -46,11 +46,16 @@ void BlockSystem::clear() {
   for (Coupling& coupling : couplings_) coupling.value.setZero();
 }
 
+void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
+  result.setZero(6 * bodies(), 6 * bodies());
+  for (int i = 0; i < bodies(); ++i)
+    result.block<6, 6>(6 * i, 6 * i) = diagonal_[static_cast<std::size_t>(i)];
+  for (const Coupling& c : couplings_) result.block<6, 6>(6 * c.row, 6 * c.column) = c.value;
+}
+
 void BlockSystem::factorise() {
   if (bodies() <= kMostDense) {
-    dense_.setZero(6 * bodies(), 6 * bodies());
-    for (int i = 0; i < bodies(); ++i) dense_.block<6, 6>(6 * i, 6 * i) = diagonal(i);
-    for (const Coupling& c : couplings_) dense_.block<6, 6>(6 * c.row, 6 * c.column) = c.value;
+    to_dense(dense_);
     dense_factors_.compute(dense_);
     return;
   }

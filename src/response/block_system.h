@@ -32,6 +32,9 @@ class BlockSystem {
   /// Rows of the later body, columns of the earlier.
   Matrix6& between(std::size_t coupling) { return couplings_[coupling].value; }
 
+  /// A itself, of which only the lower triangle is set.
+  void to_dense(Eigen::MatrixXd& result) const;
+
   /// Call when the entries are there.
   void factorise();
   /// Solves in place. Of many bodies, until the residual is `tolerance` of what it was, as their masses

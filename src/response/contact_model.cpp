@@ -6,6 +6,7 @@
 
 #include "contact_model_list.h"
 #include "implicit_model.h"
+#include "joint_response.h"
 
 namespace mrhi {
 
@@ -39,6 +40,33 @@ class WithObjects : public ContactModel {
   std::vector<Grip> no_grips_;
 };
 
+/// A model of what hands do to objects, with joints after it, and `implicit` for what objects do to each
+/// other if the model does not say.
+class WithJoints : public ContactModel {
+ public:
+  WithJoints(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> joints)
+      : hands_(std::move(hands)), of_objects_(of_objects), joints_(std::move(joints)) {}
+
+  void respond(ContactStep& step) override {
+    ContactStep of_hands{
+        step.scene,  step.gravity, step.step, step.contacts, of_objects_ ? step.body_contacts : nothing_,
+        step.bodies, step.changes, no_grips_};
+    hands_->respond(of_hands);
+    ContactStep of_joints{
+        step.scene,  step.gravity, step.step, no_hand_, of_objects_ ? nothing_ : step.body_contacts,
+        step.bodies, step.changes, no_grips_};
+    joints_->respond(of_joints);
+  }
+
+ private:
+  std::unique_ptr<ContactModel> hands_;
+  bool of_objects_;
+  std::unique_ptr<ContactModel> joints_;
+  std::vector<Contact> no_hand_;
+  std::vector<BodyContact> nothing_;
+  std::vector<Grip> no_grips_;
+};
+
 std::vector<const ContactModelEntry*> in_their_places() {
   std::vector<const ContactModelEntry*> models{MRHI_CONTACT_MODELS(MRHI_ADDRESS)};
   std::sort(models.begin(), models.end(), [](const auto* a, const auto* b) {
@@ -63,6 +91,14 @@ const ContactModelEntry& entry_of(ContactModelKind kind) {
 const std::vector<const ContactModelEntry*>& contact_models() {
   static const std::vector<const ContactModelEntry*> models = in_their_places();
   return models;
+}
+
+std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
+                                                 SimulationState& state, std::vector<Event>& events) {
+  auto joints = std::make_unique<JointedModel>(configuration.contact, scene, state, events);
+  if (configuration.contact_model == ContactModelKind::implicit) return joints;
+  const ContactModelEntry& model = entry_of(configuration.contact_model);
+  return std::make_unique<WithJoints>(model.make(configuration.contact), model.of_objects, std::move(joints));
 }
 
 std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration) {

@@ -7,9 +7,18 @@
 namespace mrhi {
 
 void ImplicitModel::respond(ContactStep& step) {
+  begin_touches(step);
+  islands_.build(step);
+  strike(step);
+  press(step);
+}
+
+void ImplicitModel::begin_touches(ContactStep& step) const {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
-  islands_.build(step);
+}
+
+void ImplicitModel::strike(ContactStep& step) {
   const auto springs = [&](const Island& island) {
     one_.begin(step, island, configuration_);
     Newton<BodyProblem>(one_).solve();
@@ -17,6 +26,9 @@ void ImplicitModel::respond(ContactStep& step) {
   };
   impacts_.resolve(step, islands_,
                    configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none, springs);
+}
+
+void ImplicitModel::press(ContactStep& step) {
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();

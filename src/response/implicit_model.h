@@ -16,15 +16,23 @@ class ImplicitModel : public ContactModel {
   explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
+ protected:
+  // The parts of respond(), in their order; islands are built between the first two.
+  void begin_touches(ContactStep& step) const;
+  void strike(ContactStep& step);
+  void press(ContactStep& step);
+
  private:
   template <typename Problem>
   void solve(ContactStep& step, const Island& island, Problem& problem) const;
 
-  const ContactConfiguration configuration_;
   ImpactSolver impacts_;
-  Islands islands_;
   BodyProblem one_;
   IslandProblem several_;
+
+ protected:
+  const ContactConfiguration configuration_;
+  Islands islands_;
 };
 
 }  // namespace mrhi

@@ -185,6 +185,11 @@ void IslandProblem::evaluate(bool renew_limits) {
 }
 
 void IslandProblem::factorise() {
+  assemble();
+  system_.factorise();
+}
+
+void IslandProblem::assemble() {
   system_.clear();
   for (int i = 0; i < static_cast<int>(masses_.size()); ++i) {
     const Mass& mass = masses_[static_cast<std::size_t>(i)];
@@ -194,7 +199,16 @@ void IslandProblem::factorise() {
   for (const IslandContact& contact : contacts_) {
     if (contact.response.across > 0.0 || contact.response.along > 0.0) add_slope(contact);
   }
-  system_.factorise();
+}
+
+void IslandProblem::start_from(const Eigen::VectorXd& start, const Eigen::VectorXd& free) {
+  start_ = start;
+  free_ = free;
+}
+
+void IslandProblem::hessian(Eigen::MatrixXd& result) {
+  assemble();
+  system_.to_dense(result);
 }
 
 void IslandProblem::add_slope(const IslandContact& contact) {
@@ -316,6 +330,10 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) 
     state.linear_momentum -= gradient_.segment<3>(row);
     state.angular_momentum -= gradient_.segment<3>(row + 3);
   }
+  settle_touches(step, island);
+}
+
+void IslandProblem::settle_touches(ContactStep& step, const Island& island) {
   auto contact = contacts_.begin();
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {

@@ -42,6 +42,17 @@ class IslandProblem {
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 
+  // For bodies whose velocities depend on fewer unknowns (linkage_problem.h).
+  /// Starts from these velocities in place of the bodies' own; `free` is what is reached without contact.
+  void start_from(const Eigen::VectorXd& start, const Eigen::VectorXd& free);
+  void set_velocity(const Eigen::VectorXd& velocity) { velocity_ = velocity; }
+  const Eigen::VectorXd& free_velocity() const { return free_; }
+  /// Impulse that is missing at the last velocity evaluated, and its slope there.
+  const Eigen::VectorXd& gradient() const { return gradient_; }
+  void hessian(Eigen::MatrixXd& result);
+  /// Gives the contacts what they have become.
+  void settle_touches(ContactStep& step, const Island& island);
+
   /// Gives the contacts what they have become, and the bodies their momenta at the step's end: what the
   /// forces make of them where these and the velocity `agree`, so that none is lost between bodies. What was
   /// cut short keeps momentum too, and gains no energy.
@@ -71,6 +82,7 @@ class IslandProblem {
   Eigen::VectorXd common_motion(const Eigen::VectorXd& momenta, const std::vector<Vector3>& places) const;
   void make_passive(const ContactStep& step, const Island& island);
   void add_slope(const IslandContact& contact);
+  void assemble();
   static bool stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits);
 
   std::vector<IslandContact> contacts_;

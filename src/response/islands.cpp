@@ -1,6 +1,8 @@
 #include "islands.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -73,6 +75,10 @@ void Islands::link_bodies(const ContactStep& step) {
     bodies_.push_back({contact.key.a, contact.key.a, 0, 0});
     unite(contact.key.a, contact.key.b);
   }
+  gather();
+}
+
+void Islands::gather() {
   for (IslandBody& body : bodies_) body.root = root_of(body.root);
   for (Link& link : links_) link.root = root_of(link.root);
   // Of each body the entry with what hands do to it is kept, which is the last.
@@ -84,6 +90,30 @@ void Islands::link_bodies(const ContactStep& step) {
   std::sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) {
     return std::tie(x.root, x.index) < std::tie(y.root, y.index);
   });
+}
+
+void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
+  parent_.resize(step.scene.bodies.size());
+  std::iota(parent_.begin(), parent_.end(), 0);
+  for (const Link& link : links_) {
+    const BodyContactKey& key = step.body_contacts[link.index].key;
+    if (!step.scene.bodies[key.a].fixed) unite(key.a, key.b);
+  }
+  for (const std::vector<int>& group : groups) {
+    for (const int body : group) {
+      bodies_.push_back({body, static_cast<std::size_t>(body), 0, 0});
+      unite(group.front(), body);
+    }
+  }
+  gather();
+  divide();
+  apart_.clear();
+  const auto flies = [&](const Island& island) {
+    return std::all_of(island.bodies.begin(), island.bodies.end(),
+                       [&](const IslandBody& body) { return step.scene.bodies[body.body].flies; });
+  };
+  std::copy_if(islands_.begin(), islands_.end(), std::back_inserter(apart_), std::not_fn(flies));
+  islands_.erase(std::remove_if(islands_.begin(), islands_.end(), std::not_fn(flies)), islands_.end());
 }
 
 void Islands::divide() {

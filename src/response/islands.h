@@ -40,17 +40,22 @@ class Islands {
   void build(const ContactStep& step);
   /// By their first body.
   const std::vector<Island>& all() const { return islands_; }
+  /// Bodies of a group, which hang together, belong to one island, touched or not. Islands with any of them
+  /// are then in apart(), and no more in all().
+  void join(const ContactStep& step, const std::vector<std::vector<int>>& groups);
+  const std::vector<Island>& apart() const { return apart_; }
 
  private:
   void add_gripped(const ContactStep& step);
   void link_bodies(const ContactStep& step);
+  void gather();
   void divide();
   int root_of(int body);
   void unite(int a, int b);
 
   std::vector<IslandBody> bodies_;
   std::vector<Link> links_;
-  std::vector<Island> islands_;
+  std::vector<Island> islands_, apart_;
   std::vector<int> parent_;  // by body
 };
 

@@ -39,6 +39,11 @@ void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std
   }
 }
 
+void StepChanges::forget(int body) {
+  const int place = places_[static_cast<std::size_t>(body)];
+  if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
+}
+
 void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
                                 std::vector<BodyState>& bodies) const {
   for (const Struck& struck : struck_) {

@@ -70,6 +70,7 @@ void find_principal_axes(Body& body) {
 }  // namespace
 
 void complete(Body& body) {
+  body.flies = !body.fixed;
   body.inverse_inertia = Matrix3::Zero();
   if (!body.fixed) {
     check_mass(body);

@@ -43,10 +43,15 @@ std::string find_scene_file(const std::string& scene, const std::vector<std::str
 Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
-  scene.bodies = read_bodies(urdf_file, options);
+  read_urdf(urdf_file, options, scene);
   const fs::path settings = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(settings)) apply_scene_yaml(settings.string(), scene);
   if (options.gravity) scene.gravity = *options.gravity;
+  try {
+    arrange_joints(scene);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(urdf_file + ": " + text::one_line(error.what()));
+  }
   check_starts_in_bounds(urdf_file, scene);
   check_overlaps(urdf_file, scene);
   return scene;

@@ -6,6 +6,7 @@
 #include "../text/text.h"
 #include "../text/yaml_element.h"
 #include "body_limits.h"
+#include "joint_yaml.h"
 #include "material_fields.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 
@@ -52,11 +53,12 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   try {
     const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
-    for (const std::string& key : checked_keys(root, {"gravity", "bounds", "materials"})) {
+    for (const std::string& key : checked_keys(root, {"gravity", "bounds", "materials", "joints"})) {
       const Element element = root.at(key);
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);
+      if (key == "joints") read_joint_settings(element, scene);
     }
   } catch (const YamlError& error) {
     throw SceneError(error.what());

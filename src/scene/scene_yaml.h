@@ -6,8 +6,8 @@
 
 namespace mrhi {
 
-/// Sets gravity, bounds and materials of a scene whose bodies are known, from its YAML file. A material keeps
-/// what the file does not name. Throws SceneError.
+/// Sets gravity, bounds, materials and joints of a scene whose bodies and joints are known, from its YAML
+/// file. A material keeps what the file does not name. Throws SceneError.
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
 
 /// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws

@@ -5,6 +5,7 @@
 #include "../text/names.h"
 #include "../text/text.h"
 #include "shape_inertia.h"
+#include "urdf_joints.h"
 #include "urdf_shapes.h"
 
 namespace mrhi {
@@ -117,16 +118,15 @@ bool has_shape(const urdf::Link& link) {
 
 }  // namespace
 
-std::vector<Body> read_bodies(const std::string& urdf_file, const SceneOptions& options) {
+void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene) {
   const UrdfDocument document = parse_urdf_file(urdf_file);
   BodyReader reader(urdf_file, options);
-  std::vector<Body> bodies;
   for (const PlacedLink& placed : place_links(urdf_file, document)) {
-    if (!placed.fixed || has_shape(*placed.link)) bodies.push_back(reader.read(placed));
+    if (!placed.fixed || has_shape(*placed.link)) scene.bodies.push_back(reader.read(placed));
   }
-  if (bodies.empty())
+  if (scene.bodies.empty())
     throw SceneError(urdf_file + ": no bodies; allowed: at least one link joined to the root");
-  return bodies;
+  scene.joints = read_joints(urdf_file, document, scene);
 }
 
 Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options) {
@@ -144,6 +144,10 @@ PlacedLink only_link(const std::string& source, const std::string& xml) {
     for (const PlacedLink& placed : place_links(source, document)) {
       if (has_shape(*placed.link)) found.push_back(placed);
     }
+  }
+  if (found.size() == 1 && found.front().link->parent_joint && moves(*found.front().link->parent_joint)) {
+    throw SceneError(source + ": joint '" + text::one_line(found.front().link->parent_joint->name, 60) +
+                     "' turns or slides; allowed: floating, fixed");
   }
   if (found.size() == 1) return found.front();
   throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +

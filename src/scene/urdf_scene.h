@@ -9,9 +9,9 @@
 
 namespace mrhi {
 
-/// The bodies of a URDF in its order, complete but for their materials, which are the default. Links without
-/// any geometry on fixed joints only place others and are left out. Throws SceneError.
-std::vector<Body> read_bodies(const std::string& urdf_file, const SceneOptions& options);
+/// The bodies of a URDF in its order, complete but for their materials, which are the default, and its
+/// joints. Links without any geometry on fixed joints only place others and are left out. Throws SceneError.
+void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene);
 
 /// One of them; `source` names it in messages.
 Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options);

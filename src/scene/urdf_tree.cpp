@@ -54,23 +54,25 @@ class Tree {
   void check_joint(const urdf::Joint& joint) const {
     const std::string what = "joint '" + joint.name + "' ";
     const bool fixed = joint.type == urdf::Joint::FIXED;
-    if (!fixed && joint.type != urdf::Joint::FLOATING) {
-      fail(what + "is " + type_name(joint) + "; allowed: floating (a free body), fixed (a fixture)");
+    if (!fixed && joint.type != urdf::Joint::FLOATING && !moves(joint)) {
+      fail(what + "is " + type_name(joint) +
+           "; allowed: floating (a free body), fixed (a fixture), revolute, continuous, prismatic");
     }
+    if (joint.mimic) fail(what + "mimics '" + joint.mimic->joint_name + "'; allowed: joints without mimic");
     if (model_.getLink(joint.child_link_name)->parent_joint.get() != &joint) {
       fail(what + "is a second parent of link '" + joint.child_link_name +
            "'; allowed: one joint to each link");
     }
-    if (joint.parent_link_name == root_.name) return;
+    if (joint.parent_link_name == root_.name || moves(joint)) return;
     if (!fixed) {
       fail(what + "floats on '" + joint.parent_link_name + "'; allowed: floating joints on the root '" +
            root_.name + "'");
     }
     const urdf::JointSharedPtr above = model_.getLink(joint.parent_link_name)->parent_joint;
-    if (above && above->type == urdf::Joint::FLOATING) {
-      fail(
-          what + "is fixed to the free body '" + joint.parent_link_name +
-          "'; allowed: fixed joints on the root or on fixtures (a body may have several collision elements)");
+    if (above && above->type != urdf::Joint::FIXED) {
+      fail(what + "is fixed to " + (moves(*above) ? "the body '" : "the free body '") +
+           joint.parent_link_name + (moves(*above) ? "', which moves" : "'") +
+           "; allowed: fixed joints on the root or on fixtures (a body may have several collision elements)");
     }
   }
 
@@ -84,6 +86,11 @@ class Tree {
 };
 
 }  // namespace
+
+bool moves(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
 
 Pose to_pose(const urdf::Pose& pose) {
   const urdf::Rotation& q = pose.rotation;

@@ -10,11 +10,14 @@ namespace mrhi {
 
 Pose to_pose(const urdf::Pose& pose);
 
+/// Whether it turns or slides.
+bool moves(const urdf::Joint& joint);
+
 /// A link below the root and where it is.
 struct PlacedLink {
   urdf::LinkConstSharedPtr link;
-  bool fixed;     ///< on fixed joints all the way, else on one floating joint to the root
-  Pose in_world;  ///< the link's frame; the root is the world
+  bool fixed;     ///< on fixed joints all the way, else it is a body that moves
+  Pose in_world;  ///< the link's frame, all joints at 0; the root is the world
 };
 
 /// All links but the root, in the URDF's order. Throws SceneError for joints that make no scene.

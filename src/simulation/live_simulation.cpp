@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../scene/remove_body.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
@@ -67,6 +68,14 @@ std::size_t known_body(const Scene& scene, const std::string& name, bool free_on
                               "'; allowed: " + names_of(scene, free_only));
 }
 
+void check_no_joint(const Scene& scene, int body, const std::string& what) {
+  for (const Joint& joint : scene.joints) {
+    if (joint.child != body && joint.parent != body) continue;
+    throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(body)].name + "' cannot " + what +
+                                ": joint '" + joint.name + "' holds it; allowed: objects without joints");
+  }
+}
+
 bool same_filter(const Configuration& a, const Configuration& b) {
   const std::string prefix = "filter/";
   for (const std::string& name : parameter_names()) {
@@ -111,7 +120,8 @@ void LiveSimulation::add(const Body& body) {
 void LiveSimulation::remove(const std::string& name) {
   Scene scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, false);
-  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(body));
+  check_no_joint(scene, static_cast<int>(body), "be removed");
+  remove_body(body, scene);
   go_on_with(scene, simulation_->configuration());
 }
 
@@ -123,6 +133,7 @@ std::vector<Event> LiveSimulation::events_if_removed(const std::string& name) co
 void LiveSimulation::place(const std::string& name, const Pose& pose) {
   const Scene& scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, true);
+  check_no_joint(scene, static_cast<int>(body), "be placed");
   check_in_bounds(name, pose.position, scene.bounds);
   SimulationState state = simulation_->state();
   BodyState at_rest;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "../joints/joint_law.h"
 #include "../scene/material_fields.h"
 
 namespace mrhi {
@@ -76,6 +77,16 @@ std::vector<Interaction> moved(const Places& places, std::size_t bodies_after, c
   return interactions;
 }
 
+/// By their names.
+void carry_joints(const SimulationState& state, const Scene& before, const Scene& after,
+                  SimulationState& next) {
+  next.joints.clear();
+  for (const Joint& joint : after.joints) {
+    const std::optional<int> was = find_joint(before, joint.name);
+    next.joints.push_back(was ? state.joints[static_cast<std::size_t>(*was)] : start_state(joint));
+  }
+}
+
 }  // namespace
 
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after) {
@@ -91,6 +102,7 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
     next.bodies[static_cast<std::size_t>(*places[b])] = state.bodies[b];
     was_there[static_cast<std::size_t>(*places[b])] = 1;
   }
+  carry_joints(state, before, after, next);
   move(places, next.contacts);
   move(places, next.body_contacts);
   move(places, next.grips);

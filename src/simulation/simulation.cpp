@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../joints/joint_law.h"
+#include "../response/joint_response.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "frame_report.h"
@@ -14,8 +16,13 @@
 namespace mrhi {
 namespace {
 
+/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more. Joints
+/// take the steps that they are given.
+constexpr Nanoseconds kQuietFrame = 20'000'000;
+
 Scene completed(Scene scene) {
   for (Body& body : scene.bodies) complete(body);
+  arrange_joints(scene);
   return scene;
 }
 
@@ -44,7 +51,9 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       configuration(configuration_in),
       gravity(configuration.gravity.value_or(scene.gravity)),
       step_length(checked_step(configuration.step)),
-      model(make_contact_model(configuration)),
+      model(scene.joints.empty() ? make_contact_model(configuration)
+                                 : make_jointed_model(configuration, scene, state, result.events)),
+      quiet_frame(scene.joints.empty() ? kQuietFrame : 0),
       geometry(scene),
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
@@ -58,6 +67,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
 void Simulation::Impl::reset() {
   state = SimulationState();
   for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
+  for (const Joint& joint : scene.joints) state.joints.push_back(start_state(joint));
   state.asleep.assign(scene.bodies.size(), 0);
   state.hands.resize(kMaxHands);
   state.offsets.resize(kMaxHands);
@@ -187,6 +197,10 @@ Nanoseconds Simulation::time() const {
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
   impl_->state.asleep.resize(impl_->scene.bodies.size(), 0);
+  if (state.joints.size() != impl_->scene.joints.size()) {
+    impl_->state.joints.clear();
+    for (const Joint& joint : impl_->scene.joints) impl_->state.joints.push_back(start_state(joint));
+  }
   impl_->steps = impl_->steps_done = 0;
 }
 void Simulation::go_on_from(const Simulation& other) {

@@ -10,8 +10,6 @@ namespace {
 /// A step may be this much longer than asked for, so that a frame of one step does not become two by
 /// rounding.
 constexpr Nanoseconds kStepSlack = 1000;
-/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more.
-constexpr Nanoseconds kQuietFrame = 20'000'000;
 /// A longer silence is not simulated: bodies wait for the next frame.
 constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 
@@ -50,7 +48,7 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
 
 int Simulation::Impl::steps_needed(Nanoseconds frame) {
   if (frame <= 0) return 0;
-  if (frame <= kQuietFrame) {
+  if (frame <= quiet_frame) {
     neighbours.begin_step(state.bodies, to_seconds(frame));
     if (quiet(to_seconds(frame))) return 1;
   }

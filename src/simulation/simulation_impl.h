@@ -48,6 +48,7 @@ struct Simulation::Impl {
   const Vector3 gravity;
   const Nanoseconds step_length;
   const std::unique_ptr<ContactModel> model;
+  const Nanoseconds quiet_frame;  // the longest that may be a single step
   const SceneGeometry geometry;
   Neighbours neighbours;
   ContactFinder finder;

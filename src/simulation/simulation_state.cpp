@@ -28,6 +28,16 @@ class Fnv1a {
   std::uint64_t hash_ = 14695981039346656037ull;
 };
 
+void add_joint(const JointState& joint, Fnv1a& hash) {
+  hash.add(joint.position);
+  hash.add(joint.anchor);
+  hash.add(joint.pushed);
+  hash.add(joint.still);
+  hash.add(joint.detent);
+  hash.add(joint.at_limit);
+  hash.add(joint.latched);
+}
+
 void add_hand(const Hand& hand, Fnv1a& hash) {
   hash.add(hand.id);
   hash.add(hand.side);
@@ -178,6 +188,7 @@ std::uint64_t hash(const SimulationState& state) {
     hash.add(body.pushed.angular);
     hash.add(body.appeared);
   }
+  for (const JointState& joint : state.joints) add_joint(joint, hash);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     add_track(state.hands[slot], state.time, hash);
     if (state.hands[slot].active) add_offset(state.offsets[slot], state.time, hash);

@@ -1,4 +1,5 @@
 #include "../integration/free_flight.h"
+#include "../joints/put_back.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
 
@@ -59,7 +60,7 @@ void Simulation::Impl::keep_in_bounds() {
         (p.array() <= scene.bounds.max.array()).all())
       continue;
     if (!sound) result.not_finite.push_back("object '" + body.name + "'");
-    place(b, start_state(body), state);
+    put_back(b, scene, state);
     result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
   }
 }

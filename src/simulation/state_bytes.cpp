@@ -13,7 +13,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000001ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000002ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -226,11 +226,15 @@ class Parts {
     one_of(level, InteractionLevel::grasp);
     all(agreed, shown_in);
   }
+  void one(JointState& part) {
+    auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = part;
+    all(position, anchor, pushed, effort, still, detent, at_limit, latched);
+  }
   void one(SimulationState& part) {
-    auto& [started, time, last_frame, stamps, bodies, asleep, hands, contacts, body_contacts,
+    auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
            sleeping_contacts, offsets, grips, interactions] = part;
-    all(started, time, last_frame, stamps, bodies, asleep, hands, contacts, body_contacts, sleeping_contacts,
-        offsets, grips, interactions);
+    all(started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
+        sleeping_contacts, offsets, grips, interactions);
   }
 
  private:

@@ -51,7 +51,7 @@ TEST(Dictionary, rows_that_are_written_have_a_cell_for_each_column_and_the_schem
   const YAML::Node schema = YAML::LoadFile(folder / "out/schema.json");
   for (const Table& table : tables()) {
     EXPECT_EQ(schema[table.file]["columns"].size(), table.columns.size()) << table.file;
-    if (table.file == "hashes.csv") continue;  // of bags
+    if (table.file == "hashes.csv" || table.file == "joints.csv") continue;  // of bags; of joints
     const auto lines = test::lines_of(folder / ("out/" + table.file));
     ASSERT_GT(lines.size(), 1u) << table.file;
     for (const std::string& line : {lines.front(), lines.back()})

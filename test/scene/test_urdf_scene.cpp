@@ -193,8 +193,8 @@ TEST(UrdfScene, RefusesSizesThatAreNotPositive) {
 TEST(UrdfScene, RefusesJointsThatMakeNoScene) {
   const std::string content = std::string(kInertial) + kBox;
   const std::string two = link("a", content) + link("b", content) + joint("floating", "world", "a");
-  test::expect_words(error(robot(link("a", content) + joint("continuous", "world", "a"))),
-                     {"'world_a'", "continuous", "floating", "fixed"});
+  test::expect_words(error(robot(link("a", content) + joint("planar", "world", "a"))),
+                     {"'world_a'", "planar", "floating", "fixed", "revolute"});
   test::expect_words(error(robot(two + joint("floating", "a", "b"))), {"'a_b'", "floats on 'a'", "'world'"});
   test::expect_words(error(robot(two + joint("fixed", "a", "b"))), {"'a_b'", "free body 'a'", "collision"});
   test::expect_words(error(robot(two)), {"root"});

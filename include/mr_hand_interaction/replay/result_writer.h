@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "mr_hand_interaction/simulation.h"
@@ -35,7 +36,8 @@ class CsvFile {
   bool row_begun_ = false;
 };
 
-/// The tables that replay writes, a frame at a time: objects.csv, contacts.csv, hands.csv and events.csv.
+/// The tables that replay writes, a frame at a time: objects.csv, contacts.csv, hands.csv, events.csv and, of
+/// a scene with joints, joints.csv.
 class ResultWriter {
  public:
   /// Makes the folder if need be. Throws std::runtime_error naming what cannot be written.
@@ -48,6 +50,7 @@ class ResultWriter {
 
  private:
   void write_objects(double time, const SimulationState& state);
+  void write_joints(double time, const SimulationState& state);
   void write_contacts(double time, const FrameResult& result, const SimulationState& state);
   void write_hand(double time, const Hand& hand, const RenderedHand* rendered);
   void write_events(const FrameResult& result);
@@ -56,6 +59,7 @@ class ResultWriter {
   bool begun_ = false;
   Nanoseconds first_stamp_ = 0;
   CsvFile objects_, contacts_, hands_, events_;
+  std::optional<CsvFile> joints_;  // of a scene that has any
 };
 
 }  // namespace mrhi

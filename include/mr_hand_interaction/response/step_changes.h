@@ -26,6 +26,9 @@ class StepChanges {
   /// Impacts whose impulses `bodies` have just been given.
   void note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies);
 
+  /// A body that something else has moved on through the step, impacts and all.
+  void forget(int body);
+
   /// Call when free flight has moved the bodies by `step` seconds: takes back what the impacts' changes of
   /// velocity did before their times, so that an object is not pushed ahead of the hand. What springs did
   /// about the impacts counts with them: an object that is held and struck stays where it is held.

@@ -6,6 +6,7 @@
 
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/body.h"
+#include "mr_hand_interaction/scene/joint.h"
 
 namespace mrhi {
 
@@ -19,6 +20,7 @@ struct Bounds {
 struct Scene {
   std::string name;
   std::vector<Body> bodies;           ///< free bodies and fixtures, in the URDF's order
+  std::vector<Joint> joints;          ///< see arrange_joints()
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   Bounds bounds;                      ///< a free body whose centre leaves is put back where it started
 };

@@ -29,8 +29,9 @@ struct SceneOptions {
 std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories);
 
 /// Reads FILE.urdf, and FILE.yaml beside it where present: links on `floating` joints are free bodies (the
-/// joint's origin is the link's pose), links on `fixed` joints to `world` are fixtures. Throws SceneError;
-/// also for bodies that begin inside each other.
+/// joint's origin is the link's pose), links on `fixed` joints to `world` are fixtures, links on `revolute`,
+/// `continuous` and `prismatic` joints hang on what their joints join them to. Throws SceneError; also for
+/// bodies that begin inside each other, unless a joint joins them.
 Scene load_scene(const std::string& urdf_file, const SceneOptions& options);
 
 }  // namespace mrhi

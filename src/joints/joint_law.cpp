@@ -1,0 +1,168 @@
+#include "joint_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mr_hand_interaction/simulation_state.h"
+
+namespace mrhi {
+namespace {
+
+/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step:
+/// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
+constexpr double kStopOverInertia = 1e4;
+
+double detent_stiffness(const Detents& detents) {
+  double least = detents.at.back() - detents.at.front();
+  for (std::size_t i = 1; i < detents.at.size(); ++i)
+    least = std::min(least, detents.at[i] - detents.at[i - 1]);
+  return detents.force / (0.5 * least);
+}
+
+double place_of(const Detents& detents, std::size_t index) {
+  return detents.at[std::min(index, detents.at.size() - 1)];
+}
+
+/// At a limit is what is so near it; what has been there has left when this far off [rad, m].
+constexpr double kAtLimit = 1e-5, kOffLimit = 1e-3;
+
+std::size_t nearest(const std::vector<double>& places, double to) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (std::abs(places[i] - to) < std::abs(places[best] - to)) best = i;
+  }
+  return best;
+}
+
+bool catches(const Latch& latch, double position) {
+  return std::abs(position - latch.at) <= latch.reach;
+}
+
+}  // namespace
+
+JointState start_state(const Joint& joint) {
+  JointState state;
+  state.position = state.anchor = joint.start;
+  if (joint.detents) state.detent = static_cast<std::uint8_t>(nearest(joint.detents->at, joint.start));
+  state.latched = joint.latch && catches(*joint.latch, joint.start);
+  if (joint.upper - joint.start <= kAtLimit) state.at_limit = 1;
+  if (joint.start - joint.lower <= kAtLimit) state.at_limit = -1;
+  return state;
+}
+
+double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
+  const Joint& joint = scene.joints[index];
+  const auto motion = [&](int body) {
+    const auto b = static_cast<std::size_t>(body);
+    return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[b], bodies[b]);
+  };
+  const auto pose = [&](int body) {
+    return body == Joint::kWorld ? Pose() : bodies[static_cast<std::size_t>(body)].pose;
+  };
+  const Pose frame = pose(joint.parent) * joint.in_parent, child = pose(joint.child);
+  const Vector3 axis = frame.orientation * joint.axis;
+  const Twist parent = motion(joint.parent), own = motion(joint.child);
+  if (joint.kind == JointKind::turning) return axis.dot(own.angular - parent.angular);
+  const Vector3 carried = parent.linear + parent.angular.cross(child.position - pose(joint.parent).position);
+  return axis.dot(own.linear - carried);
+}
+
+JointChange note_place(const Joint& joint, JointState& state) {
+  JointChange change;
+  const double below = joint.upper - state.position, above = state.position - joint.lower;
+  const std::int8_t at = above <= kAtLimit ? -1 : below <= kAtLimit ? 1 : 0;
+  change.reached_limit = at != 0 && at != state.at_limit;
+  if (at != 0 || std::min(above, below) > kOffLimit) state.at_limit = at;
+  if (joint.detents) {
+    const auto now = static_cast<std::uint8_t>(nearest(joint.detents->at, state.position));
+    change.entered_detent = now != state.detent;
+    state.detent = now;
+  }
+  if (!joint.latch) return change;
+  const bool latched = catches(*joint.latch, state.position);
+  change.opened_latch = state.latched && !latched;
+  state.latched = latched;
+  return change;
+}
+
+double JointLaw::Hold::force(double way) const {
+  return std::clamp(wanted(way), -most, most);
+}
+double JointLaw::Hold::slope(double way) const {
+  return std::abs(wanted(way)) < most ? stiffness : 0.0;
+}
+double JointLaw::Hold::energy(double way) const {
+  if (stiffness <= 0.0) return 0.0;
+  const double size = std::abs(wanted(way));
+  return (size < most ? 0.5 * size * size : most * (size - 0.5 * most)) / stiffness;
+}
+double JointLaw::Stop::over(double way) const {
+  return std::max(0.0, sign * way - room);
+}
+
+void JointLaw::begin(const Joint& joint, const JointState& state, double velocity, double inertia,
+                     double step) {
+  step_ = step;
+  constant_ = 0.0;
+  linear_ = joint.damping;
+  const auto spring = [&](double stiffness, double to) {
+    constant_ += stiffness * (to - state.position);
+    linear_ += stiffness * step;
+  };
+  if (joint.spring) spring(joint.spring->stiffness, joint.spring->rest);
+  if (joint.detents) spring(detent_stiffness(*joint.detents), place_of(*joint.detents, state.detent));
+  stop_ = kStopOverInertia * inertia / (step * step);
+  friction_ = latch_ = {};
+  if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
+  if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
+  const auto stop = [&](double room, double sign) {
+    // One that is met within this step answers by Newton's law.
+    const double speed = sign * velocity;
+    if (joint.restitution > 0.0 && room > 0.0 && step * speed > room)
+      room = -joint.restitution * step * speed;
+    return Stop{room, sign};
+  };
+  lower_ = stop(state.position - joint.lower, -1.0);
+  upper_ = stop(joint.upper - state.position, 1.0);
+}
+
+bool JointLaw::acts(double speed) const {
+  constexpr double kNear = 1e-6;
+  const double near = 2.0 * step_ * speed + kNear;
+  return linear_ > 0.0 || constant_ != 0.0 || friction_.stiffness > 0.0 || latch_.stiffness > 0.0 ||
+         lower_.room < near || upper_.room < near;
+}
+
+double JointLaw::force(double velocity) const {
+  const double way = step_ * velocity;
+  return constant_ - linear_ * velocity + friction_.force(way) + latch_.force(way) +
+         stop_ * (lower_.over(way) - upper_.over(way));
+}
+
+double JointLaw::slope(double velocity) const {
+  const double way = step_ * velocity;
+  const double stops = (lower_.over(way) > 0.0 ? stop_ : 0.0) + (upper_.over(way) > 0.0 ? stop_ : 0.0);
+  return linear_ + step_ * (friction_.slope(way) + latch_.slope(way) + stops);
+}
+
+double JointLaw::energy(double velocity) const {
+  const double way = step_ * velocity, lower = lower_.over(way), upper = upper_.over(way);
+  const double held =
+      friction_.energy(way) + latch_.energy(way) + 0.5 * stop_ * (lower * lower + upper * upper);
+  return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
+}
+
+double JointLaw::size(double velocity) const {
+  const double way = step_ * velocity;
+  return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(way)) +
+         std::abs(latch_.force(way)) + stop_ * (lower_.over(way) + upper_.over(way));
+}
+
+void JointLaw::settle(double velocity, JointState& state) const {
+  const double way = step_ * velocity;
+  state.effort = force(velocity);
+  if (friction_.stiffness > 0.0)
+    state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
+}
+
+}  // namespace mrhi

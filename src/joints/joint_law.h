@@ -1,0 +1,61 @@
+#pragma once
+
+#include "mr_hand_interaction/joint_state.h"
+#include "mr_hand_interaction/scene/joint.h"
+
+namespace mrhi {
+
+/// What a joint's own forces give, as functions of its velocity at the step's end: spring, detents, latch,
+/// damping, friction, limits. Each of them falls as the velocity grows, so that the step's problem stays
+/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as
+/// the joint's inertia within a step, the last two up to their force: what they hold does not creep.
+class JointLaw {
+ public:
+  /// `velocity`: at the step's start; `inertia`: of the joint alone, its entry of the mass matrix.
+  void begin(const Joint& joint, const JointState& state, double velocity, double inertia, double step);
+
+  /// Whether it gives anything up to this speed either way.
+  bool acts(double speed) const;
+
+  double force(double velocity) const;   ///< [N m]
+  double slope(double velocity) const;   ///< -d force / d velocity, >= 0
+  double energy(double velocity) const;  ///< whose slope is -force [W]
+  /// What limits and holds bear, and springs draw: the size of what acts [N m].
+  double size(double velocity) const;
+
+  /// What lasts of it once the joint moves at `velocity` to the step's end.
+  void settle(double velocity, JointState& state) const;
+
+ private:
+  /// A spring that bears at most `most`, whose end moves with the joint: stiffness * (stretch - step *
+  /// velocity).
+  struct Hold {
+    double stiffness = 0.0, stretch = 0.0, most = 0.0;
+    double wanted(double way) const { return stiffness * (stretch - way); }
+    double force(double way) const;
+    double slope(double way) const;
+    double energy(double way) const;
+  };
+  /// The joint may not go further than `room`.
+  struct Stop {
+    double room = Joint::kUnlimited, sign = 1.0;
+    double over(double way) const;
+  };
+
+  double constant_ = 0.0, linear_ = 0.0;  // force = constant - linear * velocity, of springs and damping
+  Hold friction_, latch_;
+  Stop lower_, upper_;
+  double stop_ = 0.0;  // stiffness of what holds
+  double step_ = 0.0;
+};
+
+/// What a joint has come to in a step.
+struct JointChange {
+  bool reached_limit = false, entered_detent = false, opened_latch = false;
+};
+JointChange note_place(const Joint& joint, JointState& state);
+
+/// Where a joint begins, at rest.
+JointState start_state(const Joint& joint);
+
+}  // namespace mrhi

@@ -1,0 +1,202 @@
+#include "linkage.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace mrhi {
+namespace {
+
+int place_of(const Linkage& linkage, int body) {
+  const auto found = std::find_if(linkage.bodies.begin(), linkage.bodies.end(),
+                                  [body](const LinkageBody& link) { return link.body == body; });
+  return found == linkage.bodies.end() ? LinkageBody::kNone
+                                       : static_cast<int>(found - linkage.bodies.begin());
+}
+
+/// The linkage that the body is of; a new one for one that is free.
+Linkage& linkage_of(const Scene& scene, int body, std::vector<Linkage>& linkages) {
+  for (Linkage& linkage : linkages) {
+    if (body >= 0 && place_of(linkage, body) != LinkageBody::kNone) return linkage;
+  }
+  linkages.emplace_back();
+  if (body >= 0 && !scene.bodies[static_cast<std::size_t>(body)].fixed)
+    linkages.back().bodies.push_back({body});
+  return linkages.back();
+}
+
+}  // namespace
+
+std::vector<Linkage> linkages_of(const Scene& scene) {
+  std::vector<Linkage> linkages;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const Joint& joint = scene.joints[j];
+    const bool alone =
+        joint.parent == Joint::kWorld || scene.bodies[static_cast<std::size_t>(joint.parent)].fixed;
+    Linkage& linkage = linkage_of(scene, alone ? LinkageBody::kNone : joint.parent, linkages);
+    LinkageBody link{joint.child, static_cast<int>(j)};
+    link.parent = alone ? LinkageBody::kNone : place_of(linkage, joint.parent);
+    link.fixture = alone ? joint.parent : LinkageBody::kNone;
+    linkage.bodies.push_back(link);
+  }
+  return linkages;
+}
+
+LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
+    : scene_(scene),
+      linkage_(linkage),
+      placed_(linkage.bodies.size()),
+      mass_(Matrix::Zero(linkage.unknowns(), linkage.unknowns())),
+      factors_(linkage.unknowns()),
+      carried_(linkage.bodies.size()) {
+  for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
+}
+
+void LinkageMotion::place(const Pose& root, const Vector& positions) {
+  for (int i = 0; i < size(); ++i) {
+    Placed& placed = placed_[static_cast<std::size_t>(i)];
+    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    if (link.joint == LinkageBody::kNone) {
+      placed.pose = root;
+    } else {
+      const Joint& on = joint(i);
+      const Pose parent = link.parent != LinkageBody::kNone ? at(link.parent).pose
+                          : link.fixture != LinkageBody::kNone
+                              ? scene_.bodies[static_cast<std::size_t>(link.fixture)].start
+                              : Pose();
+      const Pose frame = parent * on.in_parent;
+      const double position = positions[i - (linkage_.floats() ? 1 : 0)];
+      placed.axis = frame.orientation * on.axis;
+      placed.origin = frame.position;
+      placed.pose = frame * joint_motion(on, position) * on.in_child.inverse();
+      placed.pose.orientation.normalize();
+    }
+    const Matrix3 rotation = placed.pose.orientation.toRotationMatrix();
+    placed.inertia = rotation * body(i).inertia * rotation.transpose();
+  }
+}
+
+void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
+                         Eigen::Ref<Vector> momenta) const {
+  const Vector3& centre = at(body).pose.position;
+  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
+    if (linkage_.bodies[static_cast<std::size_t>(i)].joint == LinkageBody::kNone) {
+      momenta.segment<3>(0) += impulse;
+      momenta.segment<3>(3) += moment + (centre - at(i).pose.position).cross(impulse);
+    } else if (joint(i).kind == JointKind::sliding) {
+      momenta[linkage_.column(i)] += at(i).axis.dot(impulse);
+    } else {
+      momenta[linkage_.column(i)] += at(i).axis.dot(moment + (centre - at(i).origin).cross(impulse));
+    }
+  }
+}
+
+void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
+  const Vector3& centre = at(body).pose.position;
+  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
+    if (linkage_.bodies[static_cast<std::size_t>(i)].joint == LinkageBody::kNone) {
+      rows.block<3, 3>(0, 0).setIdentity();
+      rows.block<3, 3>(0, 3) = -cross_matrix(centre - at(i).pose.position);
+      rows.block<3, 3>(3, 3).setIdentity();
+    } else if (joint(i).kind == JointKind::sliding) {
+      rows.block<3, 1>(0, linkage_.column(i)) = at(i).axis;
+    } else {
+      rows.block<3, 1>(0, linkage_.column(i)) = at(i).axis.cross(centre - at(i).origin);
+      rows.block<3, 1>(3, linkage_.column(i)) = at(i).axis;
+    }
+  }
+}
+
+/// Column by column: the momenta that go with the motion of each unknown alone.
+void LinkageMotion::weigh() {
+  mass_.setZero();
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 + 256> rows(6, mass_.cols());
+  for (int b = 0; b < size(); ++b) {
+    rows.setZero();
+    add_jacobian(b, rows);
+    const double mass = body(b).mass;
+    const Matrix3& inertia = at(b).inertia;
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      const Vector3 linear = mass * rows.block<3, 1>(0, j), angular = inertia * rows.block<3, 1>(3, j);
+      for (Eigen::Index i = j; i < rows.cols(); ++i)
+        mass_(i, j) += rows.block<3, 1>(0, i).dot(linear) + rows.block<3, 1>(3, i).dot(angular);
+    }
+  }
+  for (Eigen::Index j = 0; j < mass_.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) mass_(i, j) = mass_(j, i);
+  }
+  factors_.compute(mass_);
+}
+
+void LinkageMotion::move(const Vector& velocity) {
+  for (int i = 0; i < size(); ++i) {
+    Placed& placed = placed_[static_cast<std::size_t>(i)];
+    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    if (link.joint == LinkageBody::kNone) {
+      placed.linear = velocity.segment<3>(0);
+      placed.angular = velocity.segment<3>(3);
+      continue;
+    }
+    placed.linear.setZero(), placed.angular.setZero();
+    if (link.parent != LinkageBody::kNone) {
+      const Placed& parent = at(link.parent);
+      placed.angular = parent.angular;
+      placed.linear = parent.linear + parent.angular.cross(placed.pose.position - parent.pose.position);
+    }
+    const double speed = velocity[linkage_.column(i)];
+    if (joint(i).kind == JointKind::sliding) {
+      placed.linear += speed * placed.axis;
+    } else {
+      placed.angular += speed * placed.axis;
+      placed.linear += speed * placed.axis.cross(placed.pose.position - placed.origin);
+    }
+  }
+}
+
+/// Newton's and Euler's laws of all that a joint carries, along or about the joint: forces that hold it
+/// together drop out. About a point o of the parent, dH/dt = moment - v_o x P.
+void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
+  for (int i = size() - 1; i >= 0; --i) {
+    const auto at_i = static_cast<std::size_t>(i);
+    const Placed& placed = placed_[at_i];
+    const double mass = body(i).mass;
+    const Vector3 momentum = mass * placed.linear;
+    carried_[at_i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
+                      mass * placed.pose.position};
+  }
+  for (int i = size() - 1; i >= 0; --i) {
+    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    const Carried& carried = carried_[static_cast<std::size_t>(i)];
+    if (link.parent != LinkageBody::kNone) {
+      Carried& below = carried_[static_cast<std::size_t>(link.parent)];
+      below.mass += carried.mass;
+      below.momentum += carried.momentum;
+      below.angular_momentum += carried.angular_momentum;
+      below.mass_moment += carried.mass_moment;
+    }
+    if (link.joint == LinkageBody::kNone) continue;
+    const Placed& placed = at(i);
+    Vector3 turning = Vector3::Zero(), velocity = Vector3::Zero();  // of the parent, at the joint
+    if (link.parent != LinkageBody::kNone) {
+      const Placed& parent = at(link.parent);
+      turning = parent.angular;
+      velocity = parent.linear + parent.angular.cross(placed.origin - parent.pose.position);
+    }
+    const Vector3 axis_rate = turning.cross(placed.axis);
+    const int row = linkage_.column(i) - (linkage_.floats() ? 6 : 0);
+    if (joint(i).kind == JointKind::sliding) {
+      rates[row] = axis_rate.dot(carried.momentum) + carried.mass * placed.axis.dot(gravity);
+    } else {
+      const Vector3 about = carried.angular_momentum - placed.origin.cross(carried.momentum);
+      const Vector3 moment = (carried.mass_moment - carried.mass * placed.origin).cross(gravity);
+      rates[row] = axis_rate.dot(about) + placed.axis.dot(moment - velocity.cross(carried.momentum));
+    }
+  }
+}
+
+Vector3 LinkageMotion::centre_of_mass() const {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < size(); ++i) sum += body(i).mass * at(i).pose.position;
+  return sum / total_mass_;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,200 @@
+#include "linkage_flight.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrhi {
+namespace {
+
+/// No joint turns, or falls, by more than this in one part of a step [rad].
+constexpr double kPart = 0.03;
+constexpr double kMostParts = 1000.0;
+/// What falls from rest turns as a pendulum of this length does, at most [m].
+constexpr double kFallLength = 0.1;
+constexpr int kMostRounds = 60;
+/// The stages are found when a round changes them by less than this, of their size.
+constexpr double kFound = 1e-16;
+
+const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
+  return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
+}
+
+Quaternion turned(const Vector3& turn) {
+  const double angle = turn.norm();
+  if (angle == 0.0) return Quaternion::Identity();
+  return Quaternion(Eigen::AngleAxisd(angle, turn / angle));
+}
+
+/// Rate of a turn from its angular velocity, which is in the frame that is not turned (Iserles et al.,
+/// Lie-group methods, Acta Numerica 2000, B.10).
+Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
+  const Vector3 once = turn.cross(spin);
+  return spin - 0.5 * once + (1.0 / 12.0 + turn.squaredNorm() / 720.0) * turn.cross(once);
+}
+
+}  // namespace
+
+LinkageFlight::LinkageFlight(const Scene& scene, const Linkage& linkage)
+    : linkage_(linkage), motion_(scene, linkage), velocity_(linkage.unknowns()) {
+  const auto count = static_cast<Eigen::Index>(linkage.joints());
+  for (Point* point :
+       {&now_, &next_, &guess_, &stages_[0].point, &stages_[0].rate, &stages_[1].point, &stages_[1].rate})
+    *point = {Vector::Zero(count), Vector::Zero(count), Vector3::Zero()};
+}
+
+void LinkageFlight::read(const std::vector<JointState>& joints, const std::vector<BodyState>& bodies) {
+  int joint = 0;
+  for (const LinkageBody& link : linkage_.bodies) {
+    if (link.joint != LinkageBody::kNone)
+      now_.positions[joint++] = joints[static_cast<std::size_t>(link.joint)].position;
+  }
+  now_.turn.setZero();
+  root_ = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose.orientation;
+}
+
+void LinkageFlight::place(const std::vector<JointState>& joints, std::vector<BodyState>& bodies) {
+  read(joints, bodies);
+  motion_.place(bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose, now_.positions);
+  for (int i = 0; i < motion_.size(); ++i)
+    bodies[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].body)].pose =
+        motion_.at(i).pose;
+}
+
+/// Of the unknowns, in the frame of the centre of mass if it floats.
+void LinkageFlight::find_velocity(const Point& point) {
+  motion_.place({Vector3::Zero(), turned(point.turn) * root_}, point.positions);
+  motion_.weigh();
+  velocity_.tail(point.momenta.size()) = point.momenta;
+  if (linkage_.floats()) velocity_.head<6>() << Vector3::Zero(), angular_momentum_;
+  motion_.solve(velocity_);
+  motion_.move(velocity_);
+}
+
+void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point& rate) {
+  find_velocity(point);
+  motion_.find_rates(gravity, rate.momenta);
+  rate.positions = velocity_.tail(point.momenta.size());
+  if (linkage_.floats()) rate.turn = turn_rate(point.turn, velocity_.segment<3>(3));
+}
+
+double LinkageFlight::fastest() const {
+  double rate = 0.0;
+  for (int i = 0; i < motion_.size(); ++i) rate = std::max(rate, motion_.at(i).angular.norm());
+  return rate;
+}
+
+void LinkageFlight::go(const Point& from, double a, const Point& first, double b, const Point& second,
+                       Point& to) {
+  to.positions = from.positions + (a * first.positions + b * second.positions);
+  to.momenta = from.momenta + (a * first.momenta + b * second.momenta);
+  to.turn = from.turn + (a * first.turn + b * second.turn);
+}
+
+/// Largest difference, each against its own size.
+double LinkageFlight::distance(const Point& a, const Point& b) {
+  const auto of = [](const auto& x, const auto& y) {
+    return (x - y).template lpNorm<Eigen::Infinity>() / (x.template lpNorm<Eigen::Infinity>() + 1e-300);
+  };
+  return std::max({of(a.positions, b.positions), of(a.momenta, b.momenta), of(a.turn, b.turn)});
+}
+
+void LinkageFlight::advance(const Vector3& gravity, double seconds) {
+  static const double kThird = std::sqrt(3.0) / 6.0;
+  Stage &one = stages_[0], &two = stages_[1];
+  two.rate = one.rate;  // that of the part's start
+  double last = 1.0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    guess_ = two.point;
+    go(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
+    go(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
+    const double change = round == 0 ? 1.0 : distance(guess_, two.point);
+    if (change <= kFound || (round > 8 && change >= last)) break;
+    last = change;
+    find_rate(one.point, gravity, one.rate);
+    find_rate(two.point, gravity, two.rate);
+  }
+  go(now_, 0.5 * seconds, one.rate, 0.5 * seconds, two.rate, next_);
+  root_ = (turned(next_.turn) * root_).normalized();
+  next_.turn.setZero();
+  std::swap(now_, next_);
+}
+
+/// Always by the same sums of what is in the state, so that rounding does not add up over the steps.
+LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) const {
+  Whole whole{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  for (int i = 0; i < motion_.size(); ++i) {
+    const BodyState& state = of(linkage_, i, bodies);
+    whole.centre += motion_.body(i).mass * state.pose.position;
+    whole.linear += state.linear_momentum;
+  }
+  whole.centre /= motion_.total_mass();
+  const Vector3 drift = whole.linear / motion_.total_mass();
+  for (int i = 0; i < motion_.size(); ++i) {
+    const BodyState& state = of(linkage_, i, bodies);
+    const Vector3 own = state.linear_momentum - motion_.body(i).mass * drift;
+    whole.angular += state.angular_momentum + (state.pose.position - whole.centre).cross(own);
+  }
+  return whole;
+}
+
+/// The joints' momenta; `drift` is that of the frame in which they count.
+void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& bodies) {
+  motion_.place(of(linkage_, 0, bodies).pose, now_.positions);
+  velocity_.setZero();
+  for (int i = 0; i < motion_.size(); ++i) {
+    const BodyState& state = of(linkage_, i, bodies);
+    motion_.push(i, state.linear_momentum - motion_.body(i).mass * drift, state.angular_momentum, velocity_);
+  }
+  now_.momenta = velocity_.tail(now_.momenta.size());
+}
+
+void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
+  find_rate(now_, gravity, stages_[0].rate);
+  const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
+  const int parts = 1 + static_cast<int>(std::min(way / kPart, kMostParts));
+  for (int part = 0; part < parts; ++part) {
+    if (part > 0) find_rate(now_, gravity, stages_[0].rate);
+    advance(gravity, step / parts);
+  }
+  find_velocity(now_);
+}
+
+void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                        std::vector<BodyState>& bodies) {
+  read(joints, bodies);
+  if (linkage_.floats()) return fly_free(gravity, step, joints, bodies);
+  gather(Vector3::Zero(), bodies);
+  advance_by_parts(gravity, step);
+  write(Vector3::Zero(), Vector3::Zero(), joints, bodies);
+}
+
+void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                             std::vector<BodyState>& bodies) {
+  const Whole start = whole(bodies);
+  const Vector3 drift = start.linear / motion_.total_mass();
+  angular_momentum_ = start.angular;
+  gather(drift, bodies);
+  advance_by_parts(Vector3::Zero(), step);
+  const Vector3 centre = start.centre + step * drift + (0.5 * step * step) * gravity;
+  write(centre - motion_.centre_of_mass(), drift + step * gravity, joints, bodies);
+  BodyState& root = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)];
+  root.linear_momentum += start.linear + (motion_.total_mass() * step) * gravity - whole(bodies).linear;
+  root.angular_momentum += start.angular - whole(bodies).angular;
+}
+
+void LinkageFlight::write(const Vector3& place, const Vector3& velocity, std::vector<JointState>& joints,
+                          std::vector<BodyState>& bodies) {
+  int joint = 0;
+  for (int i = 0; i < motion_.size(); ++i) {
+    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    if (link.joint != LinkageBody::kNone)
+      joints[static_cast<std::size_t>(link.joint)].position = now_.positions[joint++];
+    const LinkageMotion::Placed& placed = motion_.at(i);
+    BodyState& state = bodies[static_cast<std::size_t>(link.body)];
+    state.pose = {placed.pose.position + place, placed.pose.orientation};
+    state.linear_momentum = motion_.body(i).mass * (placed.linear + velocity);
+    state.angular_momentum = placed.inertia * placed.angular;
+  }
+}
+
+}  // namespace mrhi

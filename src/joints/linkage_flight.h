@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "linkage.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/joint_state.h"
+
+namespace mrhi {
+
+/// Moves what hangs together on joints under gravity alone: joints and a free root are the unknowns, so that
+/// no joint can come apart. Their momenta and places go on by Gauss's method of two stages (Hairer, Lubich,
+/// Wanner, Geometric Numerical Integration, II.1.3: symplectic, symmetric, of fourth order). A linkage that
+/// floats keeps its momentum and its angular momentum about its centre of mass to rounding, which flies as a
+/// body's does.
+class LinkageFlight {
+ public:
+  LinkageFlight(const Scene& scene, const Linkage& linkage);
+
+  /// By `step` seconds. Joints' positions and bodies' momenta are taken and given back; poses follow.
+  void fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
+           std::vector<BodyState>& bodies);
+
+  /// Poses of all bodies for the joints' positions.
+  void place(const std::vector<JointState>& joints, std::vector<BodyState>& bodies);
+
+ private:
+  using Vector = Eigen::VectorXd;
+  /// Joints' places and momenta, and how far the root has turned since the part began.
+  struct Point {
+    Vector positions, momenta;
+    Vector3 turn;
+  };
+  struct Stage {
+    Point point, rate;
+  };
+  /// Of all bodies: the centre of mass, momentum, and angular momentum about that centre.
+  struct Whole {
+    Vector3 centre, linear, angular;
+  };
+
+  void read(const std::vector<JointState>& joints, const std::vector<BodyState>& bodies);
+  void find_velocity(const Point& point);
+  void find_rate(const Point& point, const Vector3& gravity, Point& rate);
+  double fastest() const;
+  void advance(const Vector3& gravity, double seconds);
+  static void go(const Point& from, double a, const Point& first, double b, const Point& second, Point& to);
+  static double distance(const Point& a, const Point& b);
+  void advance_by_parts(const Vector3& gravity, double step);
+  void fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
+                std::vector<BodyState>& bodies);
+  Whole whole(const std::vector<BodyState>& bodies) const;
+  void gather(const Vector3& drift, const std::vector<BodyState>& bodies);
+  void write(const Vector3& place, const Vector3& velocity, std::vector<JointState>& joints,
+             std::vector<BodyState>& bodies);
+
+  const Linkage& linkage_;
+  LinkageMotion motion_;
+  Vector velocity_;
+  Quaternion root_ = Quaternion::Identity();
+  Vector3 angular_momentum_ = Vector3::Zero();  // about the centre of mass, of a linkage that floats
+  Point now_, next_, guess_;
+  Stage stages_[2];
+};
+
+}  // namespace mrhi

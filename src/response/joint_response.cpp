@@ -1,0 +1,191 @@
+#include "joint_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "newton.h"
+
+namespace mrhi {
+namespace {
+
+/// A linkage none of whose points is faster than this is still [m/s], as a body is that sleeps.
+constexpr double kStill = 1e-6;
+/// What has been still for so long sleeps [s].
+constexpr double kTired = 0.5;
+
+bool has_touch(const ContactStep& step, const Island& island) {
+  return island.links.size() > 0 ||
+         std::any_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
+           return body.first < body.last ||
+                  std::any_of(step.grips.begin(), step.grips.end(),
+                              [&](const Grip& grip) { return grip.bears && grip.body == body.body; });
+         });
+}
+
+bool has(const Island& island, int body) {
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [body](const IslandBody& one) { return static_cast<int>(one.body) == body; });
+}
+
+/// An island that a hand presses.
+bool is_held(const ContactStep& step, const Island& island) {
+  for (const IslandBody& body : island.bodies) {
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      if (step.contacts[i].touching() && step.contacts[i].struck) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+JointedModel::JointedModel(const ContactConfiguration& configuration, const Scene& scene,
+                           SimulationState& state, std::vector<Event>& events)
+    : ImplicitModel(configuration),
+      scene_(scene),
+      state_(state),
+      events_(events),
+      linkages_(linkages_of(scene)),
+      at_work_(linkages_.size()),
+      solved_(linkages_.size()) {
+  for (const Linkage& linkage : linkages_) {
+    groups_.emplace_back();
+    for (const LinkageBody& link : linkage.bodies) groups_.back().push_back(link.body);
+    motions_.emplace_back(scene, linkage);
+    flights_.emplace_back(scene, linkage);
+    problems_.push_back(std::make_unique<LinkageProblem>());
+  }
+}
+
+void JointedModel::respond(ContactStep& step) {
+  begin_touches(step);
+  islands_.build(step);
+  islands_.join(step, groups_);
+  ImplicitModel::strike(step);
+  begin(step);
+  press(step);
+  solve(step);
+  fly(step);
+}
+
+/// It has lain still for long, and nothing has pushed it since.
+bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
+  if (!configuration_.sleep || has_touch(step, island)) return false;
+  const auto moves = [&](const IslandBody& body) {
+    const BodyState& state = step.bodies[body.body];
+    return !state.linear_momentum.isZero(0.0) || !state.angular_momentum.isZero(0.0);
+  };
+  if (std::any_of(island.bodies.begin(), island.bodies.end(), moves)) return false;
+  for (std::size_t i = 0; i < linkages_.size(); ++i) {
+    if (!has(island, groups_[i].front())) continue;
+    return state_.joints[static_cast<std::size_t>(linkages_[i].bodies.back().joint)].still >= kTired;
+  }
+  return false;
+}
+
+/// Where its joints have it now.
+void JointedModel::place(const ContactStep& step, std::size_t index) {
+  const Linkage& linkage = linkages_[index];
+  positions_.resize(linkage.joints());
+  int joint = 0;
+  for (const LinkageBody& link : linkage.bodies) {
+    if (link.joint != LinkageBody::kNone)
+      positions_[joint++] = state_.joints[static_cast<std::size_t>(link.joint)].position;
+  }
+  motions_[index].place(step.bodies[static_cast<std::size_t>(groups_[index].front())].pose, positions_);
+  motions_[index].weigh();
+}
+
+void JointedModel::begin(ContactStep& step) {
+  islands_apart_.clear();
+  std::fill(at_work_.begin(), at_work_.end(), char(0));
+  std::fill(solved_.begin(), solved_.end(), char(0));
+  for (const Island& island : islands_.apart()) {
+    if (sleeps(step, island)) continue;
+    for (std::size_t i = 0; i < linkages_.size(); ++i) {
+      if (!has(island, groups_[i].front())) continue;
+      at_work_[i] = 1;
+      place(step, i);
+    }
+    LinkageProblem& problem = *problems_[islands_apart_.size()];
+    islands_apart_.push_back(&island);
+    problem.begin(step, island, configuration_, linkages_, motions_, state_.joints);
+    strike(step, island, problem);
+  }
+}
+
+void JointedModel::strike(ContactStep& step, const Island& island, LinkageProblem& problem) {
+  if (!blows_.find(step, island, problem)) return;
+  if (is_held(step, island)) {
+    Newton<LinkageProblem>(problem).solve();
+    blows_.spare_carried(step, problem.velocity());
+  }
+  if (blows_.deal(problem, configuration_.impact_friction, struck_velocity_))
+    problem.start_with(struck_velocity_, step, state_.joints);
+}
+
+void JointedModel::solve(ContactStep& step) {
+  for (std::size_t i = 0; i < islands_apart_.size(); ++i) {
+    const Island& island = *islands_apart_[i];
+    LinkageProblem& problem = *problems_[i];
+    if (!problem.acts()) continue;
+    const bool agree = Newton<LinkageProblem>(problem).solve();
+    problem.finish(agree, step, island, state_.joints);
+    for (std::size_t l = 0; l < linkages_.size(); ++l) {
+      if (has(island, groups_[l].front())) solved_[l] = 1;
+    }
+  }
+}
+
+void JointedModel::fly(const ContactStep& step) {
+  for (BodyContact& contact : step.body_contacts) {
+    // What lies on something that hangs on joints does not go to sleep.
+    if (!scene_.bodies[contact.key.b].flies ||
+        (!scene_.bodies[contact.key.a].fixed && !scene_.bodies[contact.key.a].flies))
+      contact.still = 0.0;
+  }
+  for (std::size_t i = 0; i < linkages_.size(); ++i) {
+    if (!at_work_[i]) continue;
+    flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
+                    step.bodies);
+    rest(step, i);
+    for (const LinkageBody& link : linkages_[i].bodies) {
+      step.changes.forget(link.body);
+      if (link.joint != LinkageBody::kNone) note(static_cast<std::size_t>(link.joint));
+    }
+  }
+}
+
+/// Only what forces of its own hold in its place may lie still: what moves freely, moves, however slowly.
+void JointedModel::rest(const ContactStep& step, std::size_t linkage) {
+  bool still = solved_[linkage] && !linkages_[linkage].floats();
+  for (const LinkageBody& link : linkages_[linkage].bodies) {
+    const auto b = static_cast<std::size_t>(link.body);
+    const Twist twist = twist_of(scene_.bodies[b], step.bodies[b]);
+    still = still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kStill;
+  }
+  bool tired = still;
+  for (const LinkageBody& link : linkages_[linkage].bodies) {
+    if (link.joint == LinkageBody::kNone) continue;
+    double& lasted = state_.joints[static_cast<std::size_t>(link.joint)].still;
+    lasted = still ? lasted + step.step : 0.0;
+    tired = tired && lasted >= kTired;
+  }
+  if (!tired) return;
+  for (const int body : groups_[linkage]) {
+    step.bodies[static_cast<std::size_t>(body)].linear_momentum.setZero();
+    step.bodies[static_cast<std::size_t>(body)].angular_momentum.setZero();
+  }
+}
+
+void JointedModel::note(std::size_t index) {
+  const JointChange change = note_place(scene_.joints[index], state_.joints[index]);
+  const auto tell = [&](bool happened, EventKind kind) {
+    if (happened) events_.push_back({state_.time, kind, scene_.joints[index].child, 0});
+  };
+  tell(change.reached_limit, EventKind::joint_limit);
+  tell(change.entered_detent, EventKind::detent);
+  tell(change.opened_latch, EventKind::latch_open);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "../joints/linkage.h"
+#include "../joints/linkage_flight.h"
+#include "implicit_model.h"
+#include "linkage_impacts.h"
+#include "linkage_problem.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/simulation_state.h"
+
+namespace mrhi {
+
+/// The implicit model for scenes with joints. What hangs on joints is solved in their coordinates, with all
+/// that touches it, and moved on through the step as well: its free flight is its joints'. Scenes without
+/// joints never meet it, and pay nothing.
+class JointedModel : public ImplicitModel {
+ public:
+  /// Keeps references: to the state for what joints remember, to the events for what they do.
+  JointedModel(const ContactConfiguration& configuration, const Scene& scene, SimulationState& state,
+               std::vector<Event>& events);
+  void respond(ContactStep& step) override;
+
+ private:
+  bool sleeps(const ContactStep& step, const Island& island) const;
+  void place(const ContactStep& step, std::size_t linkage);
+  void begin(ContactStep& step);
+  void strike(ContactStep& step, const Island& island, LinkageProblem& problem);
+  void solve(ContactStep& step);
+  void fly(const ContactStep& step);
+  void rest(const ContactStep& step, std::size_t linkage);
+  void note(std::size_t joint);
+
+  const Scene& scene_;
+  SimulationState& state_;
+  std::vector<Event>& events_;
+  const std::vector<Linkage> linkages_;
+  std::vector<std::vector<int>> groups_;  // of bodies, by linkage
+  std::vector<LinkageMotion> motions_;
+  std::vector<LinkageFlight> flights_;
+  std::vector<std::unique_ptr<LinkageProblem>> problems_;  // as many as there were islands at most
+  std::vector<const Island*> islands_apart_;               // awake, one for each of the first problems
+  std::vector<char> at_work_, solved_;                     // by linkage: awake, and gravity has been given
+  LinkageImpacts blows_;
+  Eigen::VectorXd struck_velocity_, positions_;
+};
+
+/// The contact model of a configuration for a scene with joints, whichever it is: hands do to bodies what the
+/// model has them do, joints make of it what they can, and objects touch by `implicit`.
+std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
+                                                 SimulationState& state, std::vector<Event>& events);
+
+}  // namespace mrhi

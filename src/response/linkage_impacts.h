@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "linkage_problem.h"
+
+namespace mrhi {
+
+/// The impulse phase of an island with joints: Newton's impact law along the normal, once per approach, and
+/// Coulomb's friction, all strikes of a step as one blow, which joints pass on. Impulses only push. Fingers
+/// that close from both sides press and do not strike: then there is none.
+class LinkageImpacts {
+ public:
+  /// What strikes in this step, by the problem's velocities at its start.
+  bool find(ContactStep& step, const Island& island, const LinkageProblem& problem);
+  /// Leaves out what springs carry the hand's contacts away from by themselves: at this velocity.
+  void spare_carried(const ContactStep& step, const LinkageProblem::Vector& velocity);
+  /// Gives the impulses, if any; `velocity` is what they make of the problem's start.
+  bool deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity);
+
+ private:
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  struct Strike {
+    Contact* hand = nullptr;
+    BodyContact* between = nullptr;
+    Vector3 normal, drive;
+    Rows rows;  // relative velocity of 1 against 2 = drive + rows * unknowns
+    Eigen::Matrix<double, Eigen::Dynamic, 3> answer;  // of the unknowns to an impulse on 1
+    Matrix3 along_mass;
+    double time = 0.0, gap = 0.0, restitution = 0.0, friction = 0.0, inverse_mass = 0.0;
+    double mass = 0.0, target = 0.0, magnitude = 0.0;
+    Vector3 drag, recoil;
+
+    Vector3 relative_velocity(const LinkageProblem::Vector& velocity) const {
+      return drive + recoil + rows * velocity;
+    }
+    void push(const Vector3& on_first, LinkageProblem::Vector& velocity);
+    double relax_normal(LinkageProblem::Vector& velocity);
+    double relax_tangential(LinkageProblem::Vector& velocity);
+  };
+  void add(Strike strike, double step, const LinkageProblem& problem);
+  static void prepare(const LinkageProblem& problem, Strike& strike);
+
+  std::vector<Strike> strikes_;
+};
+
+}  // namespace mrhi

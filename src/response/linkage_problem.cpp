@@ -1,0 +1,226 @@
+#include "linkage_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrhi {
+namespace {
+
+/// Of the momentum carried, what is rounding: an error below that times Effort::converged is none.
+constexpr double kRounding = 1e-6;
+/// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
+constexpr double kNearlyAgree = 1e-4;
+
+constexpr int kNoJoint = -1;
+
+/// Of a body in the island, or -1.
+int place_in(const Island& island, int body) {
+  const auto found =
+      std::lower_bound(island.bodies.begin(), island.bodies.end(), static_cast<std::size_t>(body),
+                       [](const IslandBody& x, std::size_t y) { return x.body < y; });
+  const bool there = found != island.bodies.end() && found->body == static_cast<std::size_t>(body);
+  return there ? static_cast<int>(found - island.bodies.begin()) : -1;
+}
+
+bool touched(const ContactStep& step, const Island& island) {
+  const auto is_touched = [&](const IslandBody& body) {
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      if (!step.contacts[i].ignored) return true;
+    }
+    return std::any_of(step.grips.begin(), step.grips.end(),
+                       [&](const Grip& grip) { return grip.bears && grip.body == body.body; });
+  };
+  return island.links.size() > 0 || std::any_of(island.bodies.begin(), island.bodies.end(), is_touched);
+}
+
+}  // namespace
+
+void LinkageProblem::begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+                           const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
+                           const std::vector<JointState>& joints) {
+  step_ = step.step;
+  scene_ = &step.scene;
+  acts_ = touched(step, island);
+  several_.begin(step, island, configuration);
+  number(step, island, linkages, motions);
+  mass_factors_.compute(mass_);
+  carried_ = std::sqrt(gradient_.squaredNorm());
+  start_ = gradient_;
+  solve_mass(start_);
+  solve_mass(fall_);
+  start_with(Vector(start_), step, joints);
+}
+
+void LinkageProblem::number(const ContactStep& step, const Island& island,
+                            const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions) {
+  int count = 0;
+  for (const Linkage& linkage : linkages) {
+    if (place_in(island, linkage.bodies.front().body) >= 0) count += linkage.unknowns();
+  }
+  for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
+  const auto rows = static_cast<Eigen::Index>(6 * island.bodies.size());
+  jacobian_.setZero(rows, count);
+  mass_.setZero(count, count);
+  for (Vector* vector : {&gradient_, &fall_}) vector->setZero(count);
+  unknowns_.clear();
+  for (std::size_t i = 0; i < linkages.size(); ++i) {
+    if (place_in(island, linkages[i].bodies.front().body) >= 0)
+      add_linkage(step, island, linkages[i], motions[i]);
+  }
+  for (const IslandBody& body : island.bodies) {
+    if (step.scene.bodies[body.body].flies) add_free(step, island, body.body);
+  }
+}
+
+/// The momenta at the step's start are gathered in the gradient, those of gravity in the fall.
+void LinkageProblem::add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
+                                 LinkageMotion& motion) {
+  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+  const Eigen::Index count = linkage.unknowns();
+  mass_.block(first, first, count, count) = motion.mass();
+  auto momenta = gradient_.segment(first, count), fall = fall_.segment(first, count);
+  for (int i = 0; i < motion.size(); ++i) {
+    const LinkageBody& link = linkage.bodies[static_cast<std::size_t>(i)];
+    const Body& body = motion.body(i);
+    const BodyState& state = step.bodies[static_cast<std::size_t>(link.body)];
+    motion.push(i, state.linear_momentum, state.angular_momentum, momenta);
+    motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
+    motion.add_jacobian(i, jacobian_.block(6 * place_in(island, link.body), first, 6, count));
+    if (link.joint == LinkageBody::kNone) {
+      for (int k = 0; k < 6; ++k)
+        unknowns_.push_back({kNoJoint, link.body, k < 3 ? 1.0 : body.inertia.trace() / (3.0 * body.mass)});
+    } else {
+      const Eigen::Index column = first + linkage.column(i);
+      unknowns_.push_back({link.joint, link.body, mass_(column, column) / body.mass});
+    }
+  }
+}
+
+void LinkageProblem::add_free(const ContactStep& step, const Island& island, std::size_t index) {
+  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+  const Body& body = step.scene.bodies[index];
+  const BodyState& state = step.bodies[index];
+  const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
+  jacobian_.block<6, 6>(6 * place_in(island, static_cast<int>(index)), first).setIdentity();
+  mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
+  mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
+  gradient_.segment<6>(first) << state.linear_momentum, state.angular_momentum;
+  fall_.segment<3>(first) = (step_ * body.mass) * step.gravity;
+  for (int k = 0; k < 6; ++k) {
+    const double gyration_squared = body.inertia.trace() / (3.0 * body.mass);
+    unknowns_.push_back({kNoJoint, static_cast<int>(index), k < 3 ? 1.0 : gyration_squared});
+  }
+}
+
+void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
+                                const std::vector<JointState>& joints) {
+  start_ = velocity;
+  free_ = start_ + fall_;
+  velocity_ = free_;
+  direction_.resize(start_.size());
+  laws_.resize(unknowns_.size());
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (unknowns_[i].joint == kNoJoint) continue;
+    const auto joint = static_cast<std::size_t>(unknowns_[i].joint);
+    laws_[i].begin(scene_->joints[joint], joints[joint], start_[row], mass_(row, row), step_);
+    acts_ = acts_ || laws_[i].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
+    velocity_[row] += step_ * joints[joint].pushed;
+  }
+  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
+    if (unknowns_[i].joint != kNoJoint) continue;
+    const Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
+    velocity_.segment<3>(static_cast<Eigen::Index>(i)) += step_ * pushed.linear;
+    velocity_.segment<3>(static_cast<Eigen::Index>(i) + 3) += step_ * pushed.angular;
+  }
+  body_start_.noalias() = jacobian_ * start_;
+  body_free_.noalias() = jacobian_ * free_;
+  several_.start_from(body_start_, body_free_);
+}
+
+void LinkageProblem::evaluate(bool renew_limits) {
+  body_velocity_.noalias() = jacobian_ * velocity_;
+  several_.set_velocity(body_velocity_);
+  several_.evaluate(renew_limits);
+  gradient_.noalias() = jacobian_.transpose() * several_.gradient();
+  scale_ = several_.scale() + kRounding * carried_;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].joint == kNoJoint) continue;
+    const double velocity = velocity_[static_cast<Eigen::Index>(i)];
+    gradient_[static_cast<Eigen::Index>(i)] -= step_ * laws_[i].force(velocity);
+    scale_ += step_ * laws_[i].size(velocity) / std::sqrt(unknowns_[i].gyration_squared);
+  }
+}
+
+double LinkageProblem::error_squared() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const double missing = gradient_[static_cast<Eigen::Index>(i)];
+    sum += missing * missing / unknowns_[i].gyration_squared;
+  }
+  return sum;
+}
+
+void LinkageProblem::factorise() {
+  several_.hessian(body_hessian_);
+  product_.noalias() = body_hessian_.selfadjointView<Eigen::Lower>() * jacobian_;
+  hessian_.noalias() = jacobian_.transpose() * product_;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (unknowns_[i].joint != kNoJoint) hessian_(row, row) += step_ * laws_[i].slope(velocity_[row]);
+  }
+  factors_.compute(hessian_);
+}
+
+void LinkageProblem::find_direction() {
+  direction_ = -gradient_;
+  factors_.solveInPlace(direction_);
+}
+
+double LinkageProblem::energy() const {
+  double sum = several_.energy();
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].joint != kNoJoint)
+      sum += step_ * laws_[i].energy(velocity_[static_cast<Eigen::Index>(i)]);
+  }
+  return sum;
+}
+
+void LinkageProblem::finish(bool agree, ContactStep& step, const Island& island,
+                            std::vector<JointState>& joints) {
+  several_.settle_touches(step, island);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].joint == kNoJoint) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    JointState& joint = joints[static_cast<std::size_t>(unknowns_[i].joint)];
+    joint.pushed = (velocity_[row] - free_[row]) / step_;
+    laws_[i].settle(velocity_[row], joint);
+  }
+  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
+    if (unknowns_[i].joint != kNoJoint) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
+    pushed.linear = (velocity_ - free_).segment<3>(row) / step_;
+    pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
+  }
+  const double most = kNearlyAgree * scale();
+  if (agree || error_squared() <= most * most) {
+    direction_ = gradient_;
+    solve_mass(direction_);
+    velocity_ -= direction_;
+  }
+  body_velocity_.noalias() = jacobian_ * velocity_;
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const std::size_t index = island.bodies.begin()[i].body;
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const Body& body = step.scene.bodies[index];
+    BodyState& state = step.bodies[index];
+    const Quaternion& q = state.pose.orientation;
+    state.linear_momentum = body.mass * body_velocity_.segment<3>(row);
+    state.angular_momentum =
+        q * (body.inertia * (q.conjugate() * Vector3(body_velocity_.segment<3>(row + 3))));
+    if (body.flies) step.changes.mark_solved(static_cast<int>(index));
+  }
+}
+
+}  // namespace mrhi

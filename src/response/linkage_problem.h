@@ -1,0 +1,75 @@
+#pragma once
+
+#include <vector>
+
+#include "../joints/joint_law.h"
+#include "../joints/linkage.h"
+#include "island_problem.h"
+
+namespace mrhi {
+
+/// An island in which bodies hang on joints: the unknowns are the joints' velocities, and six of each body
+/// that is free, M (u - u*) = h (J' sum f(J u) + sum of what joints give by themselves). A Problem for
+/// Newton. What contacts are to bodies is the IslandProblem's; J makes of it what they are to joints, which
+/// so cannot come apart.
+class LinkageProblem {
+ public:
+  static constexpr bool kTrustsLastStep = false;
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  /// `linkages`: all of the scene, with their motions placed where they are.
+  void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+             const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
+             const std::vector<JointState>& joints);
+  /// Takes other velocities at the step's start, as blows have left them.
+  void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
+
+  Effort effort() const { return several_.effort(); }
+  void restart() { velocity_ = start_; }
+  void evaluate(bool renew_limits);
+  double error_squared() const;
+  double scale() const { return scale_; }
+  void factorise();
+  void find_direction();
+  void move(double part) { velocity_ += part * direction_; }
+  double energy() const;
+  double descent() const { return gradient_.dot(direction_); }
+
+  const Vector& start() const { return start_; }
+  const Vector& velocity() const { return velocity_; }
+  const Matrix& jacobian() const { return jacobian_; }
+  /// Solves the mass matrix for velocities, in place.
+  void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }
+  const Matrix& mass() const { return mass_; }
+  /// Whether anything but gravity acts, or may.
+  bool acts() const { return acts_; }
+
+  /// Gives contacts, joints and bodies what they have become.
+  void finish(bool agree, ContactStep& step, const Island& island, std::vector<JointState>& joints);
+
+ private:
+  struct Unknown {
+    int joint;                // index in Scene::joints, or -1 of the six of a free body
+    int body;                 // that it moves
+    double gyration_squared;  // by which a torque counts as a force; 1 of a force [m^2]
+  };
+  void number(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
+              std::vector<LinkageMotion>& motions);
+  void add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
+                   LinkageMotion& motion);
+  void add_free(const ContactStep& step, const Island& island, std::size_t index);
+
+  IslandProblem several_;
+  double step_ = 0.0, scale_ = 0.0, carried_ = 0.0;
+  bool acts_ = false;
+  std::vector<Unknown> unknowns_;
+  std::vector<JointLaw> laws_;  // by unknown that is a joint's
+  const Scene* scene_ = nullptr;
+  Matrix jacobian_, mass_, hessian_, body_hessian_, product_;
+  Eigen::LLT<Matrix> mass_factors_, factors_;
+  Vector start_, free_, fall_, velocity_, direction_, gradient_;
+  Vector body_velocity_, body_start_, body_free_;
+};
+
+}  // namespace mrhi

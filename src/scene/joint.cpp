@@ -1,0 +1,152 @@
+#include "mr_hand_interaction/scene/joint.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "../text/text.h"
+#include "joint_ranges.h"
+#include "mr_hand_interaction/scene/scene.h"
+
+namespace mrhi {
+namespace {
+
+using namespace joint_ranges;
+
+[[noreturn]] void refuse(const Joint& joint, const std::string& what, const std::string& allowed) {
+  throw std::invalid_argument("joint '" + text::one_line(joint.name, 60) + "': " + what +
+                              "; allowed: " + allowed);
+}
+
+void check(const Joint& joint, const std::string& what, double value, const Range& allowed) {
+  if (!allowed.contains(value)) refuse(joint, what + " " + text::number(value), allowed.describe());
+}
+
+void check_limits(const Joint& joint) {
+  if (joint.lower > -Joint::kUnlimited) check(joint, "lower limit", joint.lower, kPlace);
+  if (joint.upper < Joint::kUnlimited) check(joint, "upper limit", joint.upper, kPlace);
+  if (!(joint.lower < joint.upper)) {
+    refuse(joint,
+           "lower limit " + text::number(joint.lower) + " and upper limit " + text::number(joint.upper),
+           "lower below upper");
+  }
+  check(joint, "start", joint.start, kPlace);
+  if (joint.start < joint.lower || joint.start > joint.upper)
+    refuse(joint, "start " + text::number(joint.start), "a place between its limits");
+  check(joint, "restitution", joint.restitution, kRestitution);
+}
+
+void check_detents(const Joint& joint) {
+  if (!joint.detents) return;
+  const std::vector<double>& at = joint.detents->at;
+  if (at.size() < 2 || at.size() > kMostDetents)
+    refuse(joint, std::to_string(at.size()) + " detents", "2 to " + std::to_string(kMostDetents));
+  for (const double place : at) check(joint, "detent at", place, kPlace);
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    if (!(at[i] - at[i - 1] >= kLeastDetent))
+      refuse(joint, "detents that do not ascend", "each at least " + text::number(kLeastDetent) + " further");
+  }
+  check(joint, "detents' force", joint.detents->force, kForce);
+}
+
+void check_forces(const Joint& joint) {
+  check(joint, "damping", joint.damping, kForce);
+  check(joint, "friction", joint.friction, kForce);
+  if (joint.spring) {
+    check(joint, "spring's stiffness", joint.spring->stiffness, kStiffness);
+    check(joint, "spring's rest", joint.spring->rest, kPlace);
+  }
+  if (!joint.latch) return;
+  check(joint, "latch at", joint.latch->at, kPlace);
+  check(joint, "latch's force", joint.latch->force, kForce);
+  check(joint, "latch's reach", joint.latch->reach, kReach);
+}
+
+void check_axis(const Joint& joint) {
+  if (joint.axis.allFinite() && std::abs(joint.axis.norm() - 1.0) <= 1e-9) return;
+  refuse(joint, "axis " + text::vector(joint.axis), "a unit vector");
+}
+
+void check_bodies(const Scene& scene, const Joint& joint) {
+  const auto bodies = static_cast<int>(scene.bodies.size());
+  if (joint.child < 0 || joint.child >= bodies || joint.parent < Joint::kWorld || joint.parent >= bodies)
+    refuse(joint, "a body that is not there", "the scene's");
+  if (scene.bodies[static_cast<std::size_t>(joint.child)].fixed) {
+    refuse(joint, "moves the fixture '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
+           "a body that is no fixture");
+  }
+}
+
+const Joint* joint_of(const Scene& scene, int body) {
+  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(),
+                                  [body](const Joint& joint) { return joint.child == body; });
+  return found == scene.joints.end() ? nullptr : &*found;
+}
+
+void check_tree(const Scene& scene, const Joint& joint) {
+  if (joint_of(scene, joint.child) != &joint) {
+    refuse(joint,
+           "is a second one of body '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
+           "one joint to each body");
+  }
+  std::size_t depth = 0;
+  for (const Joint* above = &joint; above != nullptr && above->parent != Joint::kWorld;
+       above = joint_of(scene, above->parent)) {
+    if (++depth > scene.joints.size()) refuse(joint, "hangs in a loop of joints", "trees");
+  }
+}
+
+std::size_t depth_of(const Scene& scene, const Joint& joint) {
+  std::size_t depth = 0;
+  for (const Joint* above = joint_of(scene, joint.parent); above != nullptr;
+       above = joint_of(scene, above->parent))
+    ++depth;
+  return depth;
+}
+
+}  // namespace
+
+Pose joint_motion(const Joint& joint, double position) {
+  if (joint.kind == JointKind::sliding) return {position * joint.axis, Quaternion::Identity()};
+  return {Vector3::Zero(), Quaternion(Eigen::AngleAxisd(position, joint.axis))};
+}
+
+void arrange_joints(Scene& scene) {
+  if (scene.joints.size() > kMostJoints) {
+    throw std::invalid_argument(std::to_string(scene.joints.size()) + " joints; allowed: at most " +
+                                std::to_string(kMostJoints));
+  }
+  for (const Joint& joint : scene.joints) {
+    check_bodies(scene, joint);
+    check_axis(joint);
+    check_limits(joint);
+    check_forces(joint);
+    check_detents(joint);
+  }
+  for (const Joint& joint : scene.joints) check_tree(scene, joint);
+  std::vector<std::pair<std::size_t, Joint>> sorted;
+  for (const Joint& joint : scene.joints) sorted.emplace_back(depth_of(scene, joint), joint);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < sorted.size(); ++i) scene.joints[i] = sorted[i].second;
+  for (const Joint& joint : scene.joints) {
+    Body& child = scene.bodies[static_cast<std::size_t>(joint.child)];
+    Pose parent;
+    if (joint.parent != Joint::kWorld) {
+      Body& body = scene.bodies[static_cast<std::size_t>(joint.parent)];
+      body.flies = false;
+      parent = body.start;
+    }
+    child.flies = false;
+    child.start = parent * joint.in_parent * joint_motion(joint, joint.start) * joint.in_child.inverse();
+    child.start.orientation.normalize();
+  }
+}
+
+std::optional<int> find_joint(const Scene& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    if (scene.joints[i].name == name) return static_cast<int>(i);
+  }
+  return {};
+}
+
+}  // namespace mrhi

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "scene/scene_files.h"
+#include "support/joints.h"
+
+namespace mrhi {
+namespace {
+
+const std::string kPart = std::string(test::kInertial) + test::kBox;
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& more = "", const std::string& origin = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin " + origin + "/><axis xyz=\"0 0 1\"/>" + more +
+         "</joint>\n";
+}
+
+const std::string kLimit = R"(<limit lower="-0.5" upper="1.5" effort="1" velocity="1"/>)";
+const std::string kDynamics = R"(<dynamics damping="0.2" friction="0.3"/>)";
+
+/// A frame, a door on it, a lever on the door; a free ball with an arm.
+std::string workshop() {
+  return test::robot(test::link("frame", test::kBox) + test::link("door", kPart) +
+                     test::link("lever", kPart) + test::link("base", kPart) + test::link("arm", kPart) +
+                     joint("f", "fixed", "world", "frame", "", R"(xyz="1 0 0")") +
+                     joint("hinge", "revolute", "frame", "door", kLimit + kDynamics, R"(xyz="0 0.2 0")") +
+                     joint("rail", "prismatic", "door", "lever", kLimit, R"(xyz="0.2 0 0")") +
+                     joint("b", "floating", "world", "base", "", R"(xyz="-0.5 0 0")") +
+                     joint("elbow", "continuous", "base", "arm", "", R"(xyz="0 0 0.3")"));
+}
+
+Scene load(const std::string& urdf, const std::string& yaml = "") {
+  const test::Folder folder;
+  folder.write("test.yaml", yaml);
+  return load_scene(folder.write("test.urdf", urdf), {});
+}
+
+std::string error(const std::string& urdf, const std::string& yaml = "") {
+  const test::Folder folder;
+  folder.write("test.yaml", yaml);
+  return test::scene_error(folder.write("test.urdf", urdf));
+}
+
+TEST(JointScene, has_the_joints_of_its_urdf) {
+  const Scene scene = load(workshop());
+  ASSERT_EQ(scene.joints.size(), 3u);
+  const Joint& hinge = scene.joints[static_cast<std::size_t>(*find_joint(scene, "hinge"))];
+  EXPECT_EQ(hinge.kind, JointKind::turning);
+  EXPECT_EQ(hinge.lower, -0.5);
+  EXPECT_EQ(hinge.upper, 1.5);
+  EXPECT_EQ(hinge.damping, 0.2);
+  EXPECT_EQ(hinge.friction, 0.3);
+  EXPECT_EQ(hinge.parent, *find_body(scene, "frame"));
+  EXPECT_EQ(scene.joints[static_cast<std::size_t>(*find_joint(scene, "rail"))].kind, JointKind::sliding);
+  EXPECT_FALSE(scene.joints[static_cast<std::size_t>(*find_joint(scene, "elbow"))].is_limited());
+  const auto place = [&](const char* name) {
+    return scene.bodies[static_cast<std::size_t>(*find_body(scene, name))].start.position;
+  };
+  EXPECT_LT((place("door") - Vector3(1, 0.2, 0)).norm(), 1e-15);
+  EXPECT_LT((place("lever") - Vector3(1.2, 0.2, 0)).norm(), 1e-15);
+  EXPECT_LT((place("arm") - Vector3(-0.5, 0, 0.3)).norm(), 1e-15);
+}
+
+TEST(JointScene, begins_where_its_yaml_has_it) {
+  const Scene scene = load(workshop(), "joints: {hinge: {start: 1.0}, rail: {start: 0.1}}");
+  const Vector3 lever = scene.bodies[static_cast<std::size_t>(*find_body(scene, "lever"))].start.position;
+  EXPECT_LT((lever - Vector3(1 + 0.2 * std::cos(1.0), 0.2 + 0.2 * std::sin(1.0), 0.1)).norm(), 1e-12);
+}
+
+TEST(JointScene, has_springs_detents_and_latches_of_its_yaml) {
+  const Scene scene =
+      load(workshop(),
+           "joints:\n  hinge: {spring: {stiffness: 2, rest: 0.1}, restitution: 0.4}\n"
+           "  rail: {detents: {at: [0, 0.02], force: 3}, latch: {at: 0, force: 5, reach: 0.01}}\n");
+  const Joint& hinge = scene.joints[static_cast<std::size_t>(*find_joint(scene, "hinge"))];
+  const Joint& rail = scene.joints[static_cast<std::size_t>(*find_joint(scene, "rail"))];
+  EXPECT_EQ(hinge.spring->stiffness, 2.0);
+  EXPECT_EQ(hinge.spring->rest, 0.1);
+  EXPECT_EQ(hinge.restitution, 0.4);
+  EXPECT_EQ(rail.detents->at.size(), 2u);
+  EXPECT_EQ(rail.latch->force, 5.0);
+}
+
+TEST(JointScene, refuses_in_one_line_what_makes_no_tree_or_is_out_of_limits) {
+  const std::string door = test::link("frame", test::kBox) + test::link("door", kPart) +
+                           joint("f", "fixed", "world", "frame", "", R"(xyz="1 0 0")");
+  test::expect_words(
+      error(test::robot(door + joint("hinge", "revolute", "frame", "door",
+                                     R"(<limit lower="1" upper="0" effort="1" velocity="1"/>)"))),
+      {"'hinge'", "lower"});
+  const std::string good = test::robot(door + joint("hinge", "revolute", "frame", "door", kLimit));
+  test::expect_words(error(good, "joints: {hnge: {start: 0}}"), {"'hnge'", "hinge"});
+  test::expect_words(error(good, "joints: {hinge: {start: 3}}"), {"'hinge'", "start 3"});
+  test::expect_words(error(good, "joints: {hinge: {friction: -1}}"), {"'hinge'", "friction -1"});
+  test::expect_words(error(good, "joints: {hinge: {spring: {stiffness: soft}}}"), {"stiffness", "number"});
+  test::expect_words(error(good, "joints: {hinge: {detents: {at: [0], force: 1}}}"), {"'hinge'", "detents"});
+  test::expect_words(error(test::robot(door + joint("hinge", "revolute", "frame", "door",
+                                                    kLimit + R"(<mimic joint="other"/>)"))),
+                     {"'hinge'", "mimic"});
+}
+
+TEST(JointScene, refuses_a_loop_of_joints) {
+  Scene scene = testing::pendulum(2, 0.0, 0.0);
+  scene.joints[0].parent = 1;
+  try {
+    arrange_joints(scene);
+    FAIL() << "a loop was taken";
+  } catch (const std::invalid_argument& error) {
+    test::expect_words(error.what(), {"'joint_0'", "loop"});
+  }
+}
+
+TEST(JointScene, a_body_that_leaves_is_put_back_with_all_that_hangs_on_it) {
+  Scene scene = testing::pendulum(2, 0.0, 0.0);
+  scene.joints.erase(scene.joints.begin());
+  scene.bodies[0].start_twist.linear = scene.bodies[1].start_twist.linear = {1.0, 0, 0};
+  scene.bounds = {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+  Simulation simulation(scene, testing::unfiltered(ContactModelKind::implicit));
+  int told = 0;
+  testing::let_go_on(simulation, 0.0, 0.7, 100.0, [&](const Simulation& now) {
+    for (const Event& event : now.result().events) told += event.kind == EventKind::out_of_bounds;
+    EXPECT_LT(testing::apart(now, 0).place, 1e-12);
+  });
+  EXPECT_EQ(told, 1);
+}
+
+}  // namespace
+}  // namespace mrhi
