@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../collision/near_bodies.h"
 #include "renderer.h"
@@ -19,6 +20,22 @@ constexpr double kProgress = 0.001;
 /// Around the tracked hand, in which bodies are looked for [m].
 double margin(const HandOffset& offset) {
   return offset.zero() ? kAhead : offset.shift.norm() + kFarthestPush;
+}
+
+/// By the share of each contact.
+void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
+  rendered.touching.fill(false);
+  std::array<double, kCapsules> shares{};
+  for (const Contact& contact : contacts) {
+    if (contact.key.hand != slot || !contact.touching()) continue;
+    const std::size_t c = contact.key.capsule;
+    Pressed& pressed = rendered.pressed[c];
+    if (!rendered.touching[c]) pressed = Pressed();
+    rendered.touching[c] = true;
+    pressed.force += std::abs(contact.normal.dot(contact.force));
+    shares[c] += contact.share;
+    if (shares[c] > 0.0) pressed.point += contact.share / shares[c] * (contact.point - pressed.point);
+  }
 }
 
 bool same_place(const Hand& a, const Hand& b) {
@@ -47,10 +64,7 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
                           const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts,
                           Interaction* interactions, HandOffset& offset, RenderedHand& rendered) {
   Impl& impl = *impl_;
-  rendered.touching.fill(false);
-  for (const Contact& contact : contacts) {
-    if (contact.key.hand == slot && contact.touching()) rendered.touching[contact.key.capsule] = true;
-  }
+  note_touches(contacts, slot, rendered);
   if (track.appeared) offset = HandOffset();
   ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0, interactions};
   impl.end_shown_in(setting, track, offset);

@@ -10,8 +10,14 @@
 namespace mrhi {
 namespace {
 
-const Rgb kSkin(0.93f, 0.75f, 0.64f), kBlush(0.93f, 0.62f, 0.53f), kNail(0.96f, 0.82f, 0.75f);
-const Rgb kSleeve(0.29f, 0.33f, 0.40f);
+const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
+    kNail(0.96f, 0.82f, 0.75f);
+const Rgb kBackground(0.227f, 0.247f, 0.278f);         // of rviz/interaction.rviz: the wrist fades into it
+constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
+// A touch is seen around its middle as far as this, in radii of what presses.
+constexpr double kSpot = 1.7, kSpotCore = 0.6;
+constexpr double kLightTouch = 0.4;  // how red it is without force
+constexpr double kFirm = 6.0;        // and with this force it is as red as it gets [N]
 constexpr float kOcclusion = 0.7f, kDarkest = 0.4f;
 
 /// A sphere for each phalanx, as large as the phalanx is seen from its side, in arrays that vector
@@ -68,12 +74,12 @@ std::array<Floats, kCapsules> make_counts() {
 }
 
 /// In the frame of the bone, in its radii: where fingers are redder, and the nail.
-Rgb finger_colour(int finger, const Vector3& vertex) {
+Rgb finger_colour(int finger, const Vector3& vertex, const Rgb& skin) {
   const SkinBone& tip = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 3))];
   const Vector3 q = tip.axes.transpose() * (vertex - tip.start) / tip.radius;
   const double length = tip.length / tip.radius;
   const double red = smooth_step(-0.3, length + 0.5, q.x()) * smooth_step(0.9, -0.6, q.z());
-  Rgb colour = kSkin + static_cast<float>(0.7 * red) * (kBlush - kSkin);
+  Rgb colour = skin + static_cast<float>(0.7 * red) * (kBlush - skin);
   const double along =
       smooth_step(0.25 * length, 0.5 * length, q.x()) * smooth_step(length + 0.75, length + 0.35, q.x());
   const double nail = along * smooth_step(0.15, 0.45, q.z()) * smooth_step(0.85, 0.55, std::abs(q.y()));
@@ -90,33 +96,50 @@ SkinPaint::SkinPaint(const Skin& skin) : skin_(skin) {
       if (skin.share(v, c) > skin.share(v, most)) most = c;
     }
     const Vector3& vertex = skin.rest()[v];
-    Rgb colour = kSkin;
-    if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex);
-    const auto sleeve =
-        static_cast<float>(smooth_step(kSleeveBegins + 0.003, kSleeveBegins - 0.003, vertex.x()));
-    tints_.push_back({colour + sleeve * (kSleeve - colour), most});
+    // The palm is pinker than the back of the hand, so that one can be told from the other.
+    const auto palmar = static_cast<float>(smooth_step(0.004, -0.008, vertex.z()));
+    Rgb colour = kBack + palmar * (kPalmar - kBack);
+    if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex, colour);
+    const auto wrist = static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x()));
+    tints_.push_back({colour, most, wrist});
   }
 }
 
-void SkinPaint::paint(const Hand& hand, const SkinSurface& surface,
-                      const std::array<bool, kCapsules>& touching, std::vector<Rgb>& colours) const {
+/// How much of the touching colour a vertex takes: of the touches of its own finger, or the palm's.
+float SkinPaint::redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
+                         const std::vector<int>& touched) const {
+  const int own = tints_[vertex].capsule;
+  double red = 0.0;
+  for (const int c : touched) {
+    const bool palm = c == kPalm || bone_of(c) == 0, on_palm = own == kPalm || bone_of(own) == 0;
+    if (palm != on_palm || (!palm && finger_of(c) != finger_of(own))) continue;
+    const auto i = static_cast<std::size_t>(c);
+    const double radius = rendered.hand.capsules[i].radius;
+    const double away = (place - rendered.pressed[i].point).norm();
+    const double firm = kLightTouch + (1.0 - kLightTouch) * std::min(1.0, rendered.pressed[i].force / kFirm);
+    red = std::max(red, firm * smooth_step(kSpot * radius, kSpotCore * radius, away));
+  }
+  return static_cast<float>(red);
+}
+
+void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface,
+                      std::vector<Rgb>& colours) const {
   static const std::array<Floats, kCapsules> counts = make_counts();
-  const Occluders occluders(hand);
-  std::array<int, kCapsules> touched_ones{};
-  std::size_t touches = 0;
+  const Occluders occluders(rendered.hand);
+  std::vector<int> touched;
   for (int c = 0; c < kCapsules; ++c) {
-    if (touching[static_cast<std::size_t>(c)]) touched_ones[touches++] = c;
+    if (rendered.touching[static_cast<std::size_t>(c)]) touched.push_back(c);
   }
   colours.resize(surface.vertices.size());
   for (std::size_t v = 0; v < colours.size(); ++v) {
-    double touch = 0.0;
-    for (std::size_t i = 0; i < touches; ++i) touch += skin_.share(v, touched_ones[i]);
-    const auto touched = static_cast<float>(smooth_step(0.35, 0.75, touch));
-    const Rgb colour = tints_[v].colour + touched * (touching_colour() - tints_[v].colour);
+    const Tint& tint = tints_[v];
+    const float red = redness(v, surface.vertices[v], rendered, touched);
+    const Rgb colour = tint.colour + red * (touching_colour() - tint.colour);
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();
     const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
-                                        counts[static_cast<std::size_t>(tints_[v].capsule)]);
-    colours[v] = (colour * light_on(normal, around)).min(1.0f);
+                                        counts[static_cast<std::size_t>(tint.capsule)]);
+    const Rgb lit = (colour * light_on(normal, around)).min(1.0f);
+    colours[v] = lit + tint.wrist * (kBackground - lit);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "light.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "skin.h"
 
 namespace mrhi {
@@ -14,9 +15,9 @@ class SkinPaint {
  public:
   explicit SkinPaint(const Skin& skin);  ///< keeps a reference
 
-  /// A colour for each vertex of the surface, which is that of `hand`.
-  void paint(const Hand& hand, const SkinSurface& surface, const std::array<bool, kCapsules>& touching,
-             std::vector<Rgb>& colours) const;
+  /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
+  /// presses, and the more so the harder.
+  void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours) const;
 
   static Rgb touching_colour() { return {0.86f, 0.30f, 0.08f}; }
 
@@ -24,7 +25,10 @@ class SkinPaint {
   struct Tint {
     Rgb colour;
     int capsule;  ///< that the vertex belongs to most
+    float wrist;  ///< how much of it has faded away
   };
+  float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
+                const std::vector<int>& touched) const;
   const Skin& skin_;
   std::vector<Tint> tints_;
 };

@@ -102,7 +102,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
                     drawn.touching != rendered.touching;
   if (drawn.new_paint) {
     drawn.hand = hand.id, drawn.side = hand.side, drawn.touching = rendered.touching;
-    paint_.paint(hand, drawn.surface, drawn.touching, drawn.colours);
+    paint_.paint(rendered, drawn.surface, drawn.colours);
   }
   Marker& marker = add_triangles(id, layer);
   const auto& corners = skin_corners_[static_cast<std::size_t>(hand.side)];
@@ -118,7 +118,7 @@ void HandMarkers::repaint(const std::vector<RenderedHand>& rendered) {
   for (std::size_t i = 0; i < rendered.size() && i < drawn_.size(); ++i) {
     const bool is_drawn = drawn_[i].hand == rendered[i].hand.id && !drawn_[i].colours.empty();
     if (is_drawn && !std::exchange(drawn_[i].new_paint, false))
-      paint_.paint(rendered[i].hand, drawn_[i].surface, drawn_[i].touching, drawn_[i].colours);
+      paint_.paint(rendered[i], drawn_[i].surface, drawn_[i].colours);
   }
 }
 

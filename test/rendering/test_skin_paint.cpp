@@ -1,19 +1,32 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "rendering/skin_paint.h"
 #include "support/postures.h"
 
 namespace mrhi {
 namespace {
 
-using Touching = std::array<bool, kCapsules>;
+/// A hand that presses something with the pads of these capsules, by `force` [N].
+RenderedHand pressing(const Hand& hand, const std::vector<int>& touched, double force) {
+  RenderedHand rendered;
+  rendered.hand = hand;
+  const Vector3 palmar = hand.palm.orientation * -Vector3::UnitZ();
+  for (const int c : touched) {
+    const auto i = static_cast<std::size_t>(c);
+    rendered.touching[i] = true;
+    rendered.pressed[i] = {force, hand.capsules[i].centre() + hand.capsules[i].radius * palmar};
+  }
+  return rendered;
+}
 
-std::vector<Rgb> colours_of(const Hand& hand, const Touching& touching) {
+std::vector<Rgb> colours_of(const RenderedHand& rendered) {
   static const SkinPaint paint(Skin::human());
   SkinSurface surface;
-  EXPECT_TRUE(Skin::human().pose(hand, surface));
+  EXPECT_TRUE(Skin::human().pose(rendered.hand, surface));
   std::vector<Rgb> colours;
-  paint.paint(hand, surface, touching, colours);
+  paint.paint(rendered, surface, colours);
   return colours;
 }
 
@@ -23,23 +36,39 @@ float brightness(const Rgb& colour) {
 
 TEST(SkinPaint, what_touches_is_highlighted_and_nothing_else) {
   const Hand hand = testing::hand_in(relaxed_posture());
-  const auto plain = colours_of(hand, {});
+  const auto plain = colours_of(pressing(hand, {}, 0.0));
   for (const int touched : {capsule_index(0, 3), capsule_index(1, 3), capsule_index(3, 1), kPalm}) {
-    Touching touching{};
-    touching[static_cast<std::size_t>(touched)] = true;
-    const auto colours = colours_of(hand, touching);
+    const RenderedHand rendered = pressing(hand, {touched}, 10.0);
+    const auto colours = colours_of(rendered);
+    SkinSurface surface;
+    ASSERT_TRUE(Skin::human().pose(hand, surface));
+    const auto i = static_cast<std::size_t>(touched);
+    const double radius = hand.capsules[i].radius;
     int highlighted = 0;
     for (std::size_t v = 0; v < colours.size(); ++v) {
-      const float share = Skin::human().share(v, touched);
-      if (share < 0.3f) {
+      const double away = (surface.vertices[v] - rendered.pressed[i].point).norm();
+      if (away > 1.7 * radius) {
         EXPECT_TRUE((colours[v] == plain[v]).all());
-      } else if (share > 0.8f) {
+      } else if (away < 0.6 * radius) {
         EXPECT_LT(colours[v][1] / colours[v][0], 0.6f * plain[v][1] / plain[v][0]);  // redder in any light
         ++highlighted;
       }
     }
-    EXPECT_GT(highlighted, 10);
+    EXPECT_GT(highlighted, 0);
   }
+}
+
+TEST(SkinPaint, a_firm_press_is_redder_than_a_light_touch) {
+  const Hand hand = testing::hand_in(relaxed_posture());
+  const int tip = capsule_index(1, 3);
+  std::vector<float> greens;
+  for (const double force : {0.0, 1.0, 3.0, 6.0}) {
+    float green = 0.0f;
+    for (const Rgb& colour : colours_of(pressing(hand, {tip}, force))) green += colour[1];
+    greens.push_back(green);
+  }
+  EXPECT_TRUE(std::is_sorted(greens.rbegin(), greens.rend()));
+  EXPECT_GT(greens.front(), greens.back() + 1.0f);
 }
 
 TEST(SkinPaint, colours_are_in_range_and_no_side_of_the_hand_is_dark) {
@@ -48,7 +77,7 @@ TEST(SkinPaint, colours_are_in_range_and_no_side_of_the_hand_is_dark) {
       const Pose wrist{Vector3::Zero(), Quaternion(Eigen::AngleAxisd(turn * M_PI, Vector3::UnitX()))};
       const Hand hand = complete_hand(hand_joints(human_hand(), Side::right, wrist, posture), Pose{});
       float sum = 0.0f;
-      const auto colours = colours_of(hand, {});
+      const auto colours = colours_of(pressing(hand, {}, 0.0));
       for (const Rgb& colour : colours) {
         EXPECT_TRUE((colour >= 0.0f).all() && (colour <= 1.0f).all());
         sum += brightness(colour);
@@ -60,9 +89,8 @@ TEST(SkinPaint, colours_are_in_range_and_no_side_of_the_hand_is_dark) {
 }
 
 TEST(SkinPaint, the_palm_is_darker_under_a_fist) {
-  const Touching none{};
-  const auto open = colours_of(testing::hand_in(testing::open_posture()), none);
-  const auto closed = colours_of(testing::hand_in(testing::fist_posture()), none);
+  const auto open = colours_of(pressing(testing::hand_in(testing::open_posture()), {}, 0.0));
+  const auto closed = colours_of(pressing(testing::hand_in(testing::fist_posture()), {}, 0.0));
   float lighter = 0.0f;
   for (std::size_t v = 0; v < open.size(); ++v) {
     const Vector3& rest = Skin::human().rest()[v];
