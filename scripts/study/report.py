@@ -171,7 +171,8 @@ def _figure_of(report, figures, part, condition, kind, description):
 
 def _comparison(report, rows):
     quantities = list(dict.fromkeys(rows['quantity']))
-    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else '%s [%s]' % (plain(q).capitalize(), scale_of(q)) for q in quantities]
+    columns = ['Condition', 'n'] + [with_unit(OF[q]) if q in OF else '%s [%s]' % (plain(q).capitalize(), scale_of(q))
+                                    for q in quantities]
     table = []
     for condition in dict.fromkeys(rows['condition']):
         some = rows[rows['condition'] == condition]
@@ -268,7 +269,8 @@ def _ratings(report, results, part, figures):
     report.heading('Ratings', 3)
     _figure_of(report, figures, part, None, 'ratings', 'Distributions of the ratings')
     report.table('Ratings', ['Condition', 'Question', 'n', 'Mean', 'SD', 'Median', 'Quartiles'], [
-        [plain(row.condition), '%s [%s]' % (plain(row.question), scale_of(row.question)), str(row.n), number(row.mean), number(row.sd, 2), number(row.median),
+        [plain(row.condition), '%s [%s]' % (plain(row.question), scale_of(row.question)), str(row.n),
+         number(row.mean), number(row.sd, 2), number(row.median),
          '%s to %s' % (number(row.quartile_1), number(row.quartile_3))] for row in ratings.itertuples()])
     pairs = _rows(results.rating_tests, part)
     _pairs(report, pairs[pairs['p'].notna()], 'Pairs: medians',

@@ -280,7 +280,8 @@ mr_hand_interaction::TrainingStatus TrainingServer::status() const {
   status.object = session_.object().name;
   status.trials = static_cast<std::uint32_t>(session_.trials());
   status.trial = std::min(static_cast<std::uint32_t>(session_.position() + 1), status.trials);
-  status.repetition = static_cast<std::uint32_t>(session_.position() / task.objects.size()) + (task.practice ? 0U : 1U);
+  status.repetition =
+      static_cast<std::uint32_t>(session_.position() / task.objects.size()) + (task.practice ? 0U : 1U);
   status.goal = static_cast<std::uint32_t>(trial.goal() + 1);
   status.goals = static_cast<std::uint32_t>(task.goals.size());
   status.place = static_cast<std::uint32_t>(task.place_number(trial.goal()));

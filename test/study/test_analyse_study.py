@@ -13,8 +13,9 @@ import paths
 import made_up_study
 from study import trajectories, with_r
 
-TABLES = {'any.csv', 'anova.csv', 'bars.csv', 'classical_pairs.csv', 'comparison.csv', 'effects.csv', 'left_out.txt', 'participants.csv', 'post_hoc.csv', 'ratings.csv',
-          'rating_tests.csv', 'report.html', 'sphericity.csv', 'trials.csv', 'figures'}
+TABLES = {name + '.csv' for name in (
+    'any anova bars classical_pairs comparison data_dictionary demographics effects learning learning_tests participants '
+    'post_hoc ratings rating_tests sphericity tidy trials').split()} | {'left_out.txt', 'report.html', 'figures', 'trainees'}
 SOME = ('attempts', 'completion_time', 'drops')
 NO_PERSON = 'no person took part'
 
@@ -57,7 +58,7 @@ class Program(unittest.TestCase):
         names = [name[:-4] for name in self.figures() if name.endswith('.svg')]
         self.assertEqual(names, ['bars_implicit_0g', 'bars_implicit_simulated_0g', 'bars_soft_pad_0g', 'conditions_0g',
                                  'further_implicit_0g', 'further_implicit_simulated_0g', 'further_soft_pad_0g',
-                                 'ratings_0g', 'ratings_simulated_0g', 'trajectory_given'])
+                                 'learning_0g', 'learning_simulated_0g', 'ratings_0g', 'ratings_simulated_0g', 'trajectory_given'])
         self.assertEqual([name[:-4] for name in self.figures() if name.endswith('.png')], names)
         for name in names:
             drawn = self.read('figures', name + '.svg')

@@ -11,7 +11,7 @@ import pandas
 
 import paths
 import made_up_study
-from study import demographics, learning, plan, questions, session_folder, study_data
+from study import demographics, plan, questions, session_folder, study_data
 
 EARTH = (0, 0, -9.80665)
 
