@@ -88,8 +88,14 @@ def write_config(options, focus, file):
     file.flush()
 
 
+def covers_screen(file):
+    """Whether rviz's window is there: its start-up picture stands on a black screen."""
+    corner = subprocess.run(["convert", file, "-crop", "1x1+2+2", "-depth", "8", "rgb:-"], stdout=subprocess.PIPE, check=True)
+    return any(corner.stdout)
+
+
 def has_scene(file):
-    return colours_of(file) >= COLOURS
+    return covers_screen(file) and colours_of(file) >= COLOURS
 
 
 def drawn_picture(rviz, size, output, complete, deadline):

@@ -9,17 +9,19 @@ from . import bars, demographics, dictionary, distributions, learning, progress,
 from .analysis import analyse
 from .measures import COMPARED, CONDITIONS, MAIN, OF, QUESTIONS, in_order, plain
 from .report import write_report
-from .session_folder import find_sessions, read_session
+from .session_folder import StudyError, find_sessions, read_session
 from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
 
 
-def run(folders, output, pairs, ask_r=False):
-    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn. `ask_r`: for its models too."""
+def run(folders, output, pairs, ask_r=False, objects=()):
+    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn. `ask_r`: for its models too.
+    `objects`: trials of others are left out."""
     sessions = [read_session(folder) for folder in find_sessions(folders)]
+    sessions, notes_on_objects = _of_objects(sessions, objects)
     people, of_people, refused = demographics.table(sessions)
     sessions = [session for session in sessions if session.participant not in refused or session.simulated]
     paths, notes = _read_paths(sessions, pairs)
-    notes = of_people + notes
+    notes = notes_on_objects + of_people + notes
     data = gather(sessions) if sessions else None
     results = analyse(data) if data else None
     of_r = _models_of_r(data, notes) if data and ask_r else None
@@ -44,6 +46,17 @@ def run(folders, output, pairs, ask_r=False):
             raw, filtered, 'Trajectories: ' + label, source, pictures, file)
     write_report(os.path.join(output, 'report.html'), results, sessions, figures, notes)
     return notes
+
+
+def _of_objects(sessions, objects):
+    if not objects:
+        return sessions, []
+    known = {row['object'] for session in sessions for row in session.trials}
+    unknown = sorted(set(objects) - known)
+    if unknown:
+        raise StudyError("--object '%s': no trial has it; allowed: %s" % (unknown[0], ', '.join(sorted(known))))
+    kept = [s._replace(trials=[row for row in s.trials if row['object'] in objects]) for s in sessions]
+    return kept, ['trials of %s left out, as asked' % ', '.join(sorted(known - set(objects)))]
 
 
 def _models_of_r(data, notes):

@@ -9,7 +9,6 @@
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/training/session_folder.h"
-#include "revision.h"
 #include "sha256.h"
 
 namespace mrhi {
@@ -118,10 +117,6 @@ std::vector<std::string> in_order(const SessionSetup& setup) {
 }
 
 }  // namespace
-
-std::string source_revision() {
-  return MR_HAND_INTERACTION_REVISION;
-}
 
 SessionSetup session_setup(const std::string& task_file, const Task& task, Configuration configuration,
                            const std::vector<std::string>& scene_folders, const SceneOptions& options,

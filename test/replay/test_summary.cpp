@@ -47,6 +47,25 @@ TEST(ReplaySummaryJson, holds_what_the_summary_holds) {
   EXPECT_EQ(json["objects_held_at_end"][0].as<std::string>(), "cube");
 }
 
+TEST(ReplaySummaryJson, tells_how_it_stands_to_the_live_run_and_what_is_not_known) {
+  ReplaySummary summary = some_summary();
+  EXPECT_FALSE(YAML::Load(to_json(summary))["live_run"].IsDefined());
+  summary.rejected["stamp far ahead"] = 4;
+  summary.not_known = {"scene"};
+  summary.live.emplace();
+  summary.live->lost_by_queue = 9;
+  summary.live->compared = summary.live->same = 7;
+  summary.live->changes = {"0.100 s: reset"};
+  const YAML::Node json = YAML::Load(to_json(summary));
+  EXPECT_EQ(json["frames_lost"]["by_queue"].as<int>(), 9);
+  EXPECT_EQ(json["frames_lost"]["by_stamp"].as<int>(), 4);
+  EXPECT_EQ(json["frames_lost"]["by_order"].as<int>(), 0);
+  EXPECT_EQ(json["live_run"]["same"].as<int>(), 7);
+  EXPECT_TRUE(json["live_run"]["parts_at"].IsNull());
+  EXPECT_EQ(json["live_run"]["changes"][0].as<std::string>(), "0.100 s: reset");
+  EXPECT_EQ(json["not_known"][0].as<std::string>(), "scene");
+}
+
 TEST(ReplaySummaryJson, the_hash_is_sixteen_hex_digits) {
   EXPECT_NE(to_json(some_summary()).find("\"state_hash\": \"0000000000000abc\""), std::string::npos);
 }

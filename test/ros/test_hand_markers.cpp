@@ -80,9 +80,9 @@ TEST(HandMarkers, what_touches_is_highlighted) {
   const auto before = shown.first("hand").colors;
   const int touching = capsule_index(1, 3);
   RenderedHand& rendered = shown.result.rendered[0];
-  const auto i = static_cast<std::size_t>(touching);
-  rendered.touching[i] = true;
-  rendered.pressed[i] = {5.0, rendered.hand.capsules[i].end};
+  const auto pad = static_cast<std::size_t>(touching);
+  rendered.touching[pad] = true;
+  rendered.pressed[pad] = {5.0, rendered.hand.capsules[pad].end};
   shown.update();
   const auto& after = shown.first("hand").colors;
   int changed = 0;

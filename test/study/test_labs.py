@@ -221,6 +221,16 @@ class Tables(Labs):
         self.assertEqual((len(gravity), gravity['n'].iloc[0]), (1, 4))
         self.assertTrue(2 <= gravity['df_error'].iloc[0] < 4)  # 2, and more where a variance is estimated as 0
 
+    def test_of_some_objects_alone(self):
+        made_up_study.write_study(os.path.join(self.root, 's'), 4)
+        output = os.path.join(self.root, 'results')
+        done = self.run_script('analyse_study', os.path.join(self.root, 's'), '--object', 'cube', '--output', output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(set(self.table(output, 'trials')['object']), {'cube'})
+        done = self.run_script('analyse_study', os.path.join(self.root, 's'), '--object', 'pear', '--output', output)
+        self.assertEqual((done.returncode, done.stderr.count('\n')), (1, 1))
+        self.assertIn("--object 'pear': no trial has it; allowed: cube, flat_cuboid, long_cuboid", done.stderr)
+
     def test_tidy_has_every_value_once(self):
         made_up_study.write_study(os.path.join(self.root, 's'), 2, repetitions=1)
         output = self.analyse(os.path.join(self.root, 's'))
