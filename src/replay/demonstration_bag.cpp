@@ -5,6 +5,7 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "demonstration.h"
@@ -22,6 +23,7 @@ class DemonstrationBag {
   void write(const DemonstrationFrame& frame) {
     header_.stamp = to_ros_time(frame.stamp);
     header_.frame_id = "world";
+    recorded_ = std::max(header_.stamp, ros::TIME_MIN);  // no bag takes 0, with which a recording may begin
     transforms_.transforms.clear();
     for (const auto& [name, object] : frame.objects) write_object(name, object);
     for (std::size_t side = 0; side < frame.hands.size(); ++side)
@@ -29,9 +31,9 @@ class DemonstrationBag {
     for (const std::string& event : frame.events) {
       std_msgs::String message;
       message.data = event;
-      bag_.write("/events", header_.stamp, message);
+      bag_.write("/events", recorded_, message);
     }
-    bag_.write("/tf", header_.stamp, transforms_);
+    bag_.write("/tf", recorded_, transforms_);
   }
 
  private:
@@ -41,7 +43,7 @@ class DemonstrationBag {
     wrench.header = header_;
     wrench.wrench.force = vector_message(object.force);
     wrench.wrench.torque = vector_message(object.torque);
-    bag_.write("/demonstration/" + name + "/wrench", header_.stamp, wrench);
+    bag_.write("/demonstration/" + name + "/wrench", recorded_, wrench);
   }
 
   void write_hand(const std::string& side, const Hand& hand) {
@@ -52,14 +54,14 @@ class DemonstrationBag {
       joints.name.push_back(side + "_" + name);
       joints.position.push_back(angle);
     }
-    bag_.write("/demonstration/" + side + "_hand/joint_states", header_.stamp, joints);
+    bag_.write("/demonstration/" + side + "_hand/joint_states", recorded_, joints);
   }
 
   void write_pose(const std::string& topic, const std::string& frame, const Pose& pose) {
     geometry_msgs::PoseStamped message;
     message.header = header_;
     message.pose = to_message(pose);
-    bag_.write(topic, header_.stamp, message);
+    bag_.write(topic, recorded_, message);
     geometry_msgs::TransformStamped transform;
     transform.header = header_;
     transform.child_frame_id = frame;
@@ -70,6 +72,7 @@ class DemonstrationBag {
 
   rosbag::Bag bag_;
   std_msgs::Header header_;
+  ros::Time recorded_;
   tf2_msgs::TFMessage transforms_;
 };
 

@@ -58,11 +58,10 @@ void IslandProblem::begin(ContactStep& step, const Island& island,
 
 void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
                                  const ContactConfiguration& configuration) {
-  const auto number = [&](std::size_t body) {
-    const auto place = std::lower_bound(island.bodies.begin(), island.bodies.end(), body,
-                                        [](const IslandBody& x, std::size_t y) { return x.body < y; });
-    return static_cast<int>(place - island.bodies.begin());
-  };
+  number_.resize(step.bodies.size());
+  for (std::size_t i = 0; i < island.bodies.size(); ++i)
+    number_[island.bodies.first[i].body] = static_cast<int>(i);
+  const auto number = [&](std::size_t body) { return number_[body]; };
   contacts_.clear();
   const auto add = [&](const auto& touch, int a, int b) -> IslandContact& {
     contacts_.emplace_back();
@@ -112,8 +111,13 @@ void IslandProblem::couple() {
     if (contact.a != IslandContact::kAlone) system_.couple(contact.a, contact.b);
   }
   system_.arrange();
+  // The contacts of a pair follow each other.
+  const IslandContact* last = nullptr;
   for (IslandContact& contact : contacts_) {
-    if (contact.a != IslandContact::kAlone) contact.coupling = system_.coupling(contact.a, contact.b);
+    if (contact.a == IslandContact::kAlone) continue;
+    const bool same = last != nullptr && last->a == contact.a && last->b == contact.b;
+    contact.coupling = same ? last->coupling : system_.coupling(contact.a, contact.b);
+    last = &contact;
   }
 }
 

@@ -91,6 +91,7 @@ class IslandProblem {
   Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;
   BlockSystem system_;
   double scale_ = 0.0;
+  std::vector<int> number_;  // of each of the scene's bodies in the island
   bool on_fixture_ = false;
 };
 

@@ -66,13 +66,18 @@ void Islands::add_gripped(const ContactStep& step) {
 void Islands::link_bodies(const ContactStep& step) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
+  listed_.assign(step.scene.bodies.size(), false);
+  const auto list = [&](std::uint16_t body) {
+    if (!listed_[body]) bodies_.push_back({body, body, 0, 0});
+    listed_[body] = true;
+  };
   for (std::size_t i = 0; i < step.body_contacts.size(); ++i) {
     const BodyContact& contact = step.body_contacts[i];
     if (!couples(step, contact)) continue;
     links_.push_back({contact.key.b, i});
-    bodies_.push_back({contact.key.b, contact.key.b, 0, 0});
+    list(contact.key.b);
     if (step.scene.bodies[contact.key.a].fixed) continue;
-    bodies_.push_back({contact.key.a, contact.key.a, 0, 0});
+    list(contact.key.a);
     unite(contact.key.a, contact.key.b);
   }
   gather();
@@ -87,9 +92,10 @@ void Islands::gather() {
   });
   const auto same = [](const IslandBody& x, const IslandBody& y) { return x.body == y.body; };
   bodies_.erase(std::unique(bodies_.begin(), bodies_.end(), same), bodies_.end());
-  std::sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) {
+  const auto before = [](const Link& x, const Link& y) {
     return std::tie(x.root, x.index) < std::tie(y.root, y.index);
-  });
+  };
+  if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
 }
 
 void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>& groups) {

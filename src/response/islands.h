@@ -56,7 +56,8 @@ class Islands {
   std::vector<IslandBody> bodies_;
   std::vector<Link> links_;
   std::vector<Island> islands_, apart_;
-  std::vector<int> parent_;  // by body
+  std::vector<int> parent_;   // by body
+  std::vector<char> listed_;  // by body: whether it is among them already
 };
 
 }  // namespace mrhi

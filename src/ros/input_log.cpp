@@ -3,8 +3,8 @@
 #include <boost/make_shared.hpp>
 #include <utility>
 
-#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "../simulation/state_bytes.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 namespace {

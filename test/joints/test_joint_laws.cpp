@@ -145,8 +145,10 @@ TEST(JointLatch, holds_up_to_its_force) {
   }
 }
 
+/// As a drawer that is closed: what stops it is its end.
 TEST(JointLatch, catches_what_comes_back) {
   Scene scene = rail(0.0);
+  scene.joints[0].lower = 0.0;
   scene.joints[0].latch = Latch{0.0, 10.0, 0.003};
   scene.joints[0].start = 0.05;
   scene.bodies[0].start_twist.linear = {0, 0, -0.1};

@@ -46,9 +46,11 @@ class Panel : public ::testing::TestWithParam<double> {
   }
   static Hand touch(const Vector3& from, const Vector3& to) { return finger(from, to, kRadius); }
   /// Two fingertips along `along`, on both sides of a place in the direction `across`.
-  static Hand pinch(const Vector3& place, const Vector3& along, const Vector3& across) {
+  static Hand pinch(const Vector3& place, const Vector3& along, const Vector3& across,
+                    const Quaternion& turn = Quaternion::Identity()) {
     Hand hand = finger(place + across - along, place + across + along, kRadius);
     add_finger(hand, capsule_index(0, 3), place - across - along, place - across + along, kRadius);
+    hand.palm = {place, turn};
     return hand;
   }
 
@@ -84,7 +86,8 @@ TEST_P(Panel, its_switch_flips_with_one_click_and_stays) {
     return touch({-0.12, 0.122, height}, {-0.10, 0.122, height});
   });
   EXPECT_EQ(clicks_, 1);
-  EXPECT_NEAR(position("switch_hinge"), 0.35, 0.02);  // gravity pulls at its end
+  // Gravity pulls at its end: m g l over the detents' stiffness is 0.026.
+  EXPECT_NEAR(position("switch_hinge"), 0.35, 0.03);
 }
 
 TEST_P(Panel, its_valve_turns_and_stays_where_it_is_left) {
@@ -119,7 +122,7 @@ TEST_P(Panel, its_door_follows_the_fingers_on_its_handle) {
     const double grip = 0.017 - 0.006 * smooth(t, 0.4);
     angle = 1.2 * smooth(t - 0.5, 2.0);
     const Quaternion turn(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-    return pinch(hinge + turn * (handle - hinge), {0, 0, 0.015}, turn * Vector3(grip, 0, 0));
+    return pinch(hinge + turn * (handle - hinge), {0, 0, 0.015}, turn * Vector3(grip, 0, 0), turn);
   });
   EXPECT_LT(worst, 0.05);
   EXPECT_EQ(opened_, 1);

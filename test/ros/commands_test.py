@@ -22,7 +22,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Pose, PoseArray
 
-from mr_hand_interaction.msg import TrainingStatus
+from mr_hand_interaction.msg import RecordedFile, SimulationInput, TrainingStatus
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
@@ -139,9 +139,16 @@ class CommandsTest(unittest.TestCase):
     def write_files(cls):
         """What the commands name as the user's."""
         bag = os.path.join(cls.folder, "hand.bag")
+        with open(os.path.join(PACKAGE, "config", "scenes", "cube.urdf"), "rb") as scene:
+            files = [RecordedFile("scene.urdf", scene.read())]
         with rosbag.Bag(bag, "w") as file:
-            for row in recording(cls.folder, 30)[:90]:
+            begin = SimulationInput(kind=SimulationInput.BEGIN, run=1, text="{version: '0', scene: cube}", files=files)
+            file.write("/simulation_input", begin, rospy.Time.from_sec(999.0))
+            for number, row in enumerate(recording(cls.folder, 30)[:90], 1):
                 stamp = rospy.Time.from_sec(1000.0 + float(row["time_s"]))
+                taken = SimulationInput(kind=SimulationInput.FRAME, run=1, sequence=number, time=stamp.to_nsec(),
+                                        expected=stamp.to_nsec())
+                file.write("/simulation_input", taken, stamp)
                 message = PoseArray(poses=[Pose() for _ in joints(row, 21)])
                 message.header.stamp, message.header.frame_id = stamp, "leap_hands"
                 for pose, place in zip(message.poses, joints(row, 21)):

@@ -222,7 +222,7 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
       ADD_FAILURE() << wrong;
     } catch (const SceneError& error) {
       test::expect_words(error.what(),
-                         {wrong, "ball, cube, cube_on_table, flat_cuboid, long_cuboid, mixed, rack"});
+                         {wrong, "ball, cube, cube_on_table, flat_cuboid, long_cuboid, mixed, panel, rack"});
     }
   }
 }

@@ -39,7 +39,7 @@ struct Lid {
       const Vector3 place = turn * Vector3(at, 0, side * off);
       add_finger(result, capsule_index(side > 0 ? 1 : 0, 3), place - along, place + along, radius);
     }
-    result.palm.position = turn * Vector3(at + 0.08, 0, 0);
+    result.palm = {turn * Vector3(at + 0.08, 0, 0), turn};
     return result;
   }
 };
