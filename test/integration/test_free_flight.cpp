@@ -188,6 +188,7 @@ TEST(FreeFlight, a_symmetric_body_turns_at_its_constant_rate) {
 TEST(FreeFlight, a_fixture_stays) {
   Body body = asymmetric_body();
   body.fixed = true;
+  complete(body);
   BodyState state = start_state(body);
   free_flight(body, Vector3(0, 0, -9.81), 1.0, state);
   EXPECT_EQ(state.pose.position, Vector3::Zero());
