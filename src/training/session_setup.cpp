@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a mesh
-constexpr std::size_t kShown = 60;                          // of a line that differs
+constexpr std::size_t kShown = 60, kBefore = 30;            // of a line that differs
 const char* const kSums = "SHA256SUMS";
 const char* const kAllowed = "; allowed: the same, or another folder";
 
@@ -83,8 +83,17 @@ void write_whole(const fs::path& file, const std::string& text) {
     throw SessionError(file.string() + ": cannot be written; allowed: a folder to write to with space left");
 }
 
-std::string shown(const std::string& line) {
-  return "'" + text::one_line(line, kShown) + "'";
+/// From shortly before where it differs.
+std::string shown(const std::string& line, std::size_t differs) {
+  const std::size_t from = differs > kBefore ? differs - kBefore : 0;
+  return (from > 0 ? "'..." : "'") + text::one_line(line.substr(from), kShown) + "'";
+}
+
+std::size_t first_difference(const std::string& a, const std::string& b) {
+  const std::size_t shorter = std::min(a.size(), b.size());
+  return static_cast<std::size_t>(
+      std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(shorter), b.begin()).first -
+      a.begin());
 }
 
 /// `there` and `here` differ.
@@ -101,8 +110,9 @@ std::string shown(const std::string& line) {
     if (!more_b) of_b = "no such line";
     more = more_a || more_b;
   }
+  const std::size_t differs = first_difference(of_a, of_b);
   throw SessionError(file + ":" + std::to_string(number) + ": the session in this folder was begun with " +
-                     shown(of_a) + ", this one has " + shown(of_b) + kAllowed);
+                     shown(of_a, differs) + ", this one has " + shown(of_b, differs) + kAllowed);
 }
 
 /// What people read comes before the sums, which differ wherever anything does.
