@@ -49,7 +49,7 @@ TEST(ContactMarkers, the_share_of_the_friction_limit_is_a_colour_from_blue_to_or
   Shown shown;
   Contact contact;
   contact.radius = 0.01;
-  float blue_before = 2.0f;  // less red: orange has none of it
+  float blue_before = 2.0f;                          // less red: orange has none of it
   for (const double tangential : {0.0, 0.4, 0.8}) {  // of 0.8, the limit at a push of 1 N
     contact.force = {tangential, 0.0, -1.0};
     shown.result.contacts = {contact};

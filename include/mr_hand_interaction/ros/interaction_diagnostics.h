@@ -29,13 +29,14 @@ class InteractionDiagnostics {
   /// From the arrival of a frame until it was done with [s].
   void waited(double seconds) { input_.waited(seconds); }
   void dropped_while_paused() { ++dropped_; }
-  /// Adds what else there is to tell.
+  /// Tells the state, in a status of its own.
   using Teller = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
   void watch(Teller teller) { teller_ = std::move(teller); }
   void step(Nanoseconds duration) { step_times_.add(duration); }
 
  private:
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void report_state(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Teller teller_;
   InputStatistics input_;

@@ -70,7 +70,7 @@ struct Task {
   std::vector<Fixture> fixtures;      ///< there in all trials
   bool latin_square = true;           ///< order of objects; else as listed
   int repetitions = 1;
-  bool practice = false;  ///< once through all objects before, as repetition 0, which no analysis counts
+  bool practice = false;    ///< once through all objects before, as repetition 0, which no analysis counts
   double time_out = 120.0;  ///< of a trial [s]
   std::vector<Goal> goals;  ///< one after the other
 
