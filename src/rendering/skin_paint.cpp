@@ -88,7 +88,7 @@ Rgb finger_colour(int finger, const Vector3& vertex, const Rgb& skin) {
 
 }  // namespace
 
-SkinPaint::SkinPaint(const Skin& skin) : skin_(skin) {
+SkinPaint::SkinPaint(const Skin& skin) {
   tints_.reserve(skin.size());
   for (std::size_t v = 0; v < skin.size(); ++v) {
     int most = 0;

@@ -13,7 +13,7 @@ namespace mrhi {
 /// around where fingers cover each other or the palm (spheres as occluders). Immutable.
 class SkinPaint {
  public:
-  explicit SkinPaint(const Skin& skin);  ///< keeps a reference
+  explicit SkinPaint(const Skin& skin);
 
   /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
   /// presses, and the more so the harder.
@@ -29,7 +29,6 @@ class SkinPaint {
   };
   float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
                 const std::vector<int>& touched) const;
-  const Skin& skin_;
   std::vector<Tint> tints_;
 };
 
