@@ -53,6 +53,7 @@ class Springs {
     one.spring.depth = number(0.002);
     one.spring.twist = number(0.5);
     one.spring.ahead = 0.0055;
+    one.spring.fade = 10.0;
     one.spring.stiffness = 2000.0 + number(1000.0);
     one.spring.twist_stiffness = number(1.0) > 0.0 ? 1.25 : 0.0;
     one.spring.friction = 0.8;
