@@ -98,4 +98,17 @@ std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scen
   return transforms;
 }
 
+sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
+                                             const std_msgs::Header& header) {
+  sensor_msgs::JointState message;
+  message.header = header;
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    message.name.push_back(scene.joints[i].name);
+    message.position.push_back(state.joints[i].position);
+    message.velocity.push_back(joint_velocity(scene, i, state.bodies));
+    message.effort.push_back(state.joints[i].effort);
+  }
+  return message;
+}
+
 }  // namespace mrhi

@@ -5,6 +5,7 @@
 #include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <sensor_msgs/JointState.h>
 #include <std_msgs/Header.h>
 
 #include <vector>
@@ -23,6 +24,9 @@ mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const Fra
                                                    const std_msgs::Header& header);
 mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Event& event,
                                                     const std_msgs::Header& header);
+/// The scene's joints, in its order: place, velocity, and what the joint's own forces gave [rad or m].
+sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
+                                             const std_msgs::Header& header);
 /// The frame of each object's URDF link, named after the object; fixtures too.
 std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
                                                                const SimulationState& state,

@@ -3,6 +3,7 @@
 #include <mr_hand_interaction/ContactArray.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <sensor_msgs/JointState.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <boost/make_shared.hpp>
@@ -36,6 +37,7 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
       rendered_hands_(node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue)),
       tracked_hands_(node.advertise<mr_hand_interaction::HandFrame>("tracked_hands", kQueue)),
       objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
+      joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", kQueue)),
       contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
       events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
       marker_publisher_(
@@ -124,6 +126,8 @@ void ResultPublisher::publish_rest(const FrameResult& result, const std_msgs::He
 void ResultPublisher::publish_objects(const std_msgs::Header& header) {
   if (objects_.getNumSubscribers() > 0)
     publish_shared(objects_, objects_message(simulation_->scene(), simulation_->state(), header));
+  if (!simulation_->scene().joints.empty() && joint_states_.getNumSubscribers() > 0)
+    publish_shared(joint_states_, joint_states_message(simulation_->scene(), simulation_->state(), header));
   if (header.stamp == transforms_stamp_) return;  // tf2 warns of a stamp that it has
   transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
   transforms_stamp_ = header.stamp;

@@ -51,7 +51,8 @@ class ResultPublisher {
   std::unique_ptr<Markers> markers_;
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
-  ros::Publisher rendered_hands_, tracked_hands_, objects_, contacts_, events_, marker_publisher_;
+  ros::Publisher rendered_hands_, tracked_hands_, objects_, joint_states_, contacts_, events_,
+      marker_publisher_;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   tf2_ros::TransformBroadcaster transforms_;
   ros::Time transforms_stamp_;
