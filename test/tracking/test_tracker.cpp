@@ -127,6 +127,25 @@ TEST_F(Tracker, a_joint_faster_than_max_speed_has_jumped) {
   EXPECT_FALSE(hands_[0].emerged);
 }
 
+TEST_F(Tracker, max_speed_is_the_speed_from_which_on_it_has) {
+  const double speed = configuration_.tracking.max_speed;
+  frame(0.00, {hand_at(0.0)});
+  frame(0.01, {hand_at(0.0099 * speed)});
+  EXPECT_FALSE(hands_[0].appeared);
+  frame(0.02, {hand_at(0.0099 * speed + 0.0101 * speed)});
+  EXPECT_TRUE(hands_[0].appeared);
+}
+
+TEST_F(Tracker, a_new_id_within_30_cm_of_a_held_hand_is_that_hand_and_farther_off_another) {
+  for (const double way : {0.29, 0.31}) {
+    hands_.assign(kMaxHands, HandTrack());
+    frame(0.00, {hand_at(0.0, 7)});
+    frame(0.05, {});
+    frame(0.10, {hand_at(way, 8)});
+    EXPECT_EQ(active(), way < 0.3 ? 1 : 2) << way;
+  }
+}
+
 TEST_F(Tracker, two_hands_keep_their_tracks_when_the_message_swaps_them) {
   frame(0.00, {hand_at(-0.1, 1, Side::left), hand_at(0.1, 2, Side::right)});
   frame(0.01, {hand_at(0.1, 2, Side::right), hand_at(-0.1, 1, Side::left)});
