@@ -15,8 +15,8 @@ const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f
 const Rgb kBackground(0.227f, 0.247f, 0.278f);         // of rviz/interaction.rviz: the wrist fades into it
 constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
 // A touch is seen around its middle as far as this, in radii of what presses.
-constexpr double kSpot = 2.0, kSpotCore = 0.6;
-constexpr double kLightTouch = 0.5;  // how red it is without force
+constexpr double kSpot = 2.0, kSpotCore = 1.1;
+constexpr double kLightTouch = 0.8;  // how red it is without force
 constexpr double kFirm = 6.0;        // and with this force it is as red as it gets [N]
 constexpr float kOcclusion = 0.7f, kDarkest = 0.4f;
 
