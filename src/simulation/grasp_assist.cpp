@@ -63,10 +63,23 @@ double way_to_let_go(const Grip& grip, double part) {
 
 /// The body goes with the fingers, but not with those that open: they leave it where the palm has it.
 void follow(const HandTrack& track, double seconds, Grip& grip) {
-  grip.middle_before = grip.middle;
+  grip.in_palm_before = grip.in_palm;
   const double now = opening(grip, track.current), opened = now - grip.least;
   const bool leaves = now - opening(grip, track.previous) > kLeaves * seconds;
-  if (!leaves && opened <= way_to_let_go(grip, kOpens)) grip.middle = middle(grip, track.current);
+  if (!leaves && opened <= way_to_let_go(grip, kOpens)) grip.in_palm = moved_in_palm(grip, track.current);
+}
+
+/// What was taken before goes on from where its pads were then; pads that are new to it from where they are.
+void keep_pads(const Grip& before, const Hand& from, const Hand& to, Grip& grip) {
+  const DistalEnds here = distal_ends(from);
+  grip.pads = before.pads;
+  grip.in_palm_before = before.in_palm_before;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const auto finger = static_cast<int>(i / 2);
+    const bool carried = before.takes_part(finger) || (finger == 0 && !before.by_palm);
+    if (!carried) grip.pads[i] = grip.in_palm_before.to_local(here[i]);
+  }
+  grip.in_palm = moved_in_palm(grip, to);
 }
 
 /// Contacts of one side of a grip.
@@ -194,13 +207,12 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   grip.stiffness = kGripStiffness * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposed.base + opposed.fingers);
   const double reach = std::clamp(0.5 * (opposed.base - opposed.fingers).norm(), kSmallest, kLargest);
-  grip.middle_before = mrhi::middle(grip, from);
-  grip.middle = mrhi::middle(grip, to);
-  const Pose frame = grip_frame(from, grip.middle_before);
+  grip.pads = distal_ends(from);
+  grip.in_palm = moved_in_palm(grip, to);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
     const Vector3 point = centre + reach / std::sqrt(3.0) * corner;
-    grip.in_hand[i] = frame.to_local(point);
+    grip.in_hand[i] = from.palm.to_local(point);
     grip.in_body[i] = pose.to_local(point);
   }
   const auto after = [](const Grip& x, const Grip& y) {
@@ -214,6 +226,7 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   grip.least = std::min(grip.least, place->least);
   if (place->by_palm == grip.by_palm) grip.fingers |= place->fingers;
   grip.in_hand = place->in_hand, grip.in_body = place->in_body;
+  keep_pads(*place, from, to, grip);
   *place = grip;
 }
 
@@ -256,8 +269,8 @@ void GraspAssist::give_way(const SimulationState& state, double step, Contact& c
 
 /// Where the springs' ends on the hand are, and how fast.
 void GraspAssist::place(double fraction, const HandTrack& track, Grip& grip) const {
-  const Pose from = grip_frame(track.previous, grip.middle_before);
-  const Pose to = grip_frame(track.current, grip.middle);
+  const Pose from = track.previous.palm * grip.in_palm_before;
+  const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 start = from * grip.in_hand[i], way = to * grip.in_hand[i] - start;
     grip.point[i] = start + fraction * way;
