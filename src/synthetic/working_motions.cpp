@@ -161,8 +161,8 @@ namespace {
 
 constexpr double kHatchFace = 0.115;  // where a fingertip is that turns a latch: before the hatch [m]
 
-/// The fingertip takes a latch at 45 mm from its axle, `up` or down, by a quarter of a turn. It is on the arc by
-/// its places and velocities at every 30 degrees.
+/// The fingertip takes a latch at 45 mm from its axle, `up` or down, by a quarter of a turn. It is on the arc
+/// by its places and velocities at every 30 degrees.
 void turn_latch(Script& script, const Vector3& axle, double up) {
   constexpr double kArm = 0.04, kUnder = 0.006, kParts = 3.0, kAngle = M_PI / 2.0, kTime = 2.0;
   const double radius = human_hand().fingers[1].radius;
@@ -187,12 +187,13 @@ void turn_latch(Script& script, const Vector3& axle, double up) {
   script.then(0.5, shifted(wrist(kAngle, off), back), posture);
 }
 
-/// Tips on the arms of tongs at half their length, each arm at `angle` from the middle; in the scene's object's
-/// frame.
+/// Tips on the arms of tongs at half their length, each arm at `angle` from the middle; in the scene's
+/// object's frame.
 Grasp tongs_grasp(double angle) {
   Grasp grasp = shipped_grasp("cube");
   const double c = std::cos(angle), s = std::sin(angle);
   for (FingertipContact& contact : grasp.contacts) {
+    contact.depth *= 1.7;  // arms give way, and the grip with them
     const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + contact.point.x();
     contact.normal = {-s, side * c, 0.0};
     contact.point = Vector3(-0.07 + along * c, side * along * s, 0.0) + 0.004 * contact.normal;
@@ -216,7 +217,7 @@ ScriptedMotion open_hatch() {
 
 ScriptedMotion squeeze_tongs() {
   const Grasp open_grasp = tongs_grasp(0.29);
-  const GraspPostures open(open_grasp), closed(tongs_grasp(0.12));
+  const GraspPostures open(open_grasp), half(tongs_grasp(0.2)), closed(tongs_grasp(0.1));
   const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
   const Pose before = shifted(at, 0.10 * open_grasp.retreat);
   const Vector3 aside(0.05, -0.16, 0.02);
@@ -225,7 +226,8 @@ ScriptedMotion squeeze_tongs() {
   script.then(0.9, before, open.open, -0.15 * open_grasp.retreat).then(0.8, at, open.open);
   script.then(0.6, at, open.near).then(0.7, at, open.pressing).by_way_of(open.touching, open.touching_share);
   for (int squeeze = 0; squeeze < 2; ++squeeze)
-    script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, open.pressing).hold(0.2);
+    script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, half.pressing).hold(0.2);
+  script.then(0.5, at, open.pressing);
   script.then(0.7, at, open.near).by_way_of(open.touching, 1.0 - open.touching_share);
   script.then(0.5, at, open.open).then(0.7, before, open.open, 0.1 * open_grasp.retreat);
   script.then(0.8, shifted(before, aside), relaxed_posture());

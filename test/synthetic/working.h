@@ -10,11 +10,11 @@ namespace mrhi::testing {
 struct Work {
   const char* motion;
   const char* joint;
-  double to;              // where the hand leaves it, or the furthest that a push has it [rad, m]
-  double left;            // where it is at the end of the run
-  double within;          // of both [rad, m]
-  bool grips;             // takes hold of it; else it pushes
-  double fastest;         // that the joint may ever be [rad/s, m/s]
+  double to;       // where the hand leaves it, or the furthest that a push has it [rad, m]
+  double left;     // where it is at the end of the run
+  double within;   // of both [rad, m]
+  bool grips;      // takes hold of it; else it pushes
+  double fastest;  // that the joint may ever be [rad/s, m/s]
 };
 
 /// Peaks of minimum jerk are 1.875 times the mean: 60 degrees in 1.6 s, 2 s and 2.4 s, 120 mm in 1.6 s. A
@@ -23,12 +23,12 @@ inline const std::vector<Work>& works() {
   static const std::vector<Work> all = {
       {"press_button", "button_slide", 0.006, 0.0, 1e-4, false, 0.3},
       {"flip_switch", "switch_hinge", 0.4, 0.35, 0.03, false, 40.0},
-      {"pull_lever", "lever_hinge", 0.46, 0.46, 0.15, false, 3.0},
+      {"pull_lever", "lever_hinge", 0.46, 0.46, 0.15, false, 6.0},
       {"turn_valve", "valve_axle", M_PI / 3.0, M_PI / 3.0, 0.15, true, 3.0},
       {"open_drawer", "drawer_slide", 0.12, 0.12, 0.01, true, 0.5},
       {"open_door", "door_hinge", M_PI / 3.0, M_PI / 3.0, 0.1, true, 3.0},
       {"open_hatch", "hatch_hinge", M_PI / 3.0, M_PI / 3.0, 0.1, true, 3.0},
-      {"squeeze_tongs", "tongs_hinge", 0.185, 0.58, 0.06, true, 5.0},
+      {"squeeze_tongs", "tongs_hinge", 0.13, 0.58, 0.06, true, 5.0},
   };
   return all;
 }
@@ -71,7 +71,8 @@ inline Moving moving(const ScriptedMotion& motion) {
   return result;
 }
 
-/// One run of a working motion as a user meets it (default filter and step); gravity sets in as its staging says.
+/// One run of a working motion as a user meets it (default filter and step); gravity sets in as its staging
+/// says.
 inline Worked work_at(const Work& work, const Staging& staging) {
   SyntheticHandOptions options;
   options.motion = work.motion;
@@ -114,11 +115,12 @@ inline Worked work_at(const Work& work, const Staging& staging) {
     }
     const double position = simulation.state().joints[joint].position;
     result.finite = result.finite && std::isfinite(position) && simulation.result().not_finite.empty();
-    result.fastest = std::max(
-        result.fastest, std::abs(joint_velocity(simulation.scene(), joint, simulation.state().bodies)));
+    result.fastest = std::max(result.fastest,
+                              std::abs(joint_velocity(simulation.scene(), joint, simulation.state().bodies)));
     if (time < away) result.moved_before = std::max(result.moved_before, std::abs(position - start));
     if (work.grips && time <= times.to) result.furthest = position;
-    if (!work.grips && std::abs(position - start) > std::abs(result.furthest - start)) result.furthest = position;
+    if (!work.grips && std::abs(position - start) > std::abs(result.furthest - start))
+      result.furthest = position;
     const bool turns = times.from > 0.0 && hand_way(motion, times.from, times.to) > 0.0;
     if (turns && time > times.from && time < times.opens)
       result.lag = std::max(result.lag, std::abs(position - start - hand_way(motion, times.from, time)));
