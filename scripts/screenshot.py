@@ -12,7 +12,7 @@ import rospy
 import yaml
 from std_srvs.srv import SetBool
 
-from watch_demo import COLOURS, STRIKES, Demo, colours_of, grab, join_master
+from watch_demo import COLOURS, Demo, colours_of, grab, join_master
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
@@ -60,7 +60,7 @@ def has_come(demo, options):
         return bool(demo.touched)
     if options.moment == "grasp":
         return any(thing.held for thing in demo.objects.values())
-    return demo.struck() if options.motion in STRIKES else demo.carried()
+    return demo.done(options.motion)
 
 
 def middle(demo):

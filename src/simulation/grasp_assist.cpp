@@ -188,12 +188,13 @@ bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
   return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
 }
 
+/// On what hangs on joints no touch gives way: tongs are closed by pressing either arm from one side.
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   const auto look =
       closing_hand_.look_at(state.hands[slot], body, state.bodies[static_cast<std::size_t>(body)].pose);
   if (look.opposed) {
     if (look.opposed->depth > kPulp) take(slot, body, *look.opposed, state);
-  } else if (look.closing != 0) {
+  } else if (look.closing != 0 && scene_.bodies[static_cast<std::size_t>(body)].flies) {
     int fingers = 0;
     for (int finger = 1; finger < kFingers; ++finger) fingers += look.closing >> finger & 1;
     closing_.push_back({slot, static_cast<std::size_t>(body), fingers >= kGrab});
