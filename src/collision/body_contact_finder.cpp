@@ -113,7 +113,7 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
   contact.share = 1.0 / touch.manifold.count;
   contact.first_touch = touch.time;
-  contact.force.setZero();
+  if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kApart;
   contact.material = together(pair.a.body.material, pair.b.body.material);
   const double then = std::max(touch.time, 0.0);
