@@ -9,11 +9,14 @@ namespace mrhi {
 namespace {
 
 /// A crowd's budget: contacts relaxed to and fro in a step, but this many turns at least, and at most.
-constexpr int kMostWork = 1500, kLeastTurns = 12, kMostTurns = 60;
+constexpr int kMostWork = 1000, kLeastTurns = 10, kMostTurns = 40;
 /// Where nothing is faster than what falls for so many steps, turns go on: what comes to rest should.
-constexpr double kNearlyRests = 2.0;
+constexpr double kNearlyRests = 1.0;
 /// A turn that changes velocities by less, as a part of what contacts have made of them, is the last.
 constexpr double kConverged = 1e-6;
+/// A contact's point is within this part of its body's radius, margin and all.
+constexpr double kRoom = 1.2;
+constexpr double kNever = 1e300;  // [m/s]
 /// A finger that yields has a push that is not simply proportional to depth.
 constexpr double kNeverYields = 1e6;
 /// Below this part of the speed at which a release gives no push any more, it takes nothing of it.
@@ -46,6 +49,7 @@ void CrowdProblem::begin(const ContactStep& step, const Island& island,
   step_ = step.step;
   bodies_.clear();
   free_.clear();
+  longest_arm_ = 0.0;
   number_.assign(step.bodies.size(), -1);
   for (const IslandBody& body : island.bodies) {
     number_[body.body] = static_cast<int>(bodies_.size());
@@ -67,6 +71,7 @@ void CrowdProblem::add_body(const mrhi::Body& body, const BodyState& state, cons
   free_.push_back(
       {state.linear_momentum / body.mass + step_ * step.gravity, inverse_inertia * state.angular_momentum});
   bodies_.push_back({free_.back(), 1.0 / body.mass, inverse_inertia});
+  longest_arm_ = std::max(longest_arm_, kRoom * body.bounding_radius);
 }
 
 template <typename Touch>
@@ -111,6 +116,8 @@ void CrowdProblem::add_links(const ContactStep& step, const Island& island,
     add_link(step, link.index);
     carry(borne, points_.back());
   }
+  seen_.clear();
+  least_missing_ = 0.0;
   admit(step, step_ * step.gravity.norm());
 }
 
@@ -121,22 +128,39 @@ void CrowdProblem::add_link(const ContactStep& step, std::size_t index) {
   linked_.push_back(index);
 }
 
-/// True if the surfaces would press on each other, were they to close faster by `slow`.
-bool CrowdProblem::closes(const BodyContact& touch, double slow) const {
+/// How much faster the surfaces would have to close to press on each other [m/s].
+double CrowdProblem::missing_speed(const BodyContact& touch) const {
   const Motion& b = bodies_[static_cast<std::size_t>(number_[touch.key.b])].motion;
   const int number = number_[touch.key.a];
   const Motion& a = (number < 0 ? bodies_.back() : bodies_[static_cast<std::size_t>(number)]).motion;
   const Vector3 velocity = a.velocity + a.spin.cross(touch.arm_a) - b.velocity - b.spin.cross(touch.arm_b);
   const double ahead = touch.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
-  return touch.depth - ahead * (touch.normal.dot(velocity) - slow) > 0.0;
+  return touch.normal.dot(velocity) - touch.depth / ahead;
 }
 
-/// Takes in what was apart and will now press; true if there is any.
+/// By how much two surfaces may close faster than when contacts were last looked at, at most [m/s].
+double CrowdProblem::faster_since() const {
+  double most = 0.0;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Motion &now = bodies_[i].motion, &then = seen_[i];
+    most =
+        std::max(most, (now.velocity - then.velocity).norm() + longest_arm_ * (now.spin - then.spin).norm());
+  }
+  return 2.0 * most;
+}
+
+/// Takes in what was apart and will now press, or would if it closed faster by `slow`; true if there is any.
 bool CrowdProblem::admit(const ContactStep& step, double slow) {
+  if (apart_.empty() || faster_since() + slow < least_missing_) return false;
+  seen_.clear();
+  for (const Body& body : bodies_) seen_.push_back(body.motion);
+  least_missing_ = kNever;
   const std::size_t before = points_.size();
   const auto kept = std::remove_if(apart_.begin(), apart_.end(), [&](std::size_t index) {
-    const bool presses = closes(step.body_contacts[index], slow);
+    const double missing = missing_speed(step.body_contacts[index]);
+    const bool presses = missing < slow;
     if (presses) add_link(step, index);
+    if (!presses) least_missing_ = std::min(least_missing_, missing);
     return presses;
   });
   apart_.erase(kept, apart_.end());
@@ -170,11 +194,17 @@ void CrowdProblem::weigh(Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
                            response_of(b.inverse_mass, b.inverse_inertia, point.arm_b);
-  point.by_push = response * point.normal;
-  point.along = point.normal.dot(point.by_push);
+  const Vector3 by_push = response * point.normal;
+  point.along = point.normal.dot(by_push);
+  point.slides = by_push - point.along * point.normal;
   point.across = most_across(response, point.normal);
   point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.along);
-  point.give = 1.0 / (1.0 + point.stiffness * point.ahead * point.across);
+  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * point.across);
+  point.kept = 1.0 - give;
+  point.pull = give * point.stiffness * point.ahead;
+  point.pulled = (give * point.stiffness) * point.stretch;
+  point.turn_a = a.inverse_inertia * cross_matrix(point.arm_a);
+  point.turn_b = b.inverse_inertia * cross_matrix(point.arm_b);
 }
 
 void CrowdProblem::carry(const Vector3& borne, Point& point) {
@@ -183,18 +213,18 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
   push(point, point.given.drag - point.given.push * point.normal);
 }
 
-inline Vector3 CrowdProblem::relative_velocity(const Point& point) const {
+[[gnu::always_inline]] inline Vector3 CrowdProblem::relative_velocity(const Point& point) const {
   const Motion& a = bodies_[static_cast<std::size_t>(point.a)].motion;
   const Motion& b = bodies_[static_cast<std::size_t>(point.b)].motion;
   return point.drive + a.velocity + a.spin.cross(point.arm_a) - b.velocity - b.spin.cross(point.arm_b);
 }
 
-inline void CrowdProblem::push(const Point& point, const Vector3& impulse) {
+[[gnu::always_inline]] inline void CrowdProblem::push(const Point& point, const Vector3& impulse) {
   Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   a.motion.velocity -= a.inverse_mass * impulse;
-  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(impulse);
+  a.motion.spin -= point.turn_a * impulse;
   b.motion.velocity += b.inverse_mass * impulse;
-  b.motion.spin += b.inverse_inertia * point.arm_b.cross(impulse);
+  b.motion.spin += point.turn_b * impulse;
 }
 
 /// Impulse that the spring gives at a rate, and how fast that falls with it.
@@ -210,7 +240,7 @@ double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
 }
 
 /// The push that its own law asks for, where without it the rate would be `rate`.
-inline double CrowdProblem::find_push(std::size_t i, double rate) const {
+[[gnu::always_inline]] inline double CrowdProblem::find_push(std::size_t i, double rate) const {
   const Point& point = points_[i];
   const double deep = point.depth - point.ahead * rate;
   if (deep <= 0.0) return 0.0;
@@ -234,22 +264,22 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
   return std::max(0.0, (at - rate) / along);
 }
 
-inline Vector3 CrowdProblem::wanted_drag(const Point& point, const Vector3& velocity) const {
-  const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
-  return point.given.drag +
-         point.give * (point.stiffness * (point.stretch + point.ahead * sliding) - point.given.drag);
+/// What friction would need to be for the tangential spring to be held, where the surfaces slide so.
+[[gnu::always_inline]] inline Vector3 CrowdProblem::wanted_drag(const Point& point, const Vector3& sliding) {
+  return point.kept * point.given.drag + point.pulled + point.pull * sliding;
 }
 
 /// Gives a contact what it asks for.
-inline void CrowdProblem::relax(std::size_t i) {
+[[gnu::always_inline]] inline void CrowdProblem::relax(std::size_t i) {
   Point& point = points_[i];
-  Vector3 velocity = relative_velocity(point);
-  const double wanted = find_push(i, point.normal.dot(velocity) - point.along * point.given.push);
+  const Vector3 velocity = relative_velocity(point);
+  const double rate = point.normal.dot(velocity);
+  const double wanted = find_push(i, rate - point.along * point.given.push);
   const double limit = point.friction * wanted + point.bond;
-  if (limit == 0.0 && wanted == 0.0 && point.given.push == 0.0) return;
+  const bool open = limit == 0.0 && point.given.push == 0.0 && point.given.drag == Vector3::Zero();
+  if (open && wanted == 0.0) return;
   const double more = wanted - point.given.push;
-  velocity += more * point.by_push;
-  Vector3 drag = wanted_drag(point, velocity);
+  Vector3 drag = wanted_drag(point, velocity - rate * point.normal + more * point.slides);
   const double squared = drag.squaredNorm();
   if (squared > limit * limit) drag *= limit / std::sqrt(squared);
   push(point, drag - point.given.drag - more * point.normal);
@@ -333,6 +363,7 @@ bool CrowdProblem::nearly_rests(const ContactStep& step) const {
 }
 
 void CrowdProblem::solve(const ContactStep& step) {
+  given_before_.resize(points_.size());
   given_along_.assign(points_.size(), {0.0, Vector3::Zero()});
   motions_before_.resize(bodies_.size());
   motions_along_.assign(bodies_.size(), {Vector3::Zero(), Vector3::Zero()});
@@ -359,7 +390,7 @@ void CrowdProblem::report(std::size_t i) {
   contact.response.force = triple((point.given.drag - point.given.push * point.normal) / step_);
   contact.response.push = point.given.push / step_;
   contact.response.torque = point.twisted / step_;
-  contact.response.wanted_squared = wanted_drag(point, velocity).squaredNorm() / (step_ * step_);
+  contact.response.wanted_squared = wanted_drag(point, sliding).squaredNorm() / (step_ * step_);
   contact.response.drawn = triple(point.stretch + point.ahead * sliding);
   contact.spring.slip_limit = (point.friction * point.given.push + point.bond) / step_;
 }

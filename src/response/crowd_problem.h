@@ -44,11 +44,15 @@ class CrowdProblem {
     int a, b;
     Vector3 normal, arm_a, arm_b, drive, stretch;
     Given given;
-    Vector3 by_push;       // change of the relative velocity by a push of one [1/kg]
-    double along, across;  // change of it by impulses along n and, at most, across n [1/kg]
+    double along,
+        across;      // change of the relative velocity by impulses along n and, at most, across n [1/kg]
+    Vector3 slides;  // the same across n by a push of one [1/kg]
+    Matrix3 turn_a, turn_b;  // change of the spins by an impulse [1/(kg m)]
     double depth, ahead, fade;
     double stiffness;   // times the step [N s/m]
-    double firm, give;  // of the stiffness, what bodies that give way leave, along and across n
+    double firm;        // of it along n, what bodies that give way leave
+    double kept, pull;  // parts of the last drag, and of the sliding, in the next one
+    Vector3 pulled;     // and of the stretch [N s]
     double friction, bond;
     bool soft;       // its push is not simply proportional to depth
     double twisted;  // impulse about the normal [N m s]
@@ -70,12 +74,13 @@ class CrowdProblem {
   double push_at(std::size_t i, double rate, double& slope) const;
   double find_push(std::size_t i, double rate) const;
   double find_faded_push(std::size_t i, double rate, double plain) const;
-  Vector3 wanted_drag(const Point& point, const Vector3& velocity) const;
+  static Vector3 wanted_drag(const Point& point, const Vector3& sliding);
   void relax(std::size_t i);
   void twist(std::size_t i);
 
   bool nearly_rests(const ContactStep& step) const;
-  bool closes(const BodyContact& touch, double slow) const;
+  double missing_speed(const BodyContact& touch) const;
+  double faster_since() const;
   bool admit(const ContactStep& step, double slow);
   void turn();
   double changed() const;
@@ -91,6 +96,9 @@ class CrowdProblem {
   std::vector<SpringContact<double>> contacts_;  // the same
   std::vector<std::size_t> linked_;              // of the last of them: in ContactStep::body_contacts
   std::vector<std::size_t> apart_;  // contacts between bodies that as it is will not press: likewise
+  std::vector<Motion> seen_;        // when those were last looked at
+  double least_missing_ = 0.0;      // of the speed at which they would have to close then [m/s]
+  double longest_arm_ = 0.0;        // of any contact [m]
   // Before a turn, and where turns lead to.
   std::vector<Motion> motions_before_, motions_along_;
   std::vector<Given> given_before_, given_along_;
