@@ -1,5 +1,7 @@
 #include "mr_hand_interaction/response/grip.h"
 
+#include <Eigen/SVD>
+
 namespace mrhi {
 namespace {
 
@@ -12,6 +14,30 @@ Vector3 mean_tip(const Grip& grip, const Hand& hand) {
     ++count;
   }
   return sum / count;
+}
+
+/// The palm's turn counts as that of pads which are so far from the middle [m]. Objects turn in hands: over
+/// 0.2 s in the median ARCTIC's turn by 16 degrees against the palm, and by 9 against the pads that hold
+/// them.
+constexpr double kPalmTurns = 0.008;
+
+/// Of each end of a distal phalanx: both sides of the grip count alike, one of 1/2 in the sum.
+std::array<double, kFingers> weights_of(const Grip& grip) {
+  std::array<double, kFingers> result{};
+  int count = 0;
+  for (int finger = 0; finger < kFingers; ++finger) count += grip.takes_part(finger) ? 1 : 0;
+  for (int finger = 0; finger < kFingers; ++finger)
+    if (grip.takes_part(finger)) result[static_cast<std::size_t>(finger)] = 0.25 / count;
+  if (!grip.by_palm) result[0] = 0.25;
+  return result;
+}
+
+/// The rotation that is nearest to a matrix.
+Quaternion nearest_turn(const Matrix3& matrix) {
+  const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3 &u = svd.matrixU(), &v = svd.matrixV();
+  const Vector3 signs(1.0, 1.0, u.determinant() * v.determinant() < 0.0 ? -1.0 : 1.0);
+  return Quaternion(Matrix3(u * signs.asDiagonal() * v.transpose())).normalized();
 }
 
 }  // namespace
@@ -28,12 +54,31 @@ double opening(const Grip& grip, const Hand& hand) {
   return (mean_tip(grip, hand) - base_of(hand, grip.by_palm)).norm();
 }
 
-Vector3 middle(const Grip& grip, const Hand& hand) {
-  return hand.palm.to_local(0.5 * (mean_tip(grip, hand) + base_of(hand, grip.by_palm)));
+DistalEnds distal_ends(const Hand& hand) {
+  DistalEnds result;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))];
+    const auto i = static_cast<std::size_t>(2 * finger);
+    result[i] = hand.palm.to_local(bone.start);
+    result[i + 1] = hand.palm.to_local(bone.end);
+  }
+  return result;
 }
 
-Pose grip_frame(const Hand& hand, const Vector3& middle) {
-  return {hand.palm * middle, hand.palm.orientation};
+Pose moved_in_palm(const Grip& grip, const Hand& hand) {
+  const DistalEnds pads = distal_ends(hand);
+  const std::array<double, kFingers> weights = weights_of(grip);
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();
+  for (std::size_t i = 0; i < pads.size(); ++i) {
+    from += weights[i / 2] * grip.pads[i];
+    to += weights[i / 2] * pads[i];
+  }
+  Matrix3 spread = kPalmTurns * kPalmTurns * Matrix3::Identity();
+  for (std::size_t i = 0; i < pads.size(); ++i)
+    spread += weights[i / 2] * (pads[i] - to) * (grip.pads[i] - from).transpose();
+  if (grip.by_palm) spread += 0.5 * to * from.transpose();
+  const Quaternion turn = nearest_turn(spread);
+  return {to - turn * from, turn};
 }
 
 }  // namespace mrhi

@@ -130,7 +130,8 @@ void add_grip(const Grip& grip, Fnv1a& hash) {
   hash.add(grip.least);
   hash.add(grip.bond);
   hash.add(grip.bears);
-  hash.add(grip.middle);
+  for (const Vector3& pad : grip.pads) hash.add(pad);
+  hash.add(grip.in_palm);
   for (const Vector3& point : grip.in_hand) hash.add(point);
   for (const Vector3& point : grip.in_body) hash.add(point);
 }

@@ -13,7 +13,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000002ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000003ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -216,10 +216,10 @@ class Parts {
     all(shift, fingers, lag, stamp, left, left_since);
   }
   void one(Grip& part) {
-    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, middle_before,
-           middle, slips, in_hand, in_body, force, point, velocity] = part;
-    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, middle_before,
-        middle, slips, in_hand, in_body, force, point, velocity);
+    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
+           in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = part;
+    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
+        in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mr_hand_interaction/response/grip.h"
 #include "support/grips.h"
 
 namespace mrhi {
@@ -126,6 +127,43 @@ TEST(GraspAssist, tells_all_of_the_force_on_the_body) {
         before = now, last = s.state().time;
       });
   EXPECT_GT(borne, 50);
+}
+
+/// Thumb and index in a palm's frame, moved by `way` there.
+Hand pinching(const Pose& palm, const Pose& way) {
+  Hand hand;
+  hand.palm = palm;
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();
+  const Pose in_world = palm * way;
+  hand.capsules[capsule_index(0, 3)] = {in_world * Vector3(0.05 * x - 0.02 * y),
+                                        in_world * Vector3(0.07 * x - 0.015 * y), 0.008};
+  hand.capsules[capsule_index(1, 3)] = {in_world * Vector3(0.05 * x + 0.02 * y),
+                                        in_world * Vector3(0.07 * x + 0.015 * y), 0.008};
+  return hand;
+}
+
+TEST(GraspAssist, what_a_grip_bears_goes_with_the_pads_and_turns_a_little_with_the_palm) {
+  const Pose palm{{0.3, -0.2, 0.1}, Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 2, 2).normalized()))};
+  Grip grip;
+  grip.fingers = 1 << 1;
+  grip.pads = distal_ends(pinching(palm, {}));
+  const Pose nowhere = moved_in_palm(grip, pinching(palm, {}));
+  EXPECT_LT(nowhere.position.norm(), 1e-15);
+  EXPECT_LT(nowhere.orientation.vec().norm(), 1e-15);
+
+  // About the pads' own middle, by which they roll a pen.
+  constexpr double kTurn = 0.3;
+  const Vector3 middle(0.06, 0.0, 0.0);
+  const Quaternion turn(Eigen::AngleAxisd(kTurn, Vector3::UnitZ()));
+  const Pose way{middle - turn * middle + Vector3(0, 0, 0.01), turn};
+  const Pose moved = moved_in_palm(grip, pinching(palm, way));
+  EXPECT_LT((moved * middle - (middle + Vector3(0, 0, 0.01))).norm(), 1e-12);
+  // In the plane of the pads their spread, 1/4 (4 (1 cm)^2 + 2 (2 cm)^2 + 2 (1.5 cm)^2), stands against
+  // twice (8 mm)^2: the angle is that of the sum of both turns.
+  const double pads = 0.01 * 0.01 + 0.5 * (0.02 * 0.02 + 0.015 * 0.015), still = 2.0 * 0.008 * 0.008;
+  const double expected = std::atan2(pads * std::sin(kTurn), pads * std::cos(kTurn) + still);
+  EXPECT_NEAR(Eigen::AngleAxisd(moved.orientation).angle(), expected, 1e-12);
+  EXPECT_GT(expected, 0.7 * kTurn);
 }
 
 // As deep as a pulp gives, contact holds by itself.

@@ -9,6 +9,9 @@ namespace mrhi {
 
 constexpr int kGripPoints = 4;  ///< springs of a grip, at the corners of a tetrahedron
 
+/// Start and end of each finger's distal phalanx [m].
+using DistalEnds = std::array<Vector3, 2 * kFingers>;
+
 /// A hand that has closed round a body, and through it, holds the body: by springs between the hand and the
 /// body that yield beyond what the hand's friction could bear. They give no force as the grip begins.
 struct Grip {
@@ -23,10 +26,12 @@ struct Grip {
   bool bears = false;                          ///< contact alone has not held the body
   bool fresh = false;                          ///< it begins to bear in this step
   bool closes = true;                          ///< the hand still closes
-  Vector3 middle_before = Vector3::Zero();     ///< of both sides as the frame begins, palm frame [m]
-  Vector3 middle = Vector3::Zero();            ///< and as it ends; an opening hand does not move it [m]
+  DistalEnds pads{};                           ///< when it took, palm frame [m]
+  bool placed = false;                         ///< the next two are those of this frame
+  Pose in_palm_before;                         ///< what the palm's frame was then, as the frame begins
+  Pose in_palm;                                ///< and as it ends; fingers that open do not move it
   bool slips = false;                          ///< it has yielded in the last step
-  std::array<Vector3, kGripPoints> in_hand{};  ///< the springs' ends, see grip_frame() [m]
+  std::array<Vector3, kGripPoints> in_hand{};  ///< the springs' ends, palm frame when it took [m]
   std::array<Vector3, kGripPoints> in_body{};  ///< and the others, body frame [m]
   Vector3 force = Vector3::Zero();             ///< on the body in the last step, world [N]
 
@@ -43,9 +48,10 @@ Vector3 tip_of(const Hand& hand, int finger);
 Vector3 base_of(const Hand& hand, bool by_palm);
 /// Distance between the tips of the grip's fingers, in the mean, and what they close against [m].
 double opening(const Grip& grip, const Hand& hand);
-/// Midway between the two sides, palm frame [m].
-Vector3 middle(const Grip& grip, const Hand& hand);
-/// The frame in which a gripped body is still: about that middle, turned as the palm.
-Pose grip_frame(const Hand& hand, const Vector3& middle);
+/// In the palm's frame.
+DistalEnds distal_ends(const Hand& hand);
+/// Where what was the palm's frame when the hand took the body has gone with both sides of the grip, in the
+/// palm's frame: the rigid motion that is nearest to theirs (Kabsch 1976), and a little to the palm's.
+Pose moved_in_palm(const Grip& grip, const Hand& hand);
 
 }  // namespace mrhi
