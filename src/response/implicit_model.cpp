@@ -5,6 +5,12 @@
 #include "newton.h"
 
 namespace mrhi {
+namespace {
+
+/// Islands of more bodies are crowds.
+constexpr std::size_t kMostExact = 4;
+
+}  // namespace
 
 void ImplicitModel::respond(ContactStep& step) {
   begin_touches_here(step);
@@ -44,25 +50,50 @@ void ImplicitModel::press_here(ContactStep& step) {
     contact.force.setZero();
     contact.struck = contact.struck || contact.depth > 0.0;
   }
+  carried_.clear();
   for (BodyContact& contact : step.body_contacts) {
+    carried_.push_back(contact.force);
     contact.force.setZero();
     contact.struck = contact.struck || contact.depth > 0.0;
   }
   for (const Island& island : islands_.all()) {
     if (island.bodies.size() == 1) {
-      solve(step, island, one_);
+      solve_one(step, island);
+    } else if (island.bodies.size() > kMostExact) {
+      solve_crowd(step, island);
     } else {
-      solve(step, island, several_);
+      solve_few(step, island);
     }
   }
 }
 
-template <typename Problem>
-void ImplicitModel::solve(ContactStep& step, const Island& island, Problem& problem) const {
-  problem.begin(step, island, configuration_);
-  const bool agree = Newton<Problem>(problem).solve();
-  const bool pressed = problem.scale() > 0.0;
-  if (pressed) problem.finish(agree, step, island);
+void ImplicitModel::solve_one(ContactStep& step, const Island& island) {
+  one_.begin(step, island, configuration_);
+  const bool agree = Newton<BodyProblem>(one_).solve();
+  const bool pressed = one_.scale() > 0.0;
+  if (pressed) one_.finish(agree, step, island);
+  note(step, island, pressed);
+}
+
+/// To rounding; where contacts keep opening and slipping by turns, as far as a crowd is.
+void ImplicitModel::solve_few(ContactStep& step, const Island& island) {
+  several_.begin(step, island, configuration_);
+  const bool agree = Newton<IslandProblem>(several_).solve();
+  if (!agree && !several_.nearly_agree()) return solve_crowd(step, island);
+  const bool pressed = several_.scale() > 0.0;
+  if (pressed) several_.finish(step, island);
+  note(step, island, pressed);
+}
+
+void ImplicitModel::solve_crowd(ContactStep& step, const Island& island) {
+  many_.begin(step, island, configuration_, carried_);
+  many_.solve(step);
+  const bool pressed = many_.pressed();
+  if (pressed) many_.finish(step, island);
+  note(step, island, pressed);
+}
+
+void ImplicitModel::note(ContactStep& step, const Island& island, bool pressed) {
   for (const IslandBody& body : island.bodies) {
     if (pressed) {
       step.changes.mark_solved(static_cast<int>(body.body));

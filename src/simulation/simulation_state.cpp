@@ -144,6 +144,7 @@ void add_contact(const BodyContact& contact, Fnv1a& hash) {
   hash.add(contact.friction);
   hash.add(contact.struck);
   hash.add(contact.still);
+  hash.add(contact.force);
 }
 
 }  // namespace

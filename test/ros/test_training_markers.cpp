@@ -39,7 +39,7 @@ struct Eye {
   double y(const Vector3& point) const { return up.dot(point - place) / depth(point) / half_height; }
 };
 
-class TrainingMarkers : public testing::Test {
+class TrainingMarkers : public ::testing::Test {
  protected:
   TrainingMarkers() {
     std::filesystem::remove_all(folder_);
