@@ -94,7 +94,7 @@ inline Worked work_at(const Work& work, const Staging& staging) {
   const double gone = motion.keyframes.at(motion.keyframes.size() - 2).time;
   Worked result;
   bool is_heavy = false;
-  double before = start, before_time = 0.0, when_gone = start;
+  double last = start, when_gone = start;
   while (source.next_run() == 0) {
     JointsFrame joints = source.next();
     if (!joints.hands.empty() && staging.noise + staging.dropped > 0.0 && !tracker.pass(joints)) continue;
@@ -127,11 +127,10 @@ inline Worked work_at(const Work& work, const Staging& staging) {
     if (work.grips && time > times.from && time < times.opens)
       result.held = result.held && simulation.state().interactions.at(body).level == InteractionLevel::grasp;
     if (time <= gone) when_gone = position;
-    before = position, before_time = time;
+    last = position;
   }
-  (void)before_time;
-  result.left = before;
-  result.crept = std::abs(before - when_gone);
+  result.left = last;
+  result.crept = std::abs(last - when_gone);
   return result;
 }
 
