@@ -51,7 +51,7 @@ void LinkageProblem::begin(ContactStep& step, const Island& island, const Contac
   start_ = gradient_;
   solve_mass(start_);
   solve_mass(fall_);
-  start_with(Vector(start_), step, joints);
+  start_with(start_, step, joints);
 }
 
 void LinkageProblem::number(const ContactStep& step, const Island& island,
@@ -117,7 +117,7 @@ void LinkageProblem::add_free(const ContactStep& step, const Island& island, std
 
 void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
                                 const std::vector<JointState>& joints) {
-  start_ = velocity;
+  start_ = velocity;  // which it may be itself
   free_ = start_ + fall_;
   velocity_ = free_;
   direction_.resize(start_.size());

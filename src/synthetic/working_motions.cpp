@@ -187,6 +187,9 @@ void turn_latch(Script& script, const Vector3& axle, double up) {
   script.then(0.5, shifted(wrist(kAngle, off), back), posture);
 }
 
+/// Fingers on an arm of tongs are as much farther apart than on a cube.
+constexpr double kApart = 1.3;
+
 /// Tips on the arms of tongs at half their length, each arm at `angle` from the middle; in the scene's
 /// object's frame.
 Grasp tongs_grasp(double angle) {
@@ -194,7 +197,7 @@ Grasp tongs_grasp(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   for (FingertipContact& contact : grasp.contacts) {
     contact.depth *= 1.7;  // arms give way, and the grip with them
-    const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + contact.point.x();
+    const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + kApart * contact.point.x();
     contact.normal = {-s, side * c, 0.0};
     contact.point = Vector3(-0.07 + along * c, side * along * s, 0.0) + 0.004 * contact.normal;
   }
