@@ -1,10 +1,14 @@
 #include "bag_check.h"
 
+#include <ros/exception.h>
+#include <rosbag/exceptions.h>
+
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <new>
 #include <optional>
 
 #include "bag_input.h"
@@ -157,6 +161,18 @@ void check_readable(const std::string& file) {
   if (!std::filesystem::is_regular_file(file, error)) throw BagError(file + ": is no file; allowed: a bag");
   if (!std::ifstream(file)) throw BagError(file + ": cannot be read; allowed: a file that may be read");
   check_bag(file);
+}
+
+void refuse_bag(const std::string& file) {
+  try {
+    throw;
+  } catch (const rosbag::BagException& error) {
+    throw BagError(file + ": " + error.what());
+  } catch (const ros::Exception& error) {
+    throw BagError(file + ": is corrupt: " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw BagError(file + ": is corrupt: it asks for more memory than there is");
+  }
 }
 
 }  // namespace mrhi

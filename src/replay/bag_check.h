@@ -13,4 +13,8 @@ void check_bag(const std::string& file);
 /// The same of a file that may not be there, or not to be read.
 void check_readable(const std::string& file);
 
+/// Within a handler: what the bag library has thrown, as a BagError in one line that names the file. Other
+/// exceptions go on as they are.
+[[noreturn]] void refuse_bag(const std::string& file);
+
 }  // namespace mrhi

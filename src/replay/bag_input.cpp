@@ -162,12 +162,8 @@ struct BagInput::Impl {
 BagInput::BagInput(const std::string& file, const std::optional<std::string>& topic,
                    const std::optional<Pose>& device_in_world) try
     : impl_(std::make_unique<Impl>(file, topic, device_in_world)) {
-} catch (const rosbag::BagException& error) {
-  throw BagError(file + ": " + error.what());
-} catch (const ros::Exception& error) {
-  throw BagError(file + ": is corrupt: " + error.what());
-} catch (const std::bad_alloc&) {
-  throw BagError(file + ": is corrupt: it asks for more memory than there is");
+} catch (...) {
+  refuse_bag(file);
 }
 
 BagInput::~BagInput() = default;

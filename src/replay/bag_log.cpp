@@ -113,12 +113,8 @@ OpenLog open_log(const ReplayArguments& arguments) {
     log.source = std::make_unique<BagLog>(file, found.topic);
     if (log.source->size() == 0) log.source.reset();
     return log;
-  } catch (const rosbag::BagException& error) {
-    throw BagError(file + ": " + error.what());
-  } catch (const ros::Exception& error) {
-    throw BagError(file + ": is corrupt: " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw BagError(file + ": is corrupt: it asks for more memory than there is");
+  } catch (...) {
+    refuse_bag(file);
   }
 }
 

@@ -192,10 +192,7 @@ class LogRun {
 
   void take_state(const LogEntry& entry) {
     try {
-      const SimulationState state = state_from_bytes(entry.state, now().scene().bodies.size());
-      if (state.joints.size() != now().scene().joints.size())
-        throw std::invalid_argument("recorded state: is of other joints; allowed: one of this scene");
-      now().set_state(state);
+      now().set_state(state_from_bytes(entry.state, now().scene()));
     } catch (const std::invalid_argument& error) {
       summary_.not_known.push_back(std::string("where things were as the recording began: ") + error.what());
     }

@@ -219,6 +219,8 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   for (int finger = 0; finger < kFingers; ++finger) fingers += grip.takes_part(finger) ? 1 : 0;
   const HandStrength& strength = configuration_.hand;
   const double push = std::min(grip.by_palm ? strength.palm : strength.finger, fingers * strength.finger);
+  grip.point.fill(Vector3::Zero());
+  grip.velocity.fill(Vector3::Zero());
   grip.bond = std::min(2.0 * material.static_friction * push, kUnlimited) / kGripPoints;
   grip.stiffness = kGripStiffness * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposed.base + opposed.fingers);

@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/live_simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "../collision/overlap.h"
@@ -19,6 +20,17 @@ void check_in_bounds(const std::string& name, const Vector3& place, const Bounds
   if ((place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all()) return;
   throw std::invalid_argument("'" + name + "': " + text::vector(place) + " m is out of bounds; allowed: " +
                               text::vector(bounds.min) + " to " + text::vector(bounds.max));
+}
+
+Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bounds) {
+  check_in_bounds(name, pose.position, bounds);
+  const double size = pose.orientation.norm();
+  if (!(std::abs(size - 1.0) < 0.01))
+    throw std::invalid_argument("'" + name +
+                                "': this orientation is not allowed; allowed: a unit quaternion");
+  Pose checked = pose;
+  if (size != 1.0) checked.orientation.normalize();
+  return checked;
 }
 
 /// Of the first `old` bodies those that may touch this one where they are now, and this one.
@@ -139,10 +151,9 @@ void LiveSimulation::place(const std::string& name, const Pose& pose) {
   const Scene& scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, true);
   check_no_joint(scene, static_cast<int>(body), "be placed");
-  check_in_bounds(name, pose.position, scene.bounds);
-  SimulationState state = simulation_->state();
   BodyState at_rest;
-  at_rest.pose = pose;
+  at_rest.pose = checked_pose(name, pose, scene.bounds);
+  SimulationState state = simulation_->state();
   mrhi::place(body, at_rest, state);
   simulation_->set_state(state);
 }

@@ -6,6 +6,12 @@
 namespace mrhi {
 namespace {
 
+// Members are bound by name, so that a part that gets a further one does not compile until it stands here
+// too, be it among those that do not matter to the future: those of a single step, and those that others
+// follow from. All of them are in state_bytes.cpp.
+template <class... Items>
+void leave_out(const Items&...) {}
+
 class Fnv1a {
  public:
   template <typename T>
@@ -22,6 +28,11 @@ class Fnv1a {
     add(pose.position);
     for (int i = 0; i < 4; ++i) add(pose.orientation.coeffs()[i]);
   }
+  template <class First, class... Others>
+  void all(const First& first, const Others&... others) {
+    add(first);
+    (add(others), ...);
+  }
   std::uint64_t value() const { return hash_; }
 
  private:
@@ -29,122 +40,104 @@ class Fnv1a {
 };
 
 void add_joint(const JointState& joint, Fnv1a& hash) {
-  hash.add(joint.position);
-  hash.add(joint.anchor);
-  hash.add(joint.pushed);
-  hash.add(joint.still);
-  hash.add(joint.detent);
-  hash.add(joint.at_limit);
-  hash.add(joint.latched);
+  const auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = joint;
+  leave_out(effort);
+  hash.all(position, anchor, pushed, still, detent, at_limit, latched);
 }
 
 void add_hand(const Hand& hand, Fnv1a& hash) {
-  hash.add(hand.id);
-  hash.add(hand.side);
-  hash.add(hand.palm);
-  hash.add(hand.wrist);
-  for (const Capsule& capsule : hand.capsules) {
-    hash.add(capsule.start);
-    hash.add(capsule.end);
-    hash.add(capsule.radius);
-  }
+  const auto& [id, side, confidence, grab, pinch, palm, palm_width, wrist, capsules] = hand;
+  leave_out(confidence, grab, pinch, palm_width);
+  hash.all(id, side, palm, wrist);
+  for (const auto& [start, end, radius] : capsules) hash.all(start, end, radius);
 }
 
 /// Counts also for a slot that is free: the next hand of its side takes it over.
 void add_noise(const SeenNoise& noise, Side side, Fnv1a& hash) {
-  if (noise.size == 0) return;
+  const auto& [variances, size, variance] = noise;
+  if (size == 0) return;
   hash.add(side);
-  for (int i = 0; i < noise.size; ++i) hash.add(noise.variances[static_cast<std::size_t>(i)]);
-  hash.add(noise.variance);
+  for (int i = 0; i < size; ++i) hash.add(variances[static_cast<std::size_t>(i)]);
+  hash.add(variance);
 }
 
 void add_filter(const FilterMemory& memory, Fnv1a& hash) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(memory.history.size); ++i) {
-    add_hand(memory.history.samples[i], hash);
-    hash.add(memory.history.elapsed[i]);
+  const auto& [history, filtered, velocity, variance, noise] = memory;
+  const auto& [samples, elapsed, size] = history;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
+    add_hand(samples[i], hash);
+    hash.add(elapsed[i]);
   }
-  add_hand(memory.filtered, hash);
-  for (const Vector3& velocity : memory.velocity.points) hash.add(velocity);
-  hash.add(memory.velocity.turn);
-  hash.add(memory.variance.position);
-  hash.add(memory.variance.mixed);
-  hash.add(memory.variance.speed);
-  add_noise(memory.noise, memory.filtered.side, hash);
+  add_hand(filtered, hash);
+  const auto& [points, turn] = velocity;
+  for (const Vector3& point : points) hash.add(point);
+  hash.add(turn);
+  const auto& [position, mixed, speed] = variance;
+  hash.all(position, mixed, speed);
+  add_noise(noise, filtered.side, hash);
 }
 
 void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
-  hash.add(track.active);
-  if (!track.active) {
-    add_noise(track.filter.noise, track.current.side, hash);
+  const auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change] = track;
+  hash.add(active);
+  if (!active) {
+    add_noise(filter.noise, current.side, hash);
     return;
   }
-  hash.add(track.held);
-  hash.add(track.appeared);
-  hash.add(track.emerged);
-  hash.add(now - track.last_seen);
-  add_hand(track.previous, hash);
-  add_hand(track.current, hash);
-  add_filter(track.filter, hash);
-  if (track.filter_change) {
-    hash.add(now - track.filter_change->begin);
-    add_filter(track.filter_change->memory, hash);
+  hash.all(held, appeared, emerged, now - last_seen);
+  add_hand(previous, hash);
+  add_hand(current, hash);
+  add_filter(filter, hash);
+  if (change) {
+    const auto& [of, memory, begin] = *change;
+    leave_out(of);
+    hash.add(now - begin);
+    add_filter(memory, hash);
   }
-  hash.add(track.rejoin.duration);
-  if (track.rejoin.duration > 0) {
-    hash.add(now - track.rejoin.begin);
-    add_hand(track.rejoin.from, hash);
+  const auto& [from, begin, duration] = rejoin;
+  hash.add(duration);
+  if (duration > 0) {
+    hash.add(now - begin);
+    add_hand(from, hash);
   }
 }
 
 void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {
   if (offset.zero()) return;
-  hash.add(Pose{offset.shift, offset.lag.whole});
-  hash.add(Pose{Vector3::Zero(), offset.lag.frame});
-  for (const FingerOffset& finger : offset.fingers)
+  const auto& [shift, fingers, lag, stamp, left, left_since] = offset;
+  const auto& [whole, frame] = lag;
+  hash.add(Pose{shift, whole});
+  hash.add(Pose{Vector3::Zero(), frame});
+  for (const FingerOffset& finger : fingers)
     for (int i = 0; i < finger.size(); ++i) hash.add(finger[i]);
-  hash.add(now - offset.stamp);
-  hash.add(offset.left);
-  if (offset.left > 0.0) hash.add(now - offset.left_since);
+  hash.all(now - stamp, left);
+  if (left > 0.0) hash.add(now - left_since);
 }
 
-void add_contact(const Contact& contact, Fnv1a& hash) {
-  hash.add(contact.key.order());
-  hash.add(contact.god_object);
-  hash.add(contact.entry_normal);
-  hash.add(contact.touched_from);
-  hash.add(contact.axis_parameter);
-  hash.add(contact.depth);
-  hash.add(contact.twist);
-  hash.add(contact.friction);
-  hash.add(contact.struck);
-  hash.add(contact.given);
-  hash.add(contact.ignored);
+void add_contact(const ContactMemory& contact, Fnv1a& hash) {
+  const auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter,
+               at_edge, depth, twist, given, force] = contact;
+  leave_out(at_edge, force);
+  hash.all(key.order(), god_object, entry_normal, touched_from, axis_parameter, depth, twist, friction,
+           struck, given, ignored);
 }
 
 void add_grip(const Grip& grip, Fnv1a& hash) {
-  hash.add(grip.body);
-  hash.add(grip.hand);
-  hash.add(grip.by_palm);
-  hash.add(grip.fingers);
-  hash.add(grip.opening);
-  hash.add(grip.least);
-  hash.add(grip.bond);
-  hash.add(grip.bears);
-  for (const Vector3& pad : grip.pads) hash.add(pad);
-  hash.add(grip.in_palm);
-  for (const Vector3& point : grip.in_hand) hash.add(point);
-  for (const Vector3& point : grip.in_body) hash.add(point);
+  const auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads,
+               in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = grip;
+  leave_out(stiffness, fresh, closes, in_palm_before, slips, force, point, velocity);
+  hash.all(body, hand, by_palm, fingers, opening, least, bond, bears);
+  for (const Vector3& pad : pads) hash.add(pad);
+  hash.add(in_palm);
+  for (const Vector3& end : in_hand) hash.add(end);
+  for (const Vector3& end : in_body) hash.add(end);
 }
 
 void add_contact(const BodyContact& contact, Fnv1a& hash) {
-  hash.add(contact.key.order());
-  hash.add(contact.anchor_a);
-  hash.add(contact.anchor_b);
-  hash.add(contact.depth);
-  hash.add(contact.friction);
-  hash.add(contact.struck);
-  hash.add(contact.still);
-  hash.add(contact.force);
+  const auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, stretch,
+               material, depth, share, first_touch, force, impulse] = contact;
+  leave_out(point, normal, arm_a, arm_b, stretch, material, share, first_touch, impulse);
+  hash.all(key.order(), anchor_a, anchor_b, depth, friction, struck, still, force);
 }
 
 }  // namespace
@@ -180,29 +173,25 @@ void place(std::size_t body, const BodyState& placed, SimulationState& state) {
 }
 
 std::uint64_t hash(const SimulationState& state) {
+  const auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
+               sleeping_contacts, offsets, grips, interactions] = state;
+  leave_out(started, stamps, asleep);
   Fnv1a hash;
-  hash.add(state.time - state.last_frame);
-  for (const BodyState& body : state.bodies) {
-    hash.add(body.pose);
-    hash.add(body.linear_momentum);
-    hash.add(body.angular_momentum);
-    hash.add(body.pushed.linear);
-    hash.add(body.pushed.angular);
-    hash.add(body.appeared);
+  hash.add(time - last_frame);
+  for (const auto& [pose, linear_momentum, angular_momentum, pushed, appeared] : bodies)
+    hash.all(pose, linear_momentum, angular_momentum, pushed.linear, pushed.angular, appeared);
+  for (const JointState& joint : joints) add_joint(joint, hash);
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+    add_track(hands[slot], time, hash);
+    if (hands[slot].active) add_offset(offsets[slot], time, hash);
   }
-  for (const JointState& joint : state.joints) add_joint(joint, hash);
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    add_track(state.hands[slot], state.time, hash);
-    if (state.hands[slot].active) add_offset(state.offsets[slot], state.time, hash);
-  }
-  for (const Contact& contact : state.contacts) add_contact(contact, hash);
-  for (const Grip& grip : state.grips) add_grip(grip, hash);
-  for (const BodyContact& contact : state.body_contacts) add_contact(contact, hash);
-  for (const BodyContact& contact : state.sleeping_contacts) add_contact(contact, hash);
-  for (const Interaction& interaction : state.interactions) {
-    hash.add(interaction.level);
-    hash.add(interaction.shown_in);
-    if (interaction.level >= InteractionLevel::contact) hash.add(state.time - interaction.agreed);
+  for (const Contact& contact : contacts) add_contact(contact, hash);
+  for (const Grip& grip : grips) add_grip(grip, hash);
+  for (const BodyContact& contact : body_contacts) add_contact(contact, hash);
+  for (const BodyContact& contact : sleeping_contacts) add_contact(contact, hash);
+  for (const auto& [level, agreed, shown_in] : interactions) {
+    hash.all(level, shown_in);
+    if (level >= InteractionLevel::contact) hash.add(time - agreed);
   }
   return hash.value();
 }

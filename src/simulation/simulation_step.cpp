@@ -36,9 +36,9 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   ContactStep contact_step{scene,        gravity, step,       state.contacts, state.body_contacts,
                            state.bodies, changes, state.grips};
   model->respond(contact_step);
+  end_stage(Stage::response);
   assist.share_force(state);
   note_strikes(state.contacts, strikes);
-  end_stage(Stage::response);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
     if (state.asleep[b]) continue;

@@ -9,6 +9,11 @@ constexpr int kRestartFrames = 3, kGapFrames = 2;
 /// Frames of a slow stream may be this many times as far apart as the last two were.
 constexpr Nanoseconds kIntervals = 4;
 
+/// Stamps may be of both signs: so much of what is between two of them is as good as all.
+Nanoseconds some_of(Nanoseconds interval) {
+  return kIntervals * std::min(interval, StampJudge::kLatest / kIntervals);
+}
+
 }  // namespace
 
 StampVerdict StampJudge::judge(Nanoseconds stamp, Nanoseconds reached,
@@ -18,11 +23,10 @@ StampVerdict StampJudge::judge(Nanoseconds stamp, Nanoseconds reached,
   const Nanoseconds before = stray;
   if (stamp > reached) {
     const Nanoseconds usual = interval > 0 ? kAhead : kBack;
-    const bool seen_to_go_by = expected && stamp <= *expected + kAhead;
-    if (seen_to_go_by || stamp - last <= std::max(usual, kIntervals * interval))
+    const bool seen_to_go_by = expected && stamp - kAhead <= *expected;
+    if (seen_to_go_by || stamp - last <= std::max(usual, some_of(interval)))
       return take(stamp, stamp - last, StampVerdict::follows);
-    if (note_stray(stamp, std::max(kBack, kIntervals * (stray - last))) < kGapFrames)
-      return StampVerdict::ahead;
+    if (note_stray(stamp, std::max(kBack, some_of(stray - last))) < kGapFrames) return StampVerdict::ahead;
     return take(stamp, stamp - before, StampVerdict::follows);
   }
   if (reached - stamp <= kBack) return StampVerdict::late;

@@ -1,6 +1,8 @@
 #include "state_bytes.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -26,11 +28,17 @@ std::uint64_t checksum(const char* data, std::size_t size) {
   return sum;
 }
 
+/// Of numbers in a state, beyond which none has a meaning.
+constexpr double kLargest = 1e30;
+
 struct Out {
   std::string bytes;
 
+  void check(double) {}
+  void check(Nanoseconds) {}
+
   void raw(void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
-  std::size_t count(std::size_t size) {
+  std::size_t count(std::size_t size, std::size_t) {
     auto number = static_cast<std::uint64_t>(size);
     raw(&number, sizeof number);
     return size;
@@ -46,11 +54,18 @@ struct In {
     std::memcpy(data, at, size);
     at += size;
   }
-  /// Each item has a byte at least.
-  std::size_t count(std::size_t) {
+  void check(double number) {
+    if (!(std::abs(number) <= kLargest)) refuse("has a number that is too large, or none");
+  }
+  /// The difference of any two of them can be taken.
+  void check(Nanoseconds stamp) {
+    if (stamp < -StampJudge::kLatest || stamp > StampJudge::kLatest) refuse("has a stamp that is none");
+  }
+  /// So many that are `item` bytes each in memory, and a quarter of that here, at least.
+  std::size_t count(std::size_t, std::size_t item) {
     std::uint64_t number = 0;
     raw(&number, sizeof number);
-    if (number > static_cast<std::uint64_t>(end - at)) refuse("ends early");
+    if (number > 4 * static_cast<std::uint64_t>(end - at) / item) refuse("ends early");
     return static_cast<std::size_t>(number);
   }
 };
@@ -70,6 +85,8 @@ class Parts {
   template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
   void one(Number& number) {
     way_.raw(&number, sizeof number);
+    if constexpr (std::is_floating_point<Number>::value) way_.check(static_cast<double>(number));
+    if constexpr (std::is_same<Number, Nanoseconds>::value) way_.check(number);
   }
   void one(bool& truth) {
     std::uint8_t number = truth ? 1 : 0;
@@ -89,7 +106,7 @@ class Parts {
   }
   template <class Item>
   void one(std::vector<Item>& items) {
-    items.resize(way_.count(items.size()));
+    items.resize(way_.count(items.size(), sizeof(Item)));
     for (Item& item : items) one(item);
   }
   template <class Item, std::size_t size>
@@ -193,7 +210,10 @@ class Parts {
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
     all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
-        c.grip, c.share, c.strength, c.inverse_mass, c.impulse, c.time_of_impact);
+        c.grip, c.share, c.inverse_mass, c.impulse);
+    // Found anew in each step, and without limits.
+    way_.raw(&c.strength, sizeof c.strength);
+    way_.raw(&c.time_of_impact, sizeof c.time_of_impact);
   }
   void one(BodyContactKey& part) {
     auto& [a, b, shape_a, shape_b, feature] = part;
@@ -241,23 +261,70 @@ class Parts {
   Way& way_;
 };
 
-bool fits(const std::vector<BodyContact>& contacts, std::size_t bodies) {
-  for (const BodyContact& contact : contacts)
-    if (contact.key.a >= bodies || contact.key.b >= bodies) return false;
-  return true;
+bool is_unit(const Quaternion& q) {
+  constexpr double kRounding = 1e-3;  // of trackers that send 32 bits
+  return std::abs(q.norm() - 1.0) <= kRounding;
 }
 
-bool fits(const SimulationState& state, std::size_t bodies) {
-  constexpr std::size_t kHands = kMaxHands;
-  for (const Contact& contact : state.contacts)
-    if (contact.key.body >= bodies || contact.key.hand >= kHands || contact.key.capsule >= kCapsules)
-      return false;
-  for (const Grip& grip : state.grips)
-    if (grip.body >= bodies || grip.hand >= kHands) return false;
-  return fits(state.body_contacts, bodies) && fits(state.sleeping_contacts, bodies) &&
-         state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == kHands &&
-         state.offsets.size() == kHands && state.interactions.size() == kHands * bodies;
-}
+/// Whether what a state names is in its scene.
+class Fit {
+ public:
+  explicit Fit(const Scene& scene) : scene_(scene) {}
+
+  bool operator()(const SimulationState& state) const {
+    return sizes(state) && all(state.bodies) && all(state.joints) && all(state.hands) && all(state.offsets) &&
+           all(state.contacts) && sorted(state.contacts) && all(state.body_contacts) &&
+           sorted(state.body_contacts) && all(state.sleeping_contacts) && all(state.grips) &&
+           std::is_sorted(state.grips.begin(), state.grips.end(), [](const Grip& a, const Grip& b) {
+             return std::make_pair(a.hand, a.body) < std::make_pair(b.hand, b.body);
+           });
+  }
+
+ private:
+  template <class Items>
+  bool all(const Items& items) const {
+    for (const auto& item : items) {
+      if (!one(item)) return false;
+    }
+    return true;
+  }
+  template <class Contacts>
+  static bool sorted(const Contacts& contacts) {
+    return std::adjacent_find(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
+             return !(a.key < b.key);
+           }) == contacts.end();
+  }
+  bool sizes(const SimulationState& state) const {
+    const std::size_t bodies = scene_.bodies.size(), hands = kMaxHands;
+    return state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == hands &&
+           state.offsets.size() == hands && state.interactions.size() == hands * bodies &&
+           state.joints.size() == scene_.joints.size();
+  }
+  bool is_shape(std::size_t body, std::size_t shape) const {
+    return body < scene_.bodies.size() && shape < scene_.bodies[body].shapes.size();
+  }
+  bool moves(std::size_t body) const { return body < scene_.bodies.size() && !scene_.bodies[body].fixed; }
+  static bool one(const BodyState& body) { return is_unit(body.pose.orientation); }
+  static bool one(const JointState& joint) { return joint.at_limit >= -1 && joint.at_limit <= 1; }
+  static bool one(const HandTrack& track) {
+    return !track.active ||
+           (is_unit(track.previous.palm.orientation) && is_unit(track.current.palm.orientation));
+  }
+  static bool one(const HandOffset& offset) { return is_unit(offset.lag.whole) && is_unit(offset.lag.frame); }
+  bool one(const Contact& contact) const {
+    const ContactKey& key = contact.key;
+    return is_shape(key.body, key.shape) && key.hand < kMaxHands && key.capsule < kCapsules;
+  }
+  bool one(const BodyContact& contact) const {
+    const BodyContactKey& key = contact.key;
+    return is_shape(key.a, key.shape_a) && is_shape(key.b, key.shape_b) && moves(key.b) && key.a != key.b;
+  }
+  bool one(const Grip& grip) const {
+    return moves(grip.body) && grip.hand < kMaxHands && grip.fingers != 0 && grip.fingers < 1 << kFingers;
+  }
+
+  const Scene& scene_;
+};
 
 }  // namespace
 
@@ -272,7 +339,7 @@ std::string to_bytes(const SimulationState& state) {
   return out.bytes;
 }
 
-SimulationState state_from_bytes(const std::string& bytes, std::size_t bodies) {
+SimulationState state_from_bytes(const std::string& bytes, const Scene& scene) {
   std::uint64_t format = 0, sum = 0;
   if (bytes.size() < sizeof format + sizeof sum) refuse("ends early");
   const std::size_t size = bytes.size() - sizeof sum;
@@ -284,7 +351,7 @@ SimulationState state_from_bytes(const std::string& bytes, std::size_t bodies) {
   SimulationState state;
   Parts<In>(in).one(state);
   if (in.at != in.end) refuse("is too long");
-  if (!fits(state, bodies)) refuse("does not fit the scene");
+  if (!Fit(scene)(state)) refuse("does not fit the scene");
   return state;
 }
 

@@ -11,8 +11,9 @@ namespace mrhi {
 /// those of this version and of machines of the same byte order.
 std::string to_bytes(const SimulationState& state);
 
-/// Throws std::invalid_argument for bytes that are not whole, of another version, or of a scene that has
-/// another number of bodies than `bodies`.
-SimulationState state_from_bytes(const std::string& bytes, std::size_t bodies);
+/// Throws std::invalid_argument for bytes that are not whole, of another version, or of another scene, as far
+/// as they show it. What is taken can be gone on from, whoever has written it: all that it names is there,
+/// and no number is none.
+SimulationState state_from_bytes(const std::string& bytes, const Scene& scene);
 
 }  // namespace mrhi

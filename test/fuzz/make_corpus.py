@@ -52,11 +52,11 @@ def csv():
     write("csv", "few_columns", "time_s,hand_id,is_left,palm_x,palm_y,palm_z\n0,1,1,,,\n1e9,2,0,0,nan,-inf\n")
 
 
-def link(name, geometry, joint="floating", origin="0 0 0.2"):
+def link(name, geometry, joint="floating", origin="0 0 0.2", parent="world", more=""):
     shape = "<geometry>%s</geometry>" % geometry
     return ('<link name="{0}">{1}<visual>{2}</visual><collision>{2}</collision></link><joint name="j_{0}" '
-            'type="{3}"><parent link="world"/><child link="{0}"/><origin xyz="{4}" rpy="0 0.1 0"/></joint>'
-            ).format(name, INERTIAL, shape, joint, origin)
+            'type="{3}"><parent link="{5}"/><child link="{0}"/><origin xyz="{4}" rpy="0 0.1 0"/>{6}</joint>'
+            ).format(name, INERTIAL, shape, joint, origin, parent, more)
 
 
 def scenes():
@@ -67,6 +67,14 @@ def scenes():
     parameters = "step: 0.002\nfilter: {type: one_euro, min_cutoff: 2}\ncontact_model: implicit\ngravity: [0, 0, 1]\n"
     write("scene", "three_bodies", PART.join(['<robot name="r"><link name="world"/>%s</robot>' % bodies, settings,
                                               parameters]))
+    limits = '<axis xyz="0 1 0"/><limit lower="-1" upper="0.5" effort="1" velocity="1"/>'
+    joints = (link("door", '<box size="0.2 0.01 0.3"/>', "revolute", more=limits + '<dynamics damping="0.1"/>') +
+              link("knob", '<sphere radius="0.02"/>', "continuous", "0.09 -0.04 0", "door", '<axis xyz="0 1 0"/>') +
+              link("drawer", '<box size="0.1 0.1 0.05"/>', "prismatic", "0.5 0 0.2", more=limits))
+    of_joints = ("joints:\n  j_door: {start: 0.1, friction: 0.02, restitution: 0.3, latch: {at: 0.0, force: 2, reach: "
+                 "0.02}}\n  j_knob: {detents: {at: [-1, 0, 0.5], force: 0.1}}\n"
+                 "  j_drawer: {damping: 2, spring: {stiffness: 100, rest: -0.1}}\n")
+    write("scene", "joints", PART.join(['<robot name="r"><link name="world"/>%s</robot>' % joints, of_joints]))
     write("scene", "mesh", '<robot name="r"><link name="world"/>%s</robot>' % link(
         "m", '<mesh filename="package://a/b.stl" scale="1 1 -1"/>'))
     write("scene", "parameters", PART.join(["<robot/>", "[]", "hand/strength: unlimited\nfilter/window: 3\n"
@@ -88,6 +96,9 @@ def tasks():
     events = "time,trial,stage,event,object,detail\n0.0,,manipulation,session_begun,,\n3.5,2,release,dropped,b,\n"
     write("task", "session", PART.join([task, header, trials, events]))
     write("task", "cut_off", PART.join([task, header, trials[:-30], events[:-12]]))
+    setup = "contact_model: implicit\nstep: 0.001\n"
+    write("task", "setup", PART.join([task, header, trials, events, setup]))
+    write("task", "other_setup", PART.join([task, header, trials, events, setup.replace("0.001", "0.002")]))
     write("task", "strike", "name: s\nobjects: [{name: a, position: [0, 0, 0]}]\ngoals:\n  - tap: {speed: [0.1, 1]}\n"
           "  - nudge_into: {position: [0, 0, 1], size: [1, 1, 1], max_speed: 0.1}\n")
 
@@ -109,12 +120,37 @@ def meshes():
     write("mesh", "cube", b"\3\4" + cube + bytes(i for t in halves for i in t))
 
 
+def logs():
+    bodies = link("cube", '<box size="0.05 0.05 0.05"/>') + link("can", '<cylinder radius="0.02" length="0.1"/>',
+                                                                 origin="0.1 0 0.2")
+    urdf = '<robot name="r"><link name="world"/>%s</robot>' % bodies
+    world = ("version: 1.0.0\nscene: two\nobject_twist: {cube: [0.1, 0, 0, 0, 0, 1]}\n"
+             "parameters: {step: 0.002, contact_model: implicit}\nremoved: [can]\nadded:\n"
+             "  - {name: ball, shape: sphere, size: [0.03], mass: 0.1, pose: [0.3, 0, 0.2, 0, 0, 0, 1], "
+             "twist: [0, 0, 0, 0, 0, 0], material: '{stiffness: 500}', rgba: [1, 0, 0, 1]}\n")
+    box = '<robot name="b"><link name="world"/>%s</robot>' % link("box", '<box size="0.1 0.1 0.1"/>')
+    changes = {"spawn": "spawn: {name: box, urdf: spawn/box.urdf, pose: [0, 0.5, 0.5, 0, 0, 0, 1], "
+                        "twist: [0, 0, 0, 0, 0, 0]}\n",
+               "delete": "delete: cube\n", "reset": "reset: all\n", "pause": "pause: on\n",
+               "set": "set: [[filter/type, window], [hand/strength, unlimited]]\n",
+               "place": "place: ball\npose: [0.1, 0.2, 0.3, 0, 0, 0, 1]\n"}
+    for name, change in changes.items():
+        write("log", name, PART.join([world, urdf, "gravity: [0, 0, -9.81]\n", change, box]))
+
+
+def states():
+    for seed in range(4):
+        write("state", "whole_%d" % seed, bytes([seed]))
+        stream = random.Random(seed)
+        write("state", "random_%d" % seed, bytes([seed]) + bytes(stream.randrange(256) for _ in range(40)))
+
+
 def steps():
-    for seed in range(6):
+    for seed in range(10):
         stream = random.Random(seed)
         write("step", "random_%d" % seed, bytes(stream.randrange(256) for _ in range(400)))
 
 
 if __name__ == "__main__":
-    for make in (leap, csv, scenes, tasks, meshes, steps):
+    for make in (leap, csv, scenes, tasks, logs, states, meshes, steps):
         make()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "fuzz/target.h"
 #include "mr_hand_interaction/response/contact_model.h"
@@ -11,8 +12,8 @@
 
 namespace mrhi::fuzzing {
 
-/// A scene, a configuration and frames out of bytes: hands that go through one to four bodies, now and then
-/// with numbers that are none and stamps from elsewhere.
+/// A scene, a configuration and frames out of bytes: hands that go through one to four bodies, which hang on
+/// joints in some, now and then with numbers that are none and stamps from elsewhere.
 struct StepCase {
   Scene scene;
   Configuration configuration;
@@ -58,10 +59,60 @@ inline Body body_of(Bytes& bytes, int number, const Material& material) {
   return body;
 }
 
+inline bool is_clear(const Body& one, const Body& other) {
+  return (one.start.position - other.start.position).norm() >= one.bounding_radius + other.bounding_radius;
+}
+
 inline bool is_clear(const Scene& scene, const Body& added) {
-  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
-    return (body.start.position - added.start.position).norm() < body.bounding_radius + added.bounding_radius;
-  });
+  return std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                     [&](const Body& body) { return is_clear(body, added); });
+}
+
+inline double power_of_ten(Bytes& bytes, double least, double most) {
+  return std::pow(10.0, bytes.between(least, most));
+}
+
+inline Joint joint_of(Bytes& bytes, int parent, int child) {
+  Joint joint;
+  joint.name = "joint_" + std::to_string(child);
+  joint.kind = bytes.one_in(2) ? JointKind::sliding : JointKind::turning;
+  joint.parent = parent;
+  joint.child = child;
+  joint.axis = orientation_of(bytes) * Vector3::UnitX();
+  joint.axis.normalize();
+  joint.in_parent = {vector_of(bytes, 0.1), orientation_of(bytes)};
+  joint.in_child = {vector_of(bytes, 0.05), orientation_of(bytes)};
+  if (bytes.one_in(2)) {
+    joint.lower = -bytes.between(0.0, 0.5) - 1e-3;
+    joint.upper = bytes.between(0.0, 0.5);
+    joint.restitution = bytes.one_in(2) ? bytes.between(0.0, 1.0) : 0.0;
+  }
+  if (bytes.one_in(3)) joint.damping = power_of_ten(bytes, -4.0, 2.0);
+  if (bytes.one_in(3)) joint.friction = power_of_ten(bytes, -4.0, 2.0);
+  if (bytes.one_in(3)) joint.spring = JointSpring{power_of_ten(bytes, -2.0, 4.0), bytes.between(-0.5, 0.5)};
+  if (bytes.one_in(4)) joint.detents = Detents{{-0.2, 0.0, 0.1, 0.15}, power_of_ten(bytes, -3.0, 1.0)};
+  if (bytes.one_in(4)) {
+    const double at = bytes.between(-0.3, 0.3), force = power_of_ten(bytes, -3.0, 1.0);
+    joint.latch = Latch{at, force, power_of_ten(bytes, -4.0, -1.0)};
+  }
+  return joint;
+}
+
+/// Hangs bodies on those before them, or on the world, where what hangs is clear of all else.
+inline void hang(Bytes& bytes, Scene& scene) {
+  Scene hung = scene;
+  for (int child = 0; child < static_cast<int>(scene.bodies.size()); ++child) {
+    if (scene.bodies[static_cast<std::size_t>(child)].fixed || bytes.one_in(3)) continue;
+    const int parent = bytes.below(child + 1) - 1;
+    hung.joints.push_back(joint_of(bytes, parent, child));
+  }
+  for (Body& body : hung.bodies) body.start_twist = Twist();
+  arrange_joints(hung);
+  for (std::size_t a = 0; a < hung.bodies.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b)
+      if (!is_clear(hung.bodies[a], hung.bodies[b])) return;
+  }
+  scene = hung;
 }
 
 inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
@@ -75,6 +126,7 @@ inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
     Body body = body_of(bytes, i, material);
     if (is_clear(scene, body)) scene.bodies.push_back(std::move(body));
   }
+  if (bytes.one_in(3)) hang(bytes, scene);
   return scene;
 }
 
@@ -89,9 +141,9 @@ inline Configuration configuration_of(Bytes& bytes) {
   Configuration configuration;
   configuration.step = steps[bytes.below(5)];
   configuration.filter.type = filters[bytes.below(4)];
-  if (bytes.one_in(4)) configuration.contact_model = models[bytes.below(5)];
+  if (bytes.one_in(4)) configuration.contact_model = models[bytes.below(8)];
   if (bytes.one_in(3)) configuration.contact.hand = HandStrength::of_a_person();
-  configuration.contact.grasp_assist = bytes.one_in(4);
+  configuration.contact.grasp_assist = bytes.one_in(2);
   return configuration;
 }
 
@@ -157,10 +209,13 @@ inline HandJoints hand_of(Bytes& bytes, Side side, const Vector3& about, Walk& w
   return hand;
 }
 
-inline StepCase step_case(const std::uint8_t* data, std::size_t size) {
+/// `model`: instead of the one that the bytes choose.
+inline StepCase step_case(const std::uint8_t* data, std::size_t size,
+                          const std::optional<ContactModelKind>& model = {}) {
   Bytes bytes(data, size);
   StepCase made;
   made.configuration = configuration_of(bytes);
+  if (model) made.configuration.contact_model = *model;
   made.scene = scene_of(bytes, made.configuration);
   const Vector3 about = made.scene.bodies.empty() ? Vector3::Zero() : made.scene.bodies[0].start.position;
   Walk right{vector_of(bytes, 0.08), orientation_of(bytes)},

@@ -11,6 +11,7 @@ import threading
 import time
 import unittest
 
+import rosbag
 import roslib.packages
 import rospy
 import rostest
@@ -149,6 +150,18 @@ class FaultsTest(unittest.TestCase):
             before = len(lines)
             wait_until(lambda: len(lines) > before + 3, "hands without a master")
             self.assertEqual(pipeline.ended(), [])
+
+    def test_a_recorder_without_room_says_so_and_ends_and_its_bag_is_whole(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        file = os.path.join(folder, "full.bag")
+        # More than any disk has: as if it were full.
+        recorder = subprocess.run(["roslaunch", "mr_hand_interaction", "record.launch", "bag:=" + file,
+                                   "extra:=--min-space=900000G"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  universal_newlines=True, timeout=TIMEOUT)
+        self.assertIn("Disabling recording", recorder.stdout)
+        with rosbag.Bag(file) as bag:
+            self.assertEqual(bag.get_message_count(), 0)
 
     def test_services_reconfigures_mouse_and_viewers_at_once_at_100_hz_stop_nothing(self):
         with Pipeline() as pipeline:

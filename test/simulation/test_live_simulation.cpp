@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mr_hand_interaction/parameters.h"
 #include "support/pinch_scene.h"
@@ -281,6 +282,19 @@ TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_
   EXPECT_EQ(held.state("last").pose.position, Vector3(-0.3, 0, 0));
   EXPECT_EQ(held.state("new").pose.position, Vector3(0, 0.4, 0));
   EXPECT_FALSE(find_body(held.now().scene(), "first"));
+}
+
+/// As a recording of a stranger may ask for it.
+TEST(LiveSimulation, a_pose_that_is_none_is_refused) {
+  Held held;
+  const auto place = [&](double w, double x) {
+    held.live().place("last", {{0, 0.5, 0}, Quaternion(w, x, 0, 0)});
+  };
+  EXPECT_THROW(place(0.0, 0.0), std::invalid_argument);
+  EXPECT_THROW(place(std::nan(""), 0.0), std::invalid_argument);
+  EXPECT_THROW(place(3.0, 0.0), std::invalid_argument);
+  place(0.999, 0.0);
+  EXPECT_NEAR(held.now().state().bodies.back().pose.orientation.norm(), 1.0, 1e-15);
 }
 
 /// A stack that stands goes on standing: contacts between bodies come along.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -44,7 +47,7 @@ TEST(StateBytes, what_goes_on_from_them_has_the_same_bits) {
   Simulation& one = *held_cube;
   ASSERT_FALSE(one.state().contacts.empty());
   Simulation other(scene_of(pinch), Configuration());
-  other.set_state(state_from_bytes(to_bytes(one.state()), other.scene().bodies.size()));
+  other.set_state(state_from_bytes(to_bytes(one.state()), other.scene()));
   for (int i = kFrames; i < kFrames + kMore; ++i) {
     ASSERT_EQ(hash(one.state()), hash(other.state())) << "frame " << i;
     one.advance(frame_of(pinch, i));
@@ -54,12 +57,12 @@ TEST(StateBytes, what_goes_on_from_them_has_the_same_bits) {
 
 TEST(StateBytes, are_the_same_again_after_they_have_been_read) {
   const std::string bytes = to_bytes(held(90)->state());
-  EXPECT_EQ(to_bytes(state_from_bytes(bytes, 2)), bytes);
+  EXPECT_EQ(to_bytes(state_from_bytes(bytes, scene_of({}))), bytes);
 }
 
-std::string refusal(const std::string& bytes, std::size_t bodies) {
+std::string refusal(const std::string& bytes, const Scene& scene) {
   try {
-    state_from_bytes(bytes, bodies);
+    state_from_bytes(bytes, scene);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -68,15 +71,56 @@ std::string refusal(const std::string& bytes, std::size_t bodies) {
 
 TEST(StateBytes, that_are_damaged_cut_or_of_another_scene_are_refused) {
   const std::string good = to_bytes(held(90)->state());
-  ASSERT_EQ(refusal(good, 2), "");
-  EXPECT_NE(refusal(good, 3).find("scene"), std::string::npos);
-  EXPECT_NE(refusal("", 2), "");
-  EXPECT_NE(refusal(good.substr(0, good.size() / 2), 2), "");
+  const Scene scene = scene_of({});
+  Scene other = scene;
+  other.bodies.push_back(other.bodies.back());
+  ASSERT_EQ(refusal(good, scene), "");
+  EXPECT_NE(refusal(good, other).find("scene"), std::string::npos);
+  EXPECT_NE(refusal("", scene), "");
+  EXPECT_NE(refusal(good.substr(0, good.size() / 2), scene), "");
   for (std::size_t place = 0; place < good.size(); place += 997) {
     std::string bad = good;
     bad[place] = static_cast<char>(bad[place] ^ 0x10);
-    EXPECT_NE(refusal(bad, 2), "") << "byte " << place;
+    EXPECT_NE(refusal(bad, scene), "") << "byte " << place;
   }
+}
+
+/// Whole and of the right sum, from a recording of a stranger.
+TEST(StateBytes, that_name_what_is_not_there_are_refused) {
+  const Scene scene = scene_of({});
+  const SimulationState good = held(90)->state();
+  const auto spoiled = [&](const std::function<void(SimulationState&)>& spoil) {
+    SimulationState bad = good;
+    spoil(bad);
+    return refusal(to_bytes(bad), scene);
+  };
+  Grip grip;
+  grip.fingers = 2;
+  for (auto* places : {&grip.in_hand, &grip.in_body, &grip.point, &grip.velocity})
+    places->fill(Vector3::Zero());
+  for (Vector3& pad : grip.pads) pad.setZero();
+  ASSERT_EQ(spoiled([&](auto& state) { state.grips.push_back(grip); }), "");
+  const std::vector<std::function<void(SimulationState&)>> ways{
+      [](auto& state) { state.contacts.front().key.body = 2; },
+      [](auto& state) { state.contacts.front().key.shape = 1; },
+      [](auto& state) { state.contacts.front().key.hand = kMaxHands; },
+      [](auto& state) { state.contacts.front().key.capsule = kCapsules; },
+      [](auto& state) { state.contacts.push_back(state.contacts.front()); },
+      [](auto& state) { state.body_contacts.emplace_back().key.a = 2; },
+      [](auto& state) { state.sleeping_contacts.emplace_back().key.shape_b = 1; },
+      [](auto& state) { state.bodies.pop_back(); },
+      [](auto& state) { state.joints.emplace_back(); },
+      [](auto& state) { state.interactions.emplace_back(); },
+      [](auto& state) { state.bodies[0].pose.orientation.coeffs().setZero(); },
+      [](auto& state) { state.bodies[0].linear_momentum.x() = std::nan(""); },
+      [](auto& state) { state.bodies[0].pose.position.x() = 1e300; },
+      [](auto& state) { state.hands[0].current.palm.orientation.coeffs().setZero(); },
+      [](auto& state) { state.offsets[0].lag.whole.coeffs().setZero(); },
+      [](auto& state) { state.hands[0].last_seen = std::numeric_limits<Nanoseconds>::min(); },
+      [](auto& state) { state.grips.emplace_back(); },
+      [&](auto& state) { state.grips.push_back(grip), state.grips.back().body = 2; },
+      [&](auto& state) { state.grips.push_back(grip), state.grips.back().hand = kMaxHands; }};
+  for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_NE(spoiled(ways[i]), "") << "way " << i;
 }
 
 }  // namespace

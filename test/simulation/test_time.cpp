@@ -163,6 +163,30 @@ TEST(Time, a_stamp_that_is_none_is_refused_and_the_next_frame_is_taken) {
   }
 }
 
+/// Under UndefinedBehaviorSanitizer this tells an overflow.
+TEST(Time, stamps_of_both_ends_of_what_a_stamp_can_be_are_told_apart) {
+  const Nanoseconds late = StampJudge::kLatest - 1'000'000'000, step = 10'000'000;
+  Simulation simulation(drifting_cube(), unfiltered());
+  EXPECT_EQ(simulation.advance({-late, {}}), Rejection::none);
+  EXPECT_EQ(simulation.advance({-late + step, {}}), Rejection::none);
+  EXPECT_EQ(simulation.advance({late, {}}), Rejection::stamp_ahead);
+  EXPECT_EQ(simulation.advance({late + step, {}}), Rejection::none);
+  EXPECT_EQ(simulation.advance({late + 2 * step, {}}), Rejection::none);
+}
+
+TEST(Time, a_clock_that_tells_what_none_can_does_no_harm) {
+  constexpr Nanoseconds kMost = std::numeric_limits<Nanoseconds>::max();
+  Simulation simulation(drifting_cube(), unfiltered());
+  run(simulation, 0, 50);
+  const std::uint64_t before = hash(simulation.state());
+  for (const Nanoseconds now : {kMost, -kMost - 1}) {
+    EXPECT_FALSE(simulation.advance_without_hands(now));
+    EXPECT_EQ(simulation.begin({at(49 / kRate), {}}, now), Rejection::stamp_not_increasing);
+    EXPECT_EQ(hash(simulation.state()), before);
+  }
+  EXPECT_EQ(simulation.begin({at(0.9), {}}, -kMost - 1), Rejection::stamp_ahead);
+}
+
 TEST(Time, a_stream_that_begins_anew_restarts_everything_at_its_third_frame) {
   Simulation simulation(drifting_cube(), unfiltered()), fresh(drifting_cube(), unfiltered());
   run(simulation, 100, 200);
