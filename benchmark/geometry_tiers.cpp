@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "modelling/skin_model.h"
 #include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
@@ -224,7 +225,7 @@ void compare(const Geometries& rest, const Skin& skin, bool inside) {
 }  // namespace mrhi
 
 int main() {
-  const mrhi::Skin skin;  // finer than the one that is drawn
+  const mrhi::Skin skin(mrhi::finest_skin());  // finer than the one that is drawn
   const mrhi::Geometries rest = mrhi::resting_hand(skin);
   std::printf(
       "%d poses each; all fingers against one box; smallest of %d times, all geometries by turns; "

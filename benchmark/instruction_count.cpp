@@ -1,9 +1,12 @@
 // Plays a scene for callgrind to count the instructions of its settled steps: scripts/instruction_count.
 #include <cstring>
 #include <iostream>
+#include <memory>
 
+#include "crowds/scenes.h"
 #include "support/grips.h"
 #include "support/pinch_scene.h"
+#include "support/tessellated.h"
 
 // Callgrind begins and ends to collect with these, by their names: none may call another or be inlined.
 extern "C" {
@@ -29,6 +32,7 @@ using testing::at;
 using testing::PinchScene;
 
 constexpr double kCube = 0.05;  // edge [m]
+constexpr int kPushed = 20;     // blocks
 const Vector3 kSecondPinch(1.0, 0.0, 0.0);
 
 struct Plan {
@@ -39,6 +43,7 @@ struct Plan {
   double settled;     // [s]
   bool whole_frame;
   bool sleep;
+  double counted = 1.0;  // [s]
 };
 
 Scene pinch() {
@@ -99,24 +104,53 @@ std::vector<Hand> none(double) {
   return {};
 }
 
+/// Scene (a) with a ball of 2880 triangles in the cube's place.
+Scene pinched_mesh() {
+  Scene scene = pinch();
+  Body& body = scene.bodies.front();
+  auto ball = std::make_shared<const TriangleMesh>(testing::tessellated_ball(0.5 * kCube, 16));
+  body.shapes.front().shape = Mesh{std::move(ball), "", Vector3::Ones()};
+  complete(body);
+  return scene;
+}
+
+Scene heap_of_12() {
+  return crowds::dropped(12, 0.016, "").scene;
+}
+
+Scene pushed_blocks() {
+  return crowds::pushed(kPushed).scene;
+}
+
+Scene block_of_50() {
+  return crowds::block(50).scene;
+}
+
+std::vector<Hand> pushing(double t) {
+  return crowds::pushed(kPushed).hands(t);
+}
+
 constexpr double kTrackerFrame = 1.0 / 120.0;  // [s]
 const Plan kPlans[] = {
     {"pinch", pinch, swinging, 0.001, 0.6, false, true},
     {"pinch_19_more", pinch_19_more, swinging, 0.001, 0.6, false, true},
     {"stack", stack, none, 0.001, 1.0, false, false},
     {"stack_asleep", stack, none, 0.001, 1.0, false, true},
+    {"pinch_mesh", pinched_mesh, swinging, 0.001, 0.6, false, true, 0.2},
+    {"heap_of_12", heap_of_12, none, 0.001, 0.0, false, true, 0.5},
+    {"push_of_20", pushed_blocks, pushing, 0.001, 0.6, false, true, 0.1},
+    {"block_of_50_awake", block_of_50, none, 0.001, 0.1, false, false, 0.1},
     {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true, true},
     {"two_hands_six_objects_120_hz_frame", two_pinches, two_swinging, kTrackerFrame, 0.6, true, true},
 };
 
 /// The number of steps that were counted.
 int play(const Plan& plan) {
-  constexpr double kCounted = 1.0;  // [s]
   Configuration configuration = testing::implicit_configuration();
   configuration.contact.sleep = plan.sleep;
   configuration.step = 1.001 * plan.frame_time;  // one step a frame, though stamps are rounded
   Simulation simulation(plan.scene(), configuration);
-  const long last = std::lround((plan.settled + kCounted) / plan.frame_time);
+  const long last = std::lround((plan.settled + plan.counted) / plan.frame_time);
   int steps = 0;
   for (long i = 0; i <= last; ++i) {
     const double t = static_cast<double>(i) * plan.frame_time;

@@ -3,7 +3,7 @@ add_message_files(FILES
   Contact.msg ContactArray.msg Hand.msg HandFrame.msg HandHaptics.msg HapticsArray.msg InteractionEvent.msg
   ObjectState.msg ObjectStateArray.msg Phalanx.msg PhalanxHaptics.msg RecordedFile.msg SimulationInput.msg
   TrainingEvent.msg TrainingStatus.msg)
-add_service_files(FILES DeleteObject.srv SetParameter.srv SpawnObject.srv)
+add_service_files(FILES DeleteObject.srv SaveWorld.srv SetParameter.srv SpawnObject.srv SpawnUrdf.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 generate_dynamic_reconfigure_options(cfg/Tune.cfg)
 

@@ -12,13 +12,14 @@ import rospy
 import yaml
 from std_srvs.srv import SetBool
 
-from watch_demo import COLOURS, STRIKES, Demo, colours_of, grab, join_master
+from watch_demo import COLOURS, Demo, colours_of, grab, join_master
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
-LAYERS = ("hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "shadows", "text", "Grid")
+LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "shadows", "text", "Grid")
+OFF_AT_FIRST = ("capsules", "newtons", "share")
 
 
 def view(text):
@@ -30,7 +31,7 @@ def view(text):
 
 def layers(text):
     names = [name for name in text.split(",") if name]
-    unknown = set(names) - set(LAYERS)
+    unknown = set(names) - set(LAYERS + OFF_AT_FIRST)
     if unknown:
         raise argparse.ArgumentTypeError(f"unknown layer {', '.join(sorted(unknown))}")
     return names
@@ -43,7 +44,8 @@ def parse(arguments):
     parser.add_argument("--time", type=lambda text: float(text) if text else None)
     parser.add_argument("--view", type=view, default=VIEWS["front"])
     parser.add_argument("--distance", type=float, default=0.42)
-    parser.add_argument("--hide", type=layers, default=["capsules"])
+    parser.add_argument("--hide", type=layers, default=[])
+    parser.add_argument("--show", type=layers, default=[])
     parser.add_argument("--size", required=True)
     parser.add_argument("--output", required=True)
     parser.add_argument("--time-limit", type=float, default=120.0)
@@ -60,7 +62,7 @@ def has_come(demo, options):
         return bool(demo.touched)
     if options.moment == "grasp":
         return any(thing.held for thing in demo.objects.values())
-    return demo.struck() if options.motion in STRIKES else demo.carried()
+    return demo.done(options.motion)
 
 
 def middle(demo):
@@ -82,6 +84,7 @@ def write_config(options, focus, file):
             display["Enabled"] = display["Value"] = False
         if display["Name"] == "Hands and objects":
             display["Namespaces"] = {name: name not in options.hide for name in LAYERS if name != "Grid"}
+            display["Namespaces"].update({name: name in options.show for name in OFF_AT_FIRST})
     width, height = (2 * int(number) for number in options.size.split("x"))
     config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)

@@ -16,8 +16,11 @@ from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, O
 from std_srvs.srv import SetBool, Trigger, TriggerResponse
 
 STRIKES = ("nudge", "tap", "slap")
+TURNS = ("press_button", "flip_switch", "turn_valve", "pull_lever", "squeeze_tongs")  # hardly move from their place
 CARRIED = 0.04  # m from where it was taken: clearly so in the picture
 STRUCK = 0.01  # m
+PUSHED = 0.004  # m, as a button is
+TURNED = 0.25  # rad
 SEEN_STRUCK = 0.03  # m: clearly so in the picture
 COLOURS = 500  # fewer: rviz has not drawn the scene yet
 STEADY = 3  # pictures alike, one after the other: rviz has drawn what there is
@@ -27,6 +30,10 @@ STATUS_BAR = 40  # rows of pixels in which rviz counts its pictures per second
 
 def distance(a, b):
     return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
+
+
+def turn_between(a, b):
+    return 2.0 * math.acos(min(1.0, abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w)))
 
 
 class Demo:
@@ -77,7 +84,7 @@ class Demo:
             for thing in message.objects:
                 # Who comes late sees the middle of a run.
                 if not thing.held and message.header.stamp >= self.run_began:
-                    self.start.setdefault(thing.name, thing.pose.position)
+                    self.start.setdefault(thing.name, thing.pose)
                 self.objects[thing.name] = thing
             self.changed.notify_all()
 
@@ -94,7 +101,7 @@ class Demo:
             self.grasped.clear()
 
     def moved(self, name):
-        return 0.0 if name not in self.start else distance(self.objects[name].pose.position, self.start[name])
+        return 0.0 if name not in self.start else distance(self.objects[name].pose.position, self.start[name].position)
 
     def carried(self):
         return any(thing.held and name in self.grasped and self.moved(name) > CARRIED
@@ -102,6 +109,16 @@ class Demo:
 
     def struck(self, by=STRUCK):
         return any(name in self.touched and self.moved(name) > by for name in self.objects)
+
+    def turned(self):
+        return any(self.moved(name) > PUSHED
+                   or turn_between(thing.pose.orientation, self.start[name].orientation) > TURNED
+                   for name, thing in self.objects.items() if name in self.touched and name in self.start)
+
+    def done(self, motion, struck=STRUCK):
+        if motion in STRIKES:
+            return self.struck(struck)
+        return self.turned() if motion in TURNS else self.carried()
 
     def wait_for(self, condition, deadline):
         with self.changed:
@@ -207,7 +224,7 @@ def main():
 
     join_master("watch_demo", deadline)
     demo = Demo()
-    what = (lambda: demo.struck(SEEN_STRUCK)) if options.motion in STRIKES else demo.carried
+    what = lambda: demo.done(options.motion, SEEN_STRUCK)
     moment, done = Moment(demo), False
     while not done and demo.wait_for(lambda: what() and rviz_listens(), deadline):
         done = moment.stop(what, deadline) and take_picture(options.picture, deadline)

@@ -1,5 +1,6 @@
 // What a step costs where many bodies meet: CPU time of each, how often it was much, and what became of
-// momentum.
+// momentum. crowds [NAME [SECONDS]]: scenes with that in their names, each for so much CPU time at most;
+// crowds --cut-short: error against cost over the size of a crowd.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cut_short.h"
 #include "scenes.h"
 #include "support/fixtures.h"
 
@@ -117,6 +119,10 @@ void print(const Crowd& crowd, Measured measured) {
 
 int main(int argc, char** argv) {
   using namespace mrhi::crowds;
+  if (argc == 2 && std::string(argv[1]) == "--cut-short") {
+    print_cut_short();
+    return 0;
+  }
   std::printf("%-40s %6s %6s %10s %10s %10s %10s %10s %9s %7s %6s\n", "CPU us a step", "bodies", "contac",
               "mean", "median", "p99", "max", "first", "momentum", "asleep", "MB");
   for (const Crowd& crowd : all_crowds()) {

@@ -25,6 +25,8 @@ class LiveSimulation {
   void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);
   /// Throws std::invalid_argument for a name that is taken, and a place out of bounds or in another body.
   void add(const Body& body);
+  /// The same for all bodies of `part` and its joints; what else is in it does not count.
+  void add(const Scene& part);
   /// Both throw std::invalid_argument for a name that is not known.
   void remove(const std::string& name);
   /// The events with which hands would leave a body if it were removed now.

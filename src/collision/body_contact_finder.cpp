@@ -82,12 +82,6 @@ std::optional<Touch> find_touch(const ShapePair& pair, double step, double margi
   return swept(pair, step, margin);
 }
 
-const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before) {
-  const auto same = std::lower_bound(before.begin(), before.end(), key,
-                                     [](const BodyContact& c, const BodyContactKey& k) { return c.key < k; });
-  return same != before.end() && same->key == key ? &*same : nullptr;
-}
-
 /// The anchors' stretch is kept; they move along with the place where the surfaces meet, so that rolling
 /// stretches nothing.
 void anchor(const MovingBody& a, const MovingBody& b, bool lasting, BodyContact& contact) {
@@ -102,8 +96,20 @@ void anchor(const MovingBody& a, const MovingBody& b, bool lasting, BodyContact&
   contact.anchor_b = b.pose.to_local(contact.point - 0.5 * contact.stretch);
 }
 
+/// What all points of a touch have in common.
+struct Common {
+  Material material;
+  Vector3 centre_a, centre_b;  // when they touch
+};
+
+Common common_of(const ShapePair& pair, const Touch& touch) {
+  const double then = std::max(touch.time, 0.0);
+  return {together(pair.a.body.material, pair.b.body.material), pair.a.at(then).position,
+          pair.b.at(then).position};
+}
+
 BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
-                         const ManifoldPoint& point, const BodyContact* memory) {
+                         const Common& common, const ManifoldPoint& point, const BodyContact* memory) {
   BodyContact contact;
   if (memory != nullptr) contact = *memory;
   const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
@@ -113,12 +119,11 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
   contact.share = 1.0 / touch.manifold.count;
   contact.first_touch = touch.time;
-  contact.force.setZero();
+  if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kApart;
-  contact.material = together(pair.a.body.material, pair.b.body.material);
-  const double then = std::max(touch.time, 0.0);
-  contact.arm_a = point.point - pair.a.at(then).position;
-  contact.arm_b = point.point - pair.b.at(then).position;
+  contact.material = common.material;
+  contact.arm_a = point.point - common.centre_a;
+  contact.arm_b = point.point - common.centre_b;
   anchor(pair.a, pair.b, lasting, contact);
   return contact;
 }
@@ -135,6 +140,7 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
                              const std::vector<char>& asleep, double step,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
+  reached_ = 0;
   reaches_.resize(bodies.size());
   for (const int body : neighbours.paired()) {
     const auto b = static_cast<std::size_t>(body);
@@ -173,6 +179,13 @@ BodyContactFinder::Reach BodyContactFinder::reach_of(const Body& body, const Bod
   return reach;
 }
 
+/// The contact of the last step, if there was one. Keys are asked for in their order.
+const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
+                                                const std::vector<BodyContact>& before) {
+  while (reached_ < before.size() && before[reached_].key < key) ++reached_;
+  return reached_ < before.size() && before[reached_].key == key ? &before[reached_] : nullptr;
+}
+
 void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vector<BodyState>& bodies,
                                   double step, const std::vector<BodyContact>& before) {
   const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
@@ -184,19 +197,19 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
-      const auto touch = find_touch(pair, step, margin);
+      auto touch = find_touch(pair, step, margin);
       if (!touch) continue;
-      const std::size_t first = found_.size();
+      // Pairs come sorted, so that only the points of one need to be.
+      std::sort(touch->manifold.points.begin(), touch->manifold.points.begin() + touch->manifold.count,
+                [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.feature < y.feature; });
+      const Common common = common_of(pair, *touch);
       for (int p = 0; p < touch->manifold.count; ++p) {
         const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
         if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
-        found_.push_back(make_contact(key, pair, *touch, point, memory_of(key, before)));
+        found_.push_back(make_contact(key, pair, *touch, common, point, memory_of(key, before)));
       }
-      // Pairs come sorted, so that only the points of one need to be.
-      std::sort(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(),
-                [](const BodyContact& x, const BodyContact& y) { return x.key < y.key; });
     }
   }
 }

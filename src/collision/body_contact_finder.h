@@ -26,6 +26,7 @@ class BodyContactFinder {
     double travel;         // in the step, and half the gap from which contacts are followed [m]
   };
   Reach reach_of(const Body& body, const BodyState& state, double step) const;
+  const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
   void find_pair(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double step,
                  const std::vector<BodyContact>& before);
 
@@ -34,6 +35,7 @@ class BodyContactFinder {
   const Vector3 gravity_;
   std::vector<Reach> reaches_;  // by body, of those that have neighbours
   std::vector<BodyContact> found_;
+  std::size_t reached_ = 0;  // of the contacts before
 };
 
 }  // namespace mrhi

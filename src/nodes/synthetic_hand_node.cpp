@@ -22,7 +22,8 @@ constexpr const char* kUsage =
 Publishes a scripted hand on /leap_motion/leap_device, as a Leap's driver would; with --csv writes one run of it as a
 recording, which needs no master.
 
-  ~motion   grasp_cube grasp_ball catch_ball pinch_long lift_flat nudge tap slap; default grasp_cube
+  ~motion   grasp_cube (default) grasp_ball catch_ball pinch_long lift_flat nudge tap slap press_button flip_switch
+            turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs
   ~side     left or right; default right
   ~rate     frames per second; default 115
   ~noise    1: as a Leap's; default 0

@@ -6,6 +6,10 @@
 namespace mrhi {
 namespace {
 
+/// What stays as it was shown where a hand goes too far: its offset; or the palm, which lags, with axes that
+/// the joints' limits ask for; or its axes as well, about which fingers bend.
+enum class Stays { offset, palm, axes };
+
 constexpr int kMaxPasses = 12;
 constexpr int kMostInVain = 2;         // passes on end that bring a hand no better into step
 constexpr double kBetter = 0.9;        // a gap of this share of the best one is better
@@ -46,13 +50,15 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
   const double swing = kSwingShare * setting.moved + kSwing;
   if (least_beyond > pushed_by) in_step(hurried, reference, swing, kTolerated);
   if (least_beyond > kTolerated && pushed_by > 0.0) in_step(pace, reference, swing, kTolerated);
-  for (const bool lags : {false, true}) {
+  PalmLag lag = reference.lag;
+  for (const Stays stays : {Stays::offset, Stays::palm, Stays::axes}) {
     if (least_beyond <= kTolerated + pushed_by) break;
-    const PalmLag lag = lags ? lag_staying(setting) : reference.lag;
+    if (stays == Stays::palm) lag = lag_staying(setting);
+    if (stays == Stays::axes) lag.frame = frame_staying(setting, lag.whole);
     chain.begin(setting.tracked, lag);
     const HandOffset stay = staying(setting, lag);
     begin_anew(setting, stay, offset, placed);
-    in_step(hurried, stay, kAnyway, lags ? kDeepest : kTolerated);
+    in_step(hurried, stay, kAnyway, stays == Stays::offset ? kTolerated : kDeepest);
   }
   leap = std::max(0.0, least_beyond - pushed_by);
   offset = best;

@@ -38,10 +38,15 @@ double HandRenderer::Impl::held_by_limits(const ClearanceFinder::Setting& settin
   return held;
 }
 
+/// The palm's axes are not turned from how they were shown.
+Quaternion HandRenderer::Impl::frame_staying(const ClearanceFinder::Setting& setting,
+                                             const Quaternion& whole) const {
+  return (before.palm.orientation * (whole * setting.tracked.palm.orientation).conjugate()).normalized();
+}
+
 /// The palm's bones are not turned from how they were shown; its axes, to which joints' limits count, such
 /// that the fingers can stay too, as far as there are such.
 PalmLag HandRenderer::Impl::lag_staying(const ClearanceFinder::Setting& setting) {
-  const Quaternion& tracked = setting.tracked.palm.orientation;
   PalmLag lag;
   lag.whole = (axes_by_bones(before) * axes_by_bones(setting.tracked).conjugate()).normalized();
   double held = held_by_limits(setting, lag);
@@ -52,7 +57,7 @@ PalmLag HandRenderer::Impl::lag_staying(const ClearanceFinder::Setting& setting)
     held = then, lag = other;
     return true;
   };
-  try_frame(before.palm.orientation * (lag.whole * tracked).conjugate());
+  try_frame(frame_staying(setting, lag.whole));
   for (double turn = kFirstTurn; turn > kLastTurn && held > kHeld; turn *= 0.5) {
     for (int direction = 0; direction < 6; ++direction) {
       const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * Vector3::Unit(direction % 3);

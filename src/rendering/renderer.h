@@ -48,6 +48,7 @@ struct HandRenderer::Impl {
                   Hand& placed);
   double pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const;
   HandOffset staying(const ClearanceFinder::Setting& setting, const PalmLag& lag);
+  Quaternion frame_staying(const ClearanceFinder::Setting& setting, const Quaternion& whole) const;
   PalmLag lag_staying(const ClearanceFinder::Setting& setting);
   double held_by_limits(const ClearanceFinder::Setting& setting, const PalmLag& lag);
   void linearise(const Hand& placed);

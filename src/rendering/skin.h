@@ -15,12 +15,12 @@ struct SkinSurface {
   std::vector<Vector3> normals;   ///< outward, unit
 };
 
-/// A smooth closed skin over a hand's bones. Its triangles are made once, from the shape of a resting hand;
-/// each hand, left or right and of any size, has the same ones, bent over its bones. Immutable.
+/// A smooth closed skin over a hand's bones: triangles that are made for the rest hand (modelling/). Each
+/// hand, left or right and of any size, has the same ones, bent over its bones. Immutable.
 class Skin {
  public:
-  Skin();                                ///< as fine as it is made
-  explicit Skin(std::size_t triangles);  ///< with about as many, small where it bends
+  /// Of a mesh on the rest hand's surface.
+  explicit Skin(TriangleMesh rest);
   /// What all share: a hand's, and a coarser one for what is only to be made out.
   static const Skin& human();
   static const Skin& outline();
@@ -48,7 +48,6 @@ class Skin {
     float weight, along;
     Eigen::Vector3f beyond, normal;
   };
-  explicit Skin(TriangleMesh rest);
   static Influence influence(int bone, double weight, const Vector3& vertex, const Vector3& normal);
 
   std::vector<Vector3> rest_;

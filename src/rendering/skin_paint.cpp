@@ -12,7 +12,6 @@ namespace {
 
 const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
     kNail(0.96f, 0.82f, 0.75f);
-const Rgb kBackground(0.227f, 0.247f, 0.278f);         // of rviz/interaction.rviz: the wrist fades into it
 constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
 // A touch is seen around its middle as far as this, in radii of what presses.
 constexpr double kSpot = 2.0, kSpotCore = 1.1;
@@ -138,8 +137,7 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface,
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();
     const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
                                         counts[static_cast<std::size_t>(tint.capsule)]);
-    const Rgb lit = (colour * light_on(normal, around)).min(1.0f);
-    colours[v] = lit + tint.wrist * (kBackground - lit);
+    colours[v] = (colour * light_on(normal, around)).min(1.0f);
   }
 }
 

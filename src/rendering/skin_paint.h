@@ -19,6 +19,9 @@ class SkinPaint {
   /// presses, and the more so the harder.
   void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours) const;
 
+  /// How much of a vertex is left to be seen: 1 everywhere but at the wrist, which ends in nothing.
+  float opacity(std::size_t vertex) const { return 1.0f - tints_[vertex].wrist; }
+
   static Rgb touching_colour() { return {0.86f, 0.30f, 0.08f}; }
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "gradient.h"
 #include "skin_rig.h"
 
 namespace mrhi {
@@ -133,6 +134,10 @@ double skin_distance(const Vector3& point) {
   distance = smooth_min(distance, forearm_distance(point, 0.012, 0.027, 0.0165), kFlesh);
   distance = smooth_min(distance, forearm_distance(point, kSleeveBegins, 0.032, 0.0205), 0.002);
   return -smooth_min(-distance, point.x() + kStump, 0.004);
+}
+
+Vector3 skin_normal(const Vector3& point) {
+  return gradient(skin_distance, point).normalized();
 }
 
 SkinBox skin_box() {

@@ -9,6 +9,9 @@ namespace mrhi {
 /// at the back.
 double skin_distance(const Vector3& point);
 
+/// Unit, outward: of its gradient.
+Vector3 skin_normal(const Vector3& point);
+
 /// A box around it.
 struct SkinBox {
   Vector3 lowest, highest;

@@ -13,7 +13,7 @@ struct Making {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const {
-    simulation.add(requested_body(spawn.request, scene_options(simulation.now().configuration())));
+    simulation.add(requested_scene(spawn.request, scene_options(simulation.now().configuration())));
   }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
@@ -84,7 +84,7 @@ RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
   RecordedFiles files = mesh_files(spawn->request.urdf, "");
-  files.push_back({spawned_file(spawn->request.name), spawn->request.urdf});
+  files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }
 

@@ -1,5 +1,6 @@
 #include "change_yaml.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -37,8 +38,15 @@ const RecordedFile* find_file(const RecordedFiles& files, const std::string& nam
   return nullptr;
 }
 
-std::string spawned_file(const std::string& object) {
-  return "spawn/" + object + ".urdf";
+/// What is spawned whole may have no name: its text names it (FNV-1a).
+std::string spawned_file(const ObjectRequest& request) {
+  std::string name = request.name;
+  if (name.empty()) {
+    std::uint64_t sum = 0xcbf29ce484222325u;
+    for (const char c : request.urdf) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    name = std::to_string(sum);
+  }
+  return "spawn/" + name + ".urdf";
 }
 
 YAML::Node numbers_node(const std::vector<double>& values) {
@@ -62,11 +70,15 @@ YAML::Node twist_node(const Twist& twist) {
 YAML::Node request_node(const ObjectRequest& request) {
   YAML::Node node;
   node["name"] = request.name;
-  if (!request.urdf.empty()) node["urdf"] = spawned_file(request.name);
+  if (!request.urdf.empty()) node["urdf"] = spawned_file(request);
   if (request.urdf.empty()) {
     node["shape"] = request.shape;
     node["size"] = numbers_node(request.size);
     node["mass"] = text::exact(request.mass);
+  }
+  if (request.whole) {
+    node["whole"] = "yes";
+    node["joints"] = request.joints;
   }
   node["pose"] = pose_node(request.pose);
   node["twist"] = twist_node(request.twist);
@@ -112,6 +124,10 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
     request.shape = text_in(node, "shape");
     request.size = numbers_in(node["size"], 0);
     request.mass = numbers_in(YAML::Node(std::vector<std::string>{text_in(node, "mass")}), 1)[0];
+  }
+  if (node["whole"]) {
+    request.whole = true;
+    request.joints = text_in(node, "joints");
   }
   request.pose = pose_in(node["pose"]);
   request.twist = twist_in(node["twist"]);

@@ -26,6 +26,6 @@ YAML::Node recorded_yaml(const std::string& yaml);
 /// Text of a node that must be there.
 std::string text_in(const YAML::Node& node, const char* key);
 const RecordedFile* find_file(const RecordedFiles& files, const std::string& name);
-std::string spawned_file(const std::string& object);
+std::string spawned_file(const ObjectRequest& request);
 
 }  // namespace mrhi

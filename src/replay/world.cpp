@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "../scene/append_scene.h"
 #include "../scene/remove_body.h"
 #include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
@@ -145,13 +146,22 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
   options.gravity.reset();
   Scene scene = scene_of_files(world, options, folder);
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
+  // What is not in the scene came with others, and has gone again.
+  std::vector<std::string> gone_since;
   for (const std::string& name : world.removed) {
-    if (const std::optional<int> body = find_body(scene, name))
+    if (const std::optional<int> body = find_body(scene, name)) {
       remove_body(static_cast<std::size_t>(*body), scene);
+    } else {
+      gone_since.push_back(name);
+    }
   }
   for (ObjectRequest request : world.added) {
     request.urdf = with_meshes_in(folder, request.urdf, world.files);
-    scene.bodies.push_back(requested_body(request, options));
+    append(requested_scene(request, options), scene);
+  }
+  for (const std::string& name : gone_since) {
+    if (const std::optional<int> body = find_body(scene, name))
+      remove_body(static_cast<std::size_t>(*body), scene);
   }
   return scene;
 }

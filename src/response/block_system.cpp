@@ -4,12 +4,6 @@
 #include <tuple>
 
 namespace mrhi {
-namespace {
-
-/// Springs of many bodies need about as many turns as the bodies that a push runs through, and some more.
-constexpr int kMostTurns = 120;
-
-}  // namespace
 
 bool BlockSystem::before(const Coupling& x, const Coupling& y) {
   return std::tie(x.column, x.row) < std::tie(y.column, y.row);
@@ -17,7 +11,6 @@ bool BlockSystem::before(const Coupling& x, const Coupling& y) {
 
 void BlockSystem::begin(int bodies) {
   diagonal_.resize(static_cast<std::size_t>(bodies));
-  factors_.resize(static_cast<std::size_t>(bodies));
   couplings_.clear();
 }
 
@@ -54,55 +47,12 @@ void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
 }
 
 void BlockSystem::factorise() {
-  if (bodies() <= kMostDense) {
-    to_dense(dense_);
-    dense_factors_.compute(dense_);
-    return;
-  }
-  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    double entries[Cholesky6::kEntries];
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column <= row; ++column)
-        entries[Cholesky6::at(row, column)] = diagonal_[i](row, column);
-    }
-    factors_[i].factorise(entries);
-  }
+  to_dense(dense_);
+  factors_.compute(dense_);
 }
 
-void BlockSystem::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& result) const {
-  for (int i = 0; i < bodies(); ++i)
-    result.segment<6>(6 * i).noalias() = diagonal_[static_cast<std::size_t>(i)] * x.segment<6>(6 * i);
-  for (const Coupling& c : couplings_) {
-    result.segment<6>(6 * c.row).noalias() += c.value * x.segment<6>(6 * c.column);
-    result.segment<6>(6 * c.column).noalias() += c.value.transpose() * x.segment<6>(6 * c.row);
-  }
-}
-
-void BlockSystem::precondition(const Eigen::VectorXd& x, Eigen::VectorXd& result) const {
-  for (int i = 0; i < bodies(); ++i)
-    result.segment<6>(6 * i) = factors_[static_cast<std::size_t>(i)].solve(x.segment<6>(6 * i));
-}
-
-/// Conjugate gradients (Hestenes & Stiefel 1952), each body's own block as preconditioner.
-void BlockSystem::solve(Eigen::VectorXd& x, double tolerance) {
-  if (bodies() <= kMostDense) return dense_factors_.solveInPlace(x);
-  residual_ = x;
-  x.setZero();
-  for (Eigen::VectorXd* vector : {&weighed_, &image_}) vector->resize(x.size());
-  precondition(residual_, weighed_);
-  along_ = weighed_;
-  double size = residual_.dot(weighed_);
-  const double enough = tolerance * tolerance * size;
-  for (int turn = 0; turn < kMostTurns && size > enough; ++turn) {
-    multiply(along_, image_);
-    const double part = size / along_.dot(image_);
-    x += part * along_;
-    residual_ -= part * image_;
-    precondition(residual_, weighed_);
-    const double last = size;
-    size = residual_.dot(weighed_);
-    along_ = weighed_ + (size / last) * along_;
-  }
+void BlockSystem::solve(Eigen::VectorXd& x) const {
+  factors_.solveInPlace(x);
 }
 
 }  // namespace mrhi

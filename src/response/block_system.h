@@ -4,19 +4,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "cholesky6.h"
-
 namespace mrhi {
 
-/// Linear equations A x = b with six unknowns a body and a coupling between some pairs of bodies; A is
-/// symmetric, positive definite. Few bodies are solved to rounding, many by conjugate gradients, whose cost
-/// is linear in the couplings. Keeps its memory.
+/// Linear equations A x = b of a few bodies, with six unknowns each and a coupling between some pairs of
+/// them; A is symmetric, positive definite. Keeps its memory.
 class BlockSystem {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  /// Up to so many bodies are solved to rounding.
-  static constexpr int kMostDense = 4;
-
   /// Begins anew with so many bodies, none of them coupled.
   void begin(int bodies);
   /// Says that the two are coupled; may say so again. Then arrange(), before any coupling() is asked for.
@@ -37,12 +31,10 @@ class BlockSystem {
 
   /// Call when the entries are there.
   void factorise();
-  /// Solves in place. Of many bodies, until the residual is `tolerance` of what it was, as their masses
-  /// weigh it.
-  void solve(Eigen::VectorXd& x, double tolerance);
+  /// Solves in place, to rounding.
+  void solve(Eigen::VectorXd& x) const;
 
  private:
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   struct Coupling {
     int row, column;  // row > column
     Matrix6 value;
@@ -50,15 +42,11 @@ class BlockSystem {
   static bool before(const Coupling& x, const Coupling& y);
 
   int bodies() const { return static_cast<int>(diagonal_.size()); }
-  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
-  void precondition(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 
   std::vector<Matrix6> diagonal_;
   std::vector<Coupling> couplings_;  // sorted
-  std::vector<Cholesky6> factors_;   // of the diagonal blocks
   Eigen::MatrixXd dense_;
-  Eigen::LLT<Eigen::MatrixXd> dense_factors_;
-  Eigen::VectorXd residual_, weighed_, along_, image_;
+  Eigen::LLT<Eigen::MatrixXd> factors_;
 };
 
 }  // namespace mrhi

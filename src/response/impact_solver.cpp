@@ -13,11 +13,22 @@ constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
 constexpr double kTogether = 1e-12;        // blows nearer to each other in time than this are one [s]
 constexpr std::size_t kBlowsEach = 4;  // of an island's contacts, on average, in one step; then springs act
 /// Where so many strikes have been relaxed for an island, no more blows are looked for in this step.
-constexpr std::size_t kMostWork = 4000;
+constexpr std::size_t kMostWork = 1500;
 /// An island of more contacts between bodies is a crowd.
 constexpr std::size_t kFewLinks = 16;
+/// A crowd's blow is swept through so often as comes to this many strikes relaxed, within limits.
+constexpr int kCrowdWork = 1500, kLeastSweeps = 8;
 /// Slower strikes are none in a crowd [m/s].
 constexpr double kSlow = 1e-3;
+bool is_crowd(const Island& island) {
+  return island.links.size() > kFewLinks;
+}
+
+/// What gravity makes of things in a step counts as slow too [m/s].
+double slow_in(const ContactStep& step) {
+  return kSlow + step.step * step.gravity.norm();
+}
+
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
 /// A gain of energy up to this part of what is exchanged is rounding.
@@ -108,10 +119,14 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (const Island& island : islands.all()) {
     collect(step, island);
     if (springs && by_hand_ && is_held(step, island)) spare_carried(step, springs(island));
-    const bool crowd = island.links.size() > kFewLinks;
+    const bool crowd = is_crowd(island);
     care_ = crowd ? kVisible : kExact;
     work_ = 0;
     if (crowd) spare_slow(step);
+    if (crowd && !strikes_.empty()) {
+      const int often = kCrowdWork / static_cast<int>(strikes_.size());
+      care_.sweeps = std::clamp(often, kLeastSweeps, kVisible.sweeps);
+    }
     if (strikes_.empty()) continue;
     if (by_hand_ || crowd) {
       deal_at_once(step);
@@ -130,10 +145,29 @@ void ImpactSolver::collect(ContactStep& step, const Island& island) {
       if (!contact.ignored && !contact.struck) add(step, contact);
     }
   }
+  const bool crowd = is_crowd(island);
+  if (crowd) note_twists(step, island);
   for (const Link& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
-    if (!contact.struck) add(step, contact);
+    if (contact.struck || (crowd && is_slow(step, contact))) continue;
+    add(step, contact);
   }
+}
+
+void ImpactSolver::note_twists(const ContactStep& step, const Island& island) {
+  twists_.resize(step.bodies.size());
+  for (const IslandBody& body : island.bodies)
+    twists_[body.body] = twist_of(step.scene.bodies[body.body], step.bodies[body.body]);
+}
+
+/// Of a crowd: too slow to strike.
+bool ImpactSolver::is_slow(const ContactStep& step, const BodyContact& contact) const {
+  const Body &a = step.scene.bodies[contact.key.a], &b = step.scene.bodies[contact.key.b];
+  if (radius_of_ball(a) > 0.0 && radius_of_ball(b) > 0.0) return false;
+  const Twist none, &of_a = a.fixed ? none : twists_[contact.key.a], &of_b = twists_[contact.key.b];
+  const Vector3 velocity =
+      of_a.linear + of_a.angular.cross(contact.arm_a) - of_b.linear - of_b.angular.cross(contact.arm_b);
+  return contact.normal.dot(velocity) > -slow_in(step);
 }
 
 void ImpactSolver::add(ContactStep& step, Contact& contact) {
@@ -183,7 +217,7 @@ void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) 
 }
 
 void ImpactSolver::spare_slow(const ContactStep& step) {
-  const double slow = kSlow + step.step * step.gravity.norm();
+  const double slow = slow_in(step);
   const auto is_slow = [slow](const Strike& strike) { return !strike.by_hand && strike.rate() > -slow; };
   strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), is_slow), strikes_.end());
 }

@@ -35,6 +35,8 @@ class ImpactSolver {
   void add(ContactStep& step, Contact& contact);
   void add(ContactStep& step, BodyContact& contact);
   void add(Strike strike, const Material& material);
+  void note_twists(const ContactStep& step, const Island& island);
+  bool is_slow(const ContactStep& step, const BodyContact& contact) const;
   void spare_carried(const ContactStep& step, const Twist& carried);
   void spare_slow(const ContactStep& step);
   void deal_at_once(ContactStep& step);
@@ -51,6 +53,7 @@ class ImpactSolver {
   std::vector<double> meetings_;  // when each of them will collide, as the bodies move now [s]
   std::vector<Strike*> blow_;     // those dealt together
   std::vector<BodyImpact> impacts_;
+  std::vector<Twist> twists_;  // by body, of a crowd's
   /// A blow as Newton's law has it.
   struct Newtons {
     Vector3 given, velocity, drag;

@@ -5,20 +5,36 @@
 #include "newton.h"
 
 namespace mrhi {
+namespace {
+
+/// Islands of more bodies are crowds.
+constexpr std::size_t kMostExact = 4;
+
+}  // namespace
 
 void ImplicitModel::respond(ContactStep& step) {
-  begin_touches(step);
+  begin_touches_here(step);
   islands_.build(step);
-  strike(step);
-  press(step);
+  strike_here(step);
+  press_here(step);
 }
 
 void ImplicitModel::begin_touches(ContactStep& step) const {
+  begin_touches_here(step);
+}
+void ImplicitModel::strike(ContactStep& step) {
+  strike_here(step);
+}
+void ImplicitModel::press(ContactStep& step) {
+  press_here(step);
+}
+
+void ImplicitModel::begin_touches_here(ContactStep& step) const {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
 }
 
-void ImplicitModel::strike(ContactStep& step) {
+void ImplicitModel::strike_here(ContactStep& step) {
   const auto springs = [&](const Island& island) {
     one_.begin(step, island, configuration_);
     Newton<BodyProblem>(one_).solve();
@@ -28,31 +44,56 @@ void ImplicitModel::strike(ContactStep& step) {
                    configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none, springs);
 }
 
-void ImplicitModel::press(ContactStep& step) {
+void ImplicitModel::press_here(ContactStep& step) {
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();
     contact.struck = contact.struck || contact.depth > 0.0;
   }
+  carried_.clear();
   for (BodyContact& contact : step.body_contacts) {
+    carried_.push_back(contact.force);
     contact.force.setZero();
     contact.struck = contact.struck || contact.depth > 0.0;
   }
   for (const Island& island : islands_.all()) {
     if (island.bodies.size() == 1) {
-      solve(step, island, one_);
+      solve_one(step, island);
+    } else if (island.bodies.size() > kMostExact) {
+      solve_crowd(step, island);
     } else {
-      solve(step, island, several_);
+      solve_few(step, island);
     }
   }
 }
 
-template <typename Problem>
-void ImplicitModel::solve(ContactStep& step, const Island& island, Problem& problem) const {
-  problem.begin(step, island, configuration_);
-  const bool agree = Newton<Problem>(problem).solve();
-  const bool pressed = problem.scale() > 0.0;
-  if (pressed) problem.finish(agree, step, island);
+void ImplicitModel::solve_one(ContactStep& step, const Island& island) {
+  one_.begin(step, island, configuration_);
+  const bool agree = Newton<BodyProblem>(one_).solve();
+  const bool pressed = one_.scale() > 0.0;
+  if (pressed) one_.finish(agree, step, island);
+  note(step, island, pressed);
+}
+
+/// To rounding; where contacts keep opening and slipping by turns, as far as a crowd is.
+void ImplicitModel::solve_few(ContactStep& step, const Island& island) {
+  several_.begin(step, island, configuration_);
+  const bool agree = Newton<IslandProblem>(several_).solve();
+  if (!agree && !several_.nearly_agree()) return solve_crowd(step, island);
+  const bool pressed = several_.scale() > 0.0;
+  if (pressed) several_.finish(step, island);
+  note(step, island, pressed);
+}
+
+void ImplicitModel::solve_crowd(ContactStep& step, const Island& island) {
+  many_.begin(step, island, configuration_, carried_);
+  many_.solve(step);
+  const bool pressed = many_.pressed();
+  if (pressed) many_.finish(step, island);
+  note(step, island, pressed);
+}
+
+void ImplicitModel::note(ContactStep& step, const Island& island, bool pressed) {
   for (const IslandBody& body : island.bodies) {
     if (pressed) {
       step.changes.mark_solved(static_cast<int>(body.body));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "body_problem.h"
+#include "crowd_problem.h"
 #include "impact_solver.h"
 #include "island_problem.h"
 
@@ -23,12 +24,20 @@ class ImplicitModel : public ContactModel {
   void press(ContactStep& step);
 
  private:
-  template <typename Problem>
-  void solve(ContactStep& step, const Island& island, Problem& problem) const;
+  // The same within respond(), which calls nothing more for being in parts.
+  [[gnu::always_inline]] inline void begin_touches_here(ContactStep& step) const;
+  [[gnu::always_inline]] inline void strike_here(ContactStep& step);
+  [[gnu::always_inline]] inline void press_here(ContactStep& step);
+  void solve_one(ContactStep& step, const Island& island);
+  void solve_few(ContactStep& step, const Island& island);
+  void solve_crowd(ContactStep& step, const Island& island);
+  static void note(ContactStep& step, const Island& island, bool pressed);
 
   ImpactSolver impacts_;
   BodyProblem one_;
   IslandProblem several_;
+  CrowdProblem many_;
+  std::vector<Vector3> carried_;  // by contact between bodies: its force in the last step [N]
 
  protected:
   const ContactConfiguration configuration_;

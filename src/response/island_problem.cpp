@@ -84,11 +84,9 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
       }
     }
   }
-  on_fixture_ = false;
   for (const Link& link : island.links) {
     const BodyContact& touch = step.body_contacts[link.index];
     const bool alone = step.scene.bodies[touch.key.a].fixed;
-    on_fixture_ = on_fixture_ || alone;
     add(touch, alone ? IslandContact::kAlone : number(touch.key.a), number(touch.key.b)).arm_a = touch.arm_a;
   }
 }
@@ -121,18 +119,10 @@ void IslandProblem::couple() {
   }
 }
 
-Effort IslandProblem::effort() const {
+Effort IslandProblem::effort() {
   Effort effort;
-  effort.limits = 2;
-  effort.held_iterations = 20;
-  if (masses_.size() <= static_cast<std::size_t>(BlockSystem::kMostDense)) return effort;
   effort.iterations = 12;
-  effort.limits = 1;
-  effort.held_iterations = 16;
-  effort.unchecked = 0;
-  effort.trials = 10;
-  effort.converged = 1e-6;
-  effort.anew = false;
+  effort.limits = 0;
   return effort;
 }
 
@@ -256,73 +246,11 @@ double IslandProblem::energy() const {
   return sum;
 }
 
-double IslandProblem::kinetic_energy(const Eigen::VectorXd& velocity) const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const Vector3 spin = velocity.segment<3>(row + 3);
-    sum += 0.5 *
-           (masses_[i].mass * velocity.segment<3>(row).squaredNorm() + spin.dot(masses_[i].inertia * spin));
-  }
-  return sum;
-}
-
-/// How all bodies move as one that has these momenta, given as M V body by body.
-Eigen::VectorXd IslandProblem::common_motion(const Eigen::VectorXd& momenta,
-                                             const std::vector<Vector3>& places) const {
-  double mass = 0.0;
-  Vector3 centre = Vector3::Zero(), linear = centre, angular = centre;
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    mass += masses_[i].mass, centre += masses_[i].mass * places[i];
-  centre /= mass;
-  Matrix3 inertia = Matrix3::Zero();
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const Matrix3 arm = cross_matrix(places[i] - centre);
-    linear += momenta.segment<3>(row);
-    angular += momenta.segment<3>(row + 3) + arm * momenta.segment<3>(row);
-    inertia += masses_[i].inertia - masses_[i].mass * arm * arm;
-  }
-  const Vector3 velocity = linear / mass, spin = inertia.ldlt().solve(angular);
-  Eigen::VectorXd motion(momenta.size());
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    motion.segment<6>(static_cast<Eigen::Index>(6 * i)) << velocity + spin.cross(places[i] - centre), spin;
-  return motion;
-}
-
-/// Where the solution was cut short: momentum is kept by what is missing moving all bodies as one, and as
-/// much of what they do besides as does not take more energy than there is.
-void IslandProblem::make_passive(const ContactStep& step, const Island& island) {
-  Eigen::VectorXd common = Eigen::VectorXd::Zero(velocity_.size());
-  if (!on_fixture_) {
-    std::vector<Vector3> places;
-    for (const IslandBody& body : island.bodies) places.push_back(step.bodies[body.body].pose.position);
-    Eigen::VectorXd momenta(velocity_.size());
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(6 * i);
-      momenta.segment<6>(row) << masses_[i].mass * velocity_.segment<3>(row),
-          masses_[i].inertia * velocity_.segment<3>(row + 3);
-    }
-    velocity_ -= common_motion(momenta, places);
-    common = common_motion(momenta - gradient_, places);
-  }
-  double mass = 0.0, fastest = 0.0;
-  for (const Mass& of : masses_) mass += of.mass;
-  for (const IslandContact& contact : contacts_) fastest = std::max(fastest, vector(contact.drive).norm());
-  const double there_is =
-      std::max(kinetic_energy(start_), kinetic_energy(free_)) + 0.5 * mass * fastest * fastest;
-  const double left = std::max(0.0, there_is - kinetic_energy(common)), wanted = kinetic_energy(velocity_);
-  if (wanted > left) velocity_ *= std::sqrt(left / wanted);
-  velocity_ += common;
-}
-
 bool IslandProblem::nearly_agree() const {
   return error_squared() <= kNearlyAgree * kNearlyAgree * scale_ * scale_;
 }
 
-void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) {
-  const bool by_forces = agree || nearly_agree();
-  if (!by_forces) make_passive(step, island);
+void IslandProblem::finish(ContactStep& step, const Island& island) {
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < masses_.size(); ++i, row += 6) {
     BodyState& state = step.bodies[island.bodies.begin()[i].body];
@@ -330,7 +258,6 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) 
     state.pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
     state.linear_momentum = masses_[i].mass * velocity_.segment<3>(row);
     state.angular_momentum = masses_[i].inertia * velocity_.segment<3>(row + 3);
-    if (!by_forces) continue;
     state.linear_momentum -= gradient_.segment<3>(row);
     state.angular_momentum -= gradient_.segment<3>(row + 3);
   }

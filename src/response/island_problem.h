@@ -18,7 +18,7 @@ struct IslandContact : SpringContact<double> {
   std::size_t coupling;  // of a and b in the system
 };
 
-/// Several bodies that touch each other, and what presses them: six unknowns a body, solved together. A
+/// A few bodies that touch each other, and what presses them: six unknowns a body, solved together. A
 /// Problem for Newton. Keeps its memory from island to island.
 class IslandProblem {
  public:
@@ -26,9 +26,8 @@ class IslandProblem {
 
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
-  /// Few bodies are solved as one is. What many bodies may take is bounded, and their error what can be
-  /// seen.
-  Effort effort() const;
+  /// What does not settle by then goes on as a crowd.
+  static Effort effort();
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
   double error_squared() const;
@@ -36,7 +35,7 @@ class IslandProblem {
   void factorise();
   void find_direction() {
     direction_ = -gradient_;
-    system_.solve(direction_, kDirection);
+    system_.solve(direction_);
   }
   void move(double part) { velocity_ += part * direction_; }
   double energy() const;
@@ -53,10 +52,11 @@ class IslandProblem {
   /// Gives the contacts what they have become.
   void settle_touches(ContactStep& step, const Island& island);
 
+  /// Whether so little is missing that momenta may be what the forces make of them.
+  bool nearly_agree() const;
   /// Gives the contacts what they have become, and the bodies their momenta at the step's end: what the
-  /// forces make of them where these and the velocity `agree`, so that none is lost between bodies. What was
-  /// cut short keeps momentum too, and gains no energy.
-  void finish(bool agree, ContactStep& step, const Island& island);
+  /// forces make of them, so that none is lost between bodies.
+  void finish(ContactStep& step, const Island& island);
 
  private:
   /// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
@@ -68,19 +68,12 @@ class IslandProblem {
     double gyration_squared;  // [m^2]
     Matrix3 inertia;          // world axes
   };
-  /// A direction of many bodies is as good as that: the next one mends the rest.
-  static constexpr double kDirection = 0.01;
-
   Vector3 velocity_at(int body, const Vector3& arm) const;
   Vector3 relative_velocity(const IslandContact& contact) const;
   double relative_spin(const IslandContact& contact) const;
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
   void add_contacts(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
   void couple();
-  bool nearly_agree() const;
-  double kinetic_energy(const Eigen::VectorXd& velocity) const;
-  Eigen::VectorXd common_motion(const Eigen::VectorXd& momenta, const std::vector<Vector3>& places) const;
-  void make_passive(const ContactStep& step, const Island& island);
   void add_slope(const IslandContact& contact);
   void assemble();
   static bool stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits);
@@ -92,7 +85,6 @@ class IslandProblem {
   BlockSystem system_;
   double scale_ = 0.0;
   std::vector<int> number_;  // of each of the scene's bodies in the island
-  bool on_fixture_ = false;
 };
 
 }  // namespace mrhi

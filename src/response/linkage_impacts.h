@@ -38,10 +38,20 @@ class LinkageImpacts {
     double relax_normal(LinkageProblem::Vector& velocity);
     double relax_tangential(LinkageProblem::Vector& velocity);
   };
-  void add(Strike strike, double step, const LinkageProblem& problem);
-  static void prepare(const LinkageProblem& problem, Strike& strike);
+  /// One to be filled in, whose room is that of strikes of earlier steps; add() keeps it if it strikes.
+  Strike& next();
+  struct Now {
+    Strike *first, *last;
+    Strike* begin() const { return first; }
+    Strike* end() const { return last; }
+  };
+  Now now() { return {strikes_.data(), strikes_.data() + count_}; }
+  void add(double step, const LinkageProblem& problem);
+  void prepare(const LinkageProblem& problem, Strike& strike);
 
-  std::vector<Strike> strikes_;
+  std::vector<Strike> strikes_;  // the first count_ of them are of this step
+  std::size_t count_ = 0;
+  LinkageProblem::Vector column_;
 };
 
 }  // namespace mrhi

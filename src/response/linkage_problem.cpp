@@ -11,6 +11,9 @@ constexpr double kRounding = 1e-6;
 /// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
 constexpr double kNearlyAgree = 1e-4;
 
+/// Islands of more bodies are many.
+constexpr int kFewBodies = 4;
+
 constexpr int kNoJoint = -1;
 
 /// Of a body in the island, or -1.
@@ -48,7 +51,7 @@ void LinkageProblem::begin(ContactStep& step, const Island& island, const Contac
   start_ = gradient_;
   solve_mass(start_);
   solve_mass(fall_);
-  start_with(Vector(start_), step, joints);
+  start_with(start_, step, joints);
 }
 
 void LinkageProblem::number(const ContactStep& step, const Island& island,
@@ -114,7 +117,7 @@ void LinkageProblem::add_free(const ContactStep& step, const Island& island, std
 
 void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
                                 const std::vector<JointState>& joints) {
-  start_ = velocity;
+  start_ = velocity;  // which it may be itself
   free_ = start_ + fall_;
   velocity_ = free_;
   direction_.resize(start_.size());
@@ -159,6 +162,21 @@ double LinkageProblem::error_squared() const {
     sum += missing * missing / unknowns_[i].gyration_squared;
   }
   return sum;
+}
+
+Effort LinkageProblem::effort() const {
+  Effort effort;
+  effort.limits = 2;
+  effort.held_iterations = 20;
+  if (body_start_.size() <= 6 * kFewBodies) return effort;
+  effort.iterations = 12;
+  effort.limits = 1;
+  effort.held_iterations = 16;
+  effort.unchecked = 0;
+  effort.trials = 10;
+  effort.converged = 1e-6;
+  effort.anew = false;
+  return effort;
 }
 
 void LinkageProblem::factorise() {

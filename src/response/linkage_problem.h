@@ -25,7 +25,8 @@ class LinkageProblem {
   /// Takes other velocities at the step's start, as blows have left them.
   void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
 
-  Effort effort() const { return several_.effort(); }
+  /// What many bodies may take is bounded, and their error what can be seen.
+  Effort effort() const;
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
   double error_squared() const;

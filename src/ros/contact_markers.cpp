@@ -1,6 +1,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "../simulation/contact_phase.h"
 #include "marker_layers.h"
@@ -10,8 +11,9 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kLongest = 0.08;       // of an arrow, which no force reaches [m]
-constexpr double kHalfOfLongest = 1.0;  // the force whose arrow is half as long [N]
+constexpr double kLongest = 0.12;       // of an arrow, which no force reaches [m]
+constexpr double kHalfOfLongest = 3.0;  // the force whose arrow is half as long [N]
+constexpr double kLetters = 0.009;      // of a force in numbers [m]
 constexpr double kShortest = 0.004;     // [m]
 constexpr double kGap = 0.002;          // between the arrow and the back of the finger [m]
 constexpr double kPointSize = 0.005;    // [m]
@@ -44,15 +46,22 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, Marker
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state));
 }
 
-void add_arrow(const Contact& contact, int id, MarkerLayer& layer) {
+void add_arrow(const Contact& contact, int id, ContactLayers layers) {
   const double newtons = contact.force.norm();
   const double length = kLongest * newtons / (newtons + kHalfOfLongest);
   if (length < kShortest) return;
   const Vector3 direction = contact.force / newtons;
   const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
-  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.0035, 0.009, std::min(0.014, 0.5 * length)},
-                            color(0.97, 0.97, 0.97));
-  arrow.points = {to_message(Vector3(end - length * direction)), to_message(end)};
+  const Vector3 begin = end - length * direction;
+  Marker& arrow = layers.forces.add(id, Marker::ARROW, Pose{}, {0.0035, 0.009, std::min(0.014, 0.5 * length)},
+                                    color(0.97, 0.97, 0.97));
+  arrow.points = {to_message(begin), to_message(end)};
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f N", newtons);
+  layers.newtons
+      .add(id, Marker::TEXT_VIEW_FACING, {Vector3(begin - kLetters * direction), Quaternion::Identity()},
+           Vector3::Constant(kLetters), color(0.97, 0.97, 0.97))
+      .text = text;
 }
 
 /// Blue to orange by way of white, which colour-blind people tell apart.
@@ -85,7 +94,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers l
     add_rings(result.contacts, static_cast<FrictionState>(state), layers.friction);
   add_shares(scene, result, layers.share);
   int id = 0;
-  for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers.forces);
+  for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers);
 }
 
 }  // namespace mrhi

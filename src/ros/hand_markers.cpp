@@ -3,6 +3,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace mrhi {
@@ -13,7 +14,7 @@ using visualization_msgs::Marker;
 constexpr double kUnseen = 0.001;  // a ghost nearer to the hand than this is not drawn [m]
 constexpr double kFull = 0.006;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
-constexpr int kSpare = 2 * kMaxHands;
+constexpr int kSpare = 3 * kMaxHands;  // skin, wrist and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
 HandStyle capsule_style() {
@@ -49,16 +50,36 @@ HandMarkers::HandMarkers(const Skin& skin)
     : skin_(skin),
       outline_(Skin::outline()),
       paint_(skin_),
-      skin_corners_(corners_of(skin_)),
-      outline_corners_(corners_of(outline_)) {}
+      skin_corners_(closed(corners_of(skin_, [this](const auto& triangle) { return !fades(triangle); }))),
+      wrist_corners_(corners_of(skin_, [this](const auto& triangle) { return fades(triangle); })),
+      outline_corners_(corners_of(outline_, [](const auto&) { return true; })) {}
 
-HandMarkers::Corners HandMarkers::corners_of(const Skin& skin) {
+bool HandMarkers::fades(const std::array<int, 3>& triangle) const {
+  const auto faded = [this](int v) { return paint_.opacity(static_cast<std::size_t>(v)) < 1.0f; };
+  return std::any_of(triangle.begin(), triangle.end(), faded);
+}
+
+HandMarkers::Corners HandMarkers::corners_of(const Skin& skin, const Chosen& chosen) {
   Corners corners;
   for (const auto& triangle : skin.triangles()) {
+    if (!chosen(triangle)) continue;
     for (const std::size_t i : {0, 1, 2}) {
       corners[static_cast<std::size_t>(Side::right)].push_back(static_cast<std::uint32_t>(triangle[i]));
       corners[static_cast<std::size_t>(Side::left)].push_back(static_cast<std::uint32_t>(triangle[2 - i]));
     }
+  }
+  return corners;
+}
+
+/// With the hole closed, which is one loop of edges: who looks through the wrist sees no inside.
+HandMarkers::Corners HandMarkers::closed(Corners corners) {
+  for (auto& of_side : corners) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> rim;
+    for (std::size_t i = 0; i < of_side.size(); ++i) {
+      const std::uint32_t a = of_side[i], b = of_side[i % 3 == 2 ? i - 2 : i + 1];
+      if (rim.erase({b, a}) == 0) rim.insert({a, b});
+    }
+    for (const auto& [a, b] : rim) of_side.insert(of_side.end(), {rim.begin()->first, b, a});
   }
   return corners;
 }
@@ -104,13 +125,18 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
     drawn.hand = hand.id, drawn.side = hand.side, drawn.touching = rendered.touching;
     paint_.paint(rendered, drawn.surface, drawn.colours);
   }
+  add_part(drawn, skin_corners_, id, layer);
+  add_part(drawn, wrist_corners_, id + 1, layer);
+}
+
+void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, int id, MarkerLayer& layer) {
   Marker& marker = add_triangles(id, layer);
-  const auto& corners = skin_corners_[static_cast<std::size_t>(hand.side)];
+  const auto& corners = of_either_side[static_cast<std::size_t>(drawn.side)];
   marker.points.resize(corners.size());
   marker.colors.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     marker.points[i] = mrhi::to_message(drawn.surface.vertices[corners[i]]);
-    marker.colors[i] = to_message(drawn.colours[corners[i]], 1.0f);
+    marker.colors[i] = to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
   }
 }
 

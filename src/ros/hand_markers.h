@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "../rendering/skin_paint.h"
@@ -11,7 +12,8 @@ namespace mrhi {
 
 /// Where hands are drawn.
 struct HandLayers {
-  MarkerLayer& hand;   ///< the rendered hand's skin, a triangle list per hand
+  MarkerLayer&
+      hand;  ///< the rendered hand's skin, and apart from it the wrist, as what is translucent hides nothing
   MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
 };
 
@@ -31,6 +33,8 @@ class HandMarkers {
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
+  /// Three for each triangle, in an order that is counter-clockwise from outside for either side.
+  using Corners = std::array<std::vector<std::uint32_t>, 2>;
   /// A hand as it was last drawn.
   struct Drawn {
     std::uint32_t hand = 0;
@@ -42,15 +46,17 @@ class HandMarkers {
   };
   visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
   void add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer);
+  void add_part(const Drawn& drawn, const Corners& corners, int id, MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
-  /// Three for each triangle, in an order that is counter-clockwise from outside for either side.
-  using Corners = std::array<std::vector<std::uint32_t>, 2>;
-  static Corners corners_of(const Skin& skin);
+  using Chosen = std::function<bool(const std::array<int, 3>& triangle)>;
+  static Corners corners_of(const Skin& skin, const Chosen& chosen);
+  static Corners closed(Corners corners);
+  bool fades(const std::array<int, 3>& triangle) const;
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
-  const Corners skin_corners_, outline_corners_;
+  const Corners skin_corners_, wrist_corners_, outline_corners_;
   std::vector<Drawn> drawn_;     // by their place in the result
   SkinSurface ghost_, beneath_;  // kept for their memory, as are the rest
   std::vector<float> alphas_;

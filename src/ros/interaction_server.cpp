@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/scene/save_scene.h"
 #include "object_request_message.h"
 
 namespace mrhi {
@@ -114,6 +116,10 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
           [this](auto& request, auto& response) { return pause(request.data, response); }),
       advertise<SpawnObject>(private_node, "spawn",
                              [this](auto& request, auto& response) { return spawn(request, response); }),
+      advertise<SpawnUrdf>(private_node, "spawn_urdf",
+                           [this](auto& request, auto& response) { return spawn_urdf(request, response); }),
+      advertise<SaveWorld>(private_node, "save",
+                           [this](auto& request, auto& response) { return save(request.file, response); }),
       advertise<DeleteObject>(
           private_node, "delete",
           [this](auto& request, auto& response) { return remove(request.name, response); }),
@@ -220,6 +226,33 @@ bool InteractionServer::spawn(const mr_hand_interaction::SpawnObject::Request& r
     make(spawn);
     show_change();
     return "'" + spawn.request.name + "' is there";
+  });
+}
+
+bool InteractionServer::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
+                                   mr_hand_interaction::SpawnUrdf::Response& response) {
+  return answer(response, [&] {
+    const Spawn spawn{from_message(request)};
+    const Scene part = requested_scene(spawn.request, options_of(live_.now().configuration()));
+    make(spawn);
+    show_change();
+    std::vector<std::string> names;
+    for (const Body& body : part.bodies) names.push_back(body.name);
+    return text::joined(names) + (names.size() > 1 ? " are there" : " is there");
+  });
+}
+
+/// What is recorded of a replay needs no world that was saved: it is no change.
+bool InteractionServer::save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response) {
+  return answer(response, [&] {
+    if (file.empty() || file.front() != '/')
+      throw std::invalid_argument("file '" + text::one_line(file, 200) +
+                                  "' is not allowed; allowed: an absolute path");
+    const SimulationState& state = live_.now().state();
+    Scene now = scene_as_it_is(live_.now().scene(), state.bodies, state.joints);
+    if (const auto& gravity = live_.now().configuration().gravity) now.gravity = *gravity;
+    save_scene(now, file);
+    return "'" + file + "' is written";
   });
 }
 

@@ -54,6 +54,7 @@ struct ContactLayers {
   MarkerLayer& points;    ///< a dot at each contact
   MarkerLayer& friction;  ///< a ring on the surface around it: green where it sticks, yellow where it slips
   MarkerLayer& forces;    ///< an arrow behind the finger that presses; its length grows with the force
+  MarkerLayer& newtons;   ///< the force in numbers, at the arrow's end
   MarkerLayer& share;  ///< a ball: how much of what friction bears is used, from blue (none) to orange (all)
 };
 void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers layers);
@@ -73,10 +74,16 @@ struct TargetMark {
   Pose pose;              ///< of the body's frame, in world
   double progress = 0.0;  ///< 0 to 1, of the time that it is to stay there
   bool reached = false;
+  bool waits = false;  ///< its turn comes later: fainter
 };
 
 /// The object's shape there, translucent: blue, and green once it is reached; around it a level ring that
 /// fills with the progress. Ids from `first_id`, one more than the body has shapes to be seen.
 void add_target(const TargetMark& target, int first_id, MarkerLayer& layer);
+double ring_radius(const Body& body);  ///< inner, of a target's ring [m]
+
+/// The object that is to be taken: a translucent yellow shell around it, and an arrow from above. Ids from
+/// `first_id`, one more than the body has shapes to be seen.
+void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer& layer);
 
 }  // namespace mrhi

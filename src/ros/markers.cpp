@@ -108,12 +108,13 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing);
   MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
   MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
-      forces(array, header, "forces", kPassing), share(array, header, "share", kPassing);
+      forces(array, header, "forces", kPassing), newtons(array, header, "newtons", kPassing),
+      share(array, header, "share", kPassing);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
     hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts});
   }
-  add_contacts(scene_, result, {points, friction, forces, share});
+  add_contacts(scene_, result, {points, friction, forces, newtons, share});
   picture_.delete_gone(header, array);
   bodies_->add(state, result.contacts, all, {objects, fixtures});
 }

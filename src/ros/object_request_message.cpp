@@ -20,4 +20,15 @@ ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& mess
   return request;
 }
 
+ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message) {
+  ObjectRequest request;
+  request.whole = true;
+  request.name = message.name;
+  request.urdf = message.urdf;
+  request.joints = message.joints;
+  request.pose = from_message(message.pose);
+  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  return request;
+}
+
 }  // namespace mrhi

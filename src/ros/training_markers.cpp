@@ -15,14 +15,19 @@ namespace {
 using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
-constexpr double kPassing = 0.5;                     // [s]
-constexpr double kText = 0.016, kSmallText = 0.013;  // height of letters [m]
-constexpr double kMark = 0.014;                      // of a place's number [m]
-constexpr double kLine = 1.5;                        // from line to line, of the letters' height
-constexpr std::size_t kLongest = 56;                 // letters in a line
+constexpr double kPassing = 0.5;                       // [s]
+constexpr double kText = 0.0125, kSmallText = 0.0085;  // height of letters [m]
+constexpr double kTimer = 0.02;                        // of the timer's
+constexpr double kMark = 0.014;                        // of a place's number [m]
+constexpr double kMarkRoom = 1.35;                     // from a place to its number, of its ring's radius
+constexpr double kLine = 1.4;                          // from line to line, of the letters' height
+constexpr int kIdsPerPlace = 100;
+constexpr std::size_t kLongest = 50;  // letters in a line
 
-/// Behind and above what hands reach: the last line of the instruction, and what is below it.
-const Vector3 kInstructionPlace(0.0, 0.16, 0.45), kResultPlace(0.0, 0.16, 0.425);
+/// 0.3 m before the eye of rviz/training.rviz, at the upper edge of what it sees: hands do their work behind
+/// it.
+const Vector3 kHeadingPlace(0.0, -0.136, 0.487), kTimerPlace(0.10, -0.155, 0.43);
+const Vector3 kDown(0.0, -0.2955, -0.9553);  // of that view
 
 std_msgs::ColorRGBA waiting() {
   return color(0.337, 0.706, 0.914, 0.35);
@@ -57,14 +62,19 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The text's lines upward from the place, and the heading above them.
-void write_instruction(MarkerLayer& layer, const std::string& heading, const std::string& text) {
-  std::vector<std::string> lines = lines_of(text);
-  Vector3 place = kInstructionPlace;
+/// The heading, below it the text's lines, and below them how far it is or what came of the last.
+void write_instruction(MarkerLayer& layer, MarkerLayer& below, const std::string& heading,
+                       const std::string& text, const std::string& result) {
+  Vector3 place = kHeadingPlace;
   int id = 0;
-  for (auto line = lines.rbegin(); line != lines.rend(); ++line, place.z() += kLine * kText)
-    write(layer, id++, place, *line);
-  write(layer, id, place, heading, kSmallText);
+  write(layer, id++, place, heading, kSmallText);
+  for (const std::string& line : lines_of(text)) write(layer, id++, place += kLine * kText * kDown, line);
+  write(below, 0, place += kLine * kText * kDown, result, kSmallText);
+}
+
+Pose pose_at(const Goal& goal, const Session& session) {
+  const Quaternion& any = session.object().start.orientation;
+  return {goal.position, goal.angle_tolerance ? goal.orientation : any};
 }
 
 /// Where the object is to be for a goal, if it is to be somewhere.
@@ -74,20 +84,27 @@ void add_goal(const Session& session, const Body& body, const Status& status, Ma
     layer.add(0, Marker::CUBE, upright(goal.position), goal.size, status.inside ? lit() : waiting());
     return;
   }
-  const Quaternion& any = session.object().start.orientation;
-  const Pose pose{goal.position, goal.angle_tolerance ? goal.orientation : any};
-  add_target({body, pose, status.progress, status.inside != 0}, 0, layer);
+  add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, layer);
 }
 
-void add_places(const Session& session, MarkerLayer& places, MarkerLayer& path) {
+/// Before its ring, on the side of who looks.
+Vector3 mark_place(const Goal& goal, const Body& body) {
+  return goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
+}
+
+void add_places(const Session& session, const Body& body, MarkerLayer& places, MarkerLayer& path) {
   const Task& task = session.task();
+  const bool begun = session.phase() != SessionPhase::ready;
   std::vector<Vector3> way{session.object().start.position};
   for (std::size_t i = 0; i < task.goals.size(); ++i) {
+    const Goal& goal = task.goals[i];
     const std::size_t number = task.place_number(i);
     if (number == 0) continue;
-    way.push_back(task.goals[i].position);
-    const bool done = session.phase() != SessionPhase::ready && session.trial().goal() > i;
-    write(places, static_cast<int>(i), way.back(), done ? "done" : std::to_string(number), kMark);
+    way.push_back(goal.position);
+    const int id = static_cast<int>(i) * kIdsPerPlace;
+    const bool done = begun && session.trial().goal() > i, waits = !begun || session.trial().goal() < i;
+    write(places, id, mark_place(goal, body), done ? "done" : std::to_string(number), kMark);
+    if (waits) add_target({body, pose_at(goal, session), 0.0, false, true}, id + 1, places);
   }
   if (way.size() < 2) return;
   Marker& line = path.add(0, Marker::LINE_STRIP, Pose{}, {0.001, 0.0, 0.0}, color(0.9, 0.9, 0.9, 0.4));
@@ -138,23 +155,25 @@ std::string instruction_now(const Session& session, bool paused, bool begins_by_
   return instruction(session.task(), session.trial().goal(), session.object().name);
 }
 
-visualization_msgs::MarkerArray training_markers(const Session& session, const Body& body,
-                                                 const Status& status) {
+visualization_msgs::MarkerArray training_markers(
+    const Session& session, const Body& body, const Status& status,
+    const std::optional<mr_hand_interaction::ObjectState>& seen) {
   visualization_msgs::MarkerArray array;
   const auto layer = [&](const char* name) { return MarkerLayer(array, status.header, name, kPassing); };
-  MarkerLayer target = layer("target"), places = layer("places"), path = layer("path");
+  MarkerLayer target = layer("target"), places = layer("places"), path = layer("path"),
+              object = layer("object");
   MarkerLayer instructions = layer("instructions"), timer = layer("timer"), result = layer("result");
   const bool active = status.phase == Status::RUNNING || status.phase == Status::PAUSED;
   const Goal& goal = session.task().goals[session.trial().goal()];
   const bool somewhere = goal.kind == GoalKind::nudge_into || goal.stage == TrainingStage::maintenance;
   if (active && somewhere) {
     add_goal(session, body, status, target);
-    const Vector3 beside = goal.position + (1.4 * body.bounding_radius + 2.0 * kText) * Vector3::UnitX();
-    write(timer, 0, beside, timer_text(goal, status));
+    write(timer, 0, kTimerPlace, timer_text(goal, status), kTimer);
   }
-  if (status.phase != Status::FINISHED) add_places(session, places, path);
-  write_instruction(instructions, heading(status), status.instruction);
-  write(result, 0, kResultPlace, result_text(session, status), kSmallText);
+  if (status.phase != Status::FINISHED) add_places(session, body, places, path);
+  if (status.phase == Status::RUNNING && seen && !seen->held && goal.stage != TrainingStage::release)
+    add_highlight(body, from_message(seen->pose), 0, object);
+  write_instruction(instructions, result, heading(status), status.instruction, result_text(session, status));
   return array;
 }
 

@@ -138,6 +138,7 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
   for (const auto& object : message.objects) names.insert(object.name);
   scene_.note_objects(std::move(names));
   fixed_frame_ = message.header.frame_id;
+  note_object(message);
   if (session_.phase() != SessionPhase::running) return;
   for (const auto& object : message.objects) {
     if (object.name != session_.object().name) continue;
@@ -152,6 +153,13 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
     if (session_.phase() != SessionPhase::running) note_end();
     if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
     return;
+  }
+}
+
+void TrainingServer::note_object(const mr_hand_interaction::ObjectStateArray& message) {
+  seen_.reset();
+  for (const auto& object : message.objects) {
+    if (object.name == session_.object().name) seen_ = object;
   }
 }
 
@@ -314,7 +322,7 @@ void TrainingServer::publish() {
   const mr_hand_interaction::TrainingStatus message = status();
   status_.publish(message);
   if (markers_.getNumSubscribers() > 0)
-    markers_.publish(training_markers(session_, scene_.body(session_.object().name), message));
+    markers_.publish(training_markers(session_, scene_.body(session_.object().name), message, seen_));
 }
 
 }  // namespace mrhi

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "../collision/overlap.h"
+#include "../text/names.h"
 #include "../text/text.h"
 #include "scene_yaml.h"
 #include "shape_kinds.h"
@@ -73,6 +75,51 @@ Body requested_body(const ObjectRequest& request, const SceneOptions& options) {
   }
   if (!request.material.empty()) apply_material_yaml(kSource + ": material", request.material, body);
   return body;
+}
+
+namespace {
+
+void put_before(const std::string& name, Scene& scene) {
+  if (name.empty()) return;
+  for (Body& body : scene.bodies) body.name = name + "_" + body.name;
+  for (Joint& joint : scene.joints) joint.name = name + "_" + joint.name;
+  const auto check = [](const std::string& made) {
+    if (!is_name(made))
+      throw SceneError(kSource + ": the name '" + text::one_line(made, 80) +
+                       "' is not allowed; allowed: " + kNameIs);
+  };
+  for (const Body& body : scene.bodies) check(body.name);
+  for (const Joint& joint : scene.joints) check(joint.name);
+}
+
+}  // namespace
+
+Scene requested_scene(const ObjectRequest& request, const SceneOptions& options) {
+  Scene scene;
+  if (!request.whole) {
+    scene.bodies.push_back(requested_body(request, options));
+    return scene;
+  }
+  check_motion(request);
+  read_urdf_text(kSource, request.urdf, options, scene);
+  if (!request.joints.empty()) apply_joints_yaml(kSource + ": joints", request.joints, scene);
+  Pose root = request.pose;
+  root.orientation.normalize();
+  for (Body& body : scene.bodies) body.start = root * body.start;
+  for (Joint& joint : scene.joints) {
+    if (joint.parent == Joint::kWorld) joint.in_parent = root * joint.in_parent;
+  }
+  put_before(request.name, scene);
+  try {
+    arrange_joints(scene);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(kSource + ": " + text::one_line(error.what()));
+  }
+  const std::string overlaps = overlaps_at_start(scene);
+  if (!overlaps.empty())
+    throw SceneError(kSource + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +
+                     text::number(kOverlap) + " m");
+  return scene;
 }
 
 }  // namespace mrhi

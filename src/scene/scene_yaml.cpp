@@ -47,23 +47,56 @@ void read_materials(const Element& element, Scene& scene) {
   }
 }
 
+/// Of bodies at the start, as the service's: [vx, vy, vz, wx, wy, wz]. Joints take the part that they let
+/// through.
+void read_twists(const Element& element, Scene& scene) {
+  std::vector<std::string> links;
+  for (const Body& body : scene.bodies) {
+    if (!body.fixed) links.push_back(body.name);
+  }
+  for (const std::string& link : checked_keys(element, links)) {
+    const Element given = element.at(link);
+    if (!given.node.IsSequence() || given.node.size() != 6) given.refuse("six numbers, m/s and rad/s");
+    Vector3 parts[2];
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double most = i < 3 ? body_limits::kSpeed.max : body_limits::kSpin.max;
+      const std::optional<double> number = yaml_number(given.node[i]);
+      if (!number || std::abs(*number) > most) given.at(i).refuse("numbers up to " + text::number(most));
+      parts[i / 3][static_cast<Eigen::Index>(i % 3)] = *number;
+    }
+    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist = {parts[0], parts[1]};
+  }
+}
+
 }  // namespace
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   try {
     const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
-    for (const std::string& key : checked_keys(root, {"gravity", "bounds", "materials", "joints"})) {
+    for (const std::string& key :
+         checked_keys(root, {"gravity", "bounds", "materials", "twists", "joints"})) {
       const Element element = root.at(key);
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);
+      if (key == "twists") read_twists(element, scene);
       if (key == "joints") read_joint_settings(element, scene);
     }
   } catch (const YamlError& error) {
     throw SceneError(error.what());
   } catch (const YAML::Exception& error) {
     throw SceneError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
+  }
+}
+
+void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene& scene) {
+  try {
+    read_joint_settings({source, "", load_yaml(source, yaml)}, scene);
+  } catch (const YamlError& error) {
+    throw SceneError(error.what());
+  } catch (const YAML::Exception& error) {
+    throw SceneError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
   }
 }
 

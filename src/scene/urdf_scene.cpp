@@ -118,8 +118,10 @@ bool has_shape(const urdf::Link& link) {
 
 }  // namespace
 
-void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene) {
-  const UrdfDocument document = parse_urdf_file(urdf_file);
+namespace {
+
+void read_document(const std::string& urdf_file, const UrdfDocument& document, const SceneOptions& options,
+                   Scene& scene) {
   BodyReader reader(urdf_file, options);
   for (const PlacedLink& placed : place_links(urdf_file, document)) {
     if (!placed.fixed || has_shape(*placed.link)) scene.bodies.push_back(reader.read(placed));
@@ -127,6 +129,17 @@ void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene&
   if (scene.bodies.empty())
     throw SceneError(urdf_file + ": no bodies; allowed: at least one link joined to the root");
   scene.joints = read_joints(urdf_file, document, scene);
+}
+
+}  // namespace
+
+void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene) {
+  read_document(urdf_file, parse_urdf_file(urdf_file), options, scene);
+}
+
+void read_urdf_text(const std::string& source, const std::string& xml, const SceneOptions& options,
+                    Scene& scene) {
+  read_document(source, parse_urdf(source, xml), options, scene);
 }
 
 Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options) {

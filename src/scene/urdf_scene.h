@@ -13,6 +13,10 @@ namespace mrhi {
 /// joints. Links without any geometry on fixed joints only place others and are left out. Throws SceneError.
 void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene);
 
+/// The same of a URDF's text, which `source` names in messages.
+void read_urdf_text(const std::string& source, const std::string& xml, const SceneOptions& options,
+                    Scene& scene);
+
 /// One of them; `source` names it in messages.
 Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options);
 

@@ -1,5 +1,8 @@
 #include "grasp.h"
 
+#include <algorithm>
+#include <optional>
+
 namespace mrhi {
 namespace {
 
@@ -15,11 +18,12 @@ struct Pressing {
   bool struck = false;
 };
 
-Pressing pressing(int slot, int body, const std::vector<Contact>& contacts) {
+template <typename IsOfIt>
+Pressing pressing(int slot, const std::vector<Contact>& contacts, IsOfIt&& is_of_it) {
   Pressing result;
   int last_capsule = -1;
   for (const Contact& contact : contacts) {
-    if (contact.key.hand != slot || contact.key.body != body) continue;
+    if (contact.key.hand != slot || !is_of_it(contact.key.body)) continue;
     if (contact.impulse != Vector3::Zero()) result.struck = true;
     if (!contact.touching()) continue;
     result.sum += contact.share * contact.depth * contact.normal;
@@ -28,6 +32,36 @@ Pressing pressing(int slot, int body, const std::vector<Contact>& contacts) {
     last_capsule = contact.key.capsule;
   }
   return result;
+}
+
+bool is_grasped(const Pressing& press, double balanced) {
+  return press.capsules >= 2 && press.sum.norm() <= balanced * press.total;
+}
+
+/// The joint that a body hangs on.
+const Joint* joint_of(const Scene& scene, int body) {
+  const auto is_it = [body](const Joint& joint) { return joint.child == body; };
+  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(), is_it);
+  return found == scene.joints.end() ? nullptr : &*found;
+}
+
+/// The free body that all hangs on which it hangs together with; nothing of what hangs on the world or on a
+/// fixture.
+std::optional<int> floating_root(const Scene& scene, int body) {
+  while (const Joint* joint = joint_of(scene, body)) {
+    if (joint->parent == Joint::kWorld) return {};
+    body = joint->parent;
+  }
+  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return {};
+  return body;
+}
+
+/// Tongs are grasped by both their arms, each of which is pressed from one side.
+bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
+                  double balanced) {
+  const std::optional<int> root = floating_root(scene, body);
+  const auto is_of_it = [&](int other) { return floating_root(scene, other) == root; };
+  return root && is_grasped(pressing(slot, contacts, is_of_it), balanced);
 }
 
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
@@ -50,9 +84,11 @@ bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body
 InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
                             const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
                             InteractionLevel before) {
-  const Pressing press = pressing(slot, body, contacts);
+  const Pressing press = pressing(slot, contacts, [body](int other) { return other == body; });
   const double balanced = before == InteractionLevel::grasp ? kStillBalanced : kBalanced;
-  if (press.capsules >= 2 && press.sum.norm() <= balanced * press.total) return InteractionLevel::grasp;
+  if (is_grasped(press, balanced)) return InteractionLevel::grasp;
+  if (!scene.joints.empty() && press.capsules >= 1 && grasps_whole(scene, slot, body, contacts, balanced))
+    return InteractionLevel::grasp;
   if (press.capsules >= 1 || press.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
   const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];

@@ -61,25 +61,40 @@ double way_to_let_go(const Grip& grip, double part) {
   return std::max(kOpenedLeast, part * (grip.opening - grip.least));
 }
 
-/// The body goes with the fingers, but not with those that open: they leave it where the palm has it.
+/// Fingers part too fast, or have parted too far, to carry what they held.
+bool leaves(const Grip& grip, const HandTrack& track, double seconds) {
+  const double now = opening(grip, track.current);
+  return now - opening(grip, track.previous) > kLeaves * seconds ||
+         now - grip.least > way_to_let_go(grip, kOpens);
+}
+
+/// What a hand bears goes with its fingers, but not with those that leave it: it stays where the palm has it.
 void follow(const HandTrack& track, double seconds, Grip& grip) {
+  grip.placed = grip.bears;
+  if (!grip.bears) return;
   grip.in_palm_before = grip.in_palm;
-  const double now = opening(grip, track.current), opened = now - grip.least;
-  const bool leaves = now - opening(grip, track.previous) > kLeaves * seconds;
-  if (!leaves && opened <= way_to_let_go(grip, kOpens)) grip.in_palm = moved_in_palm(grip, track.current);
+  if (!leaves(grip, track, seconds)) grip.in_palm = moved_in_palm(grip, track.current);
+}
+
+/// What contact holds is not followed; where the hand has it is found once it slips.
+void find(const HandTrack& track, Grip& grip) {
+  if (grip.placed) return;
+  grip.placed = true;
+  grip.in_palm_before = moved_in_palm(grip, track.previous);
+  grip.in_palm = moved_in_palm(grip, track.current);
 }
 
 /// What was taken before goes on from where its pads were then; pads that are new to it from where they are.
-void keep_pads(const Grip& before, const Hand& from, const Hand& to, Grip& grip) {
-  const DistalEnds here = distal_ends(from);
+void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
   grip.pads = before.pads;
-  grip.in_palm_before = before.in_palm_before;
+  if (grip.fingers == before.fingers && grip.by_palm == before.by_palm) return;
+  const DistalEnds here = distal_ends(from);
+  const Pose in_palm = moved_in_palm(before, from);
   for (std::size_t i = 0; i < here.size(); ++i) {
     const auto finger = static_cast<int>(i / 2);
     const bool carried = before.takes_part(finger) || (finger == 0 && !before.by_palm);
-    if (!carried) grip.pads[i] = grip.in_palm_before.to_local(here[i]);
+    if (!carried) grip.pads[i] = in_palm.to_local(here[i]);
   }
-  grip.in_palm = moved_in_palm(grip, to);
 }
 
 /// Contacts of one side of a grip.
@@ -173,12 +188,13 @@ bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
   return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
 }
 
+/// On what hangs on joints no touch gives way: tongs are closed by pressing either arm from one side.
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   const auto look =
       closing_hand_.look_at(state.hands[slot], body, state.bodies[static_cast<std::size_t>(body)].pose);
   if (look.opposed) {
     if (look.opposed->depth > kPulp) take(slot, body, *look.opposed, state);
-  } else if (look.closing != 0) {
+  } else if (look.closing != 0 && scene_.bodies[static_cast<std::size_t>(body)].flies) {
     int fingers = 0;
     for (int finger = 1; finger < kFingers; ++finger) fingers += look.closing >> finger & 1;
     closing_.push_back({slot, static_cast<std::size_t>(body), fingers >= kGrab});
@@ -209,8 +225,6 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   grip.stiffness = kGripStiffness * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposed.base + opposed.fingers);
   const double reach = std::clamp(0.5 * (opposed.base - opposed.fingers).norm(), kSmallest, kLargest);
-  grip.pads = distal_ends(from);
-  grip.in_palm = moved_in_palm(grip, to);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
     const Vector3 point = centre + reach / std::sqrt(3.0) * corner;
@@ -222,13 +236,14 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   };
   const auto place = std::lower_bound(state.grips.begin(), state.grips.end(), grip, after);
   if (place == state.grips.end() || after(grip, *place)) {
+    grip.pads = distal_ends(from);
     state.grips.insert(place, grip);
     return;
   }
   grip.least = std::min(grip.least, place->least);
   if (place->by_palm == grip.by_palm) grip.fingers |= place->fingers;
   grip.in_hand = place->in_hand, grip.in_body = place->in_body;
-  keep_pads(*place, from, to, grip);
+  keep_pads(*place, from, grip);
   *place = grip;
 }
 
@@ -293,8 +308,10 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   if (!configuration_.grasp_assist) return;
   for (Grip& grip : state.grips) {
     grip.fresh = false;
-    if (!grip.bears && !slips(state.contacts, grip)) continue;
-    place(fraction, state.hands[grip.hand], grip);
+    const HandTrack& track = state.hands[grip.hand];
+    if (!grip.bears && (!slips(state.contacts, grip) || leaves(grip, track, seconds_))) continue;
+    find(track, grip);
+    place(fraction, track, grip);
     if (grip.bears || off(state, grip) <= kSlipped) continue;
     grip.bears = grip.fresh = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)

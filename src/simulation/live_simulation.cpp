@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../scene/append_scene.h"
 #include "../scene/remove_body.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
@@ -32,29 +33,29 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
   return checked;
 }
 
-/// The bodies that may touch the last one where they are now, and that one.
-Scene near_the_last(const Simulation& simulation) {
+/// Of the first `old` bodies those that may touch this one where they are now, and this one.
+Scene near_to(const Simulation& simulation, std::size_t old, const Body& last) {
   const std::vector<Body>& bodies = simulation.scene().bodies;
-  const Body& last = bodies.back();
   Scene near;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < old; ++b) {
     const Pose& pose = simulation.state().bodies[b].pose;
     const bool apart =
         (pose.position - last.start.position).norm() > bodies[b].bounding_radius + last.bounding_radius;
-    if (apart || (bodies[b].fixed && last.fixed && b + 1 < bodies.size())) continue;
+    if (apart || (bodies[b].fixed && last.fixed)) continue;
     near.bodies.push_back(bodies[b]);
     near.bodies.back().start = pose;
   }
+  near.bodies.push_back(last);
   return near;
 }
 
-/// What is asked for the last body, which is new.
-void check_free_place(const Simulation& simulation) {
-  const Scene near = near_the_last(simulation);
+/// What is asked for a body that comes to the first `old` ones.
+void check_free_place(const Simulation& simulation, std::size_t old, const Body& body) {
+  const Scene near = near_to(simulation, old, body);
   if (near.bodies.size() == 1) return;
   const SceneGeometry geometry(near);
   std::vector<BodyState> states;
-  for (const Body& body : near.bodies) states.push_back(start_state(body));
+  for (const Body& one : near.bodies) states.push_back(start_state(one));
   const std::size_t added = near.bodies.size() - 1;
   for (std::size_t b = 0; b < added; ++b) {
     const double depth = overlap(near, geometry, states, added, b);
@@ -116,16 +117,20 @@ void LiveSimulation::set_parameters(const std::vector<std::pair<std::string, std
 }
 
 void LiveSimulation::add(const Body& body) {
+  Scene part;
+  part.bodies.push_back(body);
+  add(part);
+}
+
+void LiveSimulation::add(const Scene& part) {
   Scene scene = simulation_->scene();
-  if (find_body(scene, body.name)) {
-    throw std::invalid_argument("object '" + body.name + "' is there already; allowed: a name other than " +
-                                names_of(scene, false));
-  }
-  check_in_bounds(body.name, body.start.position, scene.bounds);
-  scene.bodies.push_back(body);
+  const std::size_t old = scene.bodies.size();
+  append(part, scene);
+  for (const Body& body : part.bodies) check_in_bounds(body.name, body.start.position, scene.bounds);
   auto next = std::make_unique<Simulation>(std::move(scene), simulation_->configuration());
   next->go_on_from(*simulation_);
-  check_free_place(*next);
+  for (std::size_t b = old; b < next->scene().bodies.size(); ++b)
+    check_free_place(*next, old, next->scene().bodies[b]);
   simulation_ = std::move(next);
 }
 

@@ -124,8 +124,8 @@ void add_contact(const ContactMemory& contact, Fnv1a& hash) {
 
 void add_grip(const Grip& grip, Fnv1a& hash) {
   const auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads,
-               in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = grip;
-  leave_out(stiffness, fresh, closes, in_palm_before, slips, force, point, velocity);
+               placed, in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = grip;
+  leave_out(stiffness, fresh, closes, placed, in_palm_before, slips, force, point, velocity);
   hash.all(body, hand, by_palm, fingers, opening, least, bond, bears);
   for (const Vector3& pad : pads) hash.add(pad);
   hash.add(in_palm);
@@ -136,8 +136,8 @@ void add_grip(const Grip& grip, Fnv1a& hash) {
 void add_contact(const BodyContact& contact, Fnv1a& hash) {
   const auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, stretch,
                material, depth, share, first_touch, force, impulse] = contact;
-  leave_out(point, normal, arm_a, arm_b, stretch, material, share, first_touch, force, impulse);
-  hash.all(key.order(), anchor_a, anchor_b, depth, friction, struck, still);
+  leave_out(point, normal, arm_a, arm_b, stretch, material, share, first_touch, impulse);
+  hash.all(key.order(), anchor_a, anchor_b, depth, friction, struck, still, force);
 }
 
 }  // namespace

@@ -236,9 +236,9 @@ class Parts {
     all(shift, fingers, lag, stamp, left, left_since);
   }
   void one(Grip& part) {
-    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads,
+    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
            in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = part;
-    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads,
+    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
         in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity);
   }
   void one(Interaction& part) {

@@ -1,43 +1,9 @@
 #include "motions.h"
 #include "mr_hand_interaction/synthetic/scripted_grasp.h"
+#include "script.h"
 
 namespace mrhi {
 namespace {
-
-/// Builds a motion keyframe by keyframe.
-class Script {
- public:
-  explicit Script(const char* scene) { motion_.scene = scene; }
-
-  Script& then(double duration, const Pose& wrist, const HandPosture& posture,
-               const Vector3& velocity = Vector3::Zero()) {
-    const double start = motion_.keyframes.empty() ? 0.0 : motion_.keyframes.back().time;
-    motion_.keyframes.push_back({start + duration, wrist, posture, velocity, HandPosture::Zero(), 0.0});
-    return *this;
-  }
-  Script& hold(double duration) {
-    const Keyframe last = motion_.keyframes.back();
-    return then(duration, last.wrist, last.posture);
-  }
-  /// The last keyframe's posture is reached by way of another.
-  Script& by_way_of(const HandPosture& posture, double share) {
-    motion_.keyframes.back().via = posture;
-    motion_.keyframes.back().via_share = share;
-    return *this;
-  }
-  Script& object_twist(const Twist& twist) {
-    motion_.object_twist = twist;
-    return *this;
-  }
-  ScriptedMotion motion() const { return motion_; }
-
- private:
-  ScriptedMotion motion_;
-};
-
-Pose shifted(const Pose& pose, const Vector3& by) {
-  return {pose.position + by, pose.orientation};
-}
 
 constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
 constexpr double kAside = 0.16;     // [m] further away, where the hand comes from

@@ -16,6 +16,9 @@ Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dors
 /// Turn about a unit axis.
 Quaternion turn(double degrees, const Vector3& axis);
 
+/// Wrist that puts the right hand's index tip at `tip`, turned as `direction` is.
+Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture);
+
 /// Angles in degrees, a row per joint.
 HandPosture posture_of_degrees(const HandPosture& degrees);
 
@@ -27,5 +30,13 @@ ScriptedMotion lift_flat();
 ScriptedMotion nudge();
 ScriptedMotion tap();
 ScriptedMotion slap();
+ScriptedMotion press_button();
+ScriptedMotion flip_switch();
+ScriptedMotion turn_valve();
+ScriptedMotion pull_lever();
+ScriptedMotion open_drawer();
+ScriptedMotion open_door();
+ScriptedMotion open_hatch();
+ScriptedMotion squeeze_tongs();
 
 }  // namespace mrhi

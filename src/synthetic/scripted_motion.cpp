@@ -21,7 +21,15 @@ constexpr MotionEntry kMotions[] = {{"grasp_cube", grasp_cube},
                                     {"lift_flat", lift_flat},
                                     {"nudge", nudge},
                                     {"tap", tap},
-                                    {"slap", slap}};
+                                    {"slap", slap},
+                                    {"press_button", press_button},
+                                    {"flip_switch", flip_switch},
+                                    {"turn_valve", turn_valve},
+                                    {"pull_lever", pull_lever},
+                                    {"open_drawer", open_drawer},
+                                    {"open_door", open_door},
+                                    {"open_hatch", open_hatch},
+                                    {"squeeze_tongs", squeeze_tongs}};
 
 /// Parabola through the postures at the shares 0, via_share and 1 of the way.
 HandPosture posture_between(const Keyframe& from, const Keyframe& to, double share) {
@@ -30,6 +38,14 @@ HandPosture posture_between(const Keyframe& from, const Keyframe& to, double sha
   const double v = to.via_share;
   const HandPosture bow = to.via - from.posture - v * (to.posture - from.posture);
   return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
+}
+
+/// Both turned about the centre by the same share of the turn that the ends differ by.
+Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
+  const Quaternion turn = to.wrist.orientation * from.wrist.orientation.conjugate();
+  const Quaternion part = Quaternion::Identity().slerp(share, turn);
+  const Vector3 arm = from.wrist.position - *to.centre;
+  return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
 }
 
 /// Left hand's frame for what a right hand does, mirrored in world's x.
@@ -51,6 +67,7 @@ HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {
   const double duration = to.time - from.time;
   const double t = (time - from.time) / duration;
   const double share = minimum_jerk(t);
+  if (to.centre) return {on_arc(from, to, share), posture_between(from, to, share)};
   const Pose wrist{
       minimum_jerk(from.wrist.position, from.velocity, to.wrist.position, to.velocity, duration, t),
       from.wrist.orientation.slerp(share, to.wrist.orientation).normalized()};

@@ -1,22 +1,12 @@
 #include <cmath>
 
-#include "motions.h"
+#include "script.h"
 
 namespace mrhi {
 namespace {
 
 constexpr double kHalfCube = 0.025;
 constexpr double kPeakSpeed = 1.875;  // of minimum jerk, in lengths per duration
-
-/// Wrist that puts the right hand's index tip at `tip`.
-Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture) {
-  const Vector3 in_hand = finger_joints(human_hand().fingers[1], posture.col(1))[4];
-  return {tip - direction.orientation * in_hand, direction.orientation};
-}
-
-Pose shifted(const Pose& pose, const Vector3& by) {
-  return {pose.position + by, pose.orientation};
-}
 
 /// Index tip's centre where its skin touches the cube on the side that `normal` points out of.
 Vector3 touching_tip(const Vector3& normal) {

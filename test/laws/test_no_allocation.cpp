@@ -3,6 +3,7 @@
 #include "mr_hand_interaction/response/contact_model.h"
 #include "support/count_allocations.h"
 #include "support/grips.h"
+#include "support/lid.h"
 
 namespace mrhi {
 namespace {
@@ -56,6 +57,31 @@ TEST(NoAllocation, in_a_step_with_far_objects_and_with_one_that_rides_on_the_hel
   rider.start.position = Vector3(0, 0, 0.045);
   scene.bodies.push_back(rider);
   EXPECT_EQ(allocations_while_swinging(scene, ContactModelKind::implicit), 0);
+}
+
+/// A finger that strikes a lid again and again, which comes back by a spring: blows of what hangs on joints.
+TEST(NoAllocation, in_a_step_of_a_struck_lid_once_warm) {
+  testing::Lid lid;
+  Scene scene = lid.scene();
+  scene.joints[0].spring = JointSpring{1.0, 0.0};
+  Simulation simulation(scene, testing::unfiltered(ContactModelKind::implicit));
+  long counted = 0, blows = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    const double t = frame / 100.0;
+    const Vector3 place(lid.at, 0, -0.05 + 0.04 * std::sin(2.0 * M_PI * t));
+    simulation.begin(
+        {testing::at(t),
+         {testing::finger(place - Vector3(0, 0.01, 0), place + Vector3(0, 0.01, 0), lid.radius)}});
+    const long before = allocations;
+    while (simulation.step()) {
+    }
+    if (t >= 2.0) counted += allocations - before;
+    simulation.end();
+    for (const Contact& contact : simulation.result().contacts)
+      blows += t >= 2.0 && contact.impulse.norm() > 0.0;
+  }
+  EXPECT_GE(blows, 2);
+  EXPECT_EQ(counted, 0);
 }
 
 }  // namespace

@@ -18,22 +18,19 @@ Scene shipped_scene(const std::string& name) {
   return load_scene("config/scenes/" + name + ".urdf", options);
 }
 
-// These hands know nothing of the bodies and are flung through them, at up to 100 mm a frame. Where bodies
-// are moved along the hand's way, it may once in a while be caught so that only a jump brings it out.
-constexpr int kFramesPerJump = 1000;  // with the hand held aside
+// These hands know nothing of the bodies and are flung through them, at up to 100 mm a frame.
 
 struct Placing {
   const char* name;
   std::function<Scene(const std::vector<HandFrame>&)> scene;
-  bool steady;
 };
 
-Placing in_the_way(const char* name, double later, bool steady) {
-  return {name, [later](const auto& frames) { return testing::scene_in_the_way(frames, later); }, steady};
+Placing in_the_way(const char* name, double later) {
+  return {name, [later](const auto& frames) { return testing::scene_in_the_way(frames, later); }};
 }
 
 Placing shipped(const char* name) {
-  return {name, [name](const auto&) { return shipped_scene(name); }, true};
+  return {name, [name](const auto&) { return shipped_scene(name); }};
 }
 
 class RenderedRecording : public ::testing::TestWithParam<Placing> {};
@@ -41,20 +38,13 @@ class RenderedRecording : public ::testing::TestWithParam<Placing> {};
 TEST_P(RenderedRecording, is_one_hand_outside_everything) {
   const std::vector<std::string> files = testing::recordings();
   MRHI_NEED_RECORDINGS(files);
-  int moved_aside = 0, frames_aside = 0, jumps = 0;
+  int moved_aside = 0;
   for (const std::string& file : files) {
     const std::vector<HandFrame> frames = testing::recorded_frames(file);
     const RenderedCheck check = testing::render_all(GetParam().scene(frames), frames);
     moved_aside += check.moved_aside > 0;
-    frames_aside += check.moved_aside;
-    jumps += check.jumps;
-    if (GetParam().steady) {
-      testing::expect_one_hand(check, file);
-    } else {
-      testing::expect_one_hand_outside(check, file);
-    }
+    testing::expect_one_hand(check, file);
   }
-  EXPECT_LE(jumps * kFramesPerJump, frames_aside) << jumps << " jumps";
   // Half of them at least must have been kept out of something, or the test would say nothing.
   if (GetParam().name == std::string("in_the_way")) {
     EXPECT_GE(2 * moved_aside, static_cast<int>(files.size()));
@@ -62,9 +52,8 @@ TEST_P(RenderedRecording, is_one_hand_outside_everything) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scene, RenderedRecording,
-                         ::testing::Values(in_the_way("in_the_way", 0.0, true), shipped("mixed"),
-                                           shipped("rack"), in_the_way("earlier", -0.15, false),
-                                           in_the_way("later", 0.13, false)),
+                         ::testing::Values(in_the_way("in_the_way", 0.0), shipped("mixed"), shipped("rack"),
+                                           in_the_way("earlier", -0.15), in_the_way("later", 0.13)),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 /// Two of the scenes at random; twenty with MR_HAND_SEEDS=20. `rendered_jumps 20` tells more of them.
@@ -73,17 +62,12 @@ int seeds() {
   return set != nullptr ? std::atoi(set) : 2;
 }
 
-// Where bodies lie at random, one hand in 25 000 held aside still jumps, over twenty seeds: where the tracked
-// palm's orientation leaps, by 8 mm at most. Of two seeds none does.
-constexpr int kRandomFramesPerJump = 20000;
-constexpr double kRandomJump = 0.01;  // [m]
 // The way back from beyond a wall, 0.8 mm a frame, takes longer than 1.5 s.
 constexpr double kStillAside = 0.06;  // [m]
 
 TEST(RenderedAtRandom, is_one_hand_outside_everything) {
   const std::vector<std::string> files = testing::recordings();
   MRHI_NEED_RECORDINGS(files);
-  int aside = 0, jumps = 0;
   for (const std::string& file : files) {
     const std::vector<HandFrame> frames = testing::recorded_frames(file);
     for (int seed = 1; seed <= seeds(); ++seed) {
@@ -91,13 +75,9 @@ TEST(RenderedAtRandom, is_one_hand_outside_everything) {
       RenderedCheck check = testing::render_all(scene, frames);
       EXPECT_LE(check.late.value, kStillAside) << file << " with seed " << seed << " at " << check.late.time;
       check.late = {};
-      testing::expect_one_hand_outside(check, file + " with seed " + std::to_string(seed));
-      aside += check.moved_aside;
-      jumps += check.jumps;
-      EXPECT_LE(check.jump.value, kRandomJump) << file << " with seed " << seed << " at " << check.jump.time;
+      testing::expect_one_hand(check, file + " with seed " + std::to_string(seed));
     }
   }
-  EXPECT_LE(jumps * kRandomFramesPerJump, aside) << jumps << " jumps";
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <map>
 
+#include "modelling/skin_model.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "rendering/rest_skin.h"
 #include "rendering/skin.h"
 #include "rendering/skin_checks.h"
 #include "support/postures.h"
@@ -59,7 +61,7 @@ TEST(Skin, is_one_piece_without_a_hole) {
 }
 
 TEST(Skin, is_as_fine_as_it_is_asked_to_be_and_finer_where_it_is_looked_at) {
-  EXPECT_NEAR(static_cast<double>(Skin(1000).triangles().size()), 1000.0, 20.0);
+  EXPECT_NEAR(static_cast<double>(modelled_skin(1000).triangles.size()), 1000.0, 20.0);
   const Skin& skin = Skin::human();
   int tips = 0, rest = 0;
   for (std::size_t v = 0; v < skin.size(); ++v) {
@@ -68,6 +70,19 @@ TEST(Skin, is_as_fine_as_it_is_asked_to_be_and_finer_where_it_is_looked_at) {
     ++(tip > 0.5 ? tips : rest);
   }
   EXPECT_GT(5 * tips, rest);  // of an eighth of the surface
+}
+
+// Written in micrometres.
+void expect_same(const TriangleMesh& made, const TriangleMesh& shipped) {
+  ASSERT_EQ(made.triangles, shipped.triangles);
+  ASSERT_EQ(made.vertices.size(), shipped.vertices.size());
+  for (std::size_t v = 0; v < made.vertices.size(); ++v)
+    EXPECT_LT((made.vertices[v] - shipped.vertices[v]).norm(), 1e-6);
+}
+
+TEST(Skin, that_ships_is_what_make_skin_gives) {
+  expect_same(modelled_skin(kHumanTriangles), rest_skin());
+  expect_same(modelled_skin(kOutlineTriangles), rest_outline());
 }
 
 TEST(Skin, rest_hand_posed_is_the_rest_hand) {

@@ -193,7 +193,8 @@ class InteractionTest(unittest.TestCase):
     def test_every_layer_of_markers_is_published(self):
         # The ghost is there only where the hand is shown elsewhere than it is tracked: one finger alone drives the
         # cube off before it is a millimetre inside, two cannot.
-        wanted = {"hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "share", "shadows", "text"}
+        wanted = {"hand", "ghost", "capsules", "objects", "fixtures", "contacts", "friction", "forces", "newtons",
+                  "share", "shadows", "text"}
         def squeezed():
             self.setUp()
             self.squeeze()

@@ -2,8 +2,10 @@
 """interaction_node while it runs: objects that come and go, parameters that change, an object moved by the mouse."""
 import os
 import sys
+import tempfile
 import unittest
 
+import rospkg
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
@@ -14,7 +16,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, Marker, MarkerArray
 
 from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
-from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, SpawnObjectRequest
+from mr_hand_interaction.srv import DeleteObject, SaveWorld, SetParameter, SpawnObject, SpawnObjectRequest, SpawnUrdf, \
+    SpawnUrdfRequest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pointing_hand import PERIOD, frame, hand, push_tips  # noqa: E402
@@ -52,7 +55,8 @@ class LiveChangesTest(unittest.TestCase):
         cls.subscribers = [rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
                            rospy.Subscriber("interaction_events", InteractionEvent, lambda m: cls.events.append(m)),
                            rospy.Subscriber("/tf", TFMessage, cls.take_transforms)]
-        for name, kind in (("spawn", SpawnObject), ("delete", DeleteObject), ("set", SetParameter), ("reset", Trigger),
+        for name, kind in (("spawn", SpawnObject), ("delete", DeleteObject), ("set", SetParameter), ("spawn_urdf", SpawnUrdf),
+                           ("save", SaveWorld), ("reset", Trigger),
                            ("pause", SetBool)):
             rospy.wait_for_service(NODE + name, 60.0)
             setattr(cls, name, staticmethod(rospy.ServiceProxy(NODE + name, kind)))
@@ -104,6 +108,28 @@ class LiveChangesTest(unittest.TestCase):
         self.clock.go_on(INSTANT)
         self.assertNotIn("box", self.objects)
         wait_until(lambda: self.viewer.objects() == 1, "its marker gone")
+
+    def test_with_joints_a_urdf_comes_and_the_world_is_saved_as_it_is(self):
+        """The last by its name: what hangs on joints cannot be taken away again."""
+        with open(os.path.join(rospkg.RosPack().get_path("mr_hand_interaction"), "config/scenes/tongs.urdf")) as urdf:
+            request = SpawnUrdfRequest(name="my", urdf=urdf.read(), joints="{tongs_hinge: {start: 0.3}}")
+        request.pose.position.y = 0.4
+        answer = self.spawn_urdf(request)
+        self.assertTrue(answer.success, answer.message)
+        self.clock.go_on(INSTANT)
+        self.assertEqual(set(self.objects), {"cube", "my_tongs", "my_arm"})
+        wait_until(lambda: "my_arm" in self.frames, "its frame")
+        self.assertFalse(self.spawn_urdf(request).success)
+        self.assertFalse(self.save("not/absolute.urdf").success)
+        with tempfile.TemporaryDirectory() as folder:
+            saved = os.path.join(folder, "world.urdf")
+            answer = self.save(saved)
+            self.assertTrue(answer.success, answer.message)
+            self.assertFalse(self.save(saved).success)
+            with open(saved) as urdf:
+                self.assertIn("my_tongs_hinge", urdf.read())
+            with open(os.path.join(folder, "world.yaml")) as settings:
+                self.assertIn("my_tongs_hinge", settings.read())
 
     def test_one_line_says_why_an_object_is_refused(self):
         for answer in (self.spawn_box("cube"), self.spawn_box("a b"), self.spawn_box("far", y=50.0),

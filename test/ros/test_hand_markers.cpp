@@ -12,20 +12,46 @@ TEST(HandMarkers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   Shown shown;
   shown.see_hands(2);
   auto added = shown.update();
-  EXPECT_EQ(added["hand"], 2);
+  EXPECT_EQ(added["hand"], 4);  // two skins, and their wrists
   const int capsules = added["capsules"];
   EXPECT_GT(capsules, 2 * kPhalanges);
   const Marker& skin = shown.first("hand");
   EXPECT_EQ(skin.type, Marker::TRIANGLE_LIST);
-  EXPECT_EQ(skin.points.size(), 3 * Skin::human().triangles().size());
   EXPECT_EQ(skin.colors.size(), skin.points.size());
   shown.see_hands(1);
   added = shown.update();
-  EXPECT_EQ(added["hand"], 1);
-  EXPECT_EQ(shown.deleted("hand"), 1);
+  EXPECT_EQ(added["hand"], 2);
+  EXPECT_EQ(shown.deleted("hand"), 2);
   EXPECT_EQ(shown.deleted("capsules"), capsules / 2);
   shown.update();
   EXPECT_EQ(shown.deleted("hand"), 0);
+}
+
+TEST(HandMarkers, the_skin_is_opaque_and_closed_and_the_wrist_ends_in_nothing) {
+  for (const Side side : {Side::left, Side::right}) {
+    Shown shown;
+    shown.see_hands(1, side);
+    shown.update();
+    std::vector<const Marker*> parts;
+    for (const Marker& marker : shown.array.markers) {
+      if (marker.ns == "hand") parts.push_back(&marker);
+    }
+    ASSERT_EQ(parts.size(), 2u);
+    const Marker &skin = *parts[0], &wrist = *parts[1];
+    EXPECT_GE(skin.points.size() + wrist.points.size(), 3 * Skin::human().triangles().size());
+    EXPECT_LT(wrist.points.size(), skin.points.size() / 3);
+    Vector3 area = Vector3::Zero();  // of a closed surface it is none
+    for (std::size_t i = 0; i < skin.points.size(); i += 3) {
+      const Vector3 a = from_message(skin.points[i]);
+      area += 0.5 * (from_message(skin.points[i + 1]) - a).cross(from_message(skin.points[i + 2]) - a);
+    }
+    EXPECT_LT(area.norm(), 1e-9);  // [m^2], of rounding
+    for (const auto& colour : skin.colors) EXPECT_EQ(colour.a, 1.0f);
+    const auto by_alpha = [](const auto& a, const auto& b) { return a.a < b.a; };
+    const auto [least, most] = std::minmax_element(wrist.colors.begin(), wrist.colors.end(), by_alpha);
+    EXPECT_LT(least->a, 0.01f);
+    EXPECT_EQ(most->a, 1.0f);
+  }
 }
 
 TEST(HandMarkers, triangles_of_either_hand_are_counter_clockwise_from_outside) {
@@ -86,11 +112,11 @@ TEST(HandMarkers, what_touches_is_highlighted) {
   shown.update();
   const auto& after = shown.first("hand").colors;
   int changed = 0;
+  const Hand& hand = rendered.hand;
+  const auto& points = shown.first("hand").points;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    const auto vertex =
-        static_cast<std::size_t>(Skin::human().triangles()[i / 3][i % 3]);  // a right hand: the same order
     if (after[i].g == before[i].g) continue;
-    EXPECT_GT(Skin::human().share(vertex, touching) + Skin::human().share(vertex, capsule_index(1, 2)), 0.3f);
+    EXPECT_LT((from_message(points[i]) - hand.capsules[pad].end).norm(), 2.5 * hand.capsules[pad].radius);
     ++changed;
   }
   EXPECT_GT(changed, 100);

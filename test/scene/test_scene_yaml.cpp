@@ -55,7 +55,7 @@ TEST_F(SceneYaml, ItsMaterialsStandAboveTheDefaultsAndItsGravityBelowTheOption) 
 
 TEST_F(SceneYaml, RefusesUnknownKeysAndLinks) {
   test::expect_words(error("gravty: [0, 0, 0]"),
-                     {"test.yaml:1", "'gravty'", "gravity, bounds, materials, joints"});
+                     {"test.yaml:1", "'gravty'", "gravity, bounds, materials, twists, joints"});
   test::expect_words(error("bounds: {low: [0, 0, 0]}"), {"bounds", "'low'", "min, max"});
   test::expect_words(error("materials:\n  thin: {restitution: 0}"),
                      {"test.yaml:", "materials", "'thin'", "thing"});

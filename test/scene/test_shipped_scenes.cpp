@@ -221,8 +221,9 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
       find_scene_file(wrong, {"config/scenes"});
       ADD_FAILURE() << wrong;
     } catch (const SceneError& error) {
-      test::expect_words(error.what(),
-                         {wrong, "ball, cube, cube_on_table, flat_cuboid, long_cuboid, mixed, panel, rack"});
+      test::expect_words(
+          error.what(),
+          {wrong, "ball, cube, cube_on_table, flat_cuboid, hatch, long_cuboid, mixed, panel, rack, tongs"});
     }
   }
 }

@@ -164,7 +164,8 @@ TEST(ScriptedMotion, an_unknown_name_is_refused_with_those_known) {
     EXPECT_STREQ(
         error.what(),
         "motion 'wave' is not known: use one of grasp_cube, grasp_ball, catch_ball, pinch_long, lift_flat, "
-        "nudge, tap, slap");
+        "nudge, tap, slap, press_button, flip_switch, turn_valve, pull_lever, open_drawer, open_door, "
+        "open_hatch, squeeze_tongs");
   }
 }
 

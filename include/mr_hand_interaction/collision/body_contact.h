@@ -47,7 +47,7 @@ struct BodyContact {
   double first_touch = -1.0;          ///< of a pair still apart: from the step's start [s], >= 0
 
   // What the response made of it in this step.
-  Vector3 force = Vector3::Zero();    ///< [N]
+  Vector3 force = Vector3::Zero();    ///< near it lies the next step's [N]
   Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
 };
 

@@ -27,6 +27,7 @@ struct Grip {
   bool fresh = false;                          ///< it begins to bear in this step
   bool closes = true;                          ///< the hand still closes
   DistalEnds pads{};                           ///< when it took, palm frame [m]
+  bool placed = false;                         ///< the next two are those of this frame
   Pose in_palm_before;                         ///< what the palm's frame was then, as the frame begins
   Pose in_palm;                                ///< and as it ends; fingers that open do not move it
   bool slips = false;                          ///< it has yielded in the last step

@@ -2,8 +2,10 @@
 
 #include <mr_hand_interaction/DeleteObject.h>
 #include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/SaveWorld.h>
 #include <mr_hand_interaction/SetParameter.h>
 #include <mr_hand_interaction/SpawnObject.h>
+#include <mr_hand_interaction/SpawnUrdf.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
@@ -49,6 +51,9 @@ class InteractionServer {
   bool pause(bool paused, std_srvs::SetBool::Response& response);
   bool spawn(const mr_hand_interaction::SpawnObject::Request& request,
              mr_hand_interaction::SpawnObject::Response& response);
+  bool spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
+                  mr_hand_interaction::SpawnUrdf::Response& response);
+  bool save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response);
   bool remove(const std::string& name, mr_hand_interaction::DeleteObject::Response& response);
   bool set(const mr_hand_interaction::SetParameter::Request& request,
            mr_hand_interaction::SetParameter::Response& response);

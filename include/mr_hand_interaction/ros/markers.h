@@ -18,9 +18,9 @@ class Skin;
 
 /// What rviz shows, a namespace for each layer: `hand` (rendered, as a skin), `ghost` (tracked, where it is
 /// elsewhere), `capsules` (rendered, as simulated), `objects`, `fixtures`, `contacts` (points), `friction`
-/// (rings), `forces` (arrows), `share` (of friction's limit, a colour), `shadows` and `text`. What passes
-/// (hands, contacts) is in each array, and deleted by the first one that it is not in; what stays is sent
-/// when it changes, and again twice a second.
+/// (rings), `forces` (arrows), `newtons` (the same in numbers), `share` (of friction's limit, a colour),
+/// `shadows` and `text`. What passes (hands, contacts) is in each array, and deleted by the first one that it
+/// is not in; what stays is sent when it changes, and again twice a second.
 class Markers {
  public:
   Markers(const Scene& scene, const Configuration& configuration);  ///< keeps references

@@ -8,6 +8,7 @@
 #include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ class TrainingServer {
  private:
   void advertise_services(ros::NodeHandle& private_node);
   void take(const mr_hand_interaction::ObjectStateArray& message);
+  void note_object(const mr_hand_interaction::ObjectStateArray& message);
   void take_event(const mr_hand_interaction::InteractionEvent& event);
   void take_hands(const mr_hand_interaction::HandFrame& message, bool filtered);
   Nanoseconds on_our_clock(const ros::Time& stamp);
@@ -57,6 +59,7 @@ class TrainingServer {
 
   Nanoseconds clocks_apart_ = 0;  ///< this machine's ahead of that of the hands' stamps
   mr_hand_interaction::ContactArray contacts_;
+  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< the trial's object, if it is there
   int tracking_losses_ = 0;
   bool put_back_ = false;
 

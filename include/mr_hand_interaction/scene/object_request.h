@@ -20,10 +20,17 @@ struct ObjectRequest {
   Twist twist;               ///< of the centre of mass, world axes
   std::string material;      ///< YAML, as in a scene's materials; empty: the parameters'
   std::optional<std::array<float, 4>> rgba;
+  /// All links of the URDF, with their joints; `name` and '_' come before the names of links and joints then,
+  /// and of the rest only `urdf` and `pose`, of the URDF's root, count.
+  bool whole = false;
+  std::string joints;  ///< of `whole`: YAML, as in a scene's joints; empty: as the URDF has them
 };
 
 /// Throws SceneError with one line that says what is wrong and what is allowed. A link of the URDF on a fixed
 /// joint is a fixture.
 Body requested_body(const ObjectRequest& request, const SceneOptions& options);
+
+/// What is to be added to a scene: that body, or all of a URDF that is wanted whole. Throws likewise.
+Scene requested_scene(const ObjectRequest& request, const SceneOptions& options);
 
 }  // namespace mrhi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Keyframe {
   /// Posture passed on the way here from the keyframe before, at the share `via_share` of the way; 0: none.
   HandPosture via = HandPosture::Zero();
   double via_share = 0.0;
+  /// The hand turns about this point on the way here, which is then an arc [m, world]; nothing: straight.
+  std::optional<Vector3> centre = std::nullopt;
 };
 
 struct HandPlace {
@@ -38,7 +41,8 @@ struct ScriptedMotion {
   double period() const { return run_time() + pause; }
 };
 
-/// The eight: grasp_cube grasp_ball catch_ball pinch_long lift_flat nudge tap slap.
+/// Those of one object, grasp_cube grasp_ball catch_ball pinch_long lift_flat nudge tap slap, and those of
+/// joints, press_button flip_switch turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs.
 std::vector<std::string> motion_names();
 
 /// Throws std::invalid_argument that lists the names.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "rendering/gradient.h"
+
 namespace mrhi {
 namespace {
 
@@ -124,16 +126,6 @@ void even_out(const DistanceField& distance, TriangleMesh& mesh) {
 }
 
 }  // namespace
-
-Vector3 gradient(const DistanceField& distance, const Vector3& point) {
-  constexpr double kStep = 1e-4;  // [m]
-  Vector3 g;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector3 step = kStep * Vector3::Unit(axis);
-    g[axis] = (distance(point + step) - distance(point - step)) / (2.0 * kStep);
-  }
-  return g;
-}
 
 TriangleMesh surface_net(const DistanceField& distance, const Vector3& lowest, const Vector3& highest,
                          double cell) {

@@ -1,0 +1,271 @@
+#include "mr_hand_interaction/scene/save_scene.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "../text/text.h"
+#include "joint_ranges.h"
+#include "material_fields.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string numbers(const Vector3& v) {
+  return text::exact(v.x()) + " " + text::exact(v.y()) + " " + text::exact(v.z());
+}
+
+/// Roll, pitch and yaw of a URDF: turns about fixed x, y and z, one after the other [rad].
+Vector3 roll_pitch_yaw(const Quaternion& q) {
+  const Matrix3 r = q.toRotationMatrix();
+  const double level = std::hypot(r(0, 0), r(1, 0)), pitch = std::atan2(-r(2, 0), level);
+  if (level < 1e-9) return {std::atan2(-r(1, 2), r(1, 1)), pitch, 0.0};
+  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+}
+
+std::string origin(const Pose& pose) {
+  return "<origin xyz=\"" + numbers(pose.position) + "\" rpy=\"" + numbers(roll_pitch_yaw(pose.orientation)) +
+         "\"/>";
+}
+
+/// What is in quotes in XML.
+std::string quoted(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '"') {
+      result += "&quot;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+class Writer {
+ public:
+  Writer(const Scene& scene, const fs::path& file) : scene_(scene), file_(file) {}
+
+  void write() {
+    write_urdf();
+    save(fs::path(file_).replace_extension(".yaml"), yaml());
+    save(file_, out_.str());  // last: who waits for it finds all
+  }
+
+ private:
+  void write_urdf() {
+    out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << quoted(scene_.name) << "\">\n  <link name=\""
+         << root() << "\"/>\n";
+    for (const Body& body : scene_.bodies) write_link(body);
+    for (const Body& body : scene_.bodies) {
+      if (joint_of(body) == nullptr)
+        write_joint(root() + "_to_" + body.name, body.fixed ? "fixed" : "floating", root(), body,
+                    body.start * body.link_in_body, "");
+    }
+    for (const Joint& joint : scene_.joints) write_joint(joint);
+    out_ << "</robot>\n";
+  }
+
+  /// A name that no body has.
+  std::string root() const {
+    std::string name = "world";
+    while (find_body(scene_, name)) name += "_";
+    return name;
+  }
+
+  const Joint* joint_of(const Body& body) const {
+    for (const Joint& joint : scene_.joints) {
+      if (&scene_.bodies[static_cast<std::size_t>(joint.child)] == &body) return &joint;
+    }
+    return nullptr;
+  }
+
+  void write_link(const Body& body) {
+    out_ << "  <link name=\"" << body.name << "\">\n";
+    if (!body.fixed) write_inertial(body);
+    const Pose to_link = body.link_in_body.inverse();
+    for (std::size_t i = 0; i < body.visuals.size(); ++i) {
+      const Visual& visual = body.visuals[i];
+      out_ << "    <visual>\n      " << origin(to_link * visual.pose) << "\n      <geometry>"
+           << geometry(visual.shape, false) << "</geometry>\n";
+      if (visual.has_color || !std::holds_alternative<Mesh>(visual.shape)) {
+        out_ << "      <material name=\"" << body.name << "_" << i << "\"><color rgba=\"";
+        for (std::size_t c = 0; c < 4; ++c) out_ << (c > 0 ? " " : "") << text::exact(double(visual.rgba[c]));
+        out_ << "\"/></material>\n";
+      }
+      out_ << "    </visual>\n";
+    }
+    for (const PlacedShape& placed : body.shapes) {
+      out_ << "    <collision>\n      " << origin(to_link * placed.pose) << "\n      <geometry>"
+           << geometry(placed.shape, true) << "</geometry>\n    </collision>\n";
+    }
+    out_ << "  </link>\n";
+  }
+
+  void write_inertial(const Body& body) {
+    const Matrix3& i = body.inertia;
+    const auto entry = [&](const char* name, double value) {
+      out_ << " " << name << "=\"" << text::exact(value) << "\"";
+    };
+    out_ << "    <inertial>\n      " << origin(body.link_in_body.inverse()) << "\n      <mass value=\""
+         << text::exact(body.mass) << "\"/>\n      <inertia";
+    entry("ixx", i(0, 0)), entry("ixy", i(0, 1)), entry("ixz", i(0, 2));
+    entry("iyy", i(1, 1)), entry("iyz", i(1, 2)), entry("izz", i(2, 2));
+    out_ << "/>\n    </inertial>\n";
+  }
+
+  std::string geometry(const Shape& shape, bool solid) {
+    const auto length = [](const char* name, double radius, double half) {
+      return std::string("<") + name + " radius=\"" + text::exact(radius) + "\" length=\"" +
+             text::exact(2.0 * half) + "\"/>";
+    };
+    if (const auto* box = std::get_if<Box>(&shape))
+      return "<box size=\"" + numbers(2.0 * box->half_extents) + "\"/>";
+    if (const auto* ball = std::get_if<Sphere>(&shape))
+      return "<sphere radius=\"" + text::exact(ball->radius) + "\"/>";
+    if (const auto* one = std::get_if<Cylinder>(&shape))
+      return length("cylinder", one->radius, one->half_length);
+    if (const auto* one = std::get_if<Pill>(&shape)) return length("capsule", one->radius, one->half_length);
+    const Mesh& mesh = std::get<Mesh>(shape);
+    if (solid) return "<mesh filename=\"" + mesh_file(mesh) + "\"/>";
+    return "<mesh filename=\"" + quoted(mesh.uri) + "\" scale=\"" + numbers(mesh.scale) + "\"/>";
+  }
+
+  /// Beside the scene, of what collides, be it scaled or a hull.
+  std::string mesh_file(const Mesh& mesh) {
+    const std::string name = file_.stem().string() + "_" + std::to_string(++meshes_) + ".obj";
+    std::ostringstream obj;
+    for (const Vector3& vertex : mesh.triangles->vertices) obj << "v " << numbers(vertex) << "\n";
+    for (const auto& t : mesh.triangles->triangles)
+      obj << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    save(file_.parent_path() / name, obj.str());
+    return name;
+  }
+
+  void write_joint(const std::string& name, const char* type, const std::string& parent, const Body& child,
+                   const Pose& place, const std::string& more) {
+    out_ << "  <joint name=\"" << name << "\" type=\"" << type << "\">\n    <parent link=\"" << parent
+         << "\"/>\n    <child link=\"" << child.name << "\"/>\n    " << origin(place) << "\n"
+         << more << "  </joint>\n";
+  }
+
+  void write_joint(const Joint& joint) {
+    const Body& child = scene_.bodies[static_cast<std::size_t>(joint.child)];
+    const bool turns = joint.kind == JointKind::turning;
+    const char* type = !turns ? "prismatic" : joint.is_limited() ? "revolute" : "continuous";
+    std::string more = "    <axis xyz=\"" + numbers(joint.axis) + "\"/>\n";
+    const auto finite = [](double limit) {
+      return text::exact(std::min(std::max(limit, joint_ranges::kPlace.min), joint_ranges::kPlace.max));
+    };
+    if (joint.is_limited() || !turns)
+      more += "    <limit lower=\"" + finite(joint.lower) + "\" upper=\"" + finite(joint.upper) +
+              "\" effort=\"0\" velocity=\"0\"/>\n";
+    more += "    <dynamics damping=\"" + text::exact(joint.damping) + "\" friction=\"" +
+            text::exact(joint.friction) + "\"/>\n";
+    if (joint.parent == Joint::kWorld) {
+      write_joint(joint.name, type, root(), child, joint.in_parent, more);
+    } else {
+      const Body& parent = scene_.bodies[static_cast<std::size_t>(joint.parent)];
+      write_joint(joint.name, type, parent.name, child, parent.link_in_body.inverse() * joint.in_parent,
+                  more);
+    }
+  }
+
+  static YAML::Node list(const std::vector<double>& values) {
+    YAML::Node node(YAML::NodeType::Sequence);
+    for (const double value : values) node.push_back(text::exact(value));
+    node.SetStyle(YAML::EmitterStyle::Flow);
+    return node;
+  }
+  static YAML::Node vector_list(const Vector3& v) { return list(std::vector<double>{v.x(), v.y(), v.z()}); }
+
+  std::string yaml() const {
+    YAML::Node root;
+    root["gravity"] = vector_list(scene_.gravity);
+    root["bounds"]["min"] = vector_list(scene_.bounds.min);
+    root["bounds"]["max"] = vector_list(scene_.bounds.max);
+    for (const Body& body : scene_.bodies) {
+      for (const MaterialField& field : material_fields()) {
+        if (body.own_material.*field.own)
+          root["materials"][body.name][field.name] = text::exact(body.material.*field.value);
+      }
+      const Vector3 &v = body.start_twist.linear, &w = body.start_twist.angular;
+      if (!body.fixed && !(v.isZero(0.0) && w.isZero(0.0)))
+        root["twists"][body.name] = list(std::vector<double>{v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+    }
+    for (const Joint& joint : scene_.joints) root["joints"][joint.name] = settings(joint);
+    return YAML::Dump(root) + "\n";
+  }
+
+  static YAML::Node settings(const Joint& joint) {
+    YAML::Node node(YAML::NodeType::Map);
+    node["start"] = text::exact(joint.start);
+    node["restitution"] = text::exact(joint.restitution);
+    if (joint.spring) {
+      node["spring"]["stiffness"] = text::exact(joint.spring->stiffness);
+      node["spring"]["rest"] = text::exact(joint.spring->rest);
+    }
+    if (joint.detents) {
+      node["detents"]["at"] = list(joint.detents->at);
+      node["detents"]["force"] = text::exact(joint.detents->force);
+    }
+    if (joint.latch) {
+      node["latch"]["at"] = text::exact(joint.latch->at);
+      node["latch"]["force"] = text::exact(joint.latch->force);
+      node["latch"]["reach"] = text::exact(joint.latch->reach);
+    }
+    return node;
+  }
+
+  static void save(const fs::path& file, const std::string& text) {
+    std::ofstream out(file, std::ios::binary);
+    out << text << std::flush;
+    if (!out) throw std::runtime_error("cannot write '" + text::one_line(file.string()) + "'");
+  }
+
+  const Scene& scene_;
+  const fs::path file_;
+  std::ostringstream out_;
+  int meshes_ = 0;
+};
+
+}  // namespace
+
+Scene scene_as_it_is(const Scene& scene, const std::vector<BodyState>& bodies,
+                     const std::vector<JointState>& joints) {
+  Scene now = scene;
+  for (std::size_t b = 0; b < now.bodies.size(); ++b) {
+    if (now.bodies[b].fixed) continue;
+    now.bodies[b].start = bodies[b].pose;
+    now.bodies[b].start_twist = twist_of(scene.bodies[b], bodies[b]);
+  }
+  for (std::size_t j = 0; j < now.joints.size(); ++j) {
+    Joint& joint = now.joints[j];
+    joint.start = std::min(std::max(joints[j].position, joint.lower), joint.upper);
+  }
+  return now;
+}
+
+void save_scene(const Scene& scene, const std::string& urdf_file) {
+  const fs::path file = urdf_file;
+  const std::string shown = "'" + text::one_line(urdf_file, 200) + "'";
+  if (file.extension() != ".urdf")
+    throw std::invalid_argument("file " + shown + " is not allowed; allowed: one that ends in .urdf");
+  for (const fs::path& taken : {file, fs::path(file).replace_extension(".yaml")}) {
+    if (fs::exists(taken))
+      throw std::invalid_argument("'" + text::one_line(taken.string(), 200) +
+                                  "' is there already; allowed: a file that is not");
+  }
+  Writer(scene, file).write();
+}
+
+}  // namespace mrhi

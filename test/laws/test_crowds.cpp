@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/grips.h"
+
+namespace mrhi {
+namespace {
+
+using testing::at;
+
+constexpr double kEdge = 0.03;     // of a cube [m]
+constexpr double kMass = 0.027;    // [kg]
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+/// Always the same, between -1 and 1.
+double scattered(int i) {
+  return std::sin(12.9898 * i + 78.233 * std::sin(3.7 * i));
+}
+
+Body cube(int i, const Vector3& position, bool turned) {
+  Body body = testing::box_body(Vector3::Constant(kEdge), kMass);
+  body.name = "cube" + std::to_string(i);
+  body.start.position = position;
+  if (turned)
+    body.start.orientation =
+        Quaternion(1.0, scattered(3 * i), scattered(3 * i + 1), scattered(3 * i + 2)).normalized();
+  return body;
+}
+
+Vector3 place(int i, int side, double pitch) {
+  return pitch * Vector3(i % side, i / side % side, i / (side * side));
+}
+
+/// 27 cubes that fly at each other.
+Scene gathering() {
+  Scene scene = testing::scene_of(cube(0, Vector3::Zero(), true));
+  scene.bodies.clear();
+  scene.bounds = {Vector3::Constant(-100.0), Vector3::Constant(100.0)};
+  for (int i = 0; i < 27; ++i) {
+    Body body = cube(i, place(i, 3, 2.0 * kEdge), true);
+    body.start_twist.linear = -2.0 * (body.start.position - Vector3::Constant(2.0 * kEdge));
+    scene.bodies.push_back(body);
+  }
+  return scene;
+}
+
+Scene on_floor() {
+  Body floor = testing::box_body(Vector3(2.0, 2.0, 0.1), 1.0);
+  floor.name = "floor";
+  floor.fixed = true;
+  floor.start.position.z() = -0.05;
+  Scene scene = testing::scene_of(floor);
+  scene.gravity = Vector3(0, 0, -kGravity);
+  return scene;
+}
+
+Scene heap() {
+  Scene scene = on_floor();
+  for (int i = 0; i < 12; ++i)
+    scene.bodies.push_back(cube(i, Vector3(0, 0, 2.0 * kEdge) + place(i, 2, 1.8 * kEdge), true));
+  return scene;
+}
+
+/// Faces press on each other upwards, and are 20 um apart sideways.
+Scene block(int side) {
+  Scene scene = on_floor();
+  for (int i = 0; i < side * side * side; ++i) {
+    const Vector3 position = place(i, side, kEdge).cwiseProduct(Vector3(1.0007, 1.0007, 1.0));
+    scene.bodies.push_back(cube(i, position + Vector3(0, 0, 0.5 * kEdge), false));
+  }
+  return scene;
+}
+
+struct Sums {
+  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+  double energy = 0.0;
+};
+
+Sums sums_of(const Simulation& simulation) {
+  Sums sums;
+  for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
+    const BodyState& state = simulation.state().bodies[b];
+    sums.linear += state.linear_momentum;
+    sums.angular += state.pose.position.cross(state.linear_momentum) + state.angular_momentum;
+    sums.energy += kinetic_energy(simulation.scene().bodies[b], state);
+  }
+  return sums;
+}
+
+TEST(Crowds, keep_momentum_to_rounding_and_gain_no_energy_though_they_are_cut_short) {
+  Simulation simulation(gathering(), testing::implicit_configuration());
+  simulation.advance({at(0.0), {}});
+  const Sums before = sums_of(simulation);
+  double least = before.energy, gained = 0.0;
+  std::size_t most = 0;
+  for (int i = 1; i <= 1500; ++i) {
+    simulation.advance({at(0.001 * i), {}});
+    const Sums now = sums_of(simulation);
+    // Of 27 cubes at 0.1 m/s, each of which has been pushed 1500 times at most.
+    EXPECT_LT((now.linear - before.linear).norm(), 1e-15);
+    // Blows at their own times within a step, and springs beside them, keep it but to 1e-4 of a cube's own.
+    EXPECT_LT((now.angular - before.angular).norm(), 1e-7);
+    gained = std::max(gained, now.energy - least);
+    least = std::min(least, now.energy);
+    most = std::max(most, simulation.state().body_contacts.size());
+  }
+  EXPECT_GT(most, 30u);
+  // Rounding; measured 1e-11.
+  EXPECT_LT(gained, 1e-9 * before.energy);
+}
+
+TEST(Crowds, a_heap_comes_to_rest_and_sleeps) {
+  Simulation simulation(heap(), testing::implicit_configuration());
+  const auto sleeps = [&] {
+    const auto& asleep = simulation.state().asleep;
+    return std::all_of(asleep.begin() + 1, asleep.end(), [](char one) { return one != 0; });
+  };
+  int i = 0;
+  while (i < 4000 && !(i > 0 && sleeps())) simulation.advance({at(0.001 * i++), {}});
+  EXPECT_LT(i, 4000);
+  for (std::size_t b = 1; b < simulation.scene().bodies.size(); ++b)
+    EXPECT_GT(simulation.state().bodies[b].pose.position.z(), 0.49 * kEdge) << b;
+}
+
+TEST(Crowds, a_block_of_touching_cubes_stays_where_it_is) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.sleep = false;
+  Simulation simulation(block(4), configuration);
+  for (int i = 0; i <= 500; ++i) simulation.advance({at(0.001 * i), {}});
+  for (std::size_t b = 1; b < simulation.scene().bodies.size(); ++b) {
+    const Vector3 moved =
+        simulation.state().bodies[b].pose.position - simulation.scene().bodies[b].start.position;
+    EXPECT_LT(moved.norm(), 1e-6) << b;  // springs of 1e7 N/m give by 0.1 um under four cubes
+    EXPECT_LT(testing::object_twist(simulation, b).linear.norm(), 1e-6) << b;
+  }
+}
+
+TEST(Crowds, the_same_again_has_the_same_bits) {
+  Simulation first(heap(), testing::implicit_configuration()),
+      second(heap(), testing::implicit_configuration());
+  for (int i = 0; i <= 400; ++i) {
+    first.advance({at(0.001 * i), {}});
+    if (i == 200) second.set_state(first.state());
+    if (i > 200) second.advance({at(0.001 * i), {}});
+  }
+  EXPECT_EQ(hash(first.state()), hash(second.state()));
+}
+
+}  // namespace
+}  // namespace mrhi

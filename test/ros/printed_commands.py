@@ -1,0 +1,200 @@
+"""The commands that README.md and docs/*.md print, and a user who runs them with what a user fills in."""
+import dataclasses
+import glob
+import os
+import re
+import shlex
+import shutil
+import subprocess
+
+import rosbag
+import rosgraph
+import roslaunch.config
+import roslaunch.xmlloader
+import rospy
+from geometry_msgs.msg import Pose, PoseArray
+
+from mr_hand_interaction.msg import RecordedFile, SimulationInput
+
+from launching import Launch
+from tracker_hands import joints, recording
+from waiting import wait_until
+
+NAME = "mr_hand_interaction"
+PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PAGES = [os.path.join(PACKAGE, "README.md")] + sorted(glob.glob(os.path.join(PACKAGE, "docs", "*.md")))
+BEGINNINGS = re.compile(r"(roslaunch|rosrun|rosservice|rostopic|rosbag|rosdep|rosparam|snakemake|make|source|export|cd|git|"
+                        r"apt-get|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
+
+EXCEPTED = (  # what the command begins with, and why it is not run here
+    ("git clone|cd ~/catkin_ws|rosdep", "fetches and builds a workspace"),
+    ("apt-get install", "installs packages"),
+    ("source devel/setup.bash", "this test would not be found without"),
+    ("export ROS_", "addresses of the user's machines"),
+    ("rosrun rqt_(reconfigure|plot)", "Debian 12 does not have it"),
+    ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
+    ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
+    ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),
+    ("roslaunch --wait .*role:=view|roslaunch .*role:=view", "multi_machine.test runs it"),
+    ("real_grasps|benchmark/", "need recordings or results; benchmark/real_grasps/test has its own"),
+    ("snakemake", "test_workflow runs it"),
+    ("make ", "builds"),
+    ("simulated_study", "as rosrun, below"),
+    ("replay", "as rosrun, below"),
+    ("rosbag decompress", "the user's own bag"),
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class Command:
+    page: str
+    line: int
+    text: str
+    section: str
+
+    def __str__(self):
+        return "%s:%d: %s" % (os.path.relpath(self.page, PACKAGE), self.line, self.text)
+
+
+def without_comment(text):
+    return re.sub(r"\s+# .*$", "", text).strip()
+
+
+def printed_in_blocks(lines):
+    """Lines of what is indented or fenced as code, those that end in a backslash joined with the next."""
+    fence, begun = None, None
+    for number, line in enumerate(lines, 1):
+        opening = re.match(r"```(\w*)", line)
+        if opening:
+            fence = (opening.group(1) or "plain") if fence is None else None
+            continue
+        if not (fence in ("plain", "sh", "bash") or (fence is None and line.startswith("    "))):
+            continue
+        first, text = begun or (number, "")
+        text = (text + " " + line.strip()).strip()
+        begun = (first, text[:-1]) if text.endswith("\\") else None
+        if begun is None:
+            yield first, without_comment(text)
+
+
+def printed_in_text(lines):
+    """Commands with arguments between backquotes."""
+    for number, line in enumerate(lines, 1):
+        for code in re.findall(r"`([^`]+)`", line) if not line.startswith("    ") else ():
+            if " " in code:
+                yield number, code
+
+
+def sections_of(page, lines):
+    """By line: README's are under its headings of the second order; every other page is one."""
+    name, names = "", []
+    for line in lines:
+        if os.path.basename(page) == "README.md" and line.startswith("## "):
+            name = line[3:].strip()
+        names.append(name)
+    return names
+
+
+def commands():
+    found = {}
+    for page in PAGES:
+        with open(page, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        sections = sections_of(page, lines)
+        for number, text in list(printed_in_blocks(lines)) + list(printed_in_text(lines)):
+            if BEGINNINGS.match(text):
+                found.setdefault(text, Command(page, number, text, sections[number - 1]))
+    return list(found.values())
+
+
+def page_packages(page, section):
+    """What this section of a page says to install."""
+    with open(page, encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    text = "\n".join(line for line, name in zip(lines, sections_of(page, lines)) if name == section)
+    return sorted({name for listed in re.findall(r"apt-get install ([a-z0-9.+\s-]+)", text) for name in listed.split()})
+
+
+COMMANDS = commands()
+
+
+def excepted(text):
+    return [index for index, (beginning, _) in enumerate(EXCEPTED) if re.match(beginning, text)]
+
+
+def to_run(beginning):
+    return [command for command in COMMANDS if command.text.startswith(beginning) and not excepted(command.text)]
+
+
+class User:
+    """At home in a folder, with files of the names that the commands have."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.environment = dict(os.environ, HOME=folder, ROS_HOME=os.path.join(folder, ".ros"))
+        os.environ["HOME"] = folder  # training.launch and record.launch look there
+
+    def write_files(self):
+        """What the commands name as the user's."""
+        bag = os.path.join(self.folder, "hand.bag")
+        with open(os.path.join(PACKAGE, "config", "scenes", "cube.urdf"), "rb") as scene:
+            files = [RecordedFile("scene.urdf", scene.read())]
+        with rosbag.Bag(bag, "w") as file:
+            begin = SimulationInput(kind=SimulationInput.BEGIN, run=1, text="{version: '0', scene: cube}", files=files)
+            file.write("/simulation_input", begin, rospy.Time.from_sec(999.0))
+            for number, row in enumerate(recording(self.folder, 30)[:90], 1):
+                stamp = rospy.Time.from_sec(1000.0 + float(row["time_s"]))
+                taken = SimulationInput(kind=SimulationInput.FRAME, run=1, sequence=number, time=stamp.to_nsec(),
+                                        expected=stamp.to_nsec())
+                file.write("/simulation_input", taken, stamp)
+                message = PoseArray(poses=[Pose() for _ in joints(row, 21)])
+                message.header.stamp, message.header.frame_id = stamp, "leap_hands"
+                for pose, place in zip(message.poses, joints(row, 21)):
+                    pose.position.x, pose.position.y, pose.position.z = place
+                file.write("/hands/right/pose_array", message, stamp)
+        shutil.copy(bag, os.path.join(self.folder, "hands.bag"))
+        with open(os.path.join(self.folder, "points.yaml"), "w", encoding="utf-8") as file:
+            file.write("points:\n")
+            for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
+                file.write("  - {name: p%d, world: [%g, %g, %g], device: [%g, %g, %g]}\n" % (index, x, y, z, x, z, -y))
+
+    def words(self, command):
+        """As a shell would split it, and with the values that a user fills in."""
+        text = re.sub(r'"\.\.\."|"x y z qx qy qz qw"', '"0 0 0 0.7071067811865476 0 0 0.7071067811865476"', command.text)
+        text = text.replace("$HOME", self.folder)
+        return [re.sub("^~(?=/|$)", self.folder, word) for word in shlex.split(text)]
+
+    def run(self, words, timeout=120, stdin=""):
+        """Status and output."""
+        done = subprocess.run(words, cwd=self.folder, env=self.environment, input=stdin, timeout=timeout, check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return done.returncode, done.stdout
+
+    def check_runs(self, command, words=None, **options):
+        status, output = self.run(words or self.words(command), **options)
+        assert status == 0, "%s\n%s" % (command, output)
+        return output
+
+    @staticmethod
+    def nodes_of(file, arguments):
+        config = roslaunch.config.ROSLaunchConfig()
+        roslaunch.xmlloader.XmlLoader().load(os.path.join(PACKAGE, "launch", file), config, argv=arguments, verbose=False)
+        return config.nodes
+
+    def check_comes_up(self, command):
+        """All nodes of a launch file, but those that wait for a participant or a device before they begin."""
+        _, package, file, *arguments = [word for word in self.words(command) if word != "--wait"]
+        assert package == NAME, command
+        if file != "record.launch":
+            arguments.append("rviz:=false")
+        nodes = [node for node in self.nodes_of(file, arguments) if not node.launch_prefix]
+        names = {"/" + node.name for node in nodes}
+        assert names, command
+        master = rosgraph.Master("/printed_commands")
+
+        def up():
+            state = master.getSystemState()
+            return names <= {node for topics in state for _, listed in topics for node in listed}
+        with Launch(file, *arguments) as launch:
+            wait_until(lambda: up() or launch.process.poll() is not None, "the nodes of %s" % command)
+            assert launch.process.poll() is None, command

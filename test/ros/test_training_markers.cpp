@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "ros/training_markers.h"
+#include "support/fixtures.h"
+#include "training/trials.h"
+
+namespace mrhi {
+namespace {
+
+using mr_hand_interaction::ObjectState;
+using mr_hand_interaction::TrainingStatus;
+using visualization_msgs::Marker;
+
+/// The eye of an orbiting view of rviz, and the axes of its picture.
+struct Eye {
+  Vector3 place, ahead, up, right;
+  double half_height;  ///< of what it sees, at 1 m
+
+  explicit Eye(const std::string& file) {
+    const YAML::Node view = YAML::LoadFile(file)["Visualization Manager"]["Views"]["Current"];
+    const double yaw = view["Yaw"].as<double>(), pitch = view["Pitch"].as<double>();
+    const Vector3 back(std::cos(yaw) * std::cos(pitch), std::sin(yaw) * std::cos(pitch), std::sin(pitch));
+    const YAML::Node focus = view["Focal Point"];
+    place = Vector3(focus["X"].as<double>(), focus["Y"].as<double>(), focus["Z"].as<double>()) +
+            view["Distance"].as<double>() * back;
+    ahead = -back;
+    right = ahead.cross(Vector3::UnitZ()).normalized();
+    up = right.cross(ahead);
+    half_height = std::tan(0.5 * view["Field of View"].as<double>());
+  }
+  double depth(const Vector3& point) const { return ahead.dot(point - place); }
+  /// From the middle of the picture, in halves of its height.
+  double x(const Vector3& point) const { return right.dot(point - place) / depth(point) / half_height; }
+  double y(const Vector3& point) const { return up.dot(point - place) / depth(point) / half_height; }
+};
+
+class TrainingMarkers : public ::testing::Test {
+ protected:
+  TrainingMarkers() {
+    std::filesystem::remove_all(folder_);
+    SessionHeader header;
+    header.participant = "P01";
+    header.group = "beginner";
+    header.handedness = "right";
+    header.condition = "implicit";
+    header.started = "2024-05-06T10:00:00Z";
+    header.software = "0.1.0";
+    session_.emplace(test::shipped_task("pick_and_place"), header, 0, folder_.string(), 0);
+    status_.trial = status_.trials = 1;
+    status_.object = "cube";
+    status_.instruction = instruction_now(*session_, false, true);
+    object_.pose.position.z = 0.22;
+  }
+  ~TrainingMarkers() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<Marker> shown(const std::string& layer) {
+    std::vector<Marker> found;
+    for (const Marker& marker : training_markers(*session_, body_, status_, object_).markers) {
+      if (marker.ns == layer) found.push_back(marker);
+    }
+    return found;
+  }
+
+  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "mrhi_training_markers";
+  const Body body_ = testing_body();
+  std::optional<Session> session_;
+  TrainingStatus status_;
+  ObjectState object_;
+
+ private:
+  static Body testing_body() { return mrhi::testing::box_body({0.05, 0.05, 0.05}, 0.1); }
+};
+
+/// Half the width of what is written, in halves of the picture's height; letters are narrower than high.
+double half_width(const Marker& text, const Eye& eye) {
+  const Vector3 place = from_message(text.pose.position);
+  return 0.5 * 0.6 * text.scale.z * static_cast<double>(text.text.size()) / eye.depth(place) /
+         eye.half_height;
+}
+
+TEST_F(TrainingMarkers, what_is_to_be_read_is_large_in_the_picture_and_before_what_hands_do) {
+  const Eye eye("rviz/training.rviz");
+  constexpr double kHand = 0.15;       // about what is held [m]
+  constexpr double kNarrowest = 1.33;  // a picture of 4 to 3
+  for (const std::string layer : {"instructions", "result"}) {
+    status_.phase = TrainingStatus::RUNNING;
+    for (const Marker& text : shown(layer)) {
+      const Vector3 place = from_message(text.pose.position);
+      EXPECT_LT(std::abs(eye.y(place)), 0.97) << text.text;
+      EXPECT_LT(half_width(text, eye), kNarrowest) << text.text;
+      EXPECT_GT(text.scale.z / eye.depth(place) / eye.half_height, 0.06) << text.text;  // 24 pixels of 800
+      for (const Goal& goal : session_->task().goals) {
+        if (goal.stage == TrainingStage::maintenance) {
+          EXPECT_LT(eye.depth(place), eye.depth(goal.position) - kHand);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(TrainingMarkers, the_timer_is_clear_of_places_and_of_other_text) {
+  const Eye eye("rviz/training.rviz");
+  test::Feeder hand(session_->task());
+  session_->begin(0);
+  status_.phase = TrainingStatus::RUNNING;
+  Observation seen = hand.seen;
+  const auto see = [&](const Vector3& position) {
+    seen.stamp += 10'000'000;
+    seen.pose.position = position;
+    seen.held = true;
+    session_->update(seen);
+  };
+  see({0, 0, 0.22});
+  for (int i = 0; i < 60; ++i) see({0, 0, 0.30});
+  const Vector3 first(-0.10, 0.02, 0.27);
+  for (int i = 0; i < 100; ++i) see(first);
+  status_.progress = 0.3;
+  status_.remaining = 2.0;
+  const auto timers = shown("timer");
+  ASSERT_EQ(timers.size(), 1u);
+  const Vector3 place = from_message(timers[0].pose.position);
+  EXPECT_LT(std::abs(eye.x(place)) + half_width(timers[0], eye), 1.33);
+  for (const char* const layer : {"instructions", "result", "places"}) {
+    for (const Marker& text : shown(layer)) {
+      if (text.type != Marker::TEXT_VIEW_FACING) continue;
+      const Vector3 other = from_message(text.pose.position);
+      const double beside =
+          std::abs(eye.x(place) - eye.x(other)) - half_width(timers[0], eye) - half_width(text, eye);
+      EXPECT_TRUE(beside > 0.0 || std::abs(eye.y(place) - eye.y(other)) > 0.1) << text.text;
+    }
+  }
+}
+
+TEST_F(TrainingMarkers, places_are_seen_before_their_turn_and_fainter) {
+  status_.phase = TrainingStatus::READY;
+  int forms = 0;
+  for (const Marker& marker : shown("places")) {
+    if (marker.type == Marker::TEXT_VIEW_FACING) continue;
+    if (marker.colors.empty()) {
+      EXPECT_LT(marker.color.a, 0.2f);
+    }
+    for (const auto& colour : marker.colors) EXPECT_LT(colour.a, 0.3f);
+    ++forms;
+  }
+  EXPECT_EQ(forms, 2 * 3);  // form and ring of three places
+  EXPECT_TRUE(shown("target").empty());
+}
+
+TEST_F(TrainingMarkers, the_object_is_highlighted_until_it_is_held) {
+  status_.phase = TrainingStatus::RUNNING;
+  const auto highlight = shown("object");
+  ASSERT_EQ(highlight.size(), 2u);
+  EXPECT_GT(highlight[0].scale.x, 1.0);  // of the marker that it is around: a box has the scale 1
+  EXPECT_LT(highlight[0].color.a, 0.5f);
+  EXPECT_EQ(highlight[1].type, Marker::ARROW);
+  EXPECT_GT(highlight[1].points[1].z, object_.pose.position.z + body_.bounding_radius);
+  object_.held = true;
+  EXPECT_TRUE(shown("object").empty());
+}
+
+}  // namespace
+}  // namespace mrhi
