@@ -4,6 +4,7 @@ the pictures. scripts/film starts it, with a master and a screen."""
 import argparse
 import collections
 import filecmp
+import math
 import os
 import signal
 import subprocess
@@ -11,9 +12,12 @@ import sys
 import tempfile
 import time
 
+import rosbag
 import rospy
 import yaml
+from geometry_msgs.msg import Point
 from mr_hand_interaction.msg import HandFrame, TrainingStatus
+from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from screenshot import REPOSITORY, has_scene
@@ -33,7 +37,10 @@ TOPICS = ("markers", "training/markers")
 FONT = "/usr/share/rviz/ogre_media/fonts/liberation-sans/LiberationSans-Regular.ttf"
 STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
 DRAWN = 20.0  # s; by then a picture has
-BETWEEN = 0.15  # s, of two grabs that are to be the same
+BETWEEN = 0.1  # s, of two grabs that are to be the same
+WIDER = 1.2  # farther away than rviz begins
+TICKS = ((0, 255, 0), (255, 0, 255))  # of the corner that tells one picture from the next
+BACKGROUND = "#3a3f47"
 
 
 def parse(arguments):
@@ -43,7 +50,7 @@ def parse(arguments):
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--rate", type=float, default=10.0)
     parser.add_argument("--size", default="480x300")
-    parser.add_argument("--quality", type=float, default=40.0)
+    parser.add_argument("--quality", type=float, default=50.0)
     parser.add_argument("--print-screen", action="store_true", help="the size of the screen that is needed, and no more")
     options = parser.parse_args(arguments)
     for scene in options.scenes:
@@ -67,45 +74,57 @@ class Launched:
 
 
 class Recorder:
-    """All that is shown, and when the moment was that the scene is about: a hand is seen, or the object at a place."""
+    """All that is shown goes into a bag: Python could not keep pace. Notes the moment that the scene is about: a hand is
+    seen, or the object is to be at a place."""
 
-    def __init__(self, training):
-        self.moment, self.shown = None, []
-        self.subscribers = [rospy.Subscriber(topic, MarkerArray, self.take, topic, queue_size=1000) for topic in TOPICS]
+    def __init__(self, training, folder):
+        self.moment, self.bag = None, os.path.join(folder, "shown.bag")
+        self.process = subprocess.Popen(["rosrun", "rosbag", "record", "-q", "-O", self.bag] + ["/" + topic for topic in TOPICS])
         if training:
-            self.subscribers.append(rospy.Subscriber("training/status", TrainingStatus, self.take_status))
+            self.subscriber = rospy.Subscriber("training/status", TrainingStatus, self.take_status)
         else:
-            self.subscribers.append(rospy.Subscriber("hand_frame", HandFrame, self.take_hands))
-
-    def take(self, message, topic):
-        self.shown.append((time.monotonic(), topic, message))
+            self.subscriber = rospy.Subscriber("hand_frame", HandFrame, self.take_hands)
 
     def take_status(self, status):
         if status.phase == status.RUNNING and status.stage == status.MAINTENANCE:
-            self.moment = self.moment or time.monotonic()
+            self.moment = self.moment or time.time()
 
     def take_hands(self, frame):
         if frame.hands:
-            self.moment = self.moment or time.monotonic()
+            self.moment = self.moment or time.time()
 
     def wait(self, seconds, process):
-        deadline = time.monotonic() + STARTED
-        while self.moment is None or time.monotonic() < self.moment + seconds:
-            if process.poll() is not None or (self.moment is None and time.monotonic() > deadline):
+        deadline = time.time() + STARTED
+        while self.moment is None or time.time() < self.moment + seconds:
+            if process.poll() is not None or (self.moment is None and time.time() > deadline):
                 raise RuntimeError("the scene did not begin")
             time.sleep(0.05)
-        for subscriber in self.subscribers:
-            subscriber.unregister()
+
+    def end(self):
+        self.subscriber.unregister()
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(60)
+
+    def shown(self, until):
+        with rosbag.Bag(self.bag) as bag:
+            return [(stamp.to_sec(), topic.lstrip("/"), message) for topic, message, stamp in bag.read_messages()
+                    if stamp.to_sec() < until]
 
 
 def record(scene, seconds, folder):
     arguments = list(scene.launch)
     if scene.view == "training":
         arguments.append("folder:=" + os.path.join(folder, "session"))
-    with Launched(arguments) as process:
-        recorder = Recorder(scene.view == "training")
-        recorder.wait(seconds - scene.lead, process)
-    return recorder.moment - scene.lead, recorder.shown
+    if rospy.has_param("interaction_node"):
+        rospy.delete_param("interaction_node")  # of the scene before
+    recorder = Recorder(scene.view == "training", folder)
+    try:
+        with Launched(arguments) as process:
+            recorder.wait(seconds - scene.lead, process)
+    finally:
+        recorder.end()
+    begin = recorder.moment - scene.lead
+    return begin, recorder.shown(begin + seconds)
 
 
 class Stage:
@@ -120,6 +139,15 @@ class Stage:
     def clear(self):
         for publisher in self.publishers.values():
             publisher.publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
+
+    def tick(self, picture, view, aspect):
+        """A small mark in the lower right corner."""
+        tick = Marker(ns="tick", type=Marker.TRIANGLE_LIST)
+        tick.header.frame_id, tick.scale.x, tick.scale.y, tick.scale.z = "world", 1.0, 1.0, 1.0
+        tick.pose.orientation.w = 1.0
+        tick.points = [Point(*corner) for corner in corners_of_mark(view, aspect)]
+        tick.colors = [ColorRGBA(*(channel / 255.0 for channel in TICKS[picture % 2]), 1.0)] * 3
+        self.publishers["markers"].publish(MarkerArray([tick]))
 
     def show(self, messages):
         """The last of each marker: it stays until the next picture, however long that takes."""
@@ -137,27 +165,52 @@ class Stage:
                 self.publishers[topic].publish(MarkerArray(list(markers.values())))
 
 
+def corners_of_mark(view, aspect):
+    """A triangle that fills the corner of what the orbiting view sees, at 0.1 m."""
+    yaw, pitch = view["Yaw"], view["Pitch"]
+    back = (math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), math.sin(pitch))
+    right = (-math.sin(yaw), math.cos(yaw), 0.0)
+    up = (-math.cos(yaw) * math.sin(pitch), -math.sin(yaw) * math.sin(pitch), math.cos(pitch))
+    half = 0.1 * math.tan(0.5 * view["Field of View"])
+    focus = [view["Focal Point"][axis] for axis in "XYZ"]
+
+    def at(x, y):
+        return [focus[i] + (view["Distance"] - 0.1) * back[i] + half * (aspect * x * right[i] + y * up[i]) for i in range(3)]
+    return at(0.97, -0.96), at(1.5, -0.96), at(0.97, -1.5)
+
+
+def shows_tick(file, picture):
+    """The size of the picture tells nothing of rviz's frame: the mark is looked for in the corner."""
+    corner = subprocess.run(["convert", file, "-gravity", "southeast", "-crop", "4x4+2+2", "-depth", "8", "rgb:-"],
+                            check=True, stdout=subprocess.PIPE).stdout
+    wanted = TICKS[picture % 2]
+    return all(abs(channel - wanted[i % 3]) < 60 for i, channel in enumerate(corner))
+
+
 def write_config(view, size, file):
     with open(os.path.join(REPOSITORY, "rviz", view + ".rviz"), encoding="utf-8") as source:
         config = yaml.safe_load(source)
     for display in config["Visualization Manager"]["Displays"]:
         if display["Name"] == "Hands and objects":
             display["Namespaces"]["text"] = False
+    eye = config["Visualization Manager"]["Views"]["Current"]
+    if view != "training":
+        eye["Distance"] *= WIDER
     width, height = (2 * int(number) for number in size.split("x"))
     config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)
     file.flush()
+    return eye, width / height
 
 
-def drawn(before, now, process):
-    """Takes the screen's picture when it no longer changes; scenes move, so it has changed since the last."""
+def drawn(picture, before, now, process):
+    """Takes the screen's picture when its mark is there and it no longer changes."""
     deadline = time.monotonic() + DRAWN
-    time.sleep(2 * BETWEEN)
     grab(before)
     while time.monotonic() < deadline and process.poll() is None:
         time.sleep(BETWEEN)
         grab(now)
-        if filecmp.cmp(before, now, shallow=False):
+        if filecmp.cmp(before, now, shallow=False) and shows_tick(now, picture):
             return
         os.replace(now, before)
     raise RuntimeError("rviz has not drawn")
@@ -180,7 +233,7 @@ def draw(scene, begin, shown, options, folder):
     stage, files = Stage(), []
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
-        write_config(scene.view, options.size, config)
+        eye, aspect = write_config(scene.view, options.size, config)
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
@@ -190,8 +243,9 @@ def draw(scene, begin, shown, options, folder):
             for picture in range(int(options.seconds * options.rate)):
                 until = begin + picture / options.rate
                 stage.show([entry for entry in shown if since < entry[0] <= until])
+                stage.tick(picture, eye, aspect)
                 since = until
-                drawn(before, now, rviz)
+                drawn(picture, before, now, rviz)
                 files.append(os.path.join(folder, "%04d.png" % picture))
                 finish(now, scene.caption, options.size, files[-1])
         finally:
@@ -201,7 +255,10 @@ def draw(scene, begin, shown, options, folder):
 
 
 def finish(picture, caption, size, file):
-    subprocess.run(["convert", picture, "-resize", size, "-font", FONT, "-pointsize", "13", "-fill", "#d0d4da", "-gravity",
+    """Half as large, with the caption, and without the mark."""
+    width, height = (2 * int(number) for number in size.split("x"))
+    mark = "rectangle %d,%d %d,%d" % (0.983 * width, 0.978 * height, width, height)
+    subprocess.run(["convert", picture, "-fill", BACKGROUND, "-draw", mark, "-resize", size, "-font", FONT, "-pointsize", "13", "-fill", "#d0d4da", "-gravity",
                     "southwest", "-annotate", "+12+10", caption, "-strip", file], check=True)
 
 
@@ -220,7 +277,7 @@ def main():
             begin, shown = record(SCENES[name], options.seconds, folder)
             files += draw(SCENES[name], begin, shown, options, folder)
             print("film: %s, %d pictures" % (name, len(files)), flush=True)
-        command = ["img2webp", "-loop", "0", "-mixed", "-min_size", "-m", "6", "-q", "%g" % options.quality, "-lossy",
+        command = ["img2webp", "-loop", "0", "-kmin", "9", "-kmax", "17", "-m", "6", "-q", "%g" % options.quality, "-lossy",
                    "-d", "%d" % round(1000 / options.rate)]
         subprocess.run(command + files + ["-o", options.output], check=True, stdout=subprocess.DEVNULL)
     print("film: %s, %d kB" % (options.output, os.path.getsize(options.output) // 1000))

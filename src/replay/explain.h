@@ -38,6 +38,8 @@ struct ObjectSample {
   Vector3 velocity = Vector3::Zero();  ///< [m/s]
   double torque = 0.0;                 ///< of the hands' forces about the line through the grip [N m]
   double margin = 0.0;  ///< what friction could bear along the surfaces beyond what it bears [N]
+  double bearable =
+      0.0;  ///< how many times the load, force and torque together, friction could bear; see grip_margin.h
 };
 
 struct HandSample {
@@ -73,6 +75,7 @@ struct Loss {
   double friction = 0.0;         ///< of the object, static
   double friction_needed = 0.0;  ///< with that push
   double push_needed = 0.0;      ///< with that friction, more than there was [N]
+  double bearable = 0.0;         ///< least, while it was held, of ObjectSample::bearable
   std::string text;              ///< one paragraph
 };
 

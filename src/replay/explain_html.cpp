@@ -135,10 +135,13 @@ std::vector<Curve> of_fingers(const ObjectStory& story,
   return curves;
 }
 
-std::vector<Curve> of_grip(const ObjectStory& story, double ObjectSample::*member) {
+constexpr double kMostShown = 5.0;  // times the load
+
+std::vector<Curve> of_grip(const ObjectStory& story, double ObjectSample::*member, double most = 1e9) {
   Curve curve{"#333333", {}};
   for (const ObjectSample& sample : story.samples)
-    if (!sample.fingers.empty()) curve.points.emplace_back(sample.time, std::abs(sample.*member));
+    if (!sample.fingers.empty())
+      curve.points.emplace_back(sample.time, std::min(most, std::abs(sample.*member)));
   return {curve};
 }
 
@@ -255,6 +258,9 @@ std::string object_section(const Explanation& story, const std::string& name, co
   all +=
       chart("depth [mm]", of_fingers(object, [](const FingerTouch& t) { return 1e3 * t.depth; }), axis, 1.0);
   all += chart("what friction could still bear [N]", of_grip(object, &ObjectSample::margin), axis, 0.1);
+  all +=
+      chart("times the load, force and torque together, that friction could bear (1: it slides; 5: or more)",
+            of_grip(object, &ObjectSample::bearable, kMostShown), axis, 2.0);
   all += chart("torque about the grip [N m]", of_grip(object, &ObjectSample::torque), axis, 1e-3);
   return all + chart("speed of the palm [m/s]; orange: not seen by the tracker", speeds(story), axis, 0.1);
 }

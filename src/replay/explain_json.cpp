@@ -55,13 +55,16 @@ std::string fingers_json(const std::vector<ObjectSample>& samples) {
   return json::list(rows);
 }
 
+constexpr double kMost = 1e3;  // times the load: there is none worth naming
+
 std::string grip_json(const std::vector<ObjectSample>& samples) {
   std::vector<std::string> rows;
   for (const ObjectSample& sample : samples) {
     if (sample.fingers.empty()) continue;
     rows.push_back(json::object({{"time", rounded(sample.time)},
                                  {"torque", rounded(sample.torque)},
-                                 {"margin", rounded(sample.margin)}}));
+                                 {"margin", rounded(sample.margin)},
+                                 {"bearable", sample.bearable < kMost ? rounded(sample.bearable) : "null"}}));
   }
   return json::list(rows);
 }

@@ -253,7 +253,10 @@ std::string remedy(const Loss& loss) {
                      number(loss.load, " N") + " along the surfaces, of which friction of " +
                      number(loss.friction) + " bears " + number(loss.friction * loss.push, " N") + ". ";
   if (loss.push_needed <= 0.0)
-    return text + "By these sums it bears it: the object turned, or was pushed out";
+    return text +
+           "By these sums it bears it: the object turned, or was pushed out (force and torque together were "
+           "borne " +
+           number(loss.bearable) + " times over at the least)";
   return text + "Friction of " + number(loss.friction_needed) + " would have held it, or " +
          number(loss.push_needed, " N") + " more push";
 }
@@ -265,6 +268,9 @@ std::string story_of(const Loss& loss, const Stay& stay, const std::string& why)
 }
 
 void add_sums(const Stay& stay, const Hands& hand, const Vector3& gravity, Loss& loss) {
+  loss.bearable = stay.object.samples[stay.window()].bearable;
+  for (std::size_t i = stay.window(); i <= stay.touched; ++i)
+    loss.bearable = std::min(loss.bearable, stay.object.samples[i].bearable);
   const std::size_t slid = slides_from(stay);
   const std::size_t from = slid > stay.first + 5 ? slid - 5 : stay.first;
   loss.push = push_of(touches_of(stay.object.samples[slid], stay.hand_id));

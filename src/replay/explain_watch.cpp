@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "explain.h"
+#include "grip_margin.h"
 
 namespace mrhi {
 namespace {
@@ -25,12 +26,16 @@ FingerTouch& touch_of(std::uint32_t hand, int finger, std::vector<FingerTouch>& 
 
 struct Gathered {
   std::vector<FingerTouch> fingers;
-  Vector3 sum = Vector3::Zero();  // of the forces along the surfaces [N]
   double limit = 0.0;
   Vector3 thumb_side = Vector3::Zero(),
           other_side = Vector3::Zero();  // places, weighed by their pushes [N m]
   double thumb_push = 0.0, other_push = 0.0;
+  std::vector<GripContact> grips;
+  Load load;  // that friction bears
 };
+
+/// Of a round patch that presses evenly: of its radius.
+constexpr double kPatchTorque = 2.0 / 3.0;
 
 void add(const Contact& contact, const Material& material, std::uint32_t hand, Gathered& all) {
   const FrictionUse use = friction_use(contact, material);
@@ -42,8 +47,11 @@ void add(const Contact& contact, const Material& material, std::uint32_t hand, G
   touch.depth = std::max(touch.depth, contact.depth);
   touch.slips &= contact.friction == Friction::slipping;
   touch.outward += std::max(use.normal, 1e-6) * contact.normal;
-  all.sum += contact.force + use.normal * contact.normal;
   all.limit += use.limit;
+  all.grips.push_back({contact.point, contact.normal, use.limit, kPatchTorque * contact.patch});
+  const Vector3 along = contact.force + use.normal * contact.normal;
+  all.load.force += along;
+  all.load.torque += (contact.point - all.load.about).cross(along);
   const double push = std::max(use.normal, 0.0);
   const bool thumb = finger == 0 || finger == kFingers;
   (thumb ? all.thumb_side : all.other_side) += push * contact.point;
@@ -64,6 +72,7 @@ double torque_about_grip(const Gathered& all, const std::vector<Contact>& contac
 
 Gathered gathered(const Simulation& simulation, std::size_t body) {
   Gathered all;
+  all.load.about = simulation.state().bodies[body].pose.position;
   const Material& material = simulation.scene().bodies[body].material;
   for (const Contact& contact : simulation.result().contacts)
     if (contact.key.body == body && contact.touching())
@@ -144,7 +153,8 @@ void Explainer::watch_object(const Simulation& simulation, std::size_t body, dou
   sample.orientation = state.pose.orientation;
   sample.velocity = twist_of(what, state).linear;
   sample.torque = torque_about_grip(all, simulation.result().contacts, body);
-  sample.margin = std::max(0.0, all.limit - all.sum.norm());
+  sample.margin = std::max(0.0, all.limit - all.load.force.norm());
+  sample.bearable = bearable(all.grips, all.load);
   sample.course = course_of(sample, story.samples.empty() ? nullptr : &story.samples.back());
   story.samples.push_back(sample);
 }

@@ -10,8 +10,9 @@ namespace {
 
 /// A crowd's budget: contacts relaxed to and fro in a step, but this many turns at least, and at most.
 constexpr int kMostWork = 1000, kLeastTurns = 10, kMostTurns = 40;
-/// Where nothing is faster than what falls for so many steps, turns go on: what comes to rest should.
+/// Where nothing is faster than what falls for so many steps, there are more: what comes to rest should.
 constexpr double kNearlyRests = 1.0;
+constexpr int kTurnsAtRest = 60;
 /// A turn that changes velocities by less, as a part of what contacts have made of them, is the last.
 constexpr double kConverged = 1e-6;
 /// A contact's point is within this part of its body's radius, margin and all.
@@ -370,7 +371,7 @@ void CrowdProblem::solve(const ContactStep& step) {
   const auto points = static_cast<int>(points_.size());
   const int most = std::clamp(kMostWork / std::max(1, points), kLeastTurns, kMostTurns);
   double last = 0.0;
-  for (int i = 1; i <= kMostTurns && (i <= most || nearly_rests(step)); ++i) {
+  for (int i = 1; i <= most || (i <= kTurnsAtRest && nearly_rests(step)); ++i) {
     if (i > 1) last = keep_going(last);
     turn();
     const double made = made_by_contacts();

@@ -22,7 +22,7 @@ constexpr double kMark = 0.014;                        // of a place's number [m
 constexpr double kMarkRoom = 1.35;                     // from a place to its number, of its ring's radius
 constexpr double kLine = 1.4;                          // from line to line, of the letters' height
 constexpr int kIdsPerPlace = 100;
-constexpr std::size_t kLongest = 50;  // letters in a line
+constexpr std::size_t kLongest = 44;  // letters in a line
 
 /// 0.3 m before the eye of rviz/training.rviz, at the upper edge of what it sees: hands do their work behind
 /// it.

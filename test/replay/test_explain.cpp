@@ -1,4 +1,5 @@
 #include "replay/explain.h"
+#include "replay/grip_margin.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -167,6 +168,27 @@ TEST(Explain, fingers_have_their_pushes_shares_and_faces) {
     EXPECT_FALSE(touch.slips);
   }
   EXPECT_NEAR(last.margin, 0.8 * 2 * 4.0, 0.05);
+  EXPECT_GT(last.bearable, 100.0);
+}
+
+TEST(Explain, what_slides_bears_its_load_just_once_and_what_holds_more_often) {
+  Attempt firm;
+  firm.overlap = 0.004;
+  for (const auto& [attempt, until] : {std::pair(firm, 1.3), std::pair(slippery(), 0.8)}) {
+    const Explanation story = attempt.run(until);
+    double least = kNoLoad;
+    for (const ObjectSample& sample : story.objects.at("object").samples)
+      if (sample.level == InteractionLevel::grasp && sample.time > kMoves)
+        least = std::min(least, sample.bearable);
+    const bool slides = attempt.friction < 0.8;
+    // In a straight line, and within what the iteration leaves.
+    if (slides) {
+      EXPECT_LT(least, 1.05);
+    } else {
+      EXPECT_GT(least, 1.2);
+    }
+    EXPECT_GT(least, 0.95);
+  }
 }
 
 TEST(Explain, json_and_page_hold_what_was_found) {

@@ -105,7 +105,7 @@ class Tries:
             status, output = self.user.run(["rosrun", NAME, "simulated_study", "--output", self.study, "--operators", "1-3",
                                             "--gravity", "0"], timeout=TIME_LIMIT)
             assert status == 0, output
-        return sorted(os.path.dirname(file) for file in glob.glob(self.study + "/*/trials.csv"))
+        return sorted(os.path.dirname(file) for file in glob.glob(self.study + "/**/trials.csv", recursive=True))
 
     def filled_in(self, words):
         """With what stands for the user's own."""

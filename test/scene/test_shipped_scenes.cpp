@@ -223,7 +223,8 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
     } catch (const SceneError& error) {
       test::expect_words(
           error.what(),
-          {wrong, "ball, cube, cube_on_table, flat_cuboid, hatch, long_cuboid, mixed, panel, rack, tongs"});
+          {wrong,
+           "ball, crate, cube, cube_on_table, flat_cuboid, hatch, long_cuboid, mixed, panel, rack, tongs"});
     }
   }
 }
