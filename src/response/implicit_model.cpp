@@ -78,8 +78,10 @@ void ImplicitModel::solve_one(ContactStep& step, const Island& island) {
 /// To rounding; where contacts keep opening and slipping by turns, as far as a crowd is.
 void ImplicitModel::solve_few(ContactStep& step, const Island& island) {
   several_.begin(step, island, configuration_);
-  const bool agree = Newton<IslandProblem>(several_).solve();
-  if (!agree && !several_.nearly_agree()) return solve_crowd(step, island);
+  if (!Newton<IslandProblem>(several_).solve()) {
+    several_.evaluate(true);  // it has moved on since
+    if (!several_.nearly_agree()) return solve_crowd(step, island);
+  }
   const bool pressed = several_.scale() > 0.0;
   if (pressed) several_.finish(step, island);
   note(step, island, pressed);

@@ -123,6 +123,7 @@ Effort IslandProblem::effort() {
   Effort effort;
   effort.iterations = 12;
   effort.limits = 0;
+  effort.anew = false;
   return effort;
 }
 
