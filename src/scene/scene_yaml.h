@@ -6,8 +6,8 @@
 
 namespace mrhi {
 
-/// Sets gravity, bounds, materials, twists and joints of a scene whose bodies and joints are known, from its YAML
-/// file. A material keeps what the file does not name. Throws SceneError.
+/// Sets gravity, bounds, materials, twists and joints of a scene whose bodies and joints are known, from its
+/// YAML file. A material keeps what the file does not name. Throws SceneError.
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
 
 /// Sets joints from the text of such a file's entry, likewise.
