@@ -196,11 +196,11 @@ void CrowdProblem::weigh(Point& point) const {
   const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
                            response_of(b.inverse_mass, b.inverse_inertia, point.arm_b);
   const Vector3 by_push = response * point.normal;
-  point.along = point.normal.dot(by_push);
-  point.slides = by_push - point.along * point.normal;
-  point.across = most_across(response, point.normal);
-  point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.along);
-  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * point.across);
+  point.normal_mobility = point.normal.dot(by_push);
+  point.slides = by_push - point.normal_mobility * point.normal;
+  point.tangential_mobility = most_across(response, point.normal);
+  point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
+  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * point.tangential_mobility);
   point.kept = 1.0 - give;
   point.pull = give * point.stiffness * point.ahead;
   point.pulled = (give * point.stiffness) * point.stretch;
@@ -246,23 +246,23 @@ double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
   const double deep = point.depth - point.ahead * rate;
   if (deep <= 0.0) return 0.0;
   const double plain = point.firm * deep;
-  if (!point.soft && (rate + point.along * plain) * point.fade <= kNotParting) return plain;
+  if (!point.soft && (rate + point.normal_mobility * plain) * point.fade <= kNotParting) return plain;
   return find_faded_push(i, rate, plain);
 }
 
 /// Newton's method, kept between what is known to be too little and too much.
 double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) const {
-  const double along = points_[i].along;
-  double low = rate, high = rate + along * plain, at = high;
+  const double mobility = points_[i].normal_mobility;
+  double low = rate, high = rate + mobility * plain, at = high;
   for (int guess = 0; guess < kMostGuesses; ++guess) {
     double slope;
-    const double off = at - rate - along * push_at(i, at, slope);
+    const double off = at - rate - mobility * push_at(i, at, slope);
     (off > 0.0 ? high : low) = at;
-    const double next = at - off / (1.0 + along * slope);
+    const double next = at - off / (1.0 + mobility * slope);
     if (std::abs(next - at) <= 1e-9 * (high - rate)) break;
     at = next > low && next < high ? next : 0.5 * (low + high);
   }
-  return std::max(0.0, (at - rate) / along);
+  return std::max(0.0, (at - rate) / mobility);
 }
 
 /// What friction would need to be for the tangential spring to be held, where the surfaces slide so.
@@ -275,7 +275,7 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
   Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
   const double rate = point.normal.dot(velocity);
-  const double wanted = find_push(i, rate - point.along * point.given.push);
+  const double wanted = find_push(i, rate - point.normal_mobility * point.given.push);
   const double limit = point.friction * wanted + point.bond;
   const bool open = limit == 0.0 && point.given.push == 0.0 && point.given.drag == Vector3::Zero();
   if (open && wanted == 0.0) return;

@@ -44,9 +44,9 @@ class CrowdProblem {
     int a, b;
     Vector3 normal, arm_a, arm_b, drive, stretch;
     Given given;
-    double along,
-        across;      // change of the relative velocity by impulses along n and, at most, across n [1/kg]
-    Vector3 slides;  // the same across n by a push of one [1/kg]
+    // Change of the relative velocity by impulses along the normal and, at most, along the surface [1/kg].
+    double normal_mobility, tangential_mobility;
+    Vector3 slides;          // the same across n by a push of one [1/kg]
     Matrix3 turn_a, turn_b;  // change of the spins by an impulse [1/(kg m)]
     double depth, ahead, fade;
     double stiffness;   // times the step [N s/m]

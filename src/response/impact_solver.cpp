@@ -302,7 +302,7 @@ bool ImpactSolver::solve(double most) {
     double error = 0.0, scale = 0.0, sum = 0.0;
     for (Strike* strike : blow_) {
       error = std::max({error, strike->relax_normal(), strike->relax_tangential()});
-      scale = std::max(scale, strike->magnitude / strike->mass);
+      scale = std::max(scale, strike->magnitude / strike->normal_mass);
       sum += strike->magnitude;
     }
     if (error <= care_.converged * scale) return true;

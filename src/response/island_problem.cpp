@@ -15,8 +15,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 Matrix3 slope_at_point(const IslandContact& contact) {
   const SpringResponse<double>& response = contact.response;
   const Vector3 n = vector(contact.spring.normal);
-  Matrix3 slope = (response.across - response.along) * n * n.transpose();
-  slope.diagonal().array() += response.along;
+  Matrix3 slope = (response.normal_slope - response.tangential_slope) * n * n.transpose();
+  slope.diagonal().array() += response.tangential_slope;
   if (response.slip > 0.0) {
     const Vector3 d = vector(response.drawn);
     slope -= (response.slip / response.drawn_squared * d) * d.transpose();
@@ -192,7 +192,7 @@ void IslandProblem::assemble() {
     system_.diagonal(i).bottomRightCorner<3, 3>() = mass.inertia;
   }
   for (const IslandContact& contact : contacts_) {
-    if (contact.response.across > 0.0 || contact.response.along > 0.0) add_slope(contact);
+    if (contact.response.normal_slope > 0.0 || contact.response.tangential_slope > 0.0) add_slope(contact);
   }
 }
 

@@ -113,13 +113,13 @@ void LinkageImpacts::prepare(const LinkageProblem& problem, Strike& strike) {
   const Vector3& n = strike.normal;
   const Matrix3 inverse = strike.rows.lazyProduct(strike.answer) + strike.inverse_mass * Matrix3::Identity();
   const double along_n = n.dot(inverse * n);
-  strike.mass = along_n > 0.0 ? 1.0 / along_n : 0.0;
+  strike.normal_mass = along_n > 0.0 ? 1.0 / along_n : 0.0;
   // Joints may leave a point no way to move along the surface: there nothing slides that could be stopped.
   const Matrix3 across = Matrix3::Identity() - n * n.transpose();
   const Matrix3 tangential = across * inverse * across;
   const double trace = tangential.trace();
-  strike.along_mass.setZero();
-  if (trace > 0.0) strike.along_mass = across / trace;
+  strike.tangential_mass.setZero();
+  if (trace > 0.0) strike.tangential_mass = across / trace;
 }
 
 void LinkageImpacts::Strike::push(const Vector3& on_first, LinkageProblem::Vector& velocity) {
@@ -129,22 +129,22 @@ void LinkageImpacts::Strike::push(const Vector3& on_first, LinkageProblem::Vecto
 
 double LinkageImpacts::Strike::relax_normal(LinkageProblem::Vector& velocity) {
   const double rate = normal.dot(relative_velocity(velocity));
-  const double wanted = std::max(0.0, magnitude + mass * (target - rate));
+  const double wanted = std::max(0.0, magnitude + normal_mass * (target - rate));
   const double change = wanted - magnitude;
   magnitude = wanted;
   push(change * normal, velocity);
-  return mass > 0.0 ? std::abs(change) / mass : 0.0;
+  return normal_mass > 0.0 ? std::abs(change) / normal_mass : 0.0;
 }
 
 double LinkageImpacts::Strike::relax_tangential(LinkageProblem::Vector& velocity) {
-  const Vector3 needed = along_mass * relative_velocity(velocity);
+  const Vector3 needed = tangential_mass * relative_velocity(velocity);
   Vector3 wanted = drag + needed;
   const double most = friction * magnitude, length = wanted.norm();
   if (length > most) wanted *= most / length;
   const Vector3 change = wanted - drag;
   drag = wanted;
   push(-change, velocity);
-  return mass > 0.0 ? change.norm() / mass : 0.0;
+  return normal_mass > 0.0 ? change.norm() / normal_mass : 0.0;
 }
 
 bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity) {
@@ -154,7 +154,7 @@ bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageP
     prepare(problem, strike);
     const double speed = strike.normal.dot(strike.relative_velocity(velocity));
     strike.target = -strike.restitution * speed;
-    most += -(1.0 + strike.restitution) * speed * strike.mass;
+    most += -(1.0 + strike.restitution) * speed * strike.normal_mass;
     scale = std::max(scale, -speed);
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

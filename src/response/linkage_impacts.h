@@ -26,9 +26,9 @@ class LinkageImpacts {
     Vector3 normal, drive;
     Rows rows;  // relative velocity of 1 against 2 = drive + rows * unknowns
     Eigen::Matrix<double, Eigen::Dynamic, 3> answer;  // of the unknowns to an impulse on 1
-    Matrix3 along_mass;
+    Matrix3 tangential_mass;
     double time = 0.0, gap = 0.0, restitution = 0.0, friction = 0.0, inverse_mass = 0.0;
-    double mass = 0.0, target = 0.0, magnitude = 0.0;
+    double normal_mass = 0.0, target = 0.0, magnitude = 0.0;
     Vector3 drag, recoil;
 
     Vector3 relative_velocity(const LinkageProblem::Vector& velocity) const {

@@ -11,8 +11,9 @@ struct SpringResponse {
   Real push;            ///< normal part of the force, >= 0 [N]
   Real wanted_squared;  ///< of the size of the tangential force that would keep it from sliding [N^2]
   Real torque;          ///< on 2 about n [N m]
-  // -d force / d velocity of 2 is along (1 - n n') + across n n' - slip d d', symmetric, >= 0 [N s/m].
-  Real across, along, slip;
+  // -d force / d velocity of 2 is tangential_slope (1 - n n') + normal_slope n n' - slip d d', symmetric, >=
+  // 0 [N s/m].
+  Real normal_slope, tangential_slope, slip;
   Triple<Real> drawn;  ///< d times a length: the stretch at the step's end [m]
   Real drawn_squared;  ///< of that length
   Real torque_slope;   ///< -d torque / d spin of 2 [N m s]
@@ -92,7 +93,7 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   const Real push = stiffness * pressed * kept;
   response.push = push;
   const Real steep = steepness * ahead * kept + pressed * parting * (constant<Real>(2.0) * fade);
-  response.across = where_at_most(push, zero, zero, stiffness * steep);
+  response.normal_slope = where_at_most(push, zero, zero, stiffness * steep);
   if (renew_limits) {
     slip_limit = friction * push + bond;
     twist_limit = patch_friction * push;
@@ -101,7 +102,7 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   response.drawn = stretch + ahead * (u - rate * normal);
   response.drawn_squared = response.drawn.dot(response.drawn);
   response.wanted_squared = stiffness * stiffness * response.drawn_squared;
-  response.along = where_at_most(slip_limit, zero, zero, stiffness * ahead);
+  response.tangential_slope = where_at_most(slip_limit, zero, zero, stiffness * ahead);
   response.slip = zero;
   Real borne = stiffness;
   const Real limit_squared = slip_limit * slip_limit;
@@ -109,8 +110,8 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
     // Beyond the limit the spring yields: it bears the limit at any stretch.
     const Real length = root(greater(response.drawn_squared, constant<Real>(1e-300)));
     borne = where_at_most(response.wanted_squared, limit_squared, stiffness, slip_limit / length);
-    response.along = where_at_most(slip_limit, zero, zero, borne * ahead);
-    response.slip = where_at_most(response.wanted_squared, limit_squared, zero, response.along);
+    response.tangential_slope = where_at_most(slip_limit, zero, zero, borne * ahead);
+    response.slip = where_at_most(response.wanted_squared, limit_squared, zero, response.tangential_slope);
   }
   response.force = borne * response.drawn - push * normal;
 

@@ -54,8 +54,9 @@ inline void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>*
     const Triple<Wide>& r = four.arm;
     const Triple<Wide>& n = four.spring.normal;
     // S of the contact point; [r]x S, of the torque by the velocity; and [r]x S [r]x' with the twist's.
-    Slope3 s{response.along, zero, response.along, zero, zero, response.along};
-    s.add(response.across - response.along, n);
+    Slope3 s{response.tangential_slope, zero, response.tangential_slope, zero, zero,
+             response.tangential_slope};
+    s.add(response.normal_slope - response.tangential_slope, n);
     if (any_above(response.slip, zero))
       s.add(zero - response.slip / greater(response.drawn_squared, tiny), response.drawn);
     const Triple<Wide> x = r.cross({s.xx, s.xy, s.xz}), y = r.cross({s.xy, s.yy, s.yz}),

@@ -90,34 +90,34 @@ void Strike::prepare() {
   drag.setZero();
   a.recoil.setZero();
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
-  mass = 1.0 / normal.dot(k * normal);
+  normal_mass = 1.0 / normal.dot(k * normal);
   if (friction <= 0.0) return;
-  along.col(0) = normal.unitOrthogonal();
-  along.col(1) = normal.cross(along.col(0));
-  along_mass = (along.transpose() * k * along).inverse();
+  tangents.col(0) = normal.unitOrthogonal();
+  tangents.col(1) = normal.cross(tangents.col(0));
+  tangential_mass = (tangents.transpose() * k * tangents).inverse();
 }
 
 double Strike::relax_normal() {
   const double velocity = normal.dot(relative_velocity());
-  const double wanted = std::max(0.0, magnitude + mass * (target - velocity));
+  const double wanted = std::max(0.0, magnitude + normal_mass * (target - velocity));
   const double change = wanted - magnitude;
   magnitude = wanted;
   a.push(change * normal);
   b.push(-change * normal);
-  return std::abs(change) / mass;
+  return std::abs(change) / normal_mass;
 }
 
 double Strike::relax_tangential() {
   if (friction <= 0.0) return 0.0;
-  const Eigen::Vector2d needed = along_mass * (along.transpose() * relative_velocity());
-  Vector3 wanted = drag + along * needed;
+  const Eigen::Vector2d needed = tangential_mass * (tangents.transpose() * relative_velocity());
+  Vector3 wanted = drag + tangents * needed;
   const double most = friction * magnitude, length = wanted.norm();
   if (length > most) wanted *= most / length;
   const Vector3 change = wanted - drag;
   drag = wanted;
   a.push(-change);
   b.push(change);
-  return change.norm() / mass;
+  return change.norm() / normal_mass;
 }
 
 }  // namespace mrhi

@@ -40,13 +40,13 @@ struct Strike {
   Vector3 normal;     // from b to a
 
   // The blow.
-  Vector3 approach;                   // velocity on impact before it [m/s]
-  double target = 0.0;                // rate after the impact, as it would be at the step's start [m/s]
-  double mass = 0.0;                  // effective along n [kg]
-  double magnitude = 0.0;             // j so far [N s]
-  Eigen::Matrix<double, 3, 2> along;  // unit vectors across n
-  Eigen::Matrix2d along_mass;         // effective across n [kg]
-  Vector3 drag = Vector3::Zero();     // tangential impulse so far [N s]
+  Vector3 approach;                      // velocity on impact before it [m/s]
+  double target = 0.0;                   // rate after the impact, as it would be at the step's start [m/s]
+  double normal_mass = 0.0;              // effective [kg]
+  double magnitude = 0.0;                // j so far [N s]
+  Eigen::Matrix<double, 3, 2> tangents;  // unit, of the surface
+  Eigen::Matrix2d tangential_mass;       // effective [kg]
+  Vector3 drag = Vector3::Zero();        // tangential impulse so far [N s]
 
   Vector3 relative_velocity() const { return drive + a.velocity() - b.velocity(); }
   /// The same when they meet, with gravity's part along n.
