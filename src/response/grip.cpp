@@ -58,7 +58,7 @@ DistalEnds distal_ends(const Hand& hand) {
   DistalEnds result;
   for (int finger = 0; finger < kFingers; ++finger) {
     const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))];
-    const auto i = static_cast<std::size_t>(2 * finger);
+    const std::size_t i = 2 * static_cast<std::size_t>(finger);
     result[i] = hand.palm.to_local(bone.start);
     result[i + 1] = hand.palm.to_local(bone.end);
   }
