@@ -416,18 +416,7 @@ void CrowdProblem::finish(ContactStep& step, const Island& island) {
     if (point.a != static_cast<int>(free_.size())) give(point.a, -1.0, point.arm_a);
     report(i);
   }
-  auto contact = contacts_.begin();
-  for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (!step.contacts[i].ignored) settle(step, *contact++, step.contacts[i]);
-    }
-  }
-  for (const IslandBody& body : island.bodies) {
-    for (Grip& grip : step.grips) {
-      if (!grip.bears || grip.body != body.body) continue;
-      for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *contact++, point, grip);
-    }
-  }
+  auto contact = settle_hands(step, island, contacts_.begin());
   for (const std::size_t index : linked_) settle(step, *contact++, step.body_contacts[index]);
   for (const std::size_t index : apart_) step.body_contacts[index].friction = Friction::sticking;
 }

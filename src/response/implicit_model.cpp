@@ -13,28 +13,18 @@ constexpr std::size_t kMostExact = 4;
 }  // namespace
 
 void ImplicitModel::respond(ContactStep& step) {
-  begin_touches_here(step);
+  begin_touches(step);
   islands_.build(step);
-  strike_here(step);
-  press_here(step);
+  strike(step);
+  press(step);
 }
 
 void ImplicitModel::begin_touches(ContactStep& step) const {
-  begin_touches_here(step);
-}
-void ImplicitModel::strike(ContactStep& step) {
-  strike_here(step);
-}
-void ImplicitModel::press(ContactStep& step) {
-  press_here(step);
-}
-
-void ImplicitModel::begin_touches_here(ContactStep& step) const {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
 }
 
-void ImplicitModel::strike_here(ContactStep& step) {
+void ImplicitModel::strike(ContactStep& step) {
   const auto springs = [&](const Island& island) {
     one_.begin(step, island, configuration_);
     Newton<BodyProblem>(one_).solve();
@@ -44,7 +34,7 @@ void ImplicitModel::strike_here(ContactStep& step) {
                    configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none, springs);
 }
 
-void ImplicitModel::press_here(ContactStep& step) {
+void ImplicitModel::press(ContactStep& step) {
   // A phalanx or body that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) {
     contact.force.setZero();

@@ -24,10 +24,6 @@ class ImplicitModel : public ContactModel {
   void press(ContactStep& step);
 
  private:
-  // The same within respond(), which calls nothing more for being in parts.
-  [[gnu::always_inline]] inline void begin_touches_here(ContactStep& step) const;
-  [[gnu::always_inline]] inline void strike_here(ContactStep& step);
-  [[gnu::always_inline]] inline void press_here(ContactStep& step);
   void solve_one(ContactStep& step, const Island& island);
   void solve_few(ContactStep& step, const Island& island);
   void solve_crowd(ContactStep& step, const Island& island);

@@ -266,18 +266,7 @@ void IslandProblem::finish(ContactStep& step, const Island& island) {
 }
 
 void IslandProblem::settle_touches(ContactStep& step, const Island& island) {
-  auto contact = contacts_.begin();
-  for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (!step.contacts[i].ignored) settle(step, *contact++, step.contacts[i]);
-    }
-  }
-  for (const IslandBody& body : island.bodies) {
-    for (Grip& grip : step.grips) {
-      if (!grip.bears || grip.body != body.body) continue;
-      for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *contact++, point, grip);
-    }
-  }
+  auto contact = settle_hands(step, island, contacts_.begin());
   for (const Link& link : island.links) settle(step, *contact++, step.body_contacts[link.index]);
 }
 
