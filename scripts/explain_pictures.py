@@ -21,11 +21,21 @@ PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "imp
 WIDTH, HEIGHT = 460, 360  # of a picture; drawn twice as large, for smooth edges
 SHOWN_WIDTH = 305  # on the page: three beside each other
 QUALITY = "82"
-BACKGROUND = "#3a3f47"
+KEPT = 0.975  # of the screen; in the rest is the mark of the picture
 MOST = 60  # pictures of a page
 PITCH, DISTANCE = 0.42, 0.42  # of rviz's camera, which stays; what it sees is moved [rad, m]
 LAYERS = ("hand", "ghost", "objects", "fixtures", "friction", "forces", "newtons", "shadows")
 WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "the last touch"}
+
+
+def find_modules():
+    """Of the devel space that this lies in, where no workspace has been sourced."""
+    modules = os.path.join(HERE, "..", "devel", "lib", "python3", "dist-packages")
+    if os.path.isdir(modules):
+        sys.path.append(os.path.abspath(modules))
+    package = os.path.abspath(os.path.join(HERE, ".."))
+    if os.path.exists(os.path.join(package, "package.xml")):
+        os.environ.setdefault("ROS_PACKAGE_PATH", package + os.pathsep + "/usr/share")
 
 
 def missing_tools():
@@ -182,10 +192,9 @@ def draw(moments, folder):
 
 
 def finish(picture, file):
-    """Half as large, and without the mark."""
-    width, height = 2 * WIDTH, 2 * HEIGHT
-    mark = "rectangle %d,%d %d,%d" % (0.98 * width, 0.975 * height, width, height)
-    subprocess.run(["convert", picture, "-fill", BACKGROUND, "-draw", mark, "-resize", "%dx%d" % (WIDTH, HEIGHT), "-strip", "-quality",
+    """Half as large, and without the edge that has the mark."""
+    inner = "%dx%d+0+0" % (KEPT * 2 * WIDTH, KEPT * 2 * HEIGHT)
+    subprocess.run(["convert", picture, "-crop", inner, "+repage", "-resize", "%dx%d" % (WIDTH, HEIGHT), "-strip", "-quality",
                     QUALITY, file], check=True)
 
 
@@ -236,6 +245,7 @@ def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__ + "\nusage: explain_pictures.py FOLDER", file=sys.stdout if "--help" in sys.argv else sys.stderr)
         return 0 if "--help" in sys.argv else 2
+    find_modules()
     try:
         pictures(sys.argv[1])
     except ImportError as error:

@@ -201,16 +201,19 @@ bool faces_were_wrong(const Stay& stay) {
   return bad > good;
 }
 
-/// First of the samples from which on all fingers slide to the end; the end if they do not.
+bool all_slide(const std::vector<FingerTouch>& touches) {
+  // No share tells it: help, and edges, bear more than the limit.
+  return std::all_of(touches.begin(), touches.end(), [](const FingerTouch& touch) { return touch.slips; });
+}
+
+/// First of the samples from which on all fingers slide to the end, a catch of some frames left out; the end
+/// if they do not.
 std::size_t slides_from(const Stay& stay) {
+  constexpr double kCatch = 0.03;  // [s]
   std::size_t from = stay.touched;
   for (std::size_t i = stay.touched + 1; i-- > stay.window();) {
-    const auto touches = touches_of(stay.object.samples[i], stay.hand_id);
-    // No share tells it: help, and edges, bear more than the limit.
-    const bool all =
-        std::all_of(touches.begin(), touches.end(), [](const FingerTouch& touch) { return touch.slips; });
-    if (!all) break;
-    from = i;
+    if (all_slide(touches_of(stay.object.samples[i], stay.hand_id))) from = i;
+    if (stay.time(from) - stay.time(i) > kCatch) break;
   }
   return from;
 }
@@ -387,15 +390,21 @@ void find_cause(const Stay& stay, const Hands& hand, const Explanation& story, L
     return tell(LossCause::wrong_faces, "no two fingers pressed against each other within friction (" +
                                             faces_text(stay) + "), so that no force could have held it");
   const bool all_slid = stay.time(stay.touched) - slid >= kSliding;
+  const bool slippery = loss.friction < kSlippery && kUsual * loss.push >= loss.load;
+  const LossCause weak = slippery ? LossCause::too_little_friction : LossCause::too_little_force;
+  const double sliding = stay.object.material.dynamic_friction * loss.push;
+  if (all_slid && loss.push_needed <= 0.0 && sliding < loss.load)
+    return tell(weak, "all fingers slid, from " + seconds(slid) + " on: friction then bore " +
+                          number(sliding, " N") + ", and " + number(loss.friction * loss.push, " N") +
+                          " while it stuck, of the " + number(loss.load, " N") +
+                          " that a straight pull took, and of what turned it besides");
   if (loss.push_needed <= 0.0) return tell(LossCause::not_known, remedy(loss));
   if (!all_slid || loss.push <= 0.0)
     return tell(LossCause::not_known,
                 "it did not slide along its fingers, which did not open either: it turned, or was pushed out "
                 "between them");
-  const bool slippery = loss.friction < kSlippery && kUsual * loss.push >= loss.load;
-  tell(slippery ? LossCause::too_little_friction : LossCause::too_little_force,
-       std::string(slippery ? "it is too slippery for that push" : "it was held too weakly") + ". " +
-           remedy(loss));
+  tell(weak, std::string(slippery ? "it is too slippery for that push" : "it was held too weakly") + ". " +
+                 remedy(loss));
 }
 
 /// Highest level that the object had from one sample to another.

@@ -37,7 +37,8 @@ Simulation simulation_of(const Setting& setting, const Closing& closing) {
   return Simulation(std::move(scene), configuration);
 }
 
-Explanation explained(const std::vector<JointsFrame>& frames, const Closing& closing, const Setting& setting) {
+Explanation explained(const std::vector<JointsFrame>& frames, const Closing& closing,
+                      const Setting& setting) {
   Simulation simulation = simulation_of(setting, closing);
   Explainer explainer;
   std::vector<std::string> left_out;
@@ -123,6 +124,7 @@ TEST(ExplainedGrasps, WhatIsLetGoByAHandThatOpensStaysInOneThatDoesNot) {
                                  Setting{{"sphere", Kind::grab, true, 0.06, 0.1}, 0.8, true}}) {
     Tally tally;
     keep_fingers_closed(setting, tally);
+    RecordProperty(setting.row.name + "_so", std::to_string(tally.so) + " of " + std::to_string(tally.said));
     EXPECT_GT(tally.said, 20) << setting.row.name;
     EXPECT_GE(tally.so, 0.9 * tally.said) << setting.row.name << '\n' << tally.not_so;
   }
