@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cstring>
 #include <filesystem>
+#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
@@ -246,6 +248,36 @@ TEST(ReplayLog, another_version_s_state_or_parameters_are_told_and_the_rest_is_d
   EXPECT_EQ(summary["not_known"].size(), 3u);
   EXPECT_GT(summary["frames"].as<int>(), 100);
   EXPECT_EQ(summary["error"].IsDefined(), false);
+}
+
+/// Formats have been told by one number more for each change, the first 8 bytes of a state.
+TEST(ReplayLog, a_state_of_an_older_or_newer_format_gives_one_line_and_begins_at_the_scene_s_start) {
+  for (const int step : {-3, -2, -1, 1}) {
+    Live live = eventful();
+    std::string& state = live.entries.front().state;
+    std::uint64_t format = 0;
+    std::memcpy(&format, state.data(), sizeof format);
+    format += static_cast<std::uint64_t>(step);
+    std::memcpy(&state[0], &format, sizeof format);
+    Replayed replayed;
+    const YAML::Node summary = replayed.run(live);
+    ASSERT_EQ(summary["not_known"].size(), 1u) << step;
+    const std::string line = summary["not_known"][0].as<std::string>();
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_NE(line.find("of another version"), std::string::npos) << line;
+    EXPECT_GT(summary["frames"].as<int>(), 100);
+    EXPECT_EQ(summary["live_run"]["parts_at"].as<double>(), 0.0) << "from its first entry on";
+    // The cube is where the scene has it, and in no hand: the recording began as it was held.
+    const std::string first = test::lines_of(replayed.folder / "out/objects.csv").at(1);
+    const Scene scene = load_scene("config/scenes/cube.urdf", {});
+    std::istringstream cells(first.substr(first.find("cube,") + 5));
+    for (int axis = 0; axis < 3; ++axis) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      EXPECT_NEAR(std::stod(cell), scene.bodies.back().start.position[axis], 1e-3)
+          << first;  // 0.1 m/s^2, 10 ms
+    }
+  }
 }
 
 TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
