@@ -265,7 +265,7 @@ class TrainingTest(unittest.TestCase):
     def test_refuses_the_folder_of_another_participant(self):
         with self.training("record:=false"):
             self.wait_for(TrainingStatus.READY)
-        command = roslib.packages.find_node("mr_hand_interaction", "training_node") + [
+        command = roslib.packages.find_node("mr_hand_interaction", "training_node")[:1] + [
             "_participant:=P02", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
             "_folder:=" + self.folder, "__name:=refused"]
         answer = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
@@ -281,7 +281,7 @@ class TrainingTest(unittest.TestCase):
             begun = next(csv.DictReader(file))
         self.assertLess(abs(float(begun["stamp"]) - time.time()), 600.0)
         self.assertRegex(begun["utc"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z$")
-        command = roslib.packages.find_node("mr_hand_interaction", "training_node") + [
+        command = roslib.packages.find_node("mr_hand_interaction", "training_node")[:1] + [
             "_participant:=P01", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
             "_simulation:=other_node", "_folder:=" + self.folder, "__name:=refused"]
         rospy.set_param("/other_node/contact_model", "soft_pad")
