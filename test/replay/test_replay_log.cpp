@@ -11,6 +11,7 @@
 #include "replay/replay_files.h"
 #include "replay/run.h"
 #include "simulation/state_bytes.h"
+#include "text/file_text.h"
 
 namespace mrhi {
 namespace {
@@ -174,6 +175,33 @@ TEST(ReplayLog, a_recording_that_begins_in_the_middle_gives_the_live_run_s_hash_
   EXPECT_EQ(run["changes"].size(), 5u);
   EXPECT_EQ(summary["not_known"].size(), 0u);
   EXPECT_EQ(summary["gravity"][2].as<double>(), -0.1);
+}
+
+/// The shipped hatch, `higher`.
+Spawn hatch(double higher) {
+  Spawn spawn;
+  spawn.request.whole = true;
+  spawn.request.urdf = file_text("config/scenes/hatch.urdf", 1u << 20).value();
+  spawn.request.pose.position = {0.0, 0.3, higher};
+  return spawn;
+}
+
+TEST(ReplayLog, a_device_that_was_there_is_gone_and_came_again_is_there_once) {
+  const auto frames = test::motion_frames("grasp_cube", kRate, 0);
+  Live live("config/scenes/cube.urdf", Configuration());
+  live.change(hatch(0.0));
+  live.change(Delete{"wall"});
+  live.change(hatch(0.1));
+  live.change(Delete{"latch_top"});
+  live.play(frames, 0.0, 1.0);
+  live.begin_recording();
+  live.play(frames, 1.0, 2.0);
+  live.change(Delete{"wall"});
+  live.change(hatch(0.2));
+  live.play(frames, 2.0, 2.5);
+  const YAML::Node summary = Replayed().run(live), run = summary["live_run"];
+  EXPECT_EQ(run["same"].as<std::size_t>(), live.entries.size());
+  EXPECT_EQ(summary["not_known"].size(), 0u);
 }
 
 TEST(ReplayLog, what_is_left_out_of_the_log_is_told_with_the_time_from_which_all_is_other) {
