@@ -1,6 +1,7 @@
 # The ROS library, the nodes and what is installed beside them.
 file(GLOB ros_sources src/ros/*.cpp src/replay/*.cpp)
-add_library(${PROJECT_NAME}_ros ${ros_sources})
+set(SANITIZED_SOURCES "" CACHE STRING "What scripts/sanitize adds to the ROS library")
+add_library(${PROJECT_NAME}_ros ${ros_sources} ${SANITIZED_SOURCES})
 target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
@@ -32,6 +33,8 @@ foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
+install(PROGRAMS scripts/explain_pictures.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/panel.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Records a scripted hand and plays it in a loop through the nodes for hours of its own time: memory, open files and
-the steps' 99th percentile of each node, ten times on the way. Exits with 1 if any grows after the first of them."""
+the steps' 99th percentile of the node, ten times on the way. Exits with 1 if any grows after the first of them."""
 import os
 import shutil
 import signal
@@ -17,13 +17,13 @@ from mr_hand_interaction.msg import ObjectStateArray
 
 RATE = 10
 LOOKS = 10
-NODES = ("/hand_tracking_node", "/interaction_node")
+NODE = "/interaction_node"  # from the tracker's message to the picture, as playback.launch has it
 MOST_MEMORY, MOST_TIME = 1.05, 1.5  # against the first look; time is that of a machine with other things to do
 PAGE = os.sysconf("SC_PAGE_SIZE") / 1048576.0
 
 
 def run(*command):
-    return subprocess.Popen(command, start_new_session=True)
+    return subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL)
 
 
 def end(process):
@@ -43,13 +43,11 @@ def record(bag):
 class Look:
     def __init__(self, p99):
         self.p99 = p99
-        self.memory, self.files = 0.0, 0
-        for node in NODES:
-            uri = rosgraph.Master("/soak").lookupNode(node)
-            process = "/proc/%d/" % ServerProxy(uri).getPid("/soak")[2]
-            with open(process + "statm") as statm:
-                self.memory += int(statm.read().split()[1]) * PAGE
-            self.files += len(os.listdir(process + "fd"))
+        uri = rosgraph.Master("/soak").lookupNode(NODE)
+        process = "/proc/%d/" % ServerProxy(uri).getPid("/soak")[2]
+        with open(process + "statm") as statm:
+            self.memory = int(statm.read().split()[1]) * PAGE
+        self.files = len(os.listdir(process + "fd"))
 
 
 class Live:

@@ -67,7 +67,7 @@ class Driver(threading.Thread):
 
 
 def calibrate(*arguments, **options):
-    return subprocess.Popen(roslib.packages.find_node("mr_hand_interaction", "calibrate_mount") + list(arguments),
+    return subprocess.Popen(roslib.packages.find_node("mr_hand_interaction", "calibrate_mount")[:1] + list(arguments),
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, **options)
 
 

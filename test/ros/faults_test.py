@@ -36,7 +36,7 @@ NODES = {
 
 
 def start(package, kind, arguments, **options):
-    return subprocess.Popen(roslib.packages.find_node(package, kind) + arguments, **options)
+    return subprocess.Popen(roslib.packages.find_node(package, kind)[:1] + arguments, **options)
 
 
 class Pipeline:

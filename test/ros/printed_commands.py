@@ -23,14 +23,14 @@ NAME = "mr_hand_interaction"
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PAGES = [os.path.join(PACKAGE, "README.md")] + sorted(glob.glob(os.path.join(PACKAGE, "docs", "*.md")))
 BEGINNINGS = re.compile(r"(roslaunch|rosrun|rosservice|rostopic|rosbag|rosdep|rosparam|snakemake|make|source|export|cd|git|"
-                        r"apt-get|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
+                        r"apt-get|plotjuggler|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
 
 EXCEPTED = (  # what the command begins with, and why it is not run here
     ("git clone|cd ~/catkin_ws|rosdep", "fetches and builds a workspace"),
     ("apt-get install", "installs packages"),
     ("source devel/setup.bash", "this test would not be found without"),
     ("export ROS_", "addresses of the user's machines"),
-    ("rosrun rqt_(reconfigure|plot)", "Debian 12 does not have it"),
+    ("rosrun rqt_(reconfigure|plot|multiplot)|plotjuggler", "Debian 12 does not have it"),
     ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
     ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
     ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),

@@ -47,6 +47,10 @@ struct Played {
       simulation.advance({at(t), hands ? hands(t) : std::vector<Hand>()});
     }
   }
+  void goes_on(const Played& from) {
+    simulation.set_state(from.simulation.state());
+    frame = from.frame;
+  }
   bool asleep(std::size_t body) const { return simulation.state().asleep[body] != 0; }
   Vector3 place(std::size_t body) const { return simulation.state().bodies[body].pose.position; }
 
@@ -54,10 +58,15 @@ struct Played {
   long frame = 0;
 };
 
-/// A fingertip that pushes the upper cube off from 2 s on.
-std::vector<Hand> pushing(double t) {
-  const Vector3 tip(-0.3 + 0.15 * std::max(t - 2.0, 0.0), 0.0, 1.5 * kCube);
+/// A fingertip that pushes the upper cube off from 2 s on; which one of many decides how fast, and where on
+/// its side.
+std::vector<Hand> push(int which, double t) {
+  const double speed = 0.15 + 0.003 * which;  // [m/s]
+  const Vector3 tip(-0.3 + speed * std::max(t - 2.0, 0.0), 0.0004 * which, (1.4 + 0.01 * which) * kCube);
   return {finger(tip - Vector3(0, 0.01, 0), tip + Vector3(0, 0.01, 0), 0.008)};
+}
+std::vector<Hand> pushing(double t) {
+  return push(0, t);
 }
 
 TEST(Sleeping, cubes_that_stand_still_sleep_where_they_stand) {
@@ -74,15 +83,35 @@ TEST(Sleeping, cubes_that_stand_still_sleep_where_they_stand) {
   EXPECT_FALSE(sleeping.simulation.state().sleeping_contacts.empty());
 }
 
+// They slept where they stood to 1e-12 m, and sliding by fits and starts makes more of that, now and then
+// millimetres: on which step what slides holds or lets go is decided by the last bits. All agree over the
+// first centimetre, most over all of their way.
 TEST(Sleeping, a_hand_that_comes_finds_them_awake_and_moves_them_as_if_they_had_not_slept) {
-  Played sleeping(standing_cubes(), true), awake(standing_cubes(), false);
-  sleeping.run(2.5, pushing);
-  EXPECT_TRUE(sleeping.asleep(2));
-  sleeping.run(4.5, pushing);
-  awake.run(4.5, pushing);
-  EXPECT_GT(awake.place(2).x(), 0.05);
-  for (const std::size_t cube : {1u, 2u})
-    EXPECT_LT((sleeping.place(cube) - awake.place(cube)).norm(), 1e-5) << cube;  // of 9 cm of sliding
+  constexpr int kPushes = 16;
+  Played slept(standing_cubes(), true), waked(standing_cubes(), false);
+  slept.run(2.5, pushing);
+  waked.run(2.5, pushing);
+  EXPECT_TRUE(slept.asleep(2));
+  int same = 0;
+  for (int which = 0; which < kPushes; ++which) {
+    const auto pushing = [which](double t) { return push(which, t); };
+    Played sleeping(standing_cubes(), true), awake(standing_cubes(), false);
+    sleeping.goes_on(slept);
+    awake.goes_on(waked);
+    const auto apart = [&](std::size_t cube) { return (sleeping.place(cube) - awake.place(cube)).norm(); };
+    for (double t = 2.5; awake.place(2).x() < 0.013 && t < 4.5; t += 1.0 / kRate) {
+      sleeping.run(t, pushing);
+      awake.run(t, pushing);
+    }
+    EXPECT_GT(awake.place(2).x(), 0.013) << which;
+    EXPECT_LT(std::max(apart(1), apart(2)), 1e-6) << which;
+    sleeping.run(4.5, pushing);
+    awake.run(4.5, pushing);
+    EXPECT_GT(awake.place(2).x(), 0.05) << which;
+    same += std::max(apart(1), apart(2)) < 1e-5;  // of 9 cm of sliding
+  }
+  EXPECT_GE(2 * same, kPushes);
+  RecordProperty("same", same);
 }
 
 TEST(Sleeping, what_falls_on_a_sleeper_wakes_the_whole_pile) {
@@ -121,8 +150,7 @@ TEST(Sleeping, slow_drift_is_never_put_to_rest) {
 TEST(Sleeping, a_copied_sleeper_wakes_with_the_same_bits) {
   Played first(standing_cubes(), true), second(standing_cubes(), true);
   first.run(2.5, pushing);
-  second.simulation.set_state(first.simulation.state());
-  second.frame = first.frame;
+  second.goes_on(first);
   first.run(4.0, pushing);
   second.run(4.0, pushing);
   EXPECT_EQ(hash(first.simulation.state()), hash(second.simulation.state()));
