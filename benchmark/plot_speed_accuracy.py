@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Draws the charts of a speed_accuracy.csv beside it: per scene the error against the time per step and against the
-real-time factor, a summary of Pareto fronts, and cost against the number of objects and contacts."""
+"""Draws the charts of a speed_accuracy.csv (and of the step_times.csv beside it): summary.png, six panels that carry the
+message; all.png, the same of every scene; per scene the error against the time per step and against the real-time
+factor; and cost against the number of objects and contacts."""
 
 import collections
 import csv
@@ -12,6 +13,7 @@ try:
     import matplotlib
     matplotlib.use('Agg')
     import matplotlib.pyplot as plt
+    import matplotlib.ticker
 except ImportError:
     sys.exit('plot_speed_accuracy.py: needs matplotlib (Debian: python3-matplotlib)')
 
@@ -24,12 +26,19 @@ STYLES = {
     'dart': ('#CC79A7', 'v'),
     'simbody': ('#E69F00', 'P'),
     'mujoco': ('#000000', 'X'),
+    'jolt': ('#882255', 'p'),
+    'box3d': ('#44AA99', 'h'),
 }
 OTHER = ('#999999', '.')
 LABELS = {'mr_hand_interaction': 'ours', 'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE',
-          'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo'}
+          'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D'}
 LINES = ['-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (7, 2)), (0, (3, 1, 1, 1))]
-COST_PREFIX = 'cost_'
+OURS = 'mr_hand_interaction'
+COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
+# What carries the message: scene, its title, what is wrong where it is high.
+PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same with a noisy hand'),
+          ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
+          ('recording', "a person's recorded hand: displacement")]
 SMALLEST = 1e-12  # errors below are rounding; a logarithmic axis has no zero
 
 Row = collections.namedtuple('Row', 'scene engine setting step time p99 error unit failed')
@@ -53,8 +62,7 @@ def label_of(engine, setting=None):
     name = LABELS.get(engine, engine)
     if setting is None:
         return name
-    short = setting.replace('; default', '')
-    return name + ': ' + (short if len(short) <= 42 else short[:40].rstrip('; ') + ' ...')
+    return name + ': ' + setting.replace('; default', '')
 
 
 def floor_of(rows):
@@ -105,6 +113,10 @@ def finish(axes, unit, x_label):
     axes.set_ylabel('error [%s]' % unit)
     if not any(line.get_xydata().size for line in axes.lines if line.get_transform() == axes.transData):
         axes.set_xlim(1e-1, 1e3), axes.set_ylim(1e-6, 1.0)
+    low, high = axes.get_ylim()
+    if high < 20.0 * low:  # no decades to write
+        axes.yaxis.set_minor_formatter(matplotlib.ticker.FormatStrFormatter('%g'))
+        axes.yaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter('%g'))
     axes.grid(True, which='major', color='0.9')
     for side in ('top', 'right'):
         axes.spines[side].set_visible(False)
@@ -160,30 +172,128 @@ def pareto(points):
     return front
 
 
-def draw_summary(scenes, folder):
-    """Pareto fronts over all settings and steps: error against computing time per simulated second."""
+def draw_front(axes, rows, label):
+    """The best of each engine over its settings and steps: error against computing time per simulated second."""
+    floor, labels = floor_of(rows), []
+    for engine, of_engine in grouped(rows, lambda r: r.engine).items():
+        if engine == OURS:  # no peer renders a hand
+            of_engine = [r for r in of_engine if 'whole frame' not in r.setting]
+        colour, marker = STYLES.get(engine, OTHER)
+        front = pareto([(r.time / r.step * 1e-3, max(r.error, floor)) for r in of_engine if not r.failed and r.time > 0])
+        if not front:
+            continue
+        x, y = zip(*front)
+        axes.plot(x, y, color=colour, marker=marker, markersize=4.5, linewidth=1.4 if engine != OURS else 2.2,
+                  drawstyle='steps-post', zorder=3 if engine == OURS else 2)
+        labels.append((x[-1], y[-1], label_of(engine), colour))
+    finish(axes, rows[0].unit, 'ms per simulated second')
+    if label is label_at_right:  # room for the names
+        low, high = axes.get_xlim()
+        axes.set_xlim(low, high * (high / low) ** 0.3)
+    label(axes, labels)
+
+
+def label_beside_points(axes, labels):
+    for x, y, text, colour in labels:
+        axes.annotate(text, (x, y), xytext=(3, 3), textcoords='offset points', fontsize=7, color=colour)
+
+
+def label_at_right(axes, labels):
+    """Names in a column at the panel's right edge, in the order of their curves' ends."""
+    axes.get_xlim(), axes.get_ylim()  # settles the limits
+    to_axes = axes.transAxes.inverted()
+    labels = sorted(labels, key=lambda one: axes.transData.transform(one[:2])[1])
+    wanted = [to_axes.transform(axes.transData.transform(one[:2]))[1] for one in labels]
+    for (x, y, text, colour), place in zip(labels, spread(wanted, 0.062, 0.03, 0.98)):
+        axes.annotate(text, xy=(x, y), xytext=(0.985, place), xycoords='data', textcoords='axes fraction', fontsize=9,
+                      color=colour, ha='right', va='center', weight='bold' if text == label_of(OURS) else 'normal',
+                      arrowprops={'arrowstyle': '-', 'color': colour, 'lw': 0.5, 'alpha': 0.5, 'shrinkB': 2})
+
+
+def read_times(path):
+    """Mean step time by crowd, engine and setting, at the shortest step."""
+    times = collections.OrderedDict()
+    if not os.path.exists(path):
+        return times
+    with open(path, newline='') as file:
+        rows = [r for r in csv.DictReader(file) if r['scene'].startswith(CROWD_PREFIX)]
+    shortest = min((float(r['step_s']) for r in rows), default=0.0)
+    for r in rows:
+        if float(r['step_s']) == shortest:
+            times[(r['scene'], r['engine'], r['setting'])] = float(r['us_mean'])
+    return times
+
+
+def best_of_crowds(times, rows):
+    """The least mean time of each engine in each crowd, of the settings that did not fail there."""
+    failed = {(r.scene, r.engine, r.setting) for r in rows if r.failed}
+    best = collections.OrderedDict()
+    for (scene, engine, setting), time in times.items():
+        if any(s.startswith(scene) and e == engine and t == setting for s, e, t in failed):
+            continue
+        if engine == OURS and setting != 'implicit':
+            continue
+        of_engine = best.setdefault(engine, {})
+        of_engine[scene] = min(time, of_engine.get(scene, math.inf))
+    return best
+
+
+def draw_crowds(axes, times, rows):
+    best, labels = best_of_crowds(times, rows), []
+    scenes = list(collections.OrderedDict.fromkeys(scene for scene, _, _ in times))
+    for engine, of_engine in best.items():
+        colour, marker = STYLES.get(engine, OTHER)
+        places = [i for i, scene in enumerate(scenes) if scene in of_engine]
+        y = [of_engine[scenes[i]] for i in places]
+        axes.plot(places, y, color=colour, marker=marker, markersize=5, linewidth=1.4 if engine != OURS else 2.2)
+        labels.append((places[-1], y[-1], label_of(engine), colour))
+    axes.set_yscale('log')
+    axes.set_xlim(-0.3, len(scenes) + 1.2)
+    axes.set_xticks(range(len(scenes)))
+    axes.set_xticklabels([scene[len(CROWD_PREFIX):].replace('_', ' ') for scene in scenes], rotation=35, ha='right')
+    axes.set_ylabel('mean time per step of 1 ms [µs]')
+    axes.grid(True, which='major', color='0.9')
+    for side in ('top', 'right'):
+        axes.spines[side].set_visible(False)
+    label_at_right(axes, labels)
+
+
+def draw_summary(scenes, times, folder):
+    """At most six panels, those of PANELS that were run and the crowds."""
+    panels = [(scene, title) for scene, title in PANELS if scene in scenes]
+    count = len(panels) + (1 if times else 0)
+    if not count:
+        return
+    columns = min(3, count)
+    figure, grid = plt.subplots(math.ceil(count / columns), columns, figsize=(5.2 * columns, 4.4 * math.ceil(count / columns)),
+                                dpi=90, squeeze=False)
+    for axes in grid.flat[count:]:
+        axes.set_visible(False)
+    for axes, (scene, title) in zip(grid.flat, panels):
+        draw_front(axes, scenes[scene], label_at_right)
+        axes.set_title(title, fontsize=11, loc='left')
+    if times:
+        draw_crowds(grid.flat[len(panels)], times, [r for rows in scenes.values() for r in rows])
+        grid.flat[len(panels)].set_title('crowds: cost', fontsize=11, loc='left')
+    figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
+    figure.tight_layout(rect=(0, 0, 1, 0.98))
+    figure.savefig(os.path.join(folder, 'summary.png'))
+    plt.close(figure)
+
+
+def draw_all(scenes, folder):
+    """Every scene's fronts: the appendix."""
     columns = 5
     lines = math.ceil(len(scenes) / columns)
     figure, grid = plt.subplots(lines, columns, figsize=(4.0 * columns, 3.3 * lines), dpi=80, squeeze=False)
     for axes in grid.flat[len(scenes):]:
         axes.set_visible(False)
     for axes, (scene, rows) in zip(grid.flat, scenes.items()):
-        floor = floor_of(rows)
-        for engine, of_engine in grouped(rows, lambda r: r.engine).items():
-            colour, marker = STYLES.get(engine, OTHER)
-            front = pareto([(r.time / r.step * 1e-3, max(r.error, floor)) for r in of_engine
-                            if not r.failed and r.time > 0])
-            if not front:
-                continue
-            x, y = zip(*front)
-            axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.2, drawstyle='steps-post')
-            axes.annotate(label_of(engine), (x[-1], y[-1]), xytext=(3, 3), textcoords='offset points', fontsize=7,
-                          color=colour)
-        finish(axes, rows[0].unit, 'ms per simulated second')
+        draw_front(axes, rows, label_beside_points)
         axes.set_title(scene.replace('_', ' '), fontsize=9)
     figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
     figure.tight_layout(rect=(0, 0, 1, 0.98))
-    figure.savefig(os.path.join(folder, 'summary.png'))
+    figure.savefig(os.path.join(folder, 'all.png'))
     plt.close(figure)
 
 
@@ -226,7 +336,8 @@ def main(arguments):
     for scene, of_scene in scenes.items():
         draw_scene(scene, of_scene, folder)
     if scenes:
-        draw_summary(scenes, folder)
+        draw_summary(scenes, read_times(os.path.join(folder, 'step_times.csv')), folder)
+        draw_all(scenes, folder)
     draw_cost([r for r in rows if r.scene.startswith(COST_PREFIX)], folder)
     return 0
 

@@ -33,6 +33,8 @@ foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
+install(PROGRAMS scripts/explain_pictures.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/panel.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -27,7 +27,7 @@ std::string report_of(const RunResult& result) {
   std::ostringstream out;
   out.precision(17);
   out << "supported\t" << result.supported << "\ntime\t" << result.time.median << '\t'
-      << result.time.percentile_99 << '\n';
+      << result.time.percentile_99 << '\t' << result.time.mean << '\t' << result.time.most << '\n';
   if (!result.trouble.empty()) out << "trouble\t" << one_line(result.trouble) << '\n';
   for (const Measure& m : result.measures)
     out << "measure\t" << m.suffix << '\t' << m.error << '\t' << m.unit << '\t' << m.failed << '\n';
@@ -143,7 +143,8 @@ void Contender::finish(const std::string& report) {
     const std::vector<std::string> f = fields(line);
     if (f[0] == "trouble") result_.trouble = f.at(1);
     if (f[0] == "supported") result_.supported = f.at(1) == "1";
-    if (f[0] == "time") result_.time = {std::stod(f.at(1)), std::stod(f.at(2))};
+    if (f[0] == "time")
+      result_.time = {std::stod(f.at(1)), std::stod(f.at(2)), std::stod(f.at(3)), std::stod(f.at(4))};
     if (f[0] == "measure") result_.measures.push_back({f.at(1), std::stod(f.at(2)), f.at(3), f.at(4) == "1"});
   }
 }

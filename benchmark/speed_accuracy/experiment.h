@@ -43,6 +43,7 @@ struct ScenePlan {
   std::function<void(const EngineMaker& ours)> prepare = nullptr;  ///< before the first run; may be empty
   bool full_only = false;                                          ///< left out by --quick
   std::string missing = {};                                        ///< why it cannot be run here, or empty
+  double budget = 10.0;                                            ///< of a contender, unless --quick [s]
 };
 
 /// All scenes, in the order in which they are run.
@@ -58,5 +59,6 @@ void add_squeeze_scenes(std::vector<ScenePlan>& scenes);
 void add_catch_scenes(std::vector<ScenePlan>& scenes);
 void add_recording_scenes(std::vector<ScenePlan>& scenes);
 void add_cost_scenes(std::vector<ScenePlan>& scenes);
+void add_crowd_scenes(std::vector<ScenePlan>& scenes);
 
 }  // namespace mrhi::benchmark

@@ -1,11 +1,12 @@
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -21,7 +22,7 @@ namespace {
 
 const std::vector<double> kSteps{0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008333333, 0.016666667};
 const std::vector<double> kQuickSteps{0.001, 0.008333333};
-constexpr double kBudget = 10.0, kQuickBudget = 1.0;  // of a contender [s]
+constexpr double kQuickBudget = 1.0;  // of a contender [s]
 
 struct Plan {
   std::vector<ScenePlan> scenes;
@@ -65,7 +66,7 @@ std::vector<std::unique_ptr<Contender>> race(const Plan& plan, const ScenePlan& 
   for (const auto& [module, settings] : plan.engines)
     for (const std::string& setting : settings)
       contenders.push_back(std::make_unique<Contender>(module, setting, scene, plan.quick, step,
-                                                       plan.quick ? kQuickBudget : kBudget));
+                                                       plan.quick ? kQuickBudget : scene.budget));
   std::vector<Contender*> running;
   for (const auto& contender : contenders) running.push_back(contender.get());
   while (!running.empty()) {
@@ -86,25 +87,31 @@ void make_folder(const std::string& path) {
   }
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 /// The charts need Python with matplotlib; without them the figures are there all the same.
 void draw_charts(const std::string& csv) {
-  const std::string command =
-      quoted(SPEED_ACCURACY_PYTHON) + " " + quoted(SPEED_ACCURACY_PLOT_SCRIPT) + " " + quoted(csv);
-  if (std::system(command.c_str()) != 0) std::cerr << "no charts: failed: " << command << '\n';
+  const pid_t child = fork();
+  if (child == 0) {
+    execlp(SPEED_ACCURACY_PYTHON, SPEED_ACCURACY_PYTHON, SPEED_ACCURACY_PLOT_SCRIPT, csv.c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || status != 0)
+    std::cerr << "no charts: failed: " SPEED_ACCURACY_PYTHON " " SPEED_ACCURACY_PLOT_SCRIPT " " << csv
+              << '\n';
+}
+
+std::ofstream opened(const std::string& file) {
+  std::ofstream csv(file);
+  if (!csv) throw std::runtime_error("cannot write '" + file + "'");
+  return csv;
 }
 
 void run(const Arguments& arguments) {
   make_folder(arguments.output);
   const std::string file = arguments.output + "/speed_accuracy.csv";
-  std::ofstream csv(file);
-  if (!csv) throw std::runtime_error("cannot write '" + file + "'");
+  std::ofstream csv = opened(file), times = opened(arguments.output + "/step_times.csv");
   write_header(csv);
+  write_times_header(times);
   const Plan plan = plan_for(arguments);
   std::map<std::string, std::vector<Measure>> measures;
   const auto begin = std::chrono::steady_clock::now();
@@ -115,13 +122,15 @@ void run(const Arguments& arguments) {
     }
     if (scene.prepare) scene.prepare(load(engine_modules().front().file));
     for (const double step : steps_of(scene, plan.quick)) {
-      write_rows(csv, scene.name, step, race(plan, scene, step), measures);
-      csv.flush();
+      const auto contenders = race(plan, scene, step);
+      write_rows(csv, scene.name, step, contenders, measures);
+      write_times(times, scene.name, step, contenders);
+      csv.flush(), times.flush();
     }
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
     std::cout << scene.name << "  " << std::lround(passed.count()) << " s\n" << std::flush;
   }
-  csv.close();
+  csv.close(), times.close();
   draw_charts(file);
 }
 

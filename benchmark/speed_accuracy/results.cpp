@@ -39,4 +39,19 @@ void write_rows(std::ostream& csv, const std::string& scene, double step,
   }
 }
 
+void write_times_header(std::ostream& csv) {
+  csv.precision(9);
+  csv << "scene,engine,setting,step_s,us_mean,us_median,us_p99,us_max\n";
+}
+
+void write_times(std::ostream& csv, const std::string& scene, double step,
+                 const std::vector<std::unique_ptr<Contender>>& contenders) {
+  for (const auto& contender : contenders) {
+    if (!contender->result().supported || !contender->trouble().empty()) continue;
+    const StepTime& time = contender->result().time;
+    csv << scene << ',' << contender->engine() << ',' << contender->setting() << ',' << step << ','
+        << time.mean << ',' << time.median << ',' << time.percentile_99 << ',' << time.most << '\n';
+  }
+}
+
 }  // namespace mrhi::benchmark

@@ -18,4 +18,9 @@ void write_rows(std::ostream& csv, const std::string& scene, double step,
                 const std::vector<std::unique_ptr<Contender>>& contenders,
                 std::map<std::string, std::vector<Measure>>& measures);
 
+/// What steps cost, a row for each run that came through.
+void write_times_header(std::ostream& csv);
+void write_times(std::ostream& csv, const std::string& scene, double step,
+                 const std::vector<std::unique_ptr<Contender>>& contenders);
+
 }  // namespace mrhi::benchmark

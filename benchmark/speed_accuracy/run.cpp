@@ -42,7 +42,10 @@ class Stopwatch {
     const auto begin = Clock::now();
     engine.step();
     const auto end = Clock::now();
-    const auto sample = static_cast<float>(std::max(0.0, microseconds(end - begin) - clock_cost_));
+    const double time = std::max(0.0, microseconds(end - begin) - clock_cost_);
+    const auto sample = static_cast<float>(time);
+    sum_ += time;
+    most_ = std::max(most_, time);
     if (samples_.size() < kMaxSamples) {
       samples_.push_back(sample);
     } else {
@@ -58,7 +61,7 @@ class Stopwatch {
 
   StepTime result() {
     if (samples_.empty()) return {};
-    return {percentile(0.5), percentile(0.99)};
+    return {percentile(0.5), percentile(0.99), sum_ / static_cast<double>(count_), most_};
   }
 
  private:
@@ -70,6 +73,7 @@ class Stopwatch {
   }
 
   double seconds_, used_ = 0.0;
+  double sum_ = 0.0, most_ = 0.0;  // [us]
   const std::function<void()>& pause_;
   const double clock_cost_ = clock_cost();
   Clock::time_point block_begin_;

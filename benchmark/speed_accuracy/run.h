@@ -8,8 +8,10 @@ namespace mrhi::benchmark {
 
 /// How long a step took.
 struct StepTime {
-  double median = 0.0;         ///< [us]
-  double percentile_99 = 0.0;  ///< [us]
+  double median = 0.0;  ///< [us], as all
+  double percentile_99 = 0.0;
+  double mean = 0.0;  ///< of all steps
+  double most = 0.0;
 };
 
 struct RunResult {

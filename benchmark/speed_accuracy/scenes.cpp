@@ -13,6 +13,7 @@ std::vector<ScenePlan> all_scenes() {
   add_catch_scenes(scenes);
   add_recording_scenes(scenes);
   add_cost_scenes(scenes);
+  add_crowd_scenes(scenes);
   return scenes;
 }
 

@@ -31,6 +31,7 @@ struct World {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   double friction = 0.8;
   double restitution = 0.0;
+  bool sleep = true;  ///< what lies still may
   std::vector<BodySpec> bodies;
   std::vector<KinematicSpec> kinematics;
 };

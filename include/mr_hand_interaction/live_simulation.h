@@ -27,9 +27,9 @@ class LiveSimulation {
   void add(const Body& body);
   /// The same for all bodies of `part` and its joints; what else is in it does not count.
   void add(const Scene& part);
-  /// Both throw std::invalid_argument for a name that is not known.
+  /// With what hangs on it by joints. Both throw std::invalid_argument for a name that is not known.
   void remove(const std::string& name);
-  /// The events with which hands would leave a body if it were removed now.
+  /// The events with which hands would leave a body, and what hangs on it, if it were removed now.
   std::vector<Event> events_if_removed(const std::string& name) const;
   /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
   /// place out of bounds.

@@ -17,8 +17,10 @@ Takes what hand trackers publish, and publishes the hands in world on hand_frame
   /leap_motion/leap_device                      leap_motion/Human, any published version
   hands/pose_array, hands/left/pose_array, hands/right/pose_array
                                                 geometry_msgs/PoseArray of 21, 25 or 26 joints; see docs/trackers.md
+  hands/point_cloud, hands/left/point_cloud, hands/right/point_cloud
+                                                sensor_msgs/PointCloud, the same
   ~fixed_frame   where hands are placed by tf; default world
-  ~side          of a hand on hands/pose_array; left or right, default right
+  ~side          of a hand on hands/pose_array or hands/point_cloud; left or right, default right
 )";
 
 }  // namespace

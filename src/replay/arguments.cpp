@@ -175,10 +175,10 @@ Does again what a live simulation did, from a bag of record.launch; or runs a re
 fast as the machine goes; needs no ROS master.
 
   --scene NAME|FILE         a shipped scene, or a URDF file; else as recorded
-  --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray or HandFrame)
+  --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray, PointCloud or HandFrame)
   --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json;
                             of a bag FILE_replay where none is given
-  --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array, or the only fitting
+  --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array or point_cloud, or the only fitting
   --params FILE.yaml        parameters, under the names of the parameter server
   --set KEY=VALUE           one parameter; stands above --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw

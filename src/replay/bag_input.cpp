@@ -1,6 +1,5 @@
 #include "bag_input.h"
 
-#include <geometry_msgs/PoseArray.h>
 #include <mr_hand_interaction/HandFrame.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -11,24 +10,38 @@
 #include <set>
 #include <vector>
 
-#include "../ros/pose_array_hand.h"
+#include "../ros/tracker_messages.h"
 #include "bag_check.h"
 #include "device_frames.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "mr_hand_interaction/tracking/joint_gaps.h"
 #include "open_bag.h"
 
 namespace mrhi {
 namespace {
 
-const std::set<std::string> kTypes{"leap_motion/Human", "geometry_msgs/PoseArray",
-                                   "mr_hand_interaction/HandFrame"};
-const std::string kLeapTopic = "/leap_motion/leap_device";
-/// What other trackers' hands are on belongs together.
-const std::set<std::string> kPoseArrayTopics{"/hands/pose_array", "/hands/left/pose_array",
-                                             "/hands/right/pose_array"};
+std::set<std::string> known_types() {
+  std::set<std::string> types{"leap_motion/Human", "mr_hand_interaction/HandFrame"};
+  for_each_tracker([&types](auto tracker) {
+    types.insert(ros::message_traits::datatype<typename decltype(tracker)::Message>());
+  });
+  return types;
+}
 
+/// What other trackers' hands are on belongs together.
+std::set<std::string> known_point_topics() {
+  std::set<std::string> topics;
+  for_each_tracker([&topics](auto tracker) {
+    for (const std::string& topic : topics_of(tracker)) topics.insert("/" + topic);
+  });
+  return topics;
+}
+
+const std::set<std::string> kTypes = known_types();
+const std::set<std::string> kPointTopics = known_point_topics();
+const std::string kLeapTopic = "/leap_motion/leap_device";
 std::string joined(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -48,10 +61,10 @@ std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& 
     throw BagError(file + ": no topic '" + *wanted + "' with hands; allowed: " + joined(fitting));
   }
   if (fitting.count(kLeapTopic) > 0) return {kLeapTopic};
-  std::set<std::string> pose_arrays;
-  std::set_intersection(fitting.begin(), fitting.end(), kPoseArrayTopics.begin(), kPoseArrayTopics.end(),
-                        std::inserter(pose_arrays, pose_arrays.end()));
-  if (!pose_arrays.empty()) return pose_arrays;
+  std::set<std::string> points;
+  std::set_intersection(fitting.begin(), fitting.end(), kPointTopics.begin(), kPointTopics.end(),
+                        std::inserter(points, points.end()));
+  if (!points.empty()) return points;
   if (fitting.size() == 1) return fitting;
   throw BagError(file + (fitting.empty() ? ": no topic has hands; allowed types: " + joined(kTypes)
                                          : ": --topic must choose one of " + joined(fitting)));
@@ -101,14 +114,19 @@ struct BagInput::Impl {
     return place(std::move(frame.joints), frame.frame_id, message.getTime());
   }
 
-  SourceFrame read_pose_array(const rosbag::MessageInstance& message) {
-    const auto array = message.instantiate<geometry_msgs::PoseArray>();
-    if (!array) return refused("unknown version", "geometry_msgs/PoseArray with md5 " + message.getMD5Sum());
-    const std::string& frame_id = array->header.frame_id;
-    const std::optional<Side> of_topic = side_by_name(message.getTopic());
-    const Side side = (of_topic ? of_topic : side_by_name(frame_id)).value_or(Side::right);
-    SourceFrame frame = place(joints_from_pose_array(*array, side), frame_id, message.getTime());
-    if (!frame.frame || has_both_hands(*array)) return frame;
+  template <class Tracker>
+  SourceFrame read_points(const rosbag::MessageInstance& message) {
+    const auto found = message.instantiate<typename Tracker::Message>();
+    if (!found) return refused("unknown version", message.getDataType() + " with md5 " + message.getMD5Sum());
+    const TrackedPoints tracked = Tracker::read(*found);
+    const std::string& frame_id = tracked.header.frame_id;
+    const std::optional<Side> of_topic = side_of_topic(message.getTopic());
+    const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(Side::right);
+    JointsFrame joints = joints_from_points(tracked, side);
+    if (joints.stamp == 0) joints.stamp = from_ros_time(message.getTime());
+    gaps.fill(joints);
+    SourceFrame frame = place(std::move(joints), frame_id, message.getTime());
+    if (!frame.frame || has_both_hands(tracked)) return frame;
     frame.frame = pairs.take(side, *frame.frame);
     frame.waits = !frame.frame;
     return frame;
@@ -135,9 +153,15 @@ struct BagInput::Impl {
   SourceFrame read_hands(const rosbag::MessageInstance& message) {
     try {
       if (message.getDataType() == "leap_motion/Human") return read_leap(message);
-      if (message.getDataType() == "geometry_msgs/PoseArray") return read_pose_array(message);
       if (message.getDataType() == "mr_hand_interaction/HandFrame") return read_hand_frame(message);
-      return refused("unknown version", "type " + message.getDataType() + "; allowed: " + joined(kTypes));
+      SourceFrame frame =
+          refused("unknown version", "type " + message.getDataType() + "; allowed: " + joined(kTypes));
+      for_each_tracker([&](auto tracker) {
+        using Tracker = decltype(tracker);
+        if (message.getDataType() == ros::message_traits::datatype<typename Tracker::Message>())
+          frame = read_points<Tracker>(message);
+      });
+      return frame;
     } catch (const DecodeError& error) {
       return refused(error.reason(), error.what());
     } catch (const ros::serialization::StreamOverrunException& error) {
@@ -151,6 +175,7 @@ struct BagInput::Impl {
   std::set<std::string> topics;
   std::string topic;
   rosbag::View view;
+  JointGaps gaps;
   HandPairs pairs;
   DeviceFrames devices;
   rosbag::View::iterator at;

@@ -2,6 +2,7 @@
 
 #include "explain.h"
 #include "json_text.h"
+#include "mr_hand_interaction/replay/result_writer.h"
 
 namespace mrhi {
 namespace {
@@ -64,7 +65,8 @@ std::string grip_json(const std::vector<ObjectSample>& samples) {
     rows.push_back(json::object({{"time", rounded(sample.time)},
                                  {"torque", rounded(sample.torque)},
                                  {"margin", rounded(sample.margin)},
-                                 {"bearable", sample.bearable < kMost ? rounded(sample.bearable) : "null"}}));
+                                 {"bearable", sample.bearable < kMost ? rounded(sample.bearable) : "null"},
+                                 {"helped", sample.helped ? "true" : "false"}}));
   }
   return json::list(rows);
 }
@@ -74,6 +76,7 @@ std::string object_json(const std::string& name, const ObjectStory& story) {
                        {"mass", json::number(story.mass)},
                        {"static_friction", json::number(story.material.static_friction)},
                        {"dynamic_friction", json::number(story.material.dynamic_friction)},
+                       {"joint", story.joint.empty() ? "null" : json::quoted(story.joint)},
                        {"line", line_of_time(story.samples)},
                        {"fingers", fingers_json(story.samples)},
                        {"grip", grip_json(story.samples)}});
@@ -101,19 +104,70 @@ std::string loss_json(const Loss& loss) {
                   {"friction", rounded(loss.friction)},
                   {"friction_needed", rounded(loss.friction_needed)},
                   {"push_needed", rounded(loss.push_needed)}};
+  if (loss.cause == LossCause::hand_opened) members.emplace_back("opened", rounded(loss.opened));
   if (!loss.by.empty()) members.emplace_back("by", json::quoted(loss.by));
   members.emplace_back("text", json::quoted(loss.text));
   return json::object(members);
 }
 
+std::string touch_json(const Touch& touch) {
+  const auto name = [](int finger) { return json::quoted(finger_name(capsule_index(finger, 0))); };
+  return json::object({{"object", json::quoted(touch.object)},
+                       {"hand_id", std::to_string(touch.hand_id)},
+                       {"from", rounded(touch.from)},
+                       {"until", rounded(touch.until)},
+                       {"fingers", list_of(touch.fingers, name)},
+                       {"speed", rounded(touch.speed)}});
+}
+
+std::string joint_json(const std::string& name, const JointStory& joint) {
+  const auto row = [](const JointSample& sample) {
+    return json::object({{"time", rounded(sample.time)}, {"position", rounded(sample.position)}});
+  };
+  return json::object({{"name", json::quoted(name)},
+                       {"object", json::quoted(joint.body)},
+                       {"unit", json::quoted(joint.turns ? "rad" : "m")},
+                       {"lower", json::number(joint.lower)},
+                       {"upper", json::number(joint.upper)},
+                       {"samples", list_of(joint.samples, row)}});
+}
+
+std::string event_json(const ToldEvent& event) {
+  return json::object({{"time", rounded(event.time)},
+                       {"kind", json::quoted(event_name(event.kind))},
+                       {"object", json::quoted(event.object)},
+                       {"hand_id", std::to_string(event.hand_id)}});
+}
+
+std::string vector_json(const Vector3& vector) {
+  return json::list({rounded(vector.x()), rounded(vector.y()), rounded(vector.z())});
+}
+
+std::string moment_json(const PictureMoment& moment) {
+  return json::object({{"what", json::quoted(to_string(moment.what))},
+                       {"object", json::quoted(moment.object)},
+                       {"time", rounded(moment.time)},
+                       {"loss", moment.loss ? std::to_string(*moment.loss) : "null"},
+                       {"place", vector_json(moment.place)},
+                       {"palm", vector_json(moment.palm)},
+                       {"across", vector_json(moment.across)},
+                       {"radius", rounded(moment.radius)}});
+}
+
 }  // namespace
 
 std::string to_json(const Explanation& explanation) {
-  std::vector<std::string> objects, hands;
+  std::vector<std::string> objects, hands, joints;
   for (const auto& [name, story] : explanation.objects) objects.push_back(object_json(name, story));
   for (const auto& [id, samples] : explanation.hands) hands.push_back(hand_json(id, samples));
+  for (const auto& [name, joint] : explanation.joints) joints.push_back(joint_json(name, joint));
   return json::object({{"input", json::quoted(explanation.input)},
+                       {"facts", list_of(explanation.facts, json::quoted)},
                        {"losses", list_of(explanation.losses, loss_json)},
+                       {"touches", list_of(explanation.touches, touch_json)},
+                       {"moments", list_of(explanation.moments, moment_json)},
+                       {"events", list_of(explanation.events, event_json)},
+                       {"joints", json::list(joints)},
                        {"objects", json::list(objects)},
                        {"hands", json::list(hands)}}) +
          "\n";

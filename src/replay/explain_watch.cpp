@@ -85,6 +85,27 @@ Gathered gathered(const Simulation& simulation, std::size_t body) {
   return all;
 }
 
+bool is_helped(std::size_t body, const SimulationState& state) {
+  return std::any_of(state.grips.begin(), state.grips.end(),
+                     [&](const Grip& grip) { return grip.body == body && grip.bears; });
+}
+
+std::string joint_of(std::size_t body, const Scene& scene) {
+  for (const Joint& joint : scene.joints)
+    if (joint.child == static_cast<int>(body)) return joint.name;
+  return "";
+}
+
+void add_blows(const Simulation& simulation, std::size_t body, ObjectSample& sample) {
+  for (const Contact& contact : simulation.result().contacts) {
+    if (contact.key.body != body || contact.touching() || contact.impulse.isZero(0.0)) continue;
+    const int finger = finger_of(contact.key.capsule);
+    if (std::find(sample.struck.begin(), sample.struck.end(), finger) == sample.struck.end())
+      sample.struck.push_back(finger);
+    sample.struck_by = hand_id(contact, simulation.state());
+  }
+}
+
 InteractionLevel level_of(const SimulationState& state, std::size_t body) {
   InteractionLevel level = InteractionLevel::none;
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot)
@@ -122,6 +143,7 @@ void Explainer::watch(const Simulation& simulation) {
   if (!begun_) first_ = result.stamp;
   begun_ = true;
   const double time = to_seconds(result.stamp - first_);
+  story_.times.push_back(time);
   story_.gravity = simulation.configuration().gravity.value_or(simulation.scene().gravity);
   for (const HandTrack& track : simulation.state().hands) {
     if (!track.active) continue;
@@ -134,6 +156,24 @@ void Explainer::watch(const Simulation& simulation) {
   }
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b)
     if (!simulation.scene().bodies[b].fixed) watch_object(simulation, b, time);
+  for (std::size_t j = 0; j < simulation.scene().joints.size(); ++j) watch_joint(simulation, j, time);
+  for (const Event& event : result.events) {
+    const bool has_body = event.body >= 0;
+    story_.events.push_back(
+        {to_seconds(event.stamp - first_), event.kind,
+         has_body ? simulation.scene().bodies[static_cast<std::size_t>(event.body)].name : std::string(),
+         event.hand_id});
+  }
+}
+
+void Explainer::watch_joint(const Simulation& simulation, std::size_t joint, double time) {
+  const Joint& what = simulation.scene().joints[joint];
+  JointStory& story = story_.joints[what.name];
+  story.body = simulation.scene().bodies[static_cast<std::size_t>(what.child)].name;
+  story.turns = what.kind == JointKind::turning;
+  story.lower = what.lower;
+  story.upper = what.upper;
+  story.samples.push_back({time, simulation.state().joints[joint].position});
 }
 
 void Explainer::watch_object(const Simulation& simulation, std::size_t body, double time) {
@@ -144,11 +184,14 @@ void Explainer::watch_object(const Simulation& simulation, std::size_t body, dou
   story.material = what.material;
   story.radius = what.bounding_radius;
   story.half = half_of(what);
+  story.joint = joint_of(body, simulation.scene());
   const Gathered all = gathered(simulation, body);
   ObjectSample sample;
   sample.time = time;
   sample.level = level_of(simulation.state(), body);
+  sample.helped = is_helped(body, simulation.state());
   sample.fingers = all.fingers;
+  add_blows(simulation, body, sample);
   sample.position = state.pose.position;
   sample.orientation = state.pose.orientation;
   sample.velocity = twist_of(what, state).linear;
@@ -161,7 +204,8 @@ void Explainer::watch_object(const Simulation& simulation, std::size_t body, dou
 
 Explanation Explainer::explain(const std::string& input) {
   story_.input = input;
-  story_.losses = find_losses(story_);
+  find_losses(story_);
+  story_.moments = picture_moments(story_);
   return story_;
 }
 

@@ -112,7 +112,7 @@ void replay(const ReplayArguments& arguments) {
   }
   tell_end(simulation, summary);
   write_summary(arguments.output, summary);
-  explaining.write();
+  explaining.write(summary);
 }
 
 }  // namespace mrhi

@@ -137,7 +137,7 @@ class LogRun {
     if (!simulation_) return;
     tell_end(now(), summary_);
     write_summary(arguments_.output, summary_);
-    explaining_.write();
+    explaining_.write(summary_);
     const LiveRun& live = *summary_.live;
     if (live.parts_at)
       progress_.line("replay: parts from the live run at " + text::number(*live.parts_at) + " s");

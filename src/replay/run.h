@@ -6,6 +6,7 @@
 #include "demonstration.h"
 #include "explain.h"
 #include "log_source.h"
+#include "moment_markers.h"
 #include "mr_hand_interaction/replay/replay.h"
 
 namespace mrhi {
@@ -33,13 +34,14 @@ class Explaining {
   explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
   /// Nothing, if neither is.
   FrameWatcher watcher();
-  /// explain.json and explain.html, demonstration.csv and demonstration.bag. Throws std::runtime_error naming
-  /// what cannot be written.
-  void write();
+  /// explain.json, explain.html and moments.bag, demonstration.csv and demonstration.bag. Throws
+  /// std::runtime_error naming what cannot be written.
+  void write(const ReplaySummary& summary);
 
  private:
   const ReplayArguments& arguments_;
   Explainer explainer_;
+  MomentMarkers markers_;
   Demonstration demonstration_;
 };
 

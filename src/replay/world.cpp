@@ -43,6 +43,14 @@ void add_files(const RecordedFiles& files, World& world) {
   }
 }
 
+/// Whether all that was asked for goes with the body of that name.
+bool goes_with(const std::string& name, const ObjectRequest& request, const SceneOptions& options) {
+  if (!request.whole) return request.name == name;
+  const Scene part = requested_scene(request, options);
+  const std::optional<int> body = find_body(part, name);
+  return body && hanging_on(static_cast<std::size_t>(*body), part).size() == part.bodies.size();
+}
+
 struct Following {
   const LiveSimulation& simulation;
   World& world;
@@ -52,9 +60,10 @@ struct Following {
     add_files(files_of(spawn), world);
   }
   void operator()(const Delete& remove) const {
+    const SceneOptions options = scene_options(simulation.now().configuration());
     const auto added =
         std::find_if(world.added.begin(), world.added.end(),
-                     [&](const ObjectRequest& request) { return request.name == remove.name; });
+                     [&](const ObjectRequest& request) { return goes_with(remove.name, request, options); });
     if (added == world.added.end()) {
       world.removed.push_back(remove.name);
     } else {

@@ -11,8 +11,8 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kUnseen = 0.001;  // a ghost nearer to the hand than this is not drawn [m]
-constexpr double kFull = 0.006;    // at this distance its alpha is greatest [m]
+constexpr double kUnseen = 0.003;  // a ghost nearer to the hand than this is not drawn [m]
+constexpr double kFull = 0.012;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
 constexpr int kSpare = 3 * kMaxHands;  // skin, wrist and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);

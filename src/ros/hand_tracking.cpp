@@ -7,15 +7,12 @@
 #include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "pose_array_hand.h"
+#include "tracker_messages.h"
 
 namespace mrhi {
 namespace {
 
 constexpr int kQueue = 10;
-
-const char* const kPoseArrayTopics[] = {"hands/pose_array", "hands/left/pose_array",
-                                        "hands/right/pose_array"};
 
 const char* const kUnusableHand = "unusable hand";
 const char* const kStampNotIncreasing = "stamp repeats or goes back";
@@ -40,14 +37,16 @@ Side parse_side(const std::string& name) {
 
 HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
     : fixed_frame_(parameters.param<std::string>("fixed_frame", "world")),
-      pose_array_side_(parse_side(parameters.param<std::string>("side", "right"))),
+      side_(parse_side(parameters.param<std::string>("side", "right"))),
       statistics_(known_reasons()),
       node_(node),
       transform_listener_(transforms_),
       diagnostics_(node, parameters, ros::this_node::getName()) {
   publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
   subscribe_leap();
-  for (const char* const topic : kPoseArrayTopics) subscribe_pose_arrays(topic);
+  for_each_tracker([this](auto tracker) {
+    for (const std::string& topic : topics_of(tracker)) subscribe_points<decltype(tracker)>(topic);
+  });
   diagnostics_.setHardwareID("hand tracker");
   diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
   timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
@@ -64,15 +63,16 @@ void HandTracking::subscribe_leap() {
       ros::TransportHints().tcpNoDelay());
 }
 
-void HandTracking::subscribe_pose_arrays(const std::string& topic) {
-  using Event = ros::MessageEvent<const geometry_msgs::PoseArray>;
-  const std::optional<Side> of_topic = side_by_name(topic);
-  pose_array_subscribers_.push_back(node_.subscribe<geometry_msgs::PoseArray>(
+template <class Tracker>
+void HandTracking::subscribe_points(const std::string& topic) {
+  using Message = typename Tracker::Message;
+  using Event = ros::MessageEvent<const Message>;
+  const std::optional<Side> of_topic = side_of_topic(topic);
+  point_subscribers_.push_back(node_.subscribe<Message>(
       topic, kQueue, boost::function<void(const Event&)>([this, of_topic, topic](const Event& event) {
-        const geometry_msgs::PoseArray& message = *event.getConstMessage();
-        statistics_.lost(sequences_.missing(event.getPublisherName() + " " + topic, message.header.seq));
-        const std::optional<Side> side = of_topic ? of_topic : side_by_name(message.header.frame_id);
-        take_pose_array(message, side.value_or(pose_array_side_), event.getReceiptTime());
+        const TrackedPoints tracked = Tracker::read(*event.getConstMessage());
+        statistics_.lost(sequences_.missing(event.getPublisherName() + " " + topic, tracked.header.seq));
+        take_points(tracked, of_topic, event.getReceiptTime());
       }),
       nullptr, ros::TransportHints().tcpNoDelay()));
 }
@@ -97,11 +97,16 @@ void HandTracking::take_leap(const LeapEvent& event) {
   }
 }
 
-void HandTracking::take_pose_array(const geometry_msgs::PoseArray& message, Side side,
-                                   const ros::Time& receipt) {
+void HandTracking::take_points(const TrackedPoints& tracked, const std::optional<Side>& of_topic,
+                               const ros::Time& receipt) {
+  const std::string& frame_id = tracked.header.frame_id;
+  const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
   try {
-    const auto frame = place(joints_from_pose_array(message, side), message.header.frame_id, receipt);
-    take(frame && !has_both_hands(message) ? pairs_.take(side, *frame) : frame, receipt);
+    JointsFrame joints = joints_from_points(tracked, side);
+    if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
+    gaps_.fill(joints);
+    const auto frame = place(std::move(joints), frame_id, receipt);
+    take(frame && !has_both_hands(tracked) ? pairs_.take(side, *frame) : frame, receipt);
   } catch (const DecodeError& error) {
     statistics_.rejected(error.reason(), error.what());
   }

@@ -3,14 +3,9 @@
 #include <mr_hand_interaction/DeleteObject.h>
 #include <mr_hand_interaction/SetParameter.h>
 #include <mr_hand_interaction/SpawnObject.h>
+#include <mr_hand_interaction/SpawnUrdf.h>
 #include <std_srvs/SetBool.h>
-#include <yaml-cpp/yaml.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
-#include "../text/safe_yaml.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -24,41 +19,20 @@ std::string call(ros::ServiceClient& client, Service& service) {
   return service.response.success ? "" : service.response.message;
 }
 
-std::string read_all(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-/// The link's entry among the materials of the scene's YAML, as YAML; empty: none. The scene has been loaded.
-std::string material_of(const std::string& link, const std::string& urdf_file) {
-  const auto yaml_file = std::filesystem::path(urdf_file).replace_extension(".yaml");
-  if (!std::filesystem::exists(yaml_file)) return "";
-  const YAML::Node scene = load_yaml_file(yaml_file.string());
-  if (!scene["materials"] || !scene["materials"][link]) return "";
-  return text::one_line(YAML::Dump(scene["materials"][link]));
-}
-
-const Body& only_body(const std::string& name, const std::string& file, const Scene& scene) {
-  if (scene.bodies.size() == 1 && scene.bodies.front().name == name) return scene.bodies.front();
-  throw SceneError(file + ": is not of one link '" + name + "' with a shape; allowed in a task: that alone");
-}
-
 }  // namespace
 
 TrainingScene::TrainingScene(ros::NodeHandle node, const std::string& simulation, const Task& task)
     : task_(task),
       spawn_(node.serviceClient<mr_hand_interaction::SpawnObject>(simulation + "/spawn")),
+      spawn_urdf_(node.serviceClient<mr_hand_interaction::SpawnUrdf>(simulation + "/spawn_urdf")),
       delete_(node.serviceClient<mr_hand_interaction::DeleteObject>(simulation + "/delete")),
       set_(node.serviceClient<mr_hand_interaction::SetParameter>(simulation + "/set")),
       pause_(node.serviceClient<std_srvs::SetBool>(simulation + "/pause")) {
-  for (const TaskObject& object : task.objects) bodies_[object.name] = load(object.name, object.file);
-  for (const Fixture& fixture : task.fixtures) bodies_[fixture.name] = load(fixture.name, fixture.file);
-}
-
-TrainingScene::Model TrainingScene::load(const std::string& name, const std::string& file) {
-  const std::string urdf = find_scene_file(file, scene_folders());
-  const Scene scene = load_scene(urdf, scene_options({}));
-  return {read_all(urdf), material_of(name, urdf), only_body(name, urdf, scene)};
+  for (const TaskObject& object : task.objects)
+    models_[object.name] = load_object(object, task.goals, scene_folders(), scene_options({}));
+  for (const Fixture& fixture : task.fixtures)
+    models_[fixture.name] =
+        load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders(), scene_options({}));
 }
 
 std::string TrainingScene::set_up() {
@@ -68,7 +42,7 @@ std::string TrainingScene::set_up() {
   if (const std::string wrong = call(set_, gravity); !wrong.empty()) return wrong;
   for (const Fixture& fixture : task_.fixtures) {
     remove(fixture.name);  // of a session before
-    const std::string wrong = spawn(fixture.name, bodies_.at(fixture.name), fixture.pose, {});
+    const std::string wrong = spawn(models_.at(fixture.name));
     if (!wrong.empty()) return wrong;
   }
   set_up_ = true;
@@ -76,22 +50,32 @@ std::string TrainingScene::set_up() {
 }
 
 std::string TrainingScene::prepare(const TaskObject& object) {
+  for (const TaskObject& other : task_.objects) {
+    if (models_.at(other.name).is_device()) remove(other.name);
+  }
   for (const std::string& name : names_) remove(name);
   if (!set_up_) {
     if (const std::string wrong = set_up(); !wrong.empty()) return wrong;
   }
-  return spawn(object.name, bodies_.at(object.name), object.start, object.twist);
+  return spawn(models_.at(object.name));
 }
 
-std::string TrainingScene::spawn(const std::string& name, const Model& model, const Pose& pose,
-                                 const Twist& twist) {
+std::string TrainingScene::spawn(const ObjectModel& model) {
+  const ObjectRequest& request = model.request;
+  if (model.is_device()) {
+    mr_hand_interaction::SpawnUrdf service;
+    service.request.urdf = request.urdf;
+    service.request.joints = request.joints;
+    service.request.pose = to_message(request.pose);
+    return call(spawn_urdf_, service);
+  }
   mr_hand_interaction::SpawnObject service;
-  service.request.name = name;
-  service.request.urdf = model.xml;
-  service.request.pose = to_message(pose * model.body.link_in_body);
-  service.request.twist.linear = vector_message(twist.linear);
-  service.request.twist.angular = vector_message(twist.angular);
-  service.request.material = model.material;
+  service.request.name = request.name;
+  service.request.urdf = request.urdf;
+  service.request.pose = to_message(request.pose);
+  service.request.twist.linear = vector_message(request.twist.linear);
+  service.request.twist.angular = vector_message(request.twist.angular);
+  service.request.material = request.material;
   return call(spawn_, service);
 }
 

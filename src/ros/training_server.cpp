@@ -68,6 +68,14 @@ Nanoseconds now() {
   return from_ros_time(ros::Time::now());
 }
 
+std::optional<mr_hand_interaction::ObjectState> object_of(
+    const mr_hand_interaction::ObjectStateArray& message, const std::string& name) {
+  for (const auto& object : message.objects) {
+    if (object.name == name) return object;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -85,12 +93,16 @@ TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_nod
   advertise_services(private_node);
   using Contacts = mr_hand_interaction::ContactArray;
   using Hands = mr_hand_interaction::HandFrame;
+  using Joints = sensor_msgs::JointState;
   const auto hints = ros::TransportHints().tcpNoDelay();
   subscribers_ = {
       node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
       node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
       node.subscribe<Contacts>(
           "contacts", kQueue, [this](const Contacts::ConstPtr& message) { contacts_ = *message; }, nullptr,
+          hints),
+      node.subscribe<Joints>(
+          "joint_states", kQueue, [this](const Joints::ConstPtr& message) { joints_ = *message; }, nullptr,
           hints),
       node.subscribe<Hands>(
           "hand_frame", kQueue, [this](const Hands::ConstPtr& message) { take_hands(*message, false); },
@@ -138,29 +150,40 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
   for (const auto& object : message.objects) names.insert(object.name);
   scene_.note_objects(std::move(names));
   fixed_frame_ = message.header.frame_id;
-  note_object(message);
+  seen_ = object_of(message, watched().name);
   if (session_.phase() != SessionPhase::running) return;
-  for (const auto& object : message.objects) {
-    if (object.name != session_.object().name) continue;
-    const Observation seen = observed(message, object);
-    const TaskObject& asked = session_.object();
-    at_start_ |= (seen.pose.position - asked.start.position).norm() <
-                 kStartRoom + kStartDelay * asked.twist.linear.norm();
-    if (!at_start_) return;
-    session_.update(seen);
-    tracking_losses_ = 0;
-    put_back_ = false;
-    if (session_.phase() != SessionPhase::running) note_end();
-    if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
-    return;
-  }
+  const std::optional<Observation> seen = observed(message);
+  at_start_ |= seen && starts(*seen);
+  if (!seen || !at_start_) return;
+  session_.update(*seen);
+  tracking_losses_ = 0;
+  put_back_ = false;
+  if (session_.phase() != SessionPhase::running) note_end();
+  if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
 }
 
-void TrainingServer::note_object(const mr_hand_interaction::ObjectStateArray& message) {
-  seen_.reset();
-  for (const auto& object : message.objects) {
-    if (object.name == session_.object().name) seen_ = object;
-  }
+/// Where a trial has it begin; from messages that came before it was put there it may be elsewhere.
+bool TrainingServer::starts(const Observation& seen) const {
+  const ObjectModel& model = scene_.model(session_.object().name);
+  const Body& body = model.scene.bodies[model.body];
+  if ((seen.pose.position - body.start.position).norm() >=
+      kStartRoom + kStartDelay * body.start_twist.linear.norm())
+    return false;
+  if (seen.joints.size() != model.scene.joints.size()) return false;
+  return std::all_of(seen.joints.begin(), seen.joints.end(), [&](const auto& joint) {
+    const double start =
+        model.scene.joints[static_cast<std::size_t>(*find_joint(model.scene, joint.first))].start;
+    return std::abs(joint.second - start) < kStartRoom;
+  });
+}
+
+/// What the participant is to look at: of a device what the goal's joint moves.
+const Body& TrainingServer::watched() const {
+  const ObjectModel& model = scene_.model(session_.object().name);
+  const Goal& goal = session_.task().goals[session_.trial().goal()];
+  if (goal.kind != GoalKind::joint) return model.scene.bodies[model.body];
+  const auto joint = static_cast<std::size_t>(*find_joint(model.scene, goal.joint));
+  return model.scene.bodies[static_cast<std::size_t>(model.scene.joints[joint].child)];
 }
 
 void TrainingServer::take_hands(const mr_hand_interaction::HandFrame& message, bool filtered) {
@@ -187,31 +210,54 @@ Nanoseconds TrainingServer::on_our_clock(const ros::Time& stamp) {
   return from_ros_time(stamp) + clocks_apart_;
 }
 
-Observation TrainingServer::observed(const mr_hand_interaction::ObjectStateArray& message,
-                                     const mr_hand_interaction::ObjectState& object) {
+/// Of the object and what hangs on it; nothing while it is not there.
+std::optional<Observation> TrainingServer::observed(const mr_hand_interaction::ObjectStateArray& message) {
+  const ObjectModel& model = scene_.model(session_.object().name);
   Observation seen;
   seen.stamp = on_our_clock(message.header.stamp);
-  seen.pose = from_message(object.pose);
-  seen.twist = {from_message(object.twist.linear), from_message(object.twist.angular)};
-  seen.held = object.held;
+  seen.pose = model.scene.bodies[model.body].start;  // of a fixture, which no message has
   seen.tracking_losses = tracking_losses_;
   seen.put_back = put_back_;
-  const Nanoseconds apart = from_ros_time(message.header.stamp) - from_ros_time(contacts_.header.stamp);
-  if (std::abs(to_seconds(apart)) > kFresh) return seen;
+  std::set<std::string> parts;
+  bool there = false;
+  for (const Body& body : model.scene.bodies) {
+    parts.insert(body.name);
+    const auto object = object_of(message, body.name);
+    if (!object) continue;
+    there = true;
+    seen.held |= object->held != 0;
+    if (body.name != session_.object().name) continue;
+    seen.pose = from_message(object->pose);
+    seen.twist = {from_message(object->twist.linear), from_message(object->twist.angular)};
+  }
+  if (!there) return std::nullopt;
+  for (std::size_t j = 0; j < std::min(joints_.name.size(), joints_.position.size()); ++j) {
+    if (find_joint(model.scene, joints_.name[j]))
+      seen.joints.emplace_back(joints_.name[j], joints_.position[j]);
+  }
+  feel(message.header.stamp, parts, seen);
+  return seen;
+}
+
+/// What hands do to it.
+void TrainingServer::feel(const ros::Time& stamp, const std::set<std::string>& parts,
+                          Observation& seen) const {
+  const Nanoseconds apart = from_ros_time(stamp) - from_ros_time(contacts_.header.stamp);
+  if (std::abs(to_seconds(apart)) > kFresh) return;
   double pressing = 0.0;
   for (const auto& contact : contacts_.contacts) {
-    if (contact.object != object.name) continue;
+    if (parts.count(contact.object) == 0) continue;
     seen.touched = true;
     pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
   }
   seen.grip_force = 0.5 * pressing;
-  return seen;
 }
 
 void TrainingServer::take_event(const mr_hand_interaction::InteractionEvent& event) {
   if (!at_start_) return;
   tracking_losses_ += event.kind == event.HAND_LOST;
-  put_back_ |= event.kind == event.OUT_OF_BOUNDS && event.object == session_.object().name;
+  put_back_ |= event.kind == event.OUT_OF_BOUNDS &&
+               find_body(scene_.model(session_.object().name).scene, event.object).has_value();
 }
 
 void TrainingServer::tick() {
@@ -322,7 +368,7 @@ void TrainingServer::publish() {
   const mr_hand_interaction::TrainingStatus message = status();
   status_.publish(message);
   if (markers_.getNumSubscribers() > 0)
-    markers_.publish(training_markers(session_, scene_.body(session_.object().name), message, seen_));
+    markers_.publish(training_markers(session_, watched(), message, seen_));
 }
 
 }  // namespace mrhi

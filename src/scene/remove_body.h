@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
 
-/// Takes a body out that no joint holds; joints go on to mean the same ones.
+/// The body and all that hangs on it by joints, in the scene's order.
+std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene);
+
+/// Takes a body out with all that hangs on it; the joints that are left go on to mean the same bodies.
 void remove_body(std::size_t body, Scene& scene);
 
 }  // namespace mrhi

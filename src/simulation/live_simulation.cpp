@@ -81,11 +81,12 @@ std::size_t known_body(const Scene& scene, const std::string& name, bool free_on
                               "'; allowed: " + names_of(scene, free_only));
 }
 
-void check_no_joint(const Scene& scene, int body, const std::string& what) {
+void check_no_joint(const Scene& scene, int body) {
   for (const Joint& joint : scene.joints) {
     if (joint.child != body && joint.parent != body) continue;
-    throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(body)].name + "' cannot " + what +
-                                ": joint '" + joint.name + "' holds it; allowed: objects without joints");
+    throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(body)].name +
+                                "' cannot be placed: joint '" + joint.name +
+                                "' holds it; allowed: objects without joints");
   }
 }
 
@@ -137,20 +138,25 @@ void LiveSimulation::add(const Scene& part) {
 void LiveSimulation::remove(const std::string& name) {
   Scene scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, false);
-  check_no_joint(scene, static_cast<int>(body), "be removed");
   remove_body(body, scene);
   go_on_with(scene, simulation_->configuration());
 }
 
 std::vector<Event> LiveSimulation::events_if_removed(const std::string& name) const {
+  const Scene& scene = simulation_->scene();
   SimulationState state = simulation_->state();
-  return end_interactions_with(known_body(simulation_->scene(), name, false), state);
+  std::vector<Event> events;
+  for (const std::size_t body : hanging_on(known_body(scene, name, false), scene)) {
+    const std::vector<Event> of_body = end_interactions_with(body, state);
+    events.insert(events.end(), of_body.begin(), of_body.end());
+  }
+  return events;
 }
 
 void LiveSimulation::place(const std::string& name, const Pose& pose) {
   const Scene& scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, true);
-  check_no_joint(scene, static_cast<int>(body), "be placed");
+  check_no_joint(scene, static_cast<int>(body));
   BodyState at_rest;
   at_rest.pose = checked_pose(name, pose, scene.bounds);
   SimulationState state = simulation_->state();

@@ -1,6 +1,6 @@
 #include "hand_anatomy.h"
 
-#include <Eigen/SVD>
+#include "../math/registration.h"
 
 namespace mrhi {
 namespace {
@@ -34,12 +34,6 @@ Correspondences correspondences(const HandJoints& hand) {
   return points;
 }
 
-Vector3 mean(const std::array<Vector3, 10>& points, std::size_t size) {
-  Vector3 sum = Vector3::Zero();
-  for (std::size_t i = 0; i < size; ++i) sum += points[i];
-  return sum / static_cast<double>(size);
-}
-
 }  // namespace
 
 Vector3 PalmFit::place(const Vector3& anatomical) const {
@@ -47,28 +41,14 @@ Vector3 PalmFit::place(const Vector3& anatomical) const {
 }
 
 std::optional<PalmFit> fit_palm(const HandJoints& hand) {
-  constexpr double kLeastSpread = 1e-6;  // of the second principal direction [m^2]
   const Correspondences points = correspondences(hand);
-  if (points.size < 3) return std::nullopt;
-  const Vector3 anatomical_mean = mean(points.anatomical, points.size);
-  const Vector3 measured_mean = mean(points.measured, points.size);
-  Matrix3 covariance = Matrix3::Zero();
-  double spread = 0.0;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const Vector3 offset = points.anatomical[i] - anatomical_mean;
-    covariance += (points.measured[i] - measured_mean) * offset.transpose();
-    spread += offset.squaredNorm();
-  }
-  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()[1] > kLeastSpread * static_cast<double>(points.size))) return std::nullopt;
-  Vector3 signs = Vector3::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
+  const auto found = registered(points.anatomical.data(), points.measured.data(), points.size);
+  if (!found) return std::nullopt;
   PalmFit fit;
   fit.side = hand.side;
-  fit.scale = signs.dot(svd.singularValues()) / spread;
-  const Matrix3 rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  fit.palm.orientation = Quaternion(rotation).normalized();
-  fit.palm.position = measured_mean - fit.scale * (rotation * anatomical_mean);
+  fit.scale = found->scale;
+  fit.palm.orientation = Quaternion(found->rotation).normalized();
+  fit.palm.position = found->to - fit.scale * (found->rotation * found->from);
   if (!(fit.scale > 0.3 && fit.scale < 2.5)) return std::nullopt;
   return fit;
 }

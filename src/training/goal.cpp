@@ -41,6 +41,10 @@ bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
       return seen.held;
     case GoalKind::nudge_into:
       return !seen.held && in_box(goal, position) && seen.twist.linear.norm() <= goal.max_speed;
+    case GoalKind::joint:
+      return std::any_of(seen.joints.begin(), seen.joints.end(), [&goal](const auto& joint) {
+        return joint.first == goal.joint && joint.second >= goal.above && joint.second <= goal.below;
+      });
     case GoalKind::strike:
     case GoalKind::release:
       break;

@@ -14,6 +14,7 @@ namespace {
 using Element = YamlElement;
 
 constexpr double kDegree = M_PI / 180.0;
+constexpr Range kJointPlace{-1e3, 1e3};
 
 void speed_range(const Element& element, Goal& goal) {
   const char* const allowed = "[slowest, fastest] in m/s, slowest at least 0 and below fastest";
@@ -52,6 +53,9 @@ const std::map<std::string, std::function<void(const Element&, Goal&)>>& goal_ke
        }},
       {"distance", [](E e, Goal& g) { g.distance = number(e, kFromZero, " [m]"); }},
       {"within", [](E e, Goal& g) { g.within = number(e, kAboveZero, " [s]"); }},
+      {"name", [](E e, Goal& g) { g.joint = name(e); }},
+      {"above", [](E e, Goal& g) { g.above = number(e, kJointPlace, " [rad], [m]"); }},
+      {"below", [](E e, Goal& g) { g.below = number(e, kJointPlace, " [rad], [m]"); }},
       {"max_speed", [](E e, Goal& g) { g.max_speed = number(e, kAboveZero, " [m/s]"); }},
       {"min_speed", [](E e, Goal& g) { g.min_speed = number(e, kAboveZero, " [m/s]"); }},
       {"speed", [](E e, Goal& g) { speed_range(e, g); }},
@@ -88,11 +92,19 @@ const std::map<std::string, GoalForm>& goal_forms() {
       {"catch", {Kind::catch_it, Stage::manipulation, {"within"}, {"hold", "leaving"}, 1.0}},
       {"nudge_into",
        {Kind::nudge_into, Stage::manipulation, {"position", "size", "max_speed"}, {"hold", "leaving"}}},
+      {"joint",
+       {Kind::joint, Stage::manipulation, {"name"}, {"above", "below", "within", "hold", "leaving"}}},
       {"tap", {Kind::strike, Stage::manipulation, {"speed"}, {}}},
       {"slap", {Kind::strike, Stage::manipulation, {"min_speed"}, {}}},
       {"release", {Kind::release, Stage::release, {}, {"drift_time"}}},
   };
   return forms;
+}
+
+void check_range(const Element& keys, const Goal& goal) {
+  if (goal.above == -Joint::kUnlimited && goal.below == Joint::kUnlimited)
+    keys.fail("neither above nor below; allowed: either, or both");
+  if (goal.above > goal.below) keys.fail("above is more than below; allowed: at most as much");
 }
 
 std::vector<std::string> keys_of(const GoalForm& form) {
@@ -120,6 +132,7 @@ Goal read_goal(const YamlElement& element) {
   if (keys.node.IsNull() && form.needed.empty()) return goal;
   for (const std::string& key : checked_keys(keys, keys_of(form))) goal_keys().at(key)(keys.at(key), goal);
   check_has(keys, form.needed);
+  if (goal.kind == GoalKind::joint) check_range(keys, goal);
   return goal;
 }
 
@@ -129,10 +142,12 @@ void check_order(const YamlElement& element, const std::vector<Goal>& goals) {
     if (goals[i].stage > goals[i + 1].stage) {
       element.at(i + 1).fail(
           std::string(to_string(goals[i + 1].kind)) + " after " + to_string(goals[i].kind) +
-          "; allowed: pick, catch, nudge_into, tap, slap, then place, insert, then release");
+          "; allowed: pick, catch, nudge_into, joint, tap, slap, then place, insert, then release");
     }
   }
-  const auto holds = [](GoalKind kind) { return kind != GoalKind::nudge_into && kind != GoalKind::strike; };
+  const auto holds = [](GoalKind kind) {
+    return kind != GoalKind::nudge_into && kind != GoalKind::strike && kind != GoalKind::joint;
+  };
   if (goals.back().kind == GoalKind::release && (goals.size() == 1 || !holds(goals[goals.size() - 2].kind)))
     element.at(goals.size() - 1)
         .fail("release after nothing that is held; allowed: after pick, place, insert, catch");

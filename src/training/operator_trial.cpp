@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../scene/append_scene.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/training/object_model.h"
 
 namespace mrhi {
 namespace {
@@ -16,13 +18,6 @@ constexpr double kHalfStand = 0.02;  // [m]
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
   return box != nullptr ? box->half_extents.z() : body.bounding_radius;
-}
-
-/// Of a scene that holds it alone.
-Body load_body(const std::string& name, const std::string& file, const OperatorStage& stage) {
-  const Scene scene = load_scene(find_scene_file(file, stage.scene_folders), stage.scene_options);
-  if (scene.bodies.size() == 1 && scene.bodies.front().name == name) return scene.bodies.front();
-  throw SceneError(file + ": is not of one link '" + name + "' with a shape; allowed in a task: that alone");
 }
 
 bool is_place(const Goal& goal) {
@@ -54,17 +49,17 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
   Scene scene;
   scene.name = task.name;
   scene.gravity = task.gravity;
-  scene.bodies.push_back(load_body(object.name, object.file, stage));
-  Body& body = scene.bodies.front();
-  body.start = object.start;
-  body.start_twist = object.twist;
+  const ObjectModel model = load_object(object, task.goals, stage.scene_folders, stage.scene_options);
+  append(model.scene, scene);
   for (const Fixture& fixture : task.fixtures) {
-    scene.bodies.push_back(load_body(fixture.name, fixture.file, stage));
-    scene.bodies.back().start = fixture.pose;
+    append(load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, stage.scene_folders,
+                       stage.scene_options)
+               .scene,
+           scene);
     scene.bodies.back().fixed = true;
   }
   scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
-  if (task.gravity != Vector3::Zero()) {
+  if (task.gravity != Vector3::Zero() && !model.is_device()) {
     scene.bodies.push_back(stand_under(scene.bodies.front()));
     const Body& stand = scene.bodies.back();
     scene.bounds.min.z() = stand.start.position.z() - kHalfStand - kFallen;

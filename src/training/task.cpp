@@ -12,7 +12,8 @@ const char* to_string(TrainingStage stage) {
 }
 
 const char* to_string(GoalKind kind) {
-  static const char* const names[] = {"pick", "place", "insert", "catch", "nudge_into", "strike", "release"};
+  static const char* const names[] = {"pick",       "place",  "insert", "catch",
+                                      "nudge_into", "strike", "joint",  "release"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -47,6 +48,8 @@ std::string instruction(const Task& task, std::size_t index, const std::string& 
     case GoalKind::strike:
       return "Strike " + thing + ": it is to leave your hand at " + text::number(goal.min_speed) + " to " +
              text::number(goal.max_speed) + " m/s";
+    case GoalKind::joint:
+      return "Work the " + text::with_spaces(goal.joint);
     case GoalKind::release:
       break;
   }

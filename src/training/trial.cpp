@@ -110,10 +110,17 @@ void Trial::hold(const Observation& seen, Nanoseconds passed) {
   if (untouched_ >= kTouchOver) touching_ = false;
   if (met && timer_ >= nanoseconds(goal.hold)) {
     achieve();
-  } else if (goal.kind == GoalKind::catch_it && measures_.attempts == 0 &&
-             elapsed_ > nanoseconds(goal.within)) {
+  } else if (too_late()) {
     finish(TrialResult::timed_out);
   }
+}
+
+bool Trial::too_late() const {
+  const Goal& goal = now();
+  if (!goal.within) return false;
+  const Nanoseconds within = nanoseconds(*goal.within);
+  if (goal.kind == GoalKind::joint) return !inside_ && elapsed_ - goal_begun_ > within;
+  return measures_.attempts == 0 && elapsed_ > within;
 }
 
 void Trial::strike(const Observation& seen) {
@@ -166,6 +173,7 @@ void Trial::achieve() {
     return;
   }
   inside_ = false;
+  goal_begun_ = elapsed_;
   ++goal_;
 }
 

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include "mr_hand_interaction/replay/frame_source.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "replay/replay_files.h"
 #include "support/grips.h"
 
 namespace mrhi {
@@ -155,6 +158,84 @@ TEST(Explain, the_push_that_would_have_held_holds) {
   const double factor = (loss.push + loss.push_needed) / loss.push;
   attempt.overlap *= 1.05 * factor;
   EXPECT_TRUE(attempt.run().losses.empty());
+}
+
+/// A finger strikes the cube from one side, and it flies away.
+Explanation struck() {
+  Simulation simulation(Attempt().scene(), testing::unfiltered(ContactModelKind::implicit));
+  Explainer explainer;
+  for (int i = 0; i < 60; ++i) {
+    const double t = i / kRate, at_x = -kHalf - 0.02 + 0.5 * std::min(t, 0.045);
+    Hand hand = testing::empty_hand();
+    testing::add_flat_finger(hand, capsule_index(1, 3), Vector3(at_x, 0, 0), -Vector3::UnitX(),
+                             Vector3::UnitY());
+    simulation.advance({at(t), {hand}});
+    explainer.watch(simulation);
+  }
+  return explainer.explain("struck");
+}
+
+TEST(Explain, what_one_finger_sweeps_away_was_touched_and_is_no_loss) {
+  const Explanation story = struck();
+  EXPECT_TRUE(story.losses.empty());
+  ASSERT_EQ(story.touches.size(), 1u);
+  EXPECT_EQ(story.touches[0].fingers, std::vector<int>{1});
+  EXPECT_GT(story.touches[0].speed, 0.05);
+  EXPECT_NE(to_html(story).find("the index touched it"), std::string::npos);
+}
+
+TEST(Explain, pictures_are_wanted_of_the_grasp_and_of_its_end_from_across_the_grip) {
+  Attempt attempt;
+  attempt.opens_at = 0.9;
+  const Explanation story = attempt.run();
+  ASSERT_EQ(story.moments.size(), 3u);
+  EXPECT_STREQ(to_string(story.moments[0].what), "grasp");
+  EXPECT_STREQ(to_string(story.moments[1].what), "before_loss");
+  EXPECT_STREQ(to_string(story.moments[2].what), "loss");
+  EXPECT_NEAR(story.moments[1].time, story.losses[0].until - 0.15, 1.1 / kRate);
+  for (const PictureMoment& moment : story.moments) {
+    EXPECT_EQ(moment.loss, std::optional<std::size_t>(0));
+    EXPECT_NEAR(std::abs(moment.across.x()), 1.0, 0.05);
+  }
+  const std::string page = to_html(story);
+  for (const char* place : {"<!--picture 0-->", "<!--picture 1-->", "<!--picture 2-->"})
+    EXPECT_NE(page.find(place), std::string::npos) << place;
+}
+
+TEST(Explain, a_hand_that_opens_is_told_from_when_it_does) {
+  Attempt attempt;
+  attempt.opens_at = 0.9;
+  const Loss loss = only_loss(attempt);
+  EXPECT_GT(loss.opened, attempt.opens_at);
+  EXPECT_LT(loss.opened,
+            attempt.opens_at + 0.1);  // a tenth of the way that has let go, in a smooth motion of 0.3 s
+}
+
+/// A scripted hand works the shipped panel's drawer.
+Explanation panel_story() {
+  const Scene scene = load_scene("config/scenes/panel.urdf", {});
+  Simulation simulation(scene, Configuration());
+  Explainer explainer;
+  for (const JointsFrame& joints : test::motion_frames("open_drawer", 100.0, 0)) {
+    HandFrame frame = *placed(joints, default_device_mount()).frame;
+    if (simulation.advance(frame) == Rejection::none) explainer.watch(simulation);
+  }
+  return explainer.explain("panel");
+}
+
+TEST(Explain, a_joint_is_told_with_how_far_it_was_moved_and_its_events) {
+  const Explanation story = panel_story();
+  ASSERT_EQ(story.joints.size(), 6u);
+  const auto [name, drawer] = *std::find_if(story.joints.begin(), story.joints.end(), [](const auto& joint) {
+    return joint.first.find("drawer") != std::string::npos;
+  });
+  EXPECT_FALSE(drawer.turns);
+  const std::string page = to_html(story);
+  EXPECT_NE(page.find("<b>" + name + "</b>"), std::string::npos);
+  EXPECT_NE(page.find("Not moved: "), std::string::npos);
+  ASSERT_FALSE(story.losses.empty());
+  EXPECT_STREQ(to_string(story.losses.back().cause), "hand_opened") << story.losses.back().text;
+  EXPECT_EQ(YAML::Load(to_json(story))["joints"].size(), 6u);
 }
 
 TEST(Explain, fingers_have_their_pushes_shares_and_faces) {

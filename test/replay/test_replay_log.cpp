@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cstring>
 #include <filesystem>
+#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
@@ -9,6 +11,7 @@
 #include "replay/replay_files.h"
 #include "replay/run.h"
 #include "simulation/state_bytes.h"
+#include "text/file_text.h"
 
 namespace mrhi {
 namespace {
@@ -174,6 +177,33 @@ TEST(ReplayLog, a_recording_that_begins_in_the_middle_gives_the_live_run_s_hash_
   EXPECT_EQ(summary["gravity"][2].as<double>(), -0.1);
 }
 
+/// The shipped hatch, `higher`.
+Spawn hatch(double higher) {
+  Spawn spawn;
+  spawn.request.whole = true;
+  spawn.request.urdf = file_text("config/scenes/hatch.urdf", 1u << 20).value();
+  spawn.request.pose.position = {0.0, 0.3, higher};
+  return spawn;
+}
+
+TEST(ReplayLog, a_device_that_was_there_is_gone_and_came_again_is_there_once) {
+  const auto frames = test::motion_frames("grasp_cube", kRate, 0);
+  Live live("config/scenes/cube.urdf", Configuration());
+  live.change(hatch(0.0));
+  live.change(Delete{"wall"});
+  live.change(hatch(0.1));
+  live.change(Delete{"latch_top"});
+  live.play(frames, 0.0, 1.0);
+  live.begin_recording();
+  live.play(frames, 1.0, 2.0);
+  live.change(Delete{"wall"});
+  live.change(hatch(0.2));
+  live.play(frames, 2.0, 2.5);
+  const YAML::Node summary = Replayed().run(live), run = summary["live_run"];
+  EXPECT_EQ(run["same"].as<std::size_t>(), live.entries.size());
+  EXPECT_EQ(summary["not_known"].size(), 0u);
+}
+
 TEST(ReplayLog, what_is_left_out_of_the_log_is_told_with_the_time_from_which_all_is_other) {
   Live live = eventful();
   const auto change = std::find_if(live.entries.begin(), live.entries.end(), [](const LogEntry& entry) {
@@ -218,6 +248,36 @@ TEST(ReplayLog, another_version_s_state_or_parameters_are_told_and_the_rest_is_d
   EXPECT_EQ(summary["not_known"].size(), 3u);
   EXPECT_GT(summary["frames"].as<int>(), 100);
   EXPECT_EQ(summary["error"].IsDefined(), false);
+}
+
+/// Formats have been told by one number more for each change, the first 8 bytes of a state.
+TEST(ReplayLog, a_state_of_an_older_or_newer_format_gives_one_line_and_begins_at_the_scene_s_start) {
+  for (const int step : {-3, -2, -1, 1}) {
+    Live live = eventful();
+    std::string& state = live.entries.front().state;
+    std::uint64_t format = 0;
+    std::memcpy(&format, state.data(), sizeof format);
+    format += static_cast<std::uint64_t>(step);
+    std::memcpy(&state[0], &format, sizeof format);
+    Replayed replayed;
+    const YAML::Node summary = replayed.run(live);
+    ASSERT_EQ(summary["not_known"].size(), 1u) << step;
+    const std::string line = summary["not_known"][0].as<std::string>();
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_NE(line.find("of another version"), std::string::npos) << line;
+    EXPECT_GT(summary["frames"].as<int>(), 100);
+    EXPECT_EQ(summary["live_run"]["parts_at"].as<double>(), 0.0) << "from its first entry on";
+    // The cube is where the scene has it, and in no hand: the recording began as it was held.
+    const std::string first = test::lines_of(replayed.folder / "out/objects.csv").at(1);
+    const Scene scene = load_scene("config/scenes/cube.urdf", {});
+    std::istringstream cells(first.substr(first.find("cube,") + 5));
+    for (int axis = 0; axis < 3; ++axis) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      EXPECT_NEAR(std::stod(cell), scene.bodies.back().start.position[axis], 1e-3)
+          << first;  // 0.1 m/s^2, 10 ms
+    }
+  }
 }
 
 TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {

@@ -109,8 +109,7 @@ class LiveChangesTest(unittest.TestCase):
         self.assertNotIn("box", self.objects)
         wait_until(lambda: self.viewer.objects() == 1, "its marker gone")
 
-    def test_with_joints_a_urdf_comes_and_the_world_is_saved_as_it_is(self):
-        """The last by its name: what hangs on joints cannot be taken away again."""
+    def test_with_joints_a_urdf_comes_and_goes_and_the_world_is_saved_as_it_is(self):
         with open(os.path.join(rospkg.RosPack().get_path("mr_hand_interaction"), "config/scenes/tongs.urdf")) as urdf:
             request = SpawnUrdfRequest(name="my", urdf=urdf.read(), joints="{tongs_hinge: {start: 0.3}}")
         request.pose.position.y = 0.4
@@ -130,6 +129,9 @@ class LiveChangesTest(unittest.TestCase):
                 self.assertIn("my_tongs_hinge", urdf.read())
             with open(os.path.join(folder, "world.yaml")) as settings:
                 self.assertIn("my_tongs_hinge", settings.read())
+        self.assertTrue(self.delete("my_tongs").success)
+        self.clock.go_on(INSTANT)
+        self.assertEqual(list(self.objects), ["cube"])
 
     def test_one_line_says_why_an_object_is_refused(self):
         for answer in (self.spawn_box("cube"), self.spawn_box("a b"), self.spawn_box("far", y=50.0),

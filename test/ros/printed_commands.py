@@ -4,7 +4,6 @@ import glob
 import os
 import re
 import shlex
-import shutil
 import subprocess
 
 import rosbag
@@ -24,14 +23,14 @@ NAME = "mr_hand_interaction"
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PAGES = [os.path.join(PACKAGE, "README.md")] + sorted(glob.glob(os.path.join(PACKAGE, "docs", "*.md")))
 BEGINNINGS = re.compile(r"(roslaunch|rosrun|rosservice|rostopic|rosbag|rosdep|rosparam|snakemake|make|source|export|cd|git|"
-                        r"apt-get|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
+                        r"apt-get|plotjuggler|real_grasps|simulated_study|replay|scripts/\w+|benchmark/[\w/]+\.py) ?")
 
 EXCEPTED = (  # what the command begins with, and why it is not run here
     ("git clone|cd ~/catkin_ws|rosdep", "fetches and builds a workspace"),
     ("apt-get install", "installs packages"),
     ("source devel/setup.bash", "this test would not be found without"),
     ("export ROS_", "addresses of the user's machines"),
-    ("rosrun rqt_(reconfigure|plot)", "Debian 12 does not have it"),
+    ("rosrun rqt_(reconfigure|plot|multiplot)|plotjuggler", "Debian 12 does not have it"),
     ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
     ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
     ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),
@@ -136,27 +135,32 @@ class User:
 
     def write_files(self):
         """What the commands name as the user's."""
-        bag = os.path.join(self.folder, "hand.bag")
+        self.write_bag("hand.bag", of_a_live_run=True)
+        self.write_bag("hands.bag", of_a_live_run=False)
+        with open(os.path.join(self.folder, "points.yaml"), "w", encoding="utf-8") as file:
+            file.write("points:\n")
+            for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
+                file.write("  - {name: p%d, world: [%g, %g, %g], device: [%g, %g, %g]}\n" % (index, x, y, z, x, z, -y))
+
+    def write_bag(self, name, of_a_live_run):
+        """Three seconds of the scripted hand; a live run's says what the simulation took, here frames without a hand."""
         with open(os.path.join(PACKAGE, "config", "scenes", "cube.urdf"), "rb") as scene:
-            files = [RecordedFile("scene.urdf", scene.read())]
-        with rosbag.Bag(bag, "w") as file:
-            begin = SimulationInput(kind=SimulationInput.BEGIN, run=1, text="{version: '0', scene: cube}", files=files)
-            file.write("/simulation_input", begin, rospy.Time.from_sec(999.0))
+            begin = SimulationInput(kind=SimulationInput.BEGIN, run=1, text="{version: '0', scene: cube}",
+                                    files=[RecordedFile("scene.urdf", scene.read())])
+        with rosbag.Bag(os.path.join(self.folder, name), "w") as file:
+            if of_a_live_run:
+                file.write("/simulation_input", begin, rospy.Time.from_sec(999.0))
             for number, row in enumerate(recording(self.folder, 30)[:90], 1):
                 stamp = rospy.Time.from_sec(1000.0 + float(row["time_s"]))
-                taken = SimulationInput(kind=SimulationInput.FRAME, run=1, sequence=number, time=stamp.to_nsec(),
-                                        expected=stamp.to_nsec())
-                file.write("/simulation_input", taken, stamp)
+                if of_a_live_run:
+                    taken = SimulationInput(kind=SimulationInput.FRAME, run=1, sequence=number, time=stamp.to_nsec(),
+                                            expected=stamp.to_nsec())
+                    file.write("/simulation_input", taken, stamp)
                 message = PoseArray(poses=[Pose() for _ in joints(row, 21)])
                 message.header.stamp, message.header.frame_id = stamp, "leap_hands"
                 for pose, place in zip(message.poses, joints(row, 21)):
                     pose.position.x, pose.position.y, pose.position.z = place
                 file.write("/hands/right/pose_array", message, stamp)
-        shutil.copy(bag, os.path.join(self.folder, "hands.bag"))
-        with open(os.path.join(self.folder, "points.yaml"), "w", encoding="utf-8") as file:
-            file.write("points:\n")
-            for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
-                file.write("  - {name: p%d, world: [%g, %g, %g], device: [%g, %g, %g]}\n" % (index, x, y, z, x, z, -y))
 
     def words(self, command):
         """As a shell would split it, and with the values that a user fills in."""

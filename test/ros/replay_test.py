@@ -4,6 +4,7 @@ import csv
 import glob
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -105,8 +106,8 @@ class ReplayTest(unittest.TestCase):
             hashes = {int(row["sequence"]): (int(row["stamp"]), row["state_hash"]) for row in csv.DictReader(file)}
         return summary, hashes, output
 
-    def check_it_is_the_live_run(self, bag):
-        summary, hashes, output = self.replay(bag)
+    def check_it_is_the_live_run(self, bag, *arguments):
+        summary, hashes, output = self.replay(bag, *arguments)
         live = summary["live_run"]
         self.assertEqual((live["missing"], live["parts_at"], live["overridden"], summary["not_known"]),
                          (0, None, [], []))
@@ -135,6 +136,26 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_inputs(300)  # some seconds, as the node tells its state once in each
         summary = self.check_it_is_the_live_run(self.bag)
         self.assertIn("GRASP_END", summary["events"])
+        self.check_it_is_explained_with_pictures()
+
+    def check_it_is_explained_with_pictures(self):
+        output = os.path.join(self.folder, "explained")
+        done = subprocess.run([os.path.join(self.package(), "scripts", "explain"), self.bag, "--output", output],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=RUN)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("hand_opened: cube", done.stdout)
+        with open(output + "/explain.html") as file:
+            page = file.read()
+        self.assertNotIn("http", page)
+        if not all(shutil.which(tool) for tool in ("rviz", "Xvfb", "import")):
+            self.assertIn("explain: no pictures: ", done.stderr)
+            return
+        self.assertNotIn("no pictures", done.stderr)
+        self.assertNotIn("<!--picture", page)
+        pictures = re.findall("src='data:image/jpeg;base64,([^']*)'", page)
+        self.assertGreaterEqual(len(pictures), 3)  # the grasp, before its end, its end
+        for picture in pictures:  # a bare background of this size has 1 kB
+            self.assertTrue(4000 < 0.75 * len(picture) < 40000, len(picture))
 
     def test_a_tuned_and_disturbed_run(self):
         mesh = os.path.basename(sorted(glob.glob(os.path.join(self.package(), "config", "meshes", "*.stl")))[0])
@@ -168,6 +189,30 @@ class ReplayTest(unittest.TestCase):
         summary, _, _ = self.replay(self.bag, "--set", "material/dynamic_friction=0.3")
         self.assertEqual(summary["live_run"]["compared"], 0)
         self.assertIn("material/dynamic_friction=0.3 instead of 0.6", "\n".join(summary["live_run"]["overridden"]))
+
+    def test_joints_in_the_scene_that_are_worked_by_hand_and_changed(self):
+        with self.recording():
+            with Launch("demo.launch", "rviz:=false", "scene:=panel", "motion:=open_drawer"):
+                self.wait_for_recorder()
+                wait_until(lambda: InteractionEvent.GRASP_BEGIN in self.kinds, "a grasp", RUN)
+                self.call("set", SetParameter, "material/static_friction", "1.0")
+                wait_until(lambda: InteractionEvent.GRASP_END in self.kinds, "the end of the grasp", RUN)
+                self.wait_for_inputs(100)
+                self.call("reset", Trigger)
+                self.wait_for_inputs(100)
+        summary = self.check_it_is_the_live_run(self.bag, "--explain")
+        self.assertEqual(summary["scene"], "panel")
+        output = os.path.join(self.folder, "out")
+        with open(output + "/joints.csv") as file:
+            drawer = [float(row["position"]) for row in csv.DictReader(file) if row["name"] == "drawer_slide"]
+        self.assertGreater(max(drawer), 0.05)
+        self.assertLess(abs(drawer[-1]), 0.001)  # since the reset
+        with open(output + "/explain.json") as file:
+            story = json.load(file)
+        told = {joint["name"]: [sample["position"] for sample in joint["samples"]] for joint in story["joints"]}
+        self.assertAlmostEqual(max(told["drawer_slide"]), max(drawer), 5)
+        with open(output + "/explain.html") as file:
+            self.assertIn("drawer_slide", file.read())
 
     def test_a_training_session_with_three_objects(self):
         session = os.path.join(self.folder, "session")

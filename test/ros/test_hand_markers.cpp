@@ -84,10 +84,10 @@ TEST(HandMarkers, the_ghost_is_seen_where_the_tracked_hand_is_elsewhere_and_more
   EXPECT_EQ(shown.update()["ghost"], 0);
   const auto tip = static_cast<std::size_t>(capsule_index(1, 3));
   float before = 0.0f;
-  for (const double shift : {0.0005, 0.003, 0.006}) {
+  for (const double shift : {0.002, 0.006, 0.012}) {
     shown.result.tracked[0] = shown.result.rendered[0].hand;
     shown.result.tracked[0].capsules[tip].end.z() -= shift;
-    const bool seen = shift > 0.001;
+    const bool seen = shift > 0.003;
     ASSERT_EQ(shown.update()["ghost"], seen);
     if (!seen) continue;
     const Marker& ghost = shown.first("ghost");

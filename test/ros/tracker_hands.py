@@ -47,3 +47,16 @@ class Noise:
 
     def on(self, points):
         return [tuple(x + self.random.gauss(0.0, self.deviation) for x in point) for point in points]
+
+
+class Dropouts:
+    """Joints that are not tracked, None in their place: of each frame a share at random, and in bursts of some seconds
+    some that a hand hides from its tracker; the same for the same seed."""
+
+    def __init__(self, share=0.0, hidden=(), burst=0.0, every=1.0, seed=1):
+        self.share, self.hidden, self.burst, self.every, self.random = share, hidden, burst, every, random.Random(seed)
+
+    def on(self, points, time):
+        hides = time % self.every < self.burst
+        return [None if self.random.random() < self.share or (hides and i in self.hidden) else point
+                for i, point in enumerate(points)]

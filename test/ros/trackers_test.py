@@ -16,7 +16,8 @@ import rosbag
 import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import PoseArray, PoseStamped, WrenchStamped
+from geometry_msgs.msg import Point32, PoseArray, PoseStamped, WrenchStamped
+from sensor_msgs.msg import PointCloud
 from std_msgs.msg import String
 
 from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray
@@ -24,7 +25,7 @@ from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
 from standing_clock import StandingClock  # noqa: E402
-from tracker_hands import Noise, joints, program, recording  # noqa: E402
+from tracker_hands import Dropouts, Noise, joints, program, recording  # noqa: E402
 from waiting import wait_until  # noqa: E402
 
 PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
@@ -55,13 +56,28 @@ def in_world(place):
 class Motion:
     """What a tracker gives of the scripted hand, as messages with stamps from 1010 s on: the nodes' clock is behind."""
 
-    def __init__(self, folder, count, rate, noise=0.0, seed=1):
+    def __init__(self, folder, count, rate, noise=0.0, seed=1, dropouts=Dropouts()):
         disturb = Noise(noise, seed)
         self.times, self.messages = [], []
         for row in recording(folder, rate):
             points = [in_world(place) for place in disturb.on(joints(row, count))]
+            points = dropouts.on(points, float(row["time_s"]))
             self.times.append(1010.0 + float(row["time_s"]))
             self.messages.append(EXAMPLE["hand"](points, "world", rospy.Time.from_sec(self.times[-1])))
+
+    def as_point_clouds(self):
+        self.messages = [PointCloud(header=array.header, points=[Point32(p.position.x, p.position.y, p.position.z)
+                                                                 for p in array.poses]) for array in self.messages]
+        return self
+
+
+def thumb(count):
+    first = {21: 1, 25: 1, 26: 2}[count]
+    return range(first, first + 4)
+
+
+def tips_of_thumb_and_index(count):
+    return {21: (4, 8), 25: (4, 9), 26: (5, 10)}[count]
 
 
 class TrackersTest(unittest.TestCase):
@@ -77,6 +93,7 @@ class TrackersTest(unittest.TestCase):
                                                     ("objects", ObjectStateArray, cls.take_objects))]
         cls.hands = {side: rospy.Publisher("hands/%s/pose_array" % side, PoseArray, queue_size=10)
                      for side in ("left", "right")}
+        cls.clouds = rospy.Publisher("hands/right/point_cloud", PointCloud, queue_size=10)
 
     @classmethod
     def tearDownClass(cls):
@@ -97,7 +114,7 @@ class TrackersTest(unittest.TestCase):
 
     def connected(self):
         return (all(s.get_num_connections() == 1 for s in self.subscribers) and
-                all(p.get_num_connections() == 1 for p in self.hands.values()))
+                all(p.get_num_connections() == 1 for p in (*self.hands.values(), self.clouds)))
 
     def drive(self, motion, *arguments, watch=lambda: None):
         """Gives each frame to the nodes once they have shown the one before, so that none is lost."""
@@ -108,7 +125,7 @@ class TrackersTest(unittest.TestCase):
             self.lead_in(motion)
             self.clear()
             for message in motion.messages:
-                self.hands["right"].publish(message)
+                (self.clouds if isinstance(message, PointCloud) else self.hands["right"]).publish(message)
                 wait_until(lambda: all(message.header.stamp in kept for kept in self.kept.values()),
                            "what comes of the frame at %s" % message.header.stamp)
                 watch()
@@ -181,20 +198,40 @@ class TrackersTest(unittest.TestCase):
             allowed = int((1.0 - AT_ONCE) * runs) if noise == max(NOISES) else 0
             self.assertLessEqual(len(faults), allowed, "%g m: %s" % (noise, faults))
 
+    def test_joints_that_vanish_for_moments_cost_no_grasp(self):
+        faults = []
+        for count, rate in itertools.product(COUNTS, RATES):
+            for name, dropouts in (("one in five", Dropouts(share=0.2)),
+                                   ("the thumb", Dropouts(hidden=thumb(count), burst=0.15, every=0.5)),
+                                   ("tips", Dropouts(hidden=tips_of_thumb_and_index(count), burst=0.15, every=0.5))):
+                fault = self.fault(self.replay(Motion(self.folder, count, rate, dropouts=dropouts)))
+                if fault:
+                    faults.append("%d joints, %d Hz, %s: %s" % (count, rate, name, fault))
+        self.assertEqual(faults, [])
+
+    def check_as_live(self, replayed):
+        for row, stamp in zip(replayed, sorted(self.kept["objects"])):
+            there = self.kept["objects"][stamp].objects[0].pose.position
+            for axis, value in zip("xyz", (there.x, there.y, there.z)):
+                self.assertAlmostEqual(value, float(row["p" + axis]), delta=1e-9)
+        self.assertEqual(len(replayed), len(self.kept["objects"]))
+
     def test_one_process_and_two_and_a_replay_give_the_same(self):
         for count in COUNTS:
-            motion = Motion(self.folder, count, 60, 0.003)
+            motion = Motion(self.folder, count, 60, 0.003, dropouts=Dropouts(share=0.02))
             self.drive(motion, "one_process:=true")
             one = self.digest()
-            replayed = self.rows(self.replay(motion), "objects.csv")
-            for row, stamp in zip(replayed, sorted(self.kept["objects"])):
-                there = self.kept["objects"][stamp].objects[0].pose.position
-                for axis, value in zip("xyz", (there.x, there.y, there.z)):
-                    self.assertAlmostEqual(value, float(row["p" + axis]), delta=1e-9)
-            self.assertEqual(len(replayed), len(motion.messages))
+            self.check_as_live(self.rows(self.replay(motion), "objects.csv"))
             if count == COUNTS[0]:
                 self.drive(motion, "one_process:=false")
                 self.assertEqual(one, self.digest())
+
+    def test_point_clouds_are_hands_too(self):
+        motion = Motion(self.folder, 25, 60, 0.001).as_point_clouds()
+        self.drive(motion)
+        result = self.replay(motion, "/hands/right/point_cloud")
+        self.assertEqual(self.fault(result), "")
+        self.check_as_live(self.rows(result, "objects.csv"))
 
     def test_standard_outputs_are_there_when_they_are_asked_for(self):
         motion = Motion(self.folder, 26, 60)

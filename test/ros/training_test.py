@@ -116,6 +116,17 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(float(row["release_drift"]), 0.05)
         self.check_analysis()
 
+    def test_a_device_is_worked_and_stands_anew_in_each_trial(self):
+        with self.training("hands:=demo", "motion:=press_button", "task:=" + os.path.join(HERE, "training_panel.yaml")):
+            wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the end of the session", RUN)
+            self.assertLessEqual({"button", "drawer", "door"}, set(self.objects))
+        self.assertEqual([(row["object"], row["result"], row["drops"]) for row in trials(self.folder)],
+                         2 * [("board", "completed", "0")])
+        self.assertIn("object", self.layers)
+        with open(os.path.join(self.folder, "events.csv"), newline="") as file:
+            achieved = [row for row in csv.DictReader(file) if row["event"] == "goal_achieved"]
+        self.assertEqual([row["detail"] for row in achieved], ["1", "2", "1", "2"])
+
     def operator_s_trials(self):
         with self.training("hands:=operator", "group:=veteran", "auto_next:=0.5", "record:=false"):
             wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 400.0)

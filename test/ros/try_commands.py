@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Runs what is printed, section by section; scripts/try_commands starts it."""
+import dataclasses
 import glob
 import os
 import re
@@ -102,15 +103,13 @@ class Tries:
 
     def sessions(self):
         if not os.path.isdir(self.study):
-            status, output = self.user.run(["rosrun", NAME, "simulated_study", "--output", self.study, "--operators", "1-3",
-                                            "--gravity", "0"], timeout=TIME_LIMIT)
+            status, output = self.user.run(["rosrun", NAME, "simulated_study", "--output", self.study, "--operators", "1-4",
+                                            "--group-size", "2", "--gravity", "0"], timeout=TIME_LIMIT)
             assert status == 0, output
         return sorted(os.path.dirname(file) for file in glob.glob(self.study + "/**/trials.csv", recursive=True))
 
     def filled_in(self, words):
         """With what stands for the user's own."""
-        words = [word for word in words if not re.match(r"\[|\.\.\.$", word) and not word.endswith("]")
-                 and not word.endswith("]...")]
         session = self.sessions()[0] if set(words) & {"SESSION", "SESSION_DIR"} or "ask_ratings" in words else ""
         places = {"SESSION": session, "SESSION_DIR": session, "SESSIONS": self.study, "DIR...": self.study,
                   "PILOT": self.study, "study": self.study, "fresh": self.study}
@@ -120,6 +119,7 @@ class Tries:
         return [session if re.search(r"/training/P07_implicit", word) else word for word in filled]
 
     def run(self, command):
+        command = dataclasses.replace(command, text=re.sub(r" \[--[^]]*\](\.\.\.)?", "", command.text))
         text = command.text
         words = self.user.words(command)
         self.background.want_demo(re.match("rosrun|rosservice", text) is not None)
@@ -178,6 +178,8 @@ def main():
                         tries.try_one(command)
         finally:
             tries.background.end()
+    for command in tries.failed:
+        print("failed: %s" % command)
     print("%d passed, %d failed, %d not tried" % (len(tries.good), len(tries.failed), len(tries.left)))
     return 1 if tries.failed else 0
 

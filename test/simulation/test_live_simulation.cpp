@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
 #include "support/pinch_scene.h"
 
 namespace mrhi {
@@ -161,6 +162,31 @@ TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) 
   held.live().remove("last");
   held.play(0.9);
   EXPECT_TRUE(held.now().state().bodies.empty());
+}
+
+/// Of the joint of that name.
+double place_of(const char* joint, const LiveSimulation& live) {
+  const std::optional<int> found = find_joint(live.now().scene(), joint);
+  return live.now().state().joints.at(static_cast<std::size_t>(found.value())).position;
+}
+
+TEST(LiveSimulation, what_is_deleted_takes_along_what_hangs_on_it_and_nothing_else) {
+  LiveSimulation live(load_scene("config/scenes/hatch.urdf", {}),
+                      testing::unfiltered(ContactModelKind::implicit));
+  live.now().advance_without_hands(200'000'000);
+  const double pressed = place_of("button_2_slide", live);
+  live.remove("latch_top");
+  EXPECT_FALSE(find_body(live.now().scene(), "latch_top"));
+  EXPECT_FALSE(find_joint(live.now().scene(), "latch_top_axle"));
+  EXPECT_EQ(live.now().scene().joints.size(), 5u);
+  EXPECT_EQ(place_of("button_2_slide", live), pressed);
+  for (const Joint& joint : live.now().scene().joints)
+    EXPECT_EQ(live.now().scene().bodies[static_cast<std::size_t>(joint.parent)].name, "wall") << joint.name;
+  live.now().advance_without_hands(400'000'000);
+  live.remove("wall");
+  EXPECT_TRUE(live.now().scene().bodies.empty());
+  EXPECT_TRUE(live.now().scene().joints.empty());
+  live.now().advance_without_hands(600'000'000);
 }
 
 TEST(LiveSimulation, no_change_by_eye_drops_what_is_held_or_jolts_it) {

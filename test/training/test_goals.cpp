@@ -1,4 +1,5 @@
 #include <cmath>
+#include <tuple>
 
 #include "training/trials.h"
 
@@ -44,6 +45,44 @@ TEST(Place, asks_for_the_whole_orientation_where_no_axis_is_given) {
     feeder.held(true);
     EXPECT_EQ(met, feeder.trial.inside()) << degrees;
   }
+}
+
+Goal joint_goal(double above, double below) {
+  Goal goal;
+  goal.kind = GoalKind::joint;
+  goal.joint = "hinge";
+  goal.above = above;
+  goal.below = below;
+  return goal;
+}
+
+TEST(JointGoal, is_reached_between_its_bounds_and_by_its_joint_alone) {
+  const Task task = of(joint_goal(0.5, 1.0));
+  for (const auto& [name, place, met] :
+       {std::tuple{"hinge", 0.4, false}, std::tuple{"hinge", 0.5, true}, std::tuple{"hinge", 1.0, true},
+        std::tuple{"hinge", 1.1, false}, std::tuple{"rail", 0.7, false}}) {
+    Feeder feeder(task);
+    feeder.seen.joints = {{"other", 0.7}, {name, place}};
+    feeder.step();
+    EXPECT_EQ(feeder.trial.result(), met ? TrialResult::completed : TrialResult::none)
+        << name << " " << place;
+  }
+}
+
+TEST(JointGoal, has_its_time_from_the_goal_before_on) {
+  Task task = of(joint_goal(0.5, 2.0));
+  task.goals.push_back(joint_goal(-1.0, 0.1));
+  task.goals.back().within = 2.0;
+  Feeder late(task), in_time(task);
+  late.seen.joints = in_time.seen.joints = {{"hinge", 0.0}};
+  late.stay(5.0), in_time.stay(5.0);
+  late.seen.joints = in_time.seen.joints = {{"hinge", 1.0}};
+  late.stay(2.2), in_time.stay(1.8);
+  EXPECT_EQ(late.trial.result(), TrialResult::timed_out);
+  in_time.seen.joints = {{"hinge", 0.0}};
+  in_time.step();
+  EXPECT_EQ(in_time.trial.result(), TrialResult::completed);
+  EXPECT_EQ(in_time.count(TrialEventKind::goal_achieved), 2);
 }
 
 Goal catch_goal() {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "mr_hand_interaction/training/task.h"
+#include "mr_hand_interaction/training/object_model.h"
 #include "scene/scene_files.h"
 
 namespace mrhi {
@@ -104,6 +104,9 @@ TEST_F(TaskFile, refuses_wrong_types_and_what_is_out_of_range) {
                      {"axis"});
   test::expect_words(goal_error("tap: {speed: [0.2, 0.1]}"), {"goals/1/tap/speed", "slowest"});
   test::expect_words(goal_error("catch: {within: 0}"), {"within", "above 0"});
+  test::expect_words(goal_error("joint: {name: hinge, above: 2000}"),
+                     {"goals/1/joint/above", "2000", "1000"});
+  test::expect_words(goal_error("joint: {name: a b, above: 1}"), {"goals/1/joint/name", "a b", "letters"});
   test::expect_words(error("name: a/b\n" + kGoals), {"name", "a/b", "64 letters"});
   test::expect_words(error("name: t\nobjects: []\n" + kGoals), {"objects", "at least one"});
   test::expect_words(
@@ -122,6 +125,10 @@ TEST_F(TaskFile, refuses_what_makes_no_sense_together) {
   test::expect_words(error(kHead + "goals: [{slap: {min_speed: 1}}, {release: {}}]\n"), {"goals/2", "held"});
   test::expect_words(error(kHead + "goals: [{place: {position: [0, 0, 0]}}, {pick: {}}]\n"),
                      {"goals/2", "pick after place"});
+  test::expect_words(goal_error("joint: {name: hinge}"), {"goals/1/joint", "neither above nor below"});
+  test::expect_words(goal_error("joint: {name: hinge, above: 1, below: 0}"), {"above is more than below"});
+  test::expect_words(error(kHead + "goals: [{joint: {name: hinge, above: 1}}, {release: {}}]\n"),
+                     {"goals/2", "held"});
   test::expect_words(error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0]}\n  - {name: a, position: "
                            "[1, 0, 0]}\n" +
                            kGoals),
@@ -139,10 +146,9 @@ TEST(ShippedTasks, load_and_name_bodies_that_there_are) {
               std::filesystem::path(find_task_file(task.name, {"config/tasks"})).string());
     EXPECT_FALSE(task.instructions.empty());
     for (const TaskObject& object : task.objects) {
-      const Scene scene = load_scene(find_scene_file(object.file, {"config/scenes"}), {});
-      ASSERT_EQ(1u, scene.bodies.size());
-      EXPECT_EQ(object.name, scene.bodies[0].name);
-      EXPECT_FALSE(scene.bodies[0].fixed);
+      const ObjectModel model = load_object(object, task.goals, {"config/scenes"}, {});
+      EXPECT_EQ(object.name, model.scene.bodies[model.body].name);
+      EXPECT_EQ(model.is_device(), model.scene.bodies[model.body].fixed);
     }
     for (const Fixture& fixture : task.fixtures) {
       const Scene scene = load_scene(find_scene_file(fixture.file, {"config/scenes"}), {});
@@ -150,7 +156,41 @@ TEST(ShippedTasks, load_and_name_bodies_that_there_are) {
       EXPECT_TRUE(scene.bodies[0].fixed);
     }
   }
-  EXPECT_EQ(6, tasks);
+  EXPECT_EQ(7, tasks);
+}
+
+TEST(ObjectModels, are_refused_without_what_the_task_asks_of_them) {
+  const auto error = [](const TaskObject& object, const std::vector<Goal>& goals) -> std::string {
+    try {
+      load_object(object, goals, {"config/scenes"}, {});
+    } catch (const SceneError& wrong) {
+      return wrong.what();
+    }
+    return "";
+  };
+  Goal goal;
+  goal.kind = GoalKind::joint;
+  goal.joint = "handle";
+  EXPECT_EQ(error({"cube", "cube", {}, {}}, {}), "");
+  EXPECT_EQ(error({"wall", "hatch", {}, {}}, {}), "");
+  test::expect_words(error({"wall", "hatch", {}, {}}, {goal}),
+                     {"hatch", "'handle'", "allowed: ", "hatch_hinge"});
+  test::expect_words(error({"cube", "cube", {}, {}}, {goal}), {"'handle'", "no joints"});
+  test::expect_words(error({"hatch", "hatch", {}, {}}, {}), {"not all hangs on a link 'hatch'"});
+  test::expect_words(error({"cube", "mixed", {}, {}}, {}), {"mixed", "one link 'cube'"});
+}
+
+TEST(ObjectModels, of_devices_stand_where_the_task_has_them) {
+  const Pose there{Vector3(0.1, 0.2, 0.3), Quaternion(Eigen::AngleAxisd(0.5, Vector3::UnitZ()))};
+  const ObjectModel here = load_object({"wall", "hatch", {}, {}}, {}, {"config/scenes"}, {});
+  const ObjectModel moved = load_object({"wall", "hatch", there, {}}, {}, {"config/scenes"}, {});
+  ASSERT_EQ(here.scene.bodies.size(), moved.scene.bodies.size());
+  for (std::size_t b = 0; b < here.scene.bodies.size(); ++b) {
+    const Pose expected = there * here.scene.bodies[b].start;
+    EXPECT_LT((moved.scene.bodies[b].start.position - expected.position).norm(), 1e-12)
+        << moved.scene.bodies[b].name;
+  }
+  EXPECT_TRUE(moved.scene.joints[0].spring || moved.scene.joints[0].latch) << "what the YAML says of it";
 }
 
 TEST(ShippedTasks, are_listed_where_another_is_asked_for) {
@@ -159,7 +199,7 @@ TEST(ShippedTasks, are_listed_where_another_is_asked_for) {
     FAIL();
   } catch (const SceneError& error) {
     test::expect_words(error.what(),
-                       {"'juggle'", "assemble, catch, nudge_into_box, pick_and_place, slap, tap"});
+                       {"'juggle'", "assemble, catch, hatch, nudge_into_box, pick_and_place, slap, tap"});
   }
 }
 

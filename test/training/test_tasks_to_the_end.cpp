@@ -21,7 +21,8 @@ TrialResult result_of(const Task& task, std::size_t object, double duration, Han
   stage.scene_folders = {"config/scenes"};
   stage.scene_options.default_material = default_material(stage.configuration);
   Scene scene = operator_scene(task, task.objects.at(object), stage);
-  scene.bounds = load_scene("config/scenes/cube.urdf", stage.scene_options).bounds;
+  if (scene.joints.empty()) scene.bounds = load_scene("config/scenes/cube.urdf", stage.scene_options).bounds;
+  const auto body = static_cast<std::size_t>(*find_body(scene, task.objects.at(object).name));
   stage.configuration.gravity = task.gravity;
   Simulation simulation(scene, stage.configuration);
   Trial trial(task);
@@ -31,7 +32,7 @@ TrialResult result_of(const Task& task, std::size_t object, double duration, Han
       frame.hands.push_back(
           complete_hand(hand_joints(human_hand(), Side::right, hand->wrist, hand->posture), Pose{}));
     EXPECT_EQ(Rejection::none, simulation.advance(frame));
-    trial.update(observe(simulation, 0));
+    trial.update(observe(simulation, body));
   }
   return trial.result();
 }
@@ -108,6 +109,37 @@ TEST(TaskToTheEnd, nudge_into_box) {
   const Task task = shipped_task("nudge_into_box");
   const Vector3& start = task.objects.at(0).start.position;
   EXPECT_EQ(TrialResult::completed, result_of(task, 0, nudge_and_stop(task.goals.at(0), start)));
+}
+
+/// Presses the button that is there, opens the hatch, and closes it the way it was opened; nothing: out of
+/// view.
+struct WorksTheHatch {
+  static constexpr double kAway = 1.0, kByTheHandle = 8.8;  // [s]; the last part of open_hatch
+  std::vector<Keyframe> press = make_motion("press_button").keyframes,
+                        open = make_motion("open_hatch").keyframes;
+  double opens = press.back().time + kAway, closes = opens + open.back().time + kAway;
+  double pause = 0.0;  // before it closes [s]
+
+  std::optional<HandPlace> operator()(double time) const {
+    if (time <= press.back().time) {
+      HandPlace hand = hand_at(press, time);
+      hand.wrist.position.z() += 0.17 - 0.36;  // from the panel's button to the third one here
+      return hand;
+    }
+    if (time >= opens && time <= opens + open.back().time) return hand_at(open, time - opens);
+    const double back = time - closes - pause;
+    if (back < 0.0 || back > kByTheHandle) return std::nullopt;
+    return hand_at(open, open.back().time - back);
+  }
+};
+
+TEST(TaskToTheEnd, hatch) {
+  Task task = shipped_task("hatch");
+  const WorksTheHatch hand;
+  EXPECT_EQ(TrialResult::completed, result_of(task, 0, 45.0, hand));
+  EXPECT_EQ(TrialResult::none, result_of(task, 0, hand.closes, hand)) << "not yet closed";
+  task.goals[3].within = 2.0;
+  EXPECT_EQ(TrialResult::timed_out, result_of(task, 0, 45.0, hand)) << "it takes longer to the handle";
 }
 
 }  // namespace

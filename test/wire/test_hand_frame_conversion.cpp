@@ -7,7 +7,7 @@
 
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/ros/standard_outputs.h"
-#include "ros/pose_array_hand.h"
+#include "ros/tracker_messages.h"
 #include "sample_hands.h"
 
 namespace mrhi {
@@ -71,25 +71,22 @@ TEST(HandFrameConversion, BadMessagesAreRefusedByName) {
   }
 }
 
-void add(const Vector3& joint, geometry_msgs::PoseArray& message) {
-  message.poses.emplace_back();
-  message.poses.back().position = to_message(joint);
-}
-
 /// As a tracker gives it that has so many joints.
-void add_hand(const HandJoints& hand, std::size_t joints, geometry_msgs::PoseArray& message) {
-  if (joints == 26) add(hand.palm_centre.value(), message);
-  add(hand.wrist.value(), message);
+void add_hand(const HandJoints& hand, std::size_t joints, TrackedPoints& tracked) {
+  std::vector<Vector3>& points = tracked.points;
+  if (joints == 26) points.push_back(hand.palm_centre.value());
+  points.push_back(hand.wrist.value());
   for (std::size_t f = 0; f < kFingers; ++f)
-    for (std::size_t j = f == 0 || joints == 21 ? 1 : 0; j < 5; ++j) add(hand.joints[f][j].value(), message);
+    for (std::size_t j = f == 0 || joints == 21 ? 1 : 0; j < 5; ++j)
+      points.push_back(hand.joints[f][j].value());
 }
 
-geometry_msgs::PoseArray hand_message(const HandJoints& hand, std::size_t joints) {
-  geometry_msgs::PoseArray message;
-  message.header.stamp = ros::Time(3, 5);
-  add_hand(hand, joints, message);
-  EXPECT_EQ(message.poses.size(), joints);
-  return message;
+TrackedPoints tracked_hand(const HandJoints& hand, std::size_t joints) {
+  TrackedPoints tracked;
+  tracked.header.stamp = ros::Time(3, 5);
+  add_hand(hand, joints, tracked);
+  EXPECT_EQ(tracked.points.size(), joints);
+  return tracked;
 }
 
 void expect_joints(const HandJoints& hand, const HandJoints& sent, bool metacarpal_bases) {
@@ -102,9 +99,9 @@ void expect_joints(const HandJoints& hand, const HandJoints& sent, bool metacarp
   }
 }
 
-TEST(PoseArrayHand, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
+TEST(TrackedPoints, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
   const HandJoints sent = sample_hand(Side::left);
-  const JointsFrame frame = joints_from_pose_array(hand_message(sent, 21), Side::left);
+  const JointsFrame frame = joints_from_points(tracked_hand(sent, 21), Side::left);
   EXPECT_EQ(frame.stamp, 3000000005);
   ASSERT_EQ(frame.hands.size(), 1u);
   const HandJoints& hand = frame.hands[0];
@@ -117,19 +114,19 @@ TEST(PoseArrayHand, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
   EXPECT_LT(completed.palm.orientation.angularDistance(whole.palm.orientation), 0.175);
 }
 
-TEST(PoseArrayHand, NoPosesIsAFrameWithNoHandAndOtherCountsAreRefused) {
-  geometry_msgs::PoseArray message;
-  EXPECT_TRUE(joints_from_pose_array(message, Side::right).hands.empty());
+TEST(TrackedPoints, NoPointsIsAFrameWithNoHandAndOtherCountsAreRefused) {
+  TrackedPoints message;
+  EXPECT_TRUE(joints_from_points(message, Side::right).hands.empty());
   for (std::size_t count : {1u, 20u, 22u, 24u, 27u, 41u, 48u, 63u}) {
-    message.poses.resize(count);
-    EXPECT_THROW(joints_from_pose_array(message, Side::right), DecodeError);
+    message.points.resize(count);
+    EXPECT_THROW(joints_from_points(message, Side::right), DecodeError);
   }
 }
 
-TEST(PoseArrayHand, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
+TEST(TrackedPoints, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
   const HandJoints sent = sample_hand(Side::right);
   for (std::size_t joints : {25u, 26u}) {
-    const JointsFrame frame = joints_from_pose_array(hand_message(sent, joints), Side::right);
+    const JointsFrame frame = joints_from_points(tracked_hand(sent, joints), Side::right);
     ASSERT_EQ(frame.hands.size(), 1u);
     expect_joints(frame.hands[0], sent, true);
     const Hand completed = complete_hand(frame.hands[0], Pose()), whole = complete_hand(sent, Pose());
@@ -139,53 +136,89 @@ TEST(PoseArrayHand, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
   }
 }
 
-TEST(PoseArrayHand, TwiceAsManyJointsAreLeftAndRight) {
+// As of a driver that gives bones alone.
+TEST(TrackedPoints, MetacarpalBasesStandInForAWristThatIsMissing) {
+  const HandJoints sent = sample_hand(Side::left);
+  TrackedPoints tracked = tracked_hand(sent, 25);
+  const Hand whole = complete_hand(joints_from_points(tracked, Side::left).hands.at(0), Pose());
+  tracked.points[0].setConstant(NAN);
+  const Hand hand = complete_hand(joints_from_points(tracked, Side::left).hands.at(0), Pose());
+  EXPECT_EQ(hand.palm.position, whole.palm.position);
+  for (std::size_t i = 0; i < kCapsules; ++i) EXPECT_EQ(hand.capsules[i].start, whole.capsules[i].start);
+  EXPECT_LT((hand.wrist - whole.wrist).norm(), 0.015);  // by the proportions of a mean hand
+}
+
+TEST(TrackedPoints, TwiceAsManyJointsAreLeftAndRight) {
   for (std::size_t joints : {21u, 25u, 26u}) {
-    geometry_msgs::PoseArray message;
+    TrackedPoints message;
     add_hand(sample_hand(Side::left), joints, message);
     EXPECT_FALSE(has_both_hands(message));
     add_hand(sample_hand(Side::right), joints, message);
     EXPECT_TRUE(has_both_hands(message));
-    const JointsFrame frame = joints_from_pose_array(message, Side::right);
+    const JointsFrame frame = joints_from_points(message, Side::right);
     ASSERT_EQ(frame.hands.size(), 2u);
     expect_joints(frame.hands[0], sample_hand(Side::left), joints != 21);
     expect_joints(frame.hands[1], sample_hand(Side::right), joints != 21);
     EXPECT_NE(frame.hands[0].id, frame.hands[1].id);
-    for (std::size_t i = 0; i < joints; ++i) message.poses[i].position.y = NAN;
-    EXPECT_EQ(joints_from_pose_array(message, Side::right).hands.size(), 1u);
+    for (std::size_t i = 0; i < joints; ++i) message.points[i].y() = NAN;
+    EXPECT_EQ(joints_from_points(message, Side::right).hands.size(), 1u);
   }
 }
 
-TEST(PoseArrayHand, AJointOfNanIsMissingAndAHandOfNothingElseIsNotThere) {
+TEST(TrackedPoints, AJointOfNanIsMissingAndAHandOfNothingElseIsNotThere) {
   const HandJoints sent = sample_hand(Side::right);
-  geometry_msgs::PoseArray message = hand_message(sent, 26);
-  message.poses[9].position.z = NAN;  // the index finger's distal joint
-  const HandJoints hand = joints_from_pose_array(message, Side::right).hands.at(0);
+  TrackedPoints message = tracked_hand(sent, 26);
+  message.points[9].z() = NAN;  // the index finger's distal joint
+  const HandJoints hand = joints_from_points(message, Side::right).hands.at(0);
   EXPECT_FALSE(hand.joints[1][3]);
   EXPECT_EQ(hand.joints[1][4], sent.joints[1][4]);
   EXPECT_EQ(defect(hand), "");
   EXPECT_FALSE(complete_hand(hand, Pose()).has(capsule_index(1, 3)));
-  for (auto& pose : message.poses) pose.position.x = NAN;
-  EXPECT_TRUE(joints_from_pose_array(message, Side::right).hands.empty());
-  message = hand_message(sent, 21);
-  message.poses[4].position.x = INFINITY;
-  EXPECT_NE(defect(joints_from_pose_array(message, Side::right).hands.at(0)), "");
+  for (Vector3& point : message.points) point.x() = NAN;
+  EXPECT_TRUE(joints_from_points(message, Side::right).hands.empty());
+  message = tracked_hand(sent, 21);
+  message.points[4].x() = INFINITY;
+  EXPECT_NE(defect(joints_from_points(message, Side::right).hands.at(0)), "");
 }
 
-TEST(PoseArrayHand, TopicsAndFramesNameTheSide) {
-  EXPECT_EQ(side_by_name("/hands/left/pose_array"), Side::left);
-  EXPECT_EQ(side_by_name("hands/right/pose_array"), Side::right);
-  EXPECT_EQ(side_by_name("headset/left_hand"), Side::left);
-  EXPECT_EQ(side_by_name("right_hand"), Side::right);
-  for (const char* const name : {"/hands/pose_array", "left_camera", "camera_left", ""})
-    EXPECT_FALSE(side_by_name(name)) << name;
+TEST(TrackedPoints, EveryMessageSaysTheSame) {
+  const TrackedPoints sent = tracked_hand(sample_hand(Side::right), 26);
+  geometry_msgs::PoseArray poses;
+  sensor_msgs::PointCloud cloud;
+  poses.header = cloud.header = sent.header;
+  for (const Vector3& point : sent.points) {
+    poses.poses.emplace_back();
+    poses.poses.back().position = to_message(point);
+    cloud.points.emplace_back();
+    cloud.points.back().x = static_cast<float>(point.x());
+    cloud.points.back().y = static_cast<float>(point.y());
+    cloud.points.back().z = static_cast<float>(point.z());
+  }
+  EXPECT_EQ(PoseArrayTracker::read(poses).points, sent.points);
+  const TrackedPoints read = PointCloudTracker::read(cloud);
+  EXPECT_EQ(read.header.stamp, sent.header.stamp);
+  ASSERT_EQ(read.points.size(), sent.points.size());
+  for (std::size_t i = 0; i < read.points.size(); ++i)
+    EXPECT_EQ(read.points[i].cast<float>(), sent.points[i].cast<float>());
 }
 
-TEST(PoseArrayHand, AHandGivenOutIsTheHandTakenIn) {
+TEST(TrackedPoints, TopicsAndFramesNameTheSide) {
+  for (const char* const name : {"/hands/left/pose_array", "hands/left/point_cloud", "left/pose_array"})
+    EXPECT_EQ(side_of_topic(name), Side::left) << name;
+  EXPECT_EQ(side_of_topic("hands/right/pose_array"), Side::right);
+  for (const char* const name : {"/hands/pose_array", "/hands/left", "/upright/pose_array", "left", ""})
+    EXPECT_FALSE(side_of_topic(name)) << name;
+  EXPECT_EQ(side_of_frame("headset/left_hand"), Side::left);
+  EXPECT_EQ(side_of_frame("right_hand"), Side::right);
+  for (const char* const name : {"left_camera", "camera_left", ""}) EXPECT_FALSE(side_of_frame(name)) << name;
+}
+
+TEST(TrackedPoints, AHandGivenOutIsTheHandTakenIn) {
   const Hand hand = complete_hand(sample_hand(Side::left), Pose());
   const geometry_msgs::PoseArray message = pose_array_message(hand, std_msgs::Header());
   ASSERT_EQ(message.poses.size(), 21u);
-  const Hand again = complete_hand(joints_from_pose_array(message, Side::left).hands.at(0), Pose());
+  const Hand again =
+      complete_hand(joints_from_points(PoseArrayTracker::read(message), Side::left).hands.at(0), Pose());
   for (int i = 0; i < kPhalanges; ++i) {
     if (bone_of(i) == 0) continue;
     const Capsule &a = hand.capsules[static_cast<std::size_t>(i)],

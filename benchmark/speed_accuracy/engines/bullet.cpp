@@ -45,7 +45,7 @@ Vector3 from_bullet(const btVector3& v) {
 class BulletEngine final : public Engine {
  public:
   BulletEngine(const Setting& setting, const World& world, double step)
-      : setting_(setting), step_(static_cast<btScalar>(step)) {
+      : awake_(setting.awake || !world.sleep), setting_(setting), step_(static_cast<btScalar>(step)) {
     // Bullet multiplies the coefficients of the two surfaces.
     friction_ = static_cast<btScalar>(std::sqrt(world.friction));
     restitution_ = static_cast<btScalar>(std::sqrt(world.restitution));
@@ -106,7 +106,7 @@ class BulletEngine final : public Engine {
     }
     body.setLinearVelocity(to_bullet(spec.twist.linear));
     body.setAngularVelocity(to_bullet(spec.twist.angular));
-    if (setting_.awake) body.setActivationState(DISABLE_DEACTIVATION);
+    if (awake_) body.setActivationState(DISABLE_DEACTIVATION);
     world_.addRigidBody(&body);
     return body;
   }
@@ -141,6 +141,7 @@ class BulletEngine final : public Engine {
     return *all_.back();
   }
 
+  bool awake_;
   Setting setting_;
   btScalar step_, friction_, restitution_;
   btDefaultCollisionConfiguration configuration_;

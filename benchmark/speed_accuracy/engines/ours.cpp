@@ -62,8 +62,9 @@ mrhi::Scene scene_of(const World& world, const Configuration& configuration) {
   return scene;
 }
 
-Configuration configuration_of(const Setting& setting, double step) {
+Configuration configuration_of(const Setting& setting, const World& world, double step) {
   Configuration configuration;
+  configuration.contact.sleep = world.sleep;
   configuration.contact.hand = HandStrength{};  // as the peers' hands and the closed forms have it
   configuration.contact_model = setting.model;
   configuration.step = step;
@@ -78,8 +79,8 @@ class OurEngine final : public Engine {
       : measured_(setting.measured),
         step_(std::llround(step * 1e9)),
         parts_(world.kinematics),
-        simulation_(scene_of(world, configuration_of(setting, 1e-9 * static_cast<double>(step_))),
-                    configuration_of(setting, 1e-9 * static_cast<double>(step_))) {
+        simulation_(scene_of(world, configuration_of(setting, world, 1e-9 * static_cast<double>(step_))),
+                    configuration_of(setting, world, 1e-9 * static_cast<double>(step_))) {
     frame_.stamp = 1'000'000'000;
     std::size_t first = 0;
     for (const KinematicSpec& part : parts_) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <geometry_msgs/PoseArray.h>
 #include <mr_hand_interaction/HandFrame.h>
 #include <ros/ros.h>
 #include <tf2_ros/buffer.h>
@@ -19,12 +18,16 @@
 #include "mr_hand_interaction/ros/sequence_watch.h"
 #include "mr_hand_interaction/stamp_judge.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "mr_hand_interaction/tracking/joint_gaps.h"
 
 namespace mrhi {
 
-/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2. A PoseArray's hand is
-/// of the side that its topic names, else its frame (side_by_name), else of ~side. Parameters: ~fixed_frame
-/// (world), ~side of hands/pose_array (right). Throws std::invalid_argument for a bad one.
+struct TrackedPoints;
+
+/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2. A hand of joints alone
+/// (PoseArray, PointCloud) is of the side that its topic names, else its frame, else of ~side. Parameters:
+/// ~fixed_frame (world), ~side of hands/pose_array and hands/point_cloud (right). Throws
+/// std::invalid_argument for a bad one.
 class HandTracking {
  public:
   HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
@@ -44,8 +47,10 @@ class HandTracking {
   /// subscription.
   void accept_other_versions();
   void take_leap(const LeapEvent& event);
-  void subscribe_pose_arrays(const std::string& topic);
-  void take_pose_array(const geometry_msgs::PoseArray& message, Side side, const ros::Time& receipt);
+  template <class Tracker>
+  void subscribe_points(const std::string& topic);
+  void take_points(const TrackedPoints& tracked, const std::optional<Side>& of_topic,
+                   const ros::Time& receipt);
   /// Nothing if it cannot be used.
   std::optional<HandFrame> place(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
   void take(const std::optional<HandFrame>& frame, const ros::Time& receipt);
@@ -57,8 +62,9 @@ class HandTracking {
 
   Sink sink_;
   std::string fixed_frame_;
-  Side pose_array_side_ = Side::right;
+  Side side_ = Side::right;
   StampJudge stamps_;
+  JointGaps gaps_;
   HandPairs pairs_;
   bool leap_seen_ = false;  ///< a driver, by the present subscription
   LeapReader leap_reader_;
@@ -70,7 +76,7 @@ class HandTracking {
   tf2_ros::TransformListener transform_listener_;
   ros::Publisher publisher_;
   ros::Subscriber leap_subscriber_;
-  std::vector<ros::Subscriber> pose_array_subscribers_;
+  std::vector<ros::Subscriber> point_subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;
 };

@@ -14,7 +14,7 @@
 
 namespace mrhi {
 
-/// 21 joints in the order of pose_array_hand.h, each with x along the bone that ends or, of wrist and
+/// 21 joints in the order of ros/tracked_points.h, each with x along the bone that ends or, of wrist and
 /// knuckles, begins there; a joint that the hand has not is NaN.
 geometry_msgs::PoseArray pose_array_message(const Hand& hand, const std_msgs::Header& header);
 

@@ -6,8 +6,7 @@
 #include <set>
 #include <string>
 
-#include "mr_hand_interaction/scene/body.h"
-#include "mr_hand_interaction/training/task.h"
+#include "mr_hand_interaction/training/object_model.h"
 
 namespace mrhi {
 
@@ -20,30 +19,23 @@ class TrainingScene {
   /// What moves in the scene; from its messages.
   void note_objects(std::set<std::string> names) { names_ = std::move(names); }
 
-  /// The task's gravity and fixtures, and of free bodies this one alone, at its start. Empty, or what went
-  /// wrong.
+  /// The task's gravity and fixtures, and of free bodies and devices this one alone, at its start. Empty, or
+  /// what went wrong.
   std::string prepare(const TaskObject& object);
   std::string pause(bool paused);
 
-  /// Of an object of the task, for its looks.
-  const Body& body(const std::string& name) const { return bodies_.at(name).body; }
+  const ObjectModel& model(const std::string& object) const { return models_.at(object); }
 
  private:
-  struct Model {
-    std::string xml, material;
-    Body body;
-  };
-
-  static Model load(const std::string& name, const std::string& file);
   std::string set_up();
-  std::string spawn(const std::string& name, const Model& model, const Pose& pose, const Twist& twist);
+  std::string spawn(const ObjectModel& model);
   std::string remove(const std::string& name);
 
   const Task& task_;
-  std::map<std::string, Model> bodies_;
+  std::map<std::string, ObjectModel> models_;  // of objects and fixtures
   std::set<std::string> names_;
   bool set_up_ = false;
-  ros::ServiceClient spawn_, delete_, set_, pause_;
+  ros::ServiceClient spawn_, spawn_urdf_, delete_, set_, pause_;
 };
 
 }  // namespace mrhi

@@ -7,8 +7,10 @@
 #include <mr_hand_interaction/TrainingEvent.h>
 #include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,12 +30,13 @@ class TrainingServer {
  private:
   void advertise_services(ros::NodeHandle& private_node);
   void take(const mr_hand_interaction::ObjectStateArray& message);
-  void note_object(const mr_hand_interaction::ObjectStateArray& message);
+  bool starts(const Observation& seen) const;
+  const Body& watched() const;
   void take_event(const mr_hand_interaction::InteractionEvent& event);
   void take_hands(const mr_hand_interaction::HandFrame& message, bool filtered);
   Nanoseconds on_our_clock(const ros::Time& stamp);
-  Observation observed(const mr_hand_interaction::ObjectStateArray& message,
-                       const mr_hand_interaction::ObjectState& object);
+  std::optional<Observation> observed(const mr_hand_interaction::ObjectStateArray& message);
+  void feel(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const;
   void tick();
 
   /// Empty, or what went wrong.
@@ -59,7 +62,8 @@ class TrainingServer {
 
   Nanoseconds clocks_apart_ = 0;  ///< this machine's ahead of that of the hands' stamps
   mr_hand_interaction::ContactArray contacts_;
-  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< the trial's object, if it is there
+  sensor_msgs::JointState joints_;
+  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< what is to be looked at, if it is there
   int tracking_losses_ = 0;
   bool put_back_ = false;
 

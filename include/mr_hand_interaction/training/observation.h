@@ -1,6 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/simulation.h"
@@ -17,9 +20,10 @@ struct Observation {
   std::optional<double> grip_force;  ///< half the sum of the forces that press on the object [N]
   int tracking_losses = 0;           ///< hands lost since the observation before
   bool put_back = false;             ///< left the bounds since then, and was put back where it started
+  std::vector<std::pair<std::string, double>> joints;  ///< by name: where it is [rad], [m]
 };
 
-/// Of a body of a simulation, after a frame.
+/// Of a body of a simulation and what hangs on it, after a frame.
 Observation observe(const Simulation& simulation, std::size_t body);
 
 }  // namespace mrhi

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/joint.h"
 
 namespace mrhi {
 
@@ -20,6 +21,7 @@ enum class GoalKind : std::uint8_t {
   catch_it,    ///< held for `hold`, and for the first time within `within` of the trial's start
   nudge_into,  ///< not held, in the box and slower than max_speed
   strike,      ///< touched, and on leaving the hand as fast as between min_speed and max_speed (tap, slap)
+  joint,       ///< a joint of the object is from `above` to `below`
   release      ///< let go; ends drift_time later
 };
 /// As in a task's file; tap and slap are both "strike".
@@ -38,22 +40,25 @@ struct Goal {
   Quaternion orientation = Quaternion::Identity();  ///< of the object's link
   double tolerance = 0.03;                          ///< [m]
   std::optional<double> angle_tolerance;            ///< [rad]; nothing: any orientation will do
-  std::optional<Vector3> axis;              ///< unit, of the object: it alone is to lie as in `orientation`,
-                                            ///< either end first
-  Vector3 size = Vector3::Zero();           ///< of the box about `position` [m]
-  double hold = 0.0;                        ///< the condition must last this long [s]
-  Leaving leaving = Leaving::reset;         ///< what becomes of the time held so far
-  double distance = 0.05;                   ///< [m]
-  double within = 0.0;                      ///< [s]
-  double min_speed = 0.0, max_speed = 0.0;  ///< [m/s]
-  double drift_time = 2.0;                  ///< [s]
+  std::optional<Vector3> axis;       ///< unit, of the object: it alone is to lie as in `orientation`,
+                                     ///< either end first
+  Vector3 size = Vector3::Zero();    ///< of the box about `position` [m]
+  double hold = 0.0;                 ///< the condition must last this long [s]
+  Leaving leaving = Leaving::reset;  ///< what becomes of the time held so far
+  double distance = 0.05;            ///< [m]
+  std::optional<double> within;      ///< [s] from the trial's start; joint: from the goal's
+  std::string joint;                 ///< as the object's URDF names it
+  double above = -Joint::kUnlimited, below = Joint::kUnlimited;  ///< [rad], of one that slides [m]
+  double min_speed = 0.0, max_speed = 0.0;                       ///< [m/s]
+  double drift_time = 2.0;                                       ///< [s]
 };
 
-/// An object of a task and how it is at the start of a trial.
+/// An object of a task and how it is at the start of a trial. It is one body, or a device: links that hang by
+/// joints on the one of its name.
 struct TaskObject {
   std::string name;
   std::string file;  ///< a URDF with this link: a shipped scene's name, or a path
-  Pose start;        ///< in world
+  Pose start;        ///< of the body, of a device of its URDF's root, in world
   Twist twist;       ///< world axes
 };
 

@@ -88,6 +88,7 @@ class Trial {
   void measure(const Observation& seen, Nanoseconds passed);
   void note_grasp(const Observation& seen);
   void hold(const Observation& seen, Nanoseconds passed);
+  bool too_late() const;
   void note_touch(const Observation& seen, Nanoseconds passed);
   void strike(const Observation& seen);
   void note_drop();
@@ -102,6 +103,7 @@ class Trial {
   TrialResult result_ = TrialResult::none;
   std::optional<Observation> last_;
   Nanoseconds stamp_ = 0, elapsed_ = 0, before_ = 0;  ///< before_: elapsed at the last observation
+  Nanoseconds goal_begun_ = 0;                        ///< elapsed as the one before was achieved
   bool counting_ = false;
   std::array<Nanoseconds, kTrainingStages> stage_elapsed_{};
 

@@ -1,0 +1,165 @@
+// Many bodies that meet: dice and cubes dropped in a heap, blocks that a hand pushes over a table, a block of
+// cubes at rest. The same scenes as benchmark/crowds, for engines that have no scene files.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "../experiment.h"
+
+namespace mrhi::benchmark {
+namespace {
+
+constexpr double kGravity = 9.81;    // [m/s^2]
+constexpr double kDensity = 1000.0;  // [kg/m^3]
+
+/// Always the same, between -1 and 1.
+double scattered(int i) {
+  return 2.0 * std::fmod(0.618033988749895 * i + 0.37 * std::fmod(0.7548776662 * i * i, 1.0), 1.0) - 1.0;
+}
+Quaternion turned(int i) {
+  return Quaternion(1.0, scattered(3 * i), scattered(3 * i + 1), scattered(3 * i + 2)).normalized();
+}
+/// Of the cubes of a square of `side`, `pitch` apart, in layers.
+Vector3 in_square(int i, int side, double pitch) {
+  const double middle = 0.5 * (side - 1);
+  return pitch * Vector3(i % side - middle, i / side % side - middle, i / (side * side));
+}
+int edge_of(double count) {
+  return std::max(1, static_cast<int>(std::lround(std::cbrt(count))));
+}
+
+/// What every crowd has: cubes on a floor, and how far one gets below it.
+class Crowd : public Experiment {
+ public:
+  Crowd(int count, double edge, double seconds) : count_(count), edge_(edge), seconds_(seconds) {}
+  double duration() const override { return seconds_; }
+  World world(int) const override {
+    World world;
+    world.gravity = Vector3(0, 0, -kGravity);
+    for (int i = 0; i < count_; ++i)
+      world.bodies.push_back(box(Vector3::Constant(edge_), kDensity * edge_ * edge_ * edge_, start(i)));
+    world.bodies.push_back(floor_slab());
+    return world;
+  }
+  bool observe(int, double t, const Engine& engine) override {
+    for (int i = 0; i < count_; ++i) {
+      const Motion motion = engine.motion(static_cast<std::size_t>(i));
+      const Vector3 up = motion.pose.orientation.conjugate() * Vector3::UnitZ();
+      const double deep = 0.5 * edge_ * up.lpNorm<1>() - motion.pose.position.z();
+      lost_ = lost_ || !(deep < edge_) || !(motion.pose.position.norm() < kFar);
+      deepest_ = std::max(deepest_, deep);
+      look(i, t, motion);
+    }
+    return !lost_;
+  }
+  std::vector<Measure> measures() const override { return {{"_sunk", 1e3 * deepest_, "mm", lost_}}; }
+
+ protected:
+  virtual Pose start(int i) const = 0;
+  virtual void look(int /*i*/, double /*t*/, const Motion&) {}
+
+  int count_;
+  double edge_, seconds_;
+  bool lost_ = false;
+
+ private:
+  static constexpr double kFar = 1.9;  // [m]: thrown off the floor
+  double deepest_ = 0.0;
+};
+
+/// Let go a hand's breadth above the floor, turned every way: they come to rest.
+class Heap final : public Crowd {
+ public:
+  using Crowd::Crowd;
+  std::vector<Measure> measures() const override {
+    std::vector<Measure> measures = Crowd::measures();
+    measures.push_back({"_unrest", 1e3 * fastest_, "mm/s", lost_});
+    return measures;
+  }
+
+ private:
+  static constexpr double kAtRest = 0.2;  // at the end [s]
+  Pose start(int i) const override {
+    const Vector3 place = in_square(i, edge_of(0.2 * count_), 1.8 * edge_) +
+                          0.1 * edge_ * Vector3(scattered(i), scattered(i + 7), 0) +
+                          Vector3(0, 0, 2.0 * edge_);
+    return {place, turned(i)};
+  }
+  void look(int, double t, const Motion& motion) override {
+    if (t < seconds_ - kAtRest) return;
+    const double speed = motion.twist.linear.norm() + edge_ * motion.twist.angular.norm();
+    fastest_ = std::isfinite(speed) ? std::max(fastest_, speed) : speed;
+  }
+  double fastest_ = 0.0;
+};
+
+/// Four upright fingers sweep blocks along a table.
+class Push final : public Crowd {
+ public:
+  explicit Push(int count) : Crowd(count, 0.03, 2.5) {}
+  World world(int trial) const override {
+    World world = Crowd::world(trial);
+    KinematicSpec comb;
+    for (int finger = 0; finger < 4; ++finger) {
+      const Vector3 end(0, 0.02 * (finger - 1.5), 0.01);
+      comb.capsules.push_back({end + Vector3(0, 0, 0.025), end, 0.008});
+    }
+    world.kinematics.push_back(comb);
+    return world;
+  }
+  void hand(int, double t, std::vector<Pose>& poses) const override {
+    poses[0] = {Vector3(-0.25 + 0.15 * std::min(t, 2.0), 0, 0), Quaternion::Identity()};
+  }
+
+ private:
+  Pose start(int i) const override {
+    return {Vector3(0.031 * (i % 10) - 0.15, 0.031 * (i / 10 - 2), 0.5 * edge_),
+            Quaternion(Eigen::AngleAxisd(0.02 * scattered(i), Vector3::UnitZ()))};
+  }
+};
+
+/// Cubes whose faces lie on each other, 20 um apart sideways: none moves. None may sleep.
+class Block final : public Crowd {
+ public:
+  explicit Block(int count) : Crowd(count, 0.04, count > 500 ? 0.1 : 0.5) {}
+  World world(int trial) const override {
+    World world = Crowd::world(trial);
+    world.sleep = false;
+    return world;
+  }
+  std::vector<Measure> measures() const override { return {{"", 1e3 * moved_, "mm", lost_}}; }
+
+ private:
+  Pose start(int i) const override {
+    const Vector3 place = in_square(i, edge_of(count_), edge_).cwiseProduct(Vector3(1.0005, 1.0005, 1.0));
+    return {place + Vector3(0, 0, 0.5 * edge_), Quaternion::Identity()};
+  }
+  void look(int i, double, const Motion& motion) override {
+    moved_ = std::max(moved_, (motion.pose.position - start(i).position).norm());
+  }
+  double moved_ = 0.0;
+};
+
+}  // namespace
+
+void add_crowd_scenes(std::vector<ScenePlan>& scenes) {
+  const std::vector<double> steps{0.001};
+  const auto add = [&](const std::string& name, bool full_only,
+                       std::function<std::unique_ptr<Experiment>(bool)> make) {
+    scenes.push_back({name, "crowd", steps, std::move(make)});
+    scenes.back().full_only = full_only;
+    scenes.back().budget = 4.0;  // what is slower has had its say
+  };
+  const auto heap = [](int count, double edge) {
+    return [count, edge](bool) { return std::make_unique<Heap>(count, edge, 2.5); };
+  };
+  add("crowd_heap_8", false, heap(8, 0.016));
+  add("crowd_heap_12", true, heap(12, 0.016));
+  add("crowd_heap_50", true, heap(50, 0.04));
+  add("crowd_push_50", true, [](bool) { return std::make_unique<Push>(50); });
+  for (const int count : {50, 200, 1000})
+    add("crowd_block_" + std::to_string(count), true,
+        [count](bool) { return std::make_unique<Block>(count); });
+}
+
+}  // namespace mrhi::benchmark

@@ -1,0 +1,264 @@
+#!/usr/bin/python3
+"""Draws the moments of an explanation with rviz on a virtual screen, and puts the pictures into its page. scripts/explain
+starts it on a folder with explain.html, explain.json and moments.bag. Exits with 0 if they were drawn, 1 with a line
+if not."""
+import base64
+import contextlib
+import html
+import json
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
+WIDTH, HEIGHT = 460, 360  # of a picture; drawn twice as large, for smooth edges
+SHOWN_WIDTH = 305  # on the page: three beside each other
+QUALITY = "82"
+KEPT = 0.975  # of the screen; in the rest is the mark of the picture
+MOST = 60  # pictures of a page
+PITCH, DISTANCE = 0.42, 0.42  # of rviz's camera, which stays; what it sees is moved [rad, m]
+LAYERS = ("hand", "ghost", "objects", "fixtures", "friction", "forces", "newtons", "shadows")
+WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "the last touch"}
+
+
+def find_modules():
+    """Of the devel space that this lies in, where no workspace has been sourced."""
+    modules = os.path.join(HERE, "..", "devel", "lib", "python3", "dist-packages")
+    if os.path.isdir(modules):
+        sys.path.append(os.path.abspath(modules))
+    package = os.path.abspath(os.path.join(HERE, ".."))
+    if os.path.exists(os.path.join(package, "package.xml")):
+        os.environ.setdefault("ROS_PACKAGE_PATH", package + os.pathsep + "/usr/share")
+
+
+def missing_tools():
+    """Packages of what is not there."""
+    return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
+
+
+def view_file():
+    for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
+        if os.path.exists(os.path.join(folder, "interaction.rviz")):
+            return os.path.join(folder, "interaction.rviz")
+    raise RuntimeError("rviz/interaction.rviz is not found; allowed: a built or installed package")
+
+
+def free_port():
+    with contextlib.closing(socket.socket()) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Started:
+    """Programs that end with this."""
+
+    def __init__(self):
+        self.processes = []
+
+    def start(self, command, **options):
+        self.processes.append(subprocess.Popen(command, stdout=options.pop("stdout", subprocess.DEVNULL),
+                                               stderr=subprocess.DEVNULL, **options))
+        return self.processes[-1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in reversed(self.processes):
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT if "roscore" in process.args[0] else signal.SIGTERM)
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def start_screen(started):
+    read, write = os.pipe()
+    started.start(["Xvfb", "-displayfd", str(write), "-noreset", "-screen", "0", "%dx%dx24" % (2 * WIDTH, 2 * HEIGHT), "-nolisten",
+                   "tcp"], pass_fds=[write])
+    os.close(write)
+    with os.fdopen(read) as told:
+        display = told.readline().strip()
+    if not display:
+        raise RuntimeError("Xvfb did not start")
+    os.environ.update(DISPLAY=":" + display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1")
+    for name in ("WAYLAND_DISPLAY", "XAUTHORITY"):
+        os.environ.pop(name, None)
+
+
+def write_config(file):
+    import yaml
+    with open(view_file(), encoding="utf-8") as source:
+        config = yaml.safe_load(source)
+    manager = config["Visualization Manager"]
+    manager["Displays"] = [display for display in manager["Displays"] if display["Name"] == "Hands and objects"]
+    namespaces = manager["Displays"][0]["Namespaces"]
+    namespaces.update({name: name in LAYERS for name in namespaces})
+    eye = manager["Views"]["Current"]
+    eye.update({"Yaw": 0.0, "Pitch": PITCH, "Distance": DISTANCE, "Focal Point": {"X": 0, "Y": 0, "Z": 0}})
+    config["Window Geometry"].update({"Width": 2 * WIDTH, "Height": 2 * HEIGHT})
+    yaml.safe_dump(config, file)
+    file.flush()
+    return eye
+
+
+def from_yaw(yaw):
+    """Where a camera of that yaw is, seen from what it looks at."""
+    return math.cos(yaw) * math.cos(PITCH), math.sin(yaw) * math.cos(PITCH), math.sin(PITCH)
+
+
+def best_yaw(moment):
+    """Across the grip, so that both of its sides are seen, and not through the palm."""
+    to_palm = [palm - place for palm, place in zip(moment["palm"], moment["place"])]
+    length = math.hypot(*to_palm) or 1.0
+
+    def cost(yaw):
+        back = from_yaw(yaw)
+        along = sum(a * b for a, b in zip(back, moment["across"]))
+        palm = sum(a * b for a, b in zip(back, to_palm)) / length
+        return 2.0 * along * along + 1.5 * max(0.0, palm) - 0.15 * math.cos(yaw - 6.05)
+    return min((2.0 * math.pi * i / 36 for i in range(36)), key=cost)
+
+
+def focus_of(moment):
+    """Between the object's middle and the palm; of what is large, near the palm. And how far the camera is from it."""
+    radius = moment["radius"]
+    share = 0.4 if radius < 0.1 else min(1.0, 1.0 - 0.06 / radius)
+    focus = [place + share * (palm - place) for place, palm in zip(moment["place"], moment["palm"])]
+    return focus, 0.26 + 1.2 * min(radius, 0.25)
+
+
+def placed(marker, moment, yaw):
+    """Where rviz's camera, which does not move, sees it as one of that yaw before the focus would."""
+    focus, distance = focus_of(moment)
+    c, s = math.cos(-yaw), math.sin(-yaw)
+    pose = marker.pose
+    x, y, z = (getattr(pose.position, axis) - value for axis, value in zip("xyz", focus))
+    back = (math.cos(PITCH), 0.0, math.sin(PITCH))
+    further = distance - DISTANCE
+    pose.position.x, pose.position.y, pose.position.z = (
+        c * x - s * y - further * back[0], s * x + c * y, z - further * back[2])
+    half_c, half_s, q = math.cos(-0.5 * yaw), math.sin(-0.5 * yaw), pose.orientation
+    if q.x == q.y == q.z == q.w == 0.0:  # of markers that have points alone
+        q.w = 1.0
+    q.x, q.y, q.z, q.w = (half_c * q.x - half_s * q.y, half_c * q.y + half_s * q.x, half_c * q.z + half_s * q.w,
+                          half_c * q.w - half_s * q.z)
+    return marker
+
+
+def read_moments(folder):
+    """[(number, moment, markers)]"""
+    import rosbag
+    with open(os.path.join(folder, "explain.json"), encoding="utf-8") as file:
+        moments = json.load(file)["moments"]
+    number, read = None, []
+    with rosbag.Bag(os.path.join(folder, "moments.bag")) as bag:
+        for topic, message, _ in bag.read_messages():
+            if topic == "/moment":
+                number = message.data
+            else:
+                read.append((number, moments[number], message.markers))
+    return sorted(read, key=lambda one: one[0])
+
+
+def draw(moments, folder):
+    """Files of the pictures, by number."""
+    from rviz_stage import Stage, drawn, wait_for_rviz
+    stage, files = Stage(), {}
+    before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
+    with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config, Started() as started:
+        eye = write_config(config)
+        rviz = started.start(["rviz", "--fullscreen", "-d", config.name])
+        shown = [[(0.0, "markers", Markers([placed(marker, moment, best_yaw(moment)) for marker in markers]))]
+                 for _, moment, markers in moments]
+        wait_for_rviz(stage, shown[0], folder, rviz)
+        for i, (number, _, _) in enumerate(moments):
+            stage.clear()
+            stage.show(shown[i])
+            stage.tick(i, eye, WIDTH / HEIGHT)
+            drawn(i, before, now, rviz)
+            files[number] = os.path.join(folder, "%d.jpg" % number)
+            finish(now, files[number])
+    return files
+
+
+def finish(picture, file):
+    """Half as large, and without the edge that has the mark."""
+    inner = "%dx%d+0+0" % (KEPT * 2 * WIDTH, KEPT * 2 * HEIGHT)
+    subprocess.run(["convert", picture, "-crop", inner, "+repage", "-resize", "%dx%d" % (WIDTH, HEIGHT), "-strip", "-quality",
+                    QUALITY, file], check=True)
+
+
+class Markers:
+    """As of a message, for the stage."""
+
+    def __init__(self, markers):
+        self.markers = markers
+
+
+def figure(moment, file):
+    with open(file, "rb") as picture:
+        data = base64.b64encode(picture.read()).decode()
+    caption = "%s, %.2f s: %s" % (moment["object"], moment["time"], WHAT[moment["what"]])
+    return ("<figure><img width='%d' alt='%s' src='data:image/jpeg;base64,%s'><figcaption>%s</figcaption></figure>"
+            % (SHOWN_WIDTH, html.escape(caption, quote=True), data, html.escape(caption)))
+
+
+def put_into_page(moments, files, page):
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    for number, moment, _ in moments:
+        text = text.replace("<!--picture %d-->" % number, figure(moment, files[number]))
+    with open(page, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def pictures(folder):
+    """How many were drawn."""
+    missing = missing_tools()
+    if missing:
+        raise RuntimeError("rviz draws them on a virtual screen, for which these packages are missing: " + " ".join(missing))
+    moments = read_moments(folder)
+    if not moments:
+        return 0
+    with Started() as started, tempfile.TemporaryDirectory() as scratch:
+        start_screen(started)
+        os.environ.update(ROS_MASTER_URI="http://127.0.0.1:%d" % free_port(), ROS_IP="127.0.0.1")
+        started.start(["roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]])
+        from watch_demo import join_master
+        join_master("explain_pictures", time.monotonic() + 30.0)
+        chosen = moments[:MOST]
+        put_into_page(chosen, draw(chosen, scratch), os.path.join(folder, "explain.html"))
+    return len(chosen)
+
+
+def main():
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        print(__doc__ + "\nusage: explain_pictures.py FOLDER", file=sys.stdout if "--help" in sys.argv else sys.stderr)
+        return 0 if "--help" in sys.argv else 2
+    find_modules()
+    try:
+        pictures(sys.argv[1])
+    except ImportError as error:
+        print("explain: no pictures: rviz draws them, and its Python modules are missing: %s" % error, file=sys.stderr)
+    except (RuntimeError, OSError, subprocess.SubprocessError, KeyError, ValueError) as error:
+        print("explain: no pictures: %s" % error, file=sys.stderr)
+    else:
+        return 0
+    return 1
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)  # rospy's threads would hold it up

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Every topic and field that config/layouts name is published, and by a field of that name in the topic's message."""
+import os
+import re
+import unittest
+import xml.etree.ElementTree
+
+import mr_hand_interaction.msg as messages
+
+PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+LAYOUTS = os.path.join(PACKAGE, "config", "layouts")
+PUBLISHER = os.path.join(PACKAGE, "src", "ros", "result_publisher.cpp")
+NUMBERS = re.compile(r"(u?int(8|16|32|64)|float(32|64)|bool)$")
+
+
+def published():
+    """Message class by topic, as the node has it."""
+    with open(PUBLISHER, encoding="utf-8") as file:
+        found = re.findall(r'advertise<mr_hand_interaction::(\w+)>\(\s*"(\w+)"', file.read())
+    return {"/" + topic: getattr(messages, name) for name, topic in found}
+
+
+def type_of(message, path):
+    """That of a field; fields of arrays are named as 0/name. None if there is no such field."""
+    kind = message._type
+    for name in path:
+        if name.isdigit():
+            if not kind.endswith("]"):
+                return None
+            kind = re.sub(r"\[\d*\]$", "", kind)
+            continue
+        fields = fields_of(kind)
+        if name not in fields:
+            return None
+        kind = fields[name]
+    return kind
+
+
+def fields_of(kind):
+    if "/" not in kind or kind.endswith("]"):
+        return {}
+    package, name = kind.split("/")
+    module = __import__(package + ".msg", fromlist=[name])
+    message = getattr(module, name)
+    return dict(zip(message.__slots__, message._slot_types))
+
+
+def plotjuggler_curves():
+    layout = xml.etree.ElementTree.parse(os.path.join(LAYOUTS, "plotjuggler.xml"))
+    for curve in layout.iter("curve"):
+        _, topic, *fields = re.sub(r"\[(\d+)\]", r"/\1", curve.get("name")).split("/")
+        yield "/" + topic, None, fields
+
+
+def multiplot_curves():
+    layout = xml.etree.ElementTree.parse(os.path.join(LAYOUTS, "rqt_multiplot.xml"))
+    for axis in layout.iter("y_axis"):
+        if axis.find("topic") is not None:
+            yield axis.find("topic").text, axis.find("type").text, axis.find("field").text.split("/")
+
+
+class LayoutsTest(unittest.TestCase):
+    def check(self, curves):
+        topics = published()
+        for topic, kind, fields in curves:
+            self.assertIn(topic, topics)
+            if kind is not None:
+                self.assertEqual(kind, topics[topic]._type)
+            found = type_of(topics[topic], fields)
+            self.assertIsNotNone(found, "%s has no field %s" % (topic, "/".join(fields)))
+            self.assertRegex(found, NUMBERS)
+
+    def test_plotjuggler(self):
+        curves = list(plotjuggler_curves())
+        self.assertGreater(len(curves), 15)
+        self.check(curves)
+
+    def test_plotjuggler_subscribes_to_what_it_plots(self):
+        layout = xml.etree.ElementTree.parse(os.path.join(LAYOUTS, "plotjuggler.xml"))
+        wanted = {topic for topic, _, _ in plotjuggler_curves()}
+        self.assertEqual({topic.get("name") for topic in layout.iter("topic")}, wanted)
+
+    def test_rqt_multiplot(self):
+        curves = list(multiplot_curves())
+        self.assertGreater(len(curves), 15)
+        self.check(curves)
+
+    def test_a_field_that_is_not_there_is_noticed(self):
+        self.assertIsNone(type_of(messages.ContactArray, ["contacts", "0", "along"]))
+        self.assertIsNone(type_of(messages.ContactArray, ["contacts", "normal_force"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
