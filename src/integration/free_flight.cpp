@@ -28,7 +28,8 @@ void turn(const Body& body, const Vector3& angular_momentum, double step, Quater
   const Vector3& moments = body.inverse_moments;
   const double spread = moments.maxCoeff() - moments.minCoeff();
   const double way = spread * angular_momentum.norm() * step;
-  const int parts = 1 + static_cast<int>(std::min(way / kFreeTurn, kMostParts));
+  const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none
+  const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;
     Quaternion by = free_rotation(moments, body.principal_axes.transpose() * momentum, step / parts);

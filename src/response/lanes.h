@@ -45,8 +45,11 @@ inline Wide side_by_side(double a, double b, double c, double d) {
 inline double lane_of(int lane, const Lanes& lanes) {
   return lanes.lane[lane];
 }
+/// By its parts: read as doubles, what is still on its way there would be missed (strict aliasing; gcc 10
+/// does).
 inline double lane_of(int lane, const Wide& lanes) {
-  return reinterpret_cast<const Lanes&>(lanes).lane[lane];
+  constexpr int kEach = kLanes / kParts;
+  return lanes.part[lane / kEach][lane % kEach];
 }
 /// Sum over the lanes, always in this order.
 inline double sum(const Wide& a) {
