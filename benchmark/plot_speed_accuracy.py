@@ -87,7 +87,7 @@ def spread(wanted, distance, low, high):
 def place_labels(axes, labels):
     """Writes labels at the curves' ends, moved apart where they would overlap."""
     axes.get_xlim(), axes.get_ylim()  # settles the limits
-    to_pixels, distance = axes.transData.transform, 8.5 * axes.figure.dpi / 72.0
+    to_pixels, distance = axes.transData.transform, 8.0 * axes.figure.dpi / 72.0
     labels = sorted(labels, key=lambda label: to_pixels(label[:2])[1])
     wanted = [to_pixels(label[:2])[1] for label in labels]
     places = spread(wanted, distance, axes.bbox.y0, axes.figure.bbox.y1 - 2 * distance)
@@ -146,8 +146,8 @@ def real_time_factor(row):
 
 
 def draw_scene(scene, rows, folder):
-    figure, both = plt.subplots(1, 2, figsize=(14, 6), dpi=90, sharey=True)
-    figure.subplots_adjust(left=0.06, right=0.8, top=0.87, bottom=0.1, wspace=0.06)
+    figure, both = plt.subplots(1, 2, figsize=(17, 6.5), dpi=90, sharey=True)
+    figure.subplots_adjust(left=0.05, right=0.69, top=0.87, bottom=0.1, wspace=0.06)
     draw_curves(both[0], rows, time_of)
     labels = draw_curves(both[1], rows, real_time_factor)
     finish(both[0], rows[0].unit, 'median time per step [µs], faster is left')
@@ -156,7 +156,7 @@ def draw_scene(scene, rows, folder):
     steps = sorted({r.step for r in rows})
     figure.suptitle('%s: a curve per engine and setting, a point per step of %.3g to %.3g ms; crosses on top: failed '
                     'runs, at the time that they took' % (scene.replace('_', ' '), 1e3 * steps[0], 1e3 * steps[-1]),
-                    fontsize=10, x=0.06, ha='left')
+                    fontsize=10, x=0.05, ha='left')
     place_labels(both[1], labels)
     figure.savefig(os.path.join(folder, scene + '.png'))
     plt.close(figure)
@@ -301,8 +301,8 @@ def draw_cost(rows, folder):
     groups = grouped(rows, lambda r: r.scene.rsplit('_', 1)[0])
     for name, of_group in groups.items():
         shortest = min(r.step for r in of_group)
-        figure, axes = plt.subplots(figsize=(9, 6), dpi=110)
-        figure.subplots_adjust(left=0.1, right=0.66, top=0.9, bottom=0.1)
+        figure, axes = plt.subplots(figsize=(11, 6.5), dpi=100)
+        figure.subplots_adjust(left=0.09, right=0.58, top=0.9, bottom=0.1)
         labels = []
         at_step = [r for r in of_group if r.step == shortest and r.time > 0]
         for engine, of_engine in grouped(at_step, lambda r: r.engine).items():

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <stdexcept>
 
@@ -18,13 +19,18 @@ double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
+/// Of this thread [us].
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
 /// What two readings of the clock cost by themselves.
-double clock_cost() {
+template <typename Between>
+double clock_cost(Between between) {
   std::vector<double> costs;
-  for (int i = 0; i < 1001; ++i) {
-    const auto begin = Clock::now();
-    costs.push_back(microseconds(Clock::now() - begin));
-  }
+  for (int i = 0; i < 1001; ++i) costs.push_back(between());
   std::nth_element(costs.begin(), costs.begin() + 500, costs.end());
   return costs[500];
 }
@@ -39,13 +45,14 @@ class Stopwatch {
   void begin_block() { block_begin_ = Clock::now(); }
 
   void time(Engine& engine) {
+    const double before = processor_time();
     const auto begin = Clock::now();
     engine.step();
     const auto end = Clock::now();
-    const double time = std::max(0.0, microseconds(end - begin) - clock_cost_);
-    const auto sample = static_cast<float>(time);
-    sum_ += time;
-    most_ = std::max(most_, time);
+    const double used = std::max(0.0, processor_time() - before - processor_cost_);
+    sum_ += used;
+    most_ = std::max(most_, used);
+    const auto sample = static_cast<float>(std::max(0.0, microseconds(end - begin) - clock_cost_));
     if (samples_.size() < kMaxSamples) {
       samples_.push_back(sample);
     } else {
@@ -75,7 +82,15 @@ class Stopwatch {
   double seconds_, used_ = 0.0;
   double sum_ = 0.0, most_ = 0.0;  // [us]
   const std::function<void()>& pause_;
-  const double clock_cost_ = clock_cost();
+  const double clock_cost_ = clock_cost([] {
+    const auto begin = Clock::now();
+    return microseconds(Clock::now() - begin);
+  });
+  const double processor_cost_ = clock_cost([] {
+    const double before = processor_time();
+    Clock::now(), Clock::now();
+    return processor_time() - before;
+  });
   Clock::time_point block_begin_;
   std::vector<float> samples_;
   std::size_t count_ = 0;

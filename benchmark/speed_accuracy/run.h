@@ -10,7 +10,8 @@ namespace mrhi::benchmark {
 struct StepTime {
   double median = 0.0;  ///< [us], as all
   double percentile_99 = 0.0;
-  double mean = 0.0;  ///< of all steps
+  double mean =
+      0.0;  ///< of all steps, as the next: the processor's time, which others on the machine do not count in
   double most = 0.0;
 };
 
