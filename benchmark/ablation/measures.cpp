@@ -27,8 +27,8 @@ testing::Ride shaken(const Variant& variant, double step) {
   return testing::ride(variant.pinch, stepped(variant, step), rate, testing::eased(0.05, 3.0));
 }
 
-/// How fast the cube moves in a still hand that grips it twice as hard as its weight needs [m/s]. It has no weight
-/// until it is gripped.
+/// How fast the cube moves in a still hand that grips it twice as hard as its weight needs [m/s]. It has no
+/// weight until it is gripped.
 double creep(const Variant& variant) {
   constexpr double kGripped = 1.0, kSettled = 5.0, kWatched = 20.0, kRate = 60.0;
   testing::PinchScene pinch = variant.pinch;

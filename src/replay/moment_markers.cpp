@@ -56,9 +56,8 @@ MomentMarkers::~MomentMarkers() = default;
 
 void MomentMarkers::watch(const Simulation& simulation) {
   const FrameResult& result = simulation.result();
-  if (!begun_) first_ = result.stamp;
-  begun_ = true;
-  const double time = to_seconds(result.stamp - first_);
+  if (!first_) first_ = result.stamp;
+  const double time = to_seconds(result.stamp - *first_);
   std::map<std::string, bool> touched;
   for (const Contact& contact : result.contacts)
     if (contact.touching() || !contact.impulse.isZero(0.0))

@@ -3,6 +3,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,7 @@ class MomentMarkers {
 
   void keep(const Touched& touched);
 
-  bool begun_ = false;
-  Nanoseconds first_ = 0;
+  std::optional<Nanoseconds> first_;  // of the frames
   std::deque<std::shared_ptr<const Kept>> recent_;
   std::map<std::string, Touched> objects_;
   std::map<double, std::shared_ptr<const Kept>> kept_;  // by time [s]

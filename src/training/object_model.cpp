@@ -27,6 +27,7 @@ std::string beside(const std::string& urdf_file, const std::vector<std::string>&
 
 std::string names_of(const std::vector<Joint>& joints) {
   std::vector<std::string> names;
+  names.reserve(joints.size());
   for (const Joint& joint : joints) names.push_back(joint.name);
   return names.empty() ? "none, as it has no joints" : text::joined(names);
 }
