@@ -31,8 +31,7 @@ TrainingScene::TrainingScene(ros::NodeHandle node, const std::string& simulation
   for (const TaskObject& object : task.objects)
     models_[object.name] = load_object(object, task.goals, scene_folders(), scene_options({}));
   for (const Fixture& fixture : task.fixtures)
-    models_[fixture.name] =
-        load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders(), scene_options({}));
+    models_[fixture.name] = load_fixture(fixture, scene_folders(), scene_options({}));
 }
 
 std::string TrainingScene::set_up() {

@@ -43,6 +43,9 @@ void check_goals(const TaskObject& object, const std::vector<Goal>& goals, const
 /// All links of a URDF, which hang on one.
 void make_device(const TaskObject& object, const std::string& urdf, const SceneOptions& options,
                  ObjectModel& model) {
+  if (object.twist.linear != Vector3::Zero() || object.twist.angular != Vector3::Zero())
+    throw SceneError(object.file + ": '" + object.name +
+                     "' is of links on joints, and has a twist; allowed: a twist of a lone body");
   model.request.whole = true;
   model.request.joints = beside(urdf, {"joints"});
   model.request.pose = object.start;
@@ -82,6 +85,16 @@ ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals
     make_device(object, urdf, options, model);
   }
   check_goals(object, goals, model.scene);
+  return model;
+}
+
+ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
+                         const SceneOptions& options) {
+  ObjectModel model = load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders, options);
+  if (model.is_device())
+    throw SceneError(fixture.file + ": the fixture '" + fixture.name +
+                     "' is of links on joints; allowed: one link with a shape");
+  model.scene.bodies.front().fixed = true;
   return model;
 }
 

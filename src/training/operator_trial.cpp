@@ -51,13 +51,8 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
   scene.gravity = task.gravity;
   const ObjectModel model = load_object(object, task.goals, stage.scene_folders, stage.scene_options);
   append(model.scene, scene);
-  for (const Fixture& fixture : task.fixtures) {
-    append(load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, stage.scene_folders,
-                       stage.scene_options)
-               .scene,
-           scene);
-    scene.bodies.back().fixed = true;
-  }
+  for (const Fixture& fixture : task.fixtures)
+    append(load_fixture(fixture, stage.scene_folders, stage.scene_options).scene, scene);
   scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
   if (task.gravity != Vector3::Zero() && !model.is_device()) {
     scene.bodies.push_back(stand_under(scene.bodies.front()));

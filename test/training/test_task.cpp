@@ -178,6 +178,10 @@ TEST(ObjectModels, are_refused_without_what_the_task_asks_of_them) {
   test::expect_words(error({"cube", "cube", {}, {}}, {goal}), {"'handle'", "no joints"});
   test::expect_words(error({"hatch", "hatch", {}, {}}, {}), {"not all hangs on a link 'hatch'"});
   test::expect_words(error({"cube", "mixed", {}, {}}, {}), {"mixed", "one link 'cube'"});
+  test::expect_words(error({"wall", "hatch", {}, {Vector3::UnitX(), Vector3::Zero()}}, {}),
+                     {"'wall'", "twist", "a lone body"});
+  EXPECT_TRUE(load_fixture({"cube", "cube", {}}, {"config/scenes"}, {}).scene.bodies.front().fixed);
+  EXPECT_THROW(load_fixture({"wall", "hatch", {}}, {"config/scenes"}, {}), SceneError);
 }
 
 TEST(ObjectModels, of_devices_stand_where_the_task_has_them) {

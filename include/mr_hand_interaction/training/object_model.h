@@ -22,5 +22,8 @@ struct ObjectModel {
 /// that the task's goals ask for.
 ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals,
                         const std::vector<std::string>& scene_folders, const SceneOptions& options);
+/// The same for what is there in all trials, which is one body.
+ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
+                         const SceneOptions& options);
 
 }  // namespace mrhi
