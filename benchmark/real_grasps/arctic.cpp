@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "finger_forces.h"
+#include "math/registration.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
@@ -101,6 +102,44 @@ SimulationState led(const Window& window, Configuration configuration, std::size
   return simulation.state();
 }
 
+/// Where the last phalanges of a hand are.
+std::vector<Vector3> last_phalanges(const Hand& hand) {
+  std::vector<Vector3> points;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, kBonesPerFinger - 1))];
+    points.insert(points.end(), {bone.start, bone.end});
+  }
+  return points;
+}
+
+std::optional<Hand> hand_in(const Window& window, std::size_t frame, Side side) {
+  std::vector<std::string> left_out;
+  const auto hands = complete_frame(window.frames[frame], device_mount(), left_out);
+  if (!hands) return std::nullopt;
+  const auto hand = std::find_if(hands->hands.begin(), hands->hands.end(),
+                                 [side](const Hand& candidate) { return candidate.side == side; });
+  return hand == hands->hands.end() ? std::nullopt : std::optional<Hand>(*hand);
+}
+
+/// Of an object that goes with one hand's last phalanges. A hand that is not seen carries nothing.
+std::vector<double> away_with(const Window& window, Side side) {
+  std::vector<double> away(window.places.size() - window.free_from - 1, kFurthest);
+  const auto first = hand_in(window, window.free_from, side);
+  if (!first) return away;
+  const std::vector<Vector3> from = last_phalanges(*first);
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    const std::size_t frame = window.free_from + 1 + i;
+    const auto hand = hand_in(window, frame, side);
+    if (!hand) continue;
+    const std::vector<Vector3> to = last_phalanges(*hand);
+    const auto carried = registered(from.data(), to.data(), from.size());
+    if (!carried) continue;
+    const Vector3 arm = window.places[window.free_from].position - carried->from;
+    away[i] = (carried->to + carried->rotation * arm - window.places[frame].position).norm();
+  }
+  return away;
+}
+
 }  // namespace
 
 std::vector<Window> load_windows(const std::string& folder, const Configuration& configuration) {
@@ -128,6 +167,12 @@ WindowOutcome play(const Window& window, const Configuration& configuration, dou
     outcome.away.push_back((place - window.places[i].position).norm());
   }
   return outcome;
+}
+
+WindowOutcome play_rigidly(const Window& window) {
+  WindowOutcome right{away_with(window, Side::right), {}}, left{away_with(window, Side::left), {}};
+  constexpr double kNear = 0.02;  // the tightest limit that is told of [m]
+  return share_within({right}, kNear) < share_within({left}, kNear) ? left : right;
 }
 
 double share_within(const std::vector<WindowOutcome>& outcomes, double limit) {

@@ -32,6 +32,11 @@ struct WindowOutcome {
 /// as they come to it; then it is free, with the velocity recorded.
 WindowOutcome play(const Window& window, const Configuration& configuration, double lead);
 
+/// What a hand that carried the object as if it were one with it would do: the object keeps its pose in the
+/// last phalanges (least squares) of the hand that is best in hindsight. No fingers move in it, nothing slips
+/// or falls.
+WindowOutcome play_rigidly(const Window& window);
+
 /// Share of all frames in which the object is less than `limit` [m] from its recorded place.
 double share_within(const std::vector<WindowOutcome>& outcomes, double limit);
 

@@ -37,6 +37,24 @@ Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
   return sum;
 }
 
+LostTo lost_to(const std::vector<Event>& events) {
+  LostTo lost;
+  for (const Event& event : events) {
+    if (event.outcome.held) continue;
+    const auto& blow = event.outcome.blow;
+    ++(blow ? lost.blows[static_cast<std::size_t>(blow->blow)] : lost.none);
+  }
+  return lost;
+}
+
+std::string line(const LostTo& lost) {
+  std::string text = "  lost, first moved by:";
+  for (const Blow blow : {Blow::back, Blow::sweep, Blow::closing, Blow::open})
+    text += std::string(" ") + to_string(blow) + " " +
+            std::to_string(lost.blows[static_cast<std::size_t>(blow)]) + ",";
+  return text + " nothing " + std::to_string(lost.none);
+}
+
 std::string line(const Event& event) {
   const Outcome& outcome = event.outcome;
   char text[400];
