@@ -281,8 +281,40 @@ TEST(Arctic, ARigidHandCarriesWhatGoesWithEitherHand) {
     EXPECT_NEAR(left_behind.away[i], 0.03 * static_cast<double>(i + 1), 1e-6);
 }
 
+TEST(Arctic, AnObjectOnAHingeIsLetFreeWithTheSpeedThatItsHingeHad) {
+  constexpr double kSpeed = 1.0;  // [rad/s]
+  Window window = carried(0.0, 0.0);
+  window.scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};
+  Body lid = body_of(kCube, {Vector3(5.05, 0, 0), Quaternion::Identity()}, {}), box = lid;
+  box.name = "box", lid.name = "lid";
+  box.start.position.x() = 5.0;           // out of the hands' reach
+  box.mass *= 90.0, box.inertia *= 90.0;  // as good as fixed beside a lid of a tenth of a gram
+  lid.mass *= 1e-3, lid.inertia *= 1e-3;
+  window.scene.bodies = {box, lid};
+  Joint hinge;
+  hinge.name = "hinge", hinge.parent = 0, hinge.child = 1, hinge.axis = Vector3::UnitZ();
+  hinge.in_child.position = Vector3(-0.05, 0, 0);
+  window.scene.joints = {hinge};
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    window.places[i] = box.start;
+    window.angles.push_back(kSpeed * to_seconds(window.frames[i].stamp));
+  }
+  const WindowOutcome outcome = play(window, Configuration(), 0.0);
+  ASSERT_EQ(outcome.turned.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(outcome.away[i], 1e-5);
+    EXPECT_LT(outcome.turned[i], 1e-4);
+  }
+}
+
+TEST(Arctic, AHingeThatIsElsewhereIsNotWithin) {
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.01}, {0.1, 0.3}, {}}};
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 1.0);
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02, 0.2), 0.5);
+}
+
 TEST(Arctic, SharesAreOfAllFramesTogether) {
-  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {1.0}}, {{0.0}, {2.0, 3.0}}};
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {}, {1.0}}, {{0.0}, {}, {2.0, 3.0}}};
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.05), 0.75);
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 0.5);
   EXPECT_EQ(stayed(outcomes, 0.05), 1u);
