@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "../text/text.h"
-#include "joint_ranges.h"
+#include "limits.h"
 #include "material_fields.h"
 #include "shape_kinds.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../src/scene/append_scene.h"
+#include "../../src/scene/scene_edit.h"
 #include "../../src/scene/shape_kinds.h"
 #include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
