@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../scene/append_scene.h"
+#include "../scene/scene_edit.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
 #include "mr_hand_interaction/training/object_model.h"
