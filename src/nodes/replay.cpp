@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
       std::cout << mrhi::replay_help();
     } else if (arguments.compare) {
       const mrhi::Comparison comparison =
-          mrhi::compare_runs(arguments.compare->first, arguments.compare->second);
+          mrhi::compare_runs(arguments.compare->first, arguments.compare->second, arguments.tolerance);
       std::cout << mrhi::to_text(comparison) << std::flush;
       return comparison.partings.empty() ? 0 : 1;
     } else {

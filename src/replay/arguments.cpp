@@ -130,6 +130,21 @@ void check(ReplayArguments& arguments) {
     arguments.output = arguments.input.substr(0, arguments.input.size() - 4) + "_replay";
 }
 
+constexpr const char* kCompareUsage =
+    "--compare takes the folders of two runs, then --tolerance METRES,RADIANS or nothing";
+
+void read_comparison(const std::vector<std::string>& arguments, ReplayArguments& parsed) {
+  const bool tolerant = arguments.size() == 5 && arguments[3] == "--tolerance";
+  if (arguments.size() != 3 && !tolerant) throw UsageError(kCompareUsage);
+  parsed.compare = {arguments[1], arguments[2]};
+  if (!tolerant) return;
+  const OptionText text{"--tolerance", "METRES,RADIANS, each from 0 to 1", arguments[4]};
+  const std::vector<double> values = text.numbers(text::split(text.text), 0, 2);
+  for (const double value : values)
+    if (!(value >= 0.0 && value <= 1.0)) text.refuse("out of range");
+  parsed.tolerance = {values[0], values[1]};
+}
+
 }  // namespace
 
 ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments) {
@@ -142,9 +157,8 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
       return parsed;
     }
     if (name == "--compare") {
-      if (arguments.size() != 3 || i != 0)
-        throw UsageError("--compare takes the folders of two runs, and stands alone");
-      parsed.compare = {arguments[1], arguments[2]};
+      if (i != 0) throw UsageError(kCompareUsage);
+      read_comparison(arguments, parsed);
       return parsed;
     }
     if (name == "--explain") {
@@ -169,7 +183,7 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
 const char* replay_help() {
   return R"(usage: replay --input FILE.bag [options]
        replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
-       replay --compare DIR DIR
+       replay --compare DIR DIR [--tolerance METRES,RADIANS]
 
 Does again what a live simulation did, from a bag of record.launch; or runs a recording of hands through a scene. As
 fast as the machine goes; needs no ROS master.
@@ -191,7 +205,10 @@ fast as the machine goes; needs no ROS master.
   --export HZ               demonstration.csv and demonstration.bag too, of standard messages alone; 0: a row for
                             each frame
   --explain                 explain.html and explain.json too: when each object was held, how, and why it was lost
-  --compare DIR DIR         when and where the objects of two runs part, and by how much
+  --compare DIR DIR         when and where the objects of two runs part, and by how much, and whether the bits are the
+                            same
+  --tolerance METRES,RADIANS
+                            what --compare takes as the same place; else 1e-9,1e-9; 0,0: the same to the last digit
   --help                    this text
 
 Exit status: 0 done, 1 bad data (what was written stays) or runs that part, 2 bad usage.

@@ -16,7 +16,7 @@ namespace {
 
 struct Row {
   double time;
-  Vector3 place;
+  Pose pose;
   std::string cells;  // as they were written, for what counts as the same
 };
 
@@ -31,70 +31,158 @@ Ways read_ways(const std::string& folder) {
   Ways ways;
   for (std::size_t number = 2; std::getline(in, line); ++number) {
     columns.take(line, number);
-    const Vector3 place(columns.required("px"), columns.required("py"), columns.required("pz"));
-    ways[text::split(line).at(1)].push_back({columns.required("time"), place, line});
+    const auto cell = [&](const char* name) { return columns.required(name); };
+    const Pose pose{{cell("px"), cell("py"), cell("pz")}, {cell("qw"), cell("qx"), cell("qy"), cell("qz")}};
+    ways[text::split(line).at(1)].push_back({cell("time"), pose, line});
   }
   return ways;
 }
 
-/// Compared frame by frame, up to the first one that one of them alone has.
-std::optional<Parting> parting(const std::string& object, const std::vector<Row>& first,
-                               const std::vector<Row>& second) {
-  std::optional<Parting> result;
-  const std::size_t both = std::min(first.size(), second.size());
-  for (std::size_t i = 0; i < both; ++i) {
-    const Row &a = first[i], &b = second[i];
-    if (a.time != b.time)
-      return result ? result
-                    : Parting{object, std::min(a.time, b.time), a.place, 0.0, 0.0, "a frame of one alone"};
-    const double distance = (a.place - b.place).norm();
-    if (!result && a.cells != b.cells) result = Parting{object, a.time, a.place, distance, distance, ""};
-    if (result) result->farthest = std::max(result->farthest, distance);
+/// Both ways of an object, and what counts as apart.
+struct Pair {
+  const std::string& object;
+  const std::vector<Row>&first, &second;
+  Tolerance tolerance;
+
+  bool exact() const { return tolerance.distance <= 0.0 && tolerance.angle <= 0.0; }
+  double distance(std::size_t i) const { return (first[i].pose.position - second[i].pose.position).norm(); }
+  double angle(std::size_t i) const {
+    return first[i].pose.orientation.angularDistance(second[i].pose.orientation);
   }
-  if (result || first.size() == second.size()) return result;
-  const Row& more = (first.size() > second.size() ? first : second)[both];
-  return Parting{object, more.time, more.place, 0.0, 0.0, "one run ends"};
+  bool differs(std::size_t i) const { return first[i].cells != second[i].cells; }
+  bool apart(std::size_t i) const {
+    if (!differs(i)) return false;
+    // Not "greater than": what is no number is apart.
+    return exact() || !(distance(i) <= tolerance.distance && angle(i) <= tolerance.angle);
+  }
+  /// Frames up to the first one that one of them alone has.
+  std::size_t common() const {
+    const std::size_t both = std::min(first.size(), second.size());
+    std::size_t i = 0;
+    while (i < both && first[i].time == second[i].time) ++i;
+    return i;
+  }
+};
+
+Parting told_from(const Pair& pair, std::size_t from) {
+  Parting parting;
+  parting.object = pair.object;
+  parting.time = pair.first[from].time;
+  parting.place = pair.first[from].pose.position;
+  parting.distance = pair.distance(from);
+  parting.angle = pair.angle(from);
+  for (std::size_t i = from; i < pair.common(); ++i) {
+    parting.farthest = std::max(parting.farthest, pair.distance(i));
+    parting.most_turned = std::max(parting.most_turned, pair.angle(i));
+  }
+  return parting;
 }
 
-std::string line_of(const Parting& parting) {
+template <class Test>
+std::optional<Parting> first_that(const Pair& pair, Test test) {
+  for (std::size_t i = 0; i < pair.common(); ++i)
+    if (test(i)) return told_from(pair, i);
+  return {};
+}
+
+Parting alone(const std::string& object, const Row& row, const std::string& why) {
+  Parting parting;
+  parting.object = object;
+  parting.time = row.time;
+  parting.place = row.pose.position;
+  parting.why = why;
+  return parting;
+}
+
+std::optional<Parting> parting_of(const Pair& pair) {
+  if (const auto apart = first_that(pair, [&](std::size_t i) { return pair.apart(i); })) return apart;
+  const std::size_t i = pair.common();
+  const bool first_ends = i == pair.first.size(), second_ends = i == pair.second.size();
+  if (first_ends && second_ends) return {};
+  if (first_ends || second_ends)
+    return alone(pair.object, (first_ends ? pair.second : pair.first)[i], "one run ends");
+  return alone(pair.object, (pair.first[i].time < pair.second[i].time ? pair.first : pair.second)[i],
+               "a frame of one alone");
+}
+
+/// As `replay` writes it into summary.json; empty where there is none.
+std::string end_hash(const std::string& folder) {
+  std::ifstream in(folder + "/summary.json");
+  for (std::string line; std::getline(in, line);) {
+    const std::string key = "\"state_hash\": \"";
+    const std::size_t at = line.find(key);
+    if (at != std::string::npos) return line.substr(at + key.size(), 16);
+  }
+  return {};
+}
+
+std::string apart_text(double distance, double angle) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.3g m and %.3g rad", distance, angle);
+  return text;
+}
+
+std::string line_of(const Parting& parting, const char* what) {
   char text[200];
-  std::snprintf(text, sizeof text, ": parts at %.6g s near (%.4g, %.4g, %.4g) m", parting.time,
+  std::snprintf(text, sizeof text, ": %s %.6g s near (%.4g, %.4g, %.4g) m", what, parting.time,
                 parting.place.x(), parting.place.y(), parting.place.z());
-  std::string line = parting.object + text;
+  const std::string line = parting.object + text;
   if (!parting.why.empty()) return line + ": " + parting.why + "\n";
-  std::snprintf(text, sizeof text, " by %.3g m, at most by %.3g m\n", parting.distance, parting.farthest);
-  return line + text;
+  return line + " by " + apart_text(parting.distance, parting.angle) + ", at most by " +
+         apart_text(parting.farthest, parting.most_turned) + "\n";
+}
+
+std::string bits_text(const Comparison& comparison) {
+  const bool same_ways = comparison.partings.empty() && comparison.near_misses.empty();
+  const std::string ways = same_ways ? "objects: the same bits in every frame" : "objects: not the same bits";
+  if (!comparison.same_end) return ways + "; the state at the end: not told by both runs\n";
+  return ways + "; the state at the end: " + (*comparison.same_end ? "" : "not ") + "the same bits\n";
 }
 
 }  // namespace
 
-Comparison compare_runs(const std::string& first, const std::string& second) {
+Comparison compare_runs(const std::string& first, const std::string& second, const Tolerance& tolerance) {
   const Ways a = read_ways(first), b = read_ways(second);
   std::set<std::string> names;
   for (const Ways* ways : {&a, &b})
     for (const auto& way : *ways) names.insert(way.first);
   Comparison comparison;
+  comparison.tolerance = tolerance;
   comparison.objects = names.size();
   for (const std::string& name : names) {
     const auto in_a = a.find(name), in_b = b.find(name);
     if (in_a == a.end() || in_b == b.end()) {
       const Row& row = (in_a == a.end() ? in_b : in_a)->second.front();
-      comparison.partings.push_back({name, row.time, row.place, 0.0, 0.0, "an object of one alone"});
-    } else if (const auto found = parting(name, in_a->second, in_b->second)) {
-      comparison.partings.push_back(*found);
+      comparison.partings.push_back(alone(name, row, "an object of one alone"));
+      continue;
     }
+    const Pair pair{name, in_a->second, in_b->second, tolerance};
+    if (const auto apart = parting_of(pair))
+      comparison.partings.push_back(*apart);
+    else if (const auto near = first_that(pair, [&](std::size_t i) { return pair.differs(i); }))
+      comparison.near_misses.push_back(*near);
   }
-  std::stable_sort(comparison.partings.begin(), comparison.partings.end(),
-                   [](const Parting& x, const Parting& y) { return x.time < y.time; });
+  for (auto* told : {&comparison.partings, &comparison.near_misses})
+    std::stable_sort(told->begin(), told->end(),
+                     [](const Parting& x, const Parting& y) { return x.time < y.time; });
+  const std::string hash_a = end_hash(first), hash_b = end_hash(second);
+  if (!hash_a.empty() && !hash_b.empty()) comparison.same_end = hash_a == hash_b;
   return comparison;
 }
 
 std::string to_text(const Comparison& comparison) {
   std::string text;
-  for (const Parting& parting : comparison.partings) text += line_of(parting);
-  const std::size_t same = comparison.objects - comparison.partings.size();
-  return text + std::to_string(same) + " of " + std::to_string(comparison.objects) +
-         " objects the same to the last digit\n";
+  for (const Parting& parting : comparison.partings) text += line_of(parting, "parts at");
+  for (const Parting& parting : comparison.near_misses)
+    text += line_of(parting, "does not part, but differs from");
+  const std::size_t together = comparison.objects - comparison.partings.size();
+  const Tolerance& tolerance = comparison.tolerance;
+  const std::string within =
+      tolerance.distance <= 0.0 && tolerance.angle <= 0.0
+          ? "the same to the last digit"
+          : "within " + apart_text(tolerance.distance, tolerance.angle) + " in every frame";
+  return text + std::to_string(together) + " of " + std::to_string(comparison.objects) + " objects " +
+         within + "\n" + bits_text(comparison);
 }
 
 }  // namespace mrhi

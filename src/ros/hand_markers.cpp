@@ -3,6 +3,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,8 @@ using visualization_msgs::Marker;
 constexpr double kUnseen = 0.003;  // a ghost nearer to the hand than this is not drawn [m]
 constexpr double kFull = 0.012;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
+constexpr std::uint32_t kMiddle = std::numeric_limits<std::uint32_t>::max();
+constexpr double kLidDepth = 0.01;     // [m]
 constexpr int kSpare = 3 * kMaxHands;  // skin, wrist and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
@@ -50,7 +53,8 @@ HandMarkers::HandMarkers(const Skin& skin)
     : skin_(skin),
       outline_(Skin::outline()),
       paint_(skin_),
-      skin_corners_(closed(corners_of(skin_, [this](const auto& triangle) { return !fades(triangle); }))),
+      skin_corners_(
+          closed(corners_of(skin_, [this](const auto& triangle) { return !fades(triangle); }), rim_)),
       wrist_corners_(corners_of(skin_, [this](const auto& triangle) { return fades(triangle); })),
       outline_corners_(corners_of(outline_, [](const auto&) { return true; })) {}
 
@@ -71,15 +75,20 @@ HandMarkers::Corners HandMarkers::corners_of(const Skin& skin, const Chosen& cho
   return corners;
 }
 
-/// With the hole closed, which is one loop of edges: who looks through the wrist sees no inside.
-HandMarkers::Corners HandMarkers::closed(Corners corners) {
+/// With the hole closed, which is one loop of edges: who looks through the wrist sees no inside. From its
+/// middle: the loop is jagged, and a fan from one of its own corners would stand out between its teeth.
+HandMarkers::Corners HandMarkers::closed(Corners corners, std::vector<std::uint32_t>& rim) {
   for (auto& of_side : corners) {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> rim;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (std::size_t i = 0; i < of_side.size(); ++i) {
       const std::uint32_t a = of_side[i], b = of_side[i % 3 == 2 ? i - 2 : i + 1];
-      if (rim.erase({b, a}) == 0) rim.insert({a, b});
+      if (edges.erase({b, a}) == 0) edges.insert({a, b});
     }
-    for (const auto& [a, b] : rim) of_side.insert(of_side.end(), {rim.begin()->first, b, a});
+    rim.clear();
+    for (const auto& [a, b] : edges) {
+      of_side.insert(of_side.end(), {kMiddle, b, a});
+      rim.push_back(a);
+    }
   }
   return corners;
 }
@@ -129,14 +138,30 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
   add_part(drawn, wrist_corners_, id + 1, layer);
 }
 
+/// A little below the rim, within the wrist: level with it, flat stretches of skin would be above the lid.
+std::pair<Vector3, Rgb> HandMarkers::middle_of_lid(const Drawn& drawn) const {
+  Vector3 rim = Vector3::Zero(), all = Vector3::Zero();
+  Rgb colour = Rgb::Zero();
+  for (const std::uint32_t vertex : rim_) {
+    rim += drawn.surface.vertices[vertex] / static_cast<double>(rim_.size());
+    colour += drawn.colours[vertex] / static_cast<float>(rim_.size());
+  }
+  for (const Vector3& vertex : drawn.surface.vertices) all += vertex;
+  all /= static_cast<double>(drawn.surface.vertices.size());
+  return {rim - kLidDepth * (all - rim).normalized(), colour};
+}
+
 void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, int id, MarkerLayer& layer) {
   Marker& marker = add_triangles(id, layer);
   const auto& corners = of_either_side[static_cast<std::size_t>(drawn.side)];
   marker.points.resize(corners.size());
   marker.colors.resize(corners.size());
+  const auto [middle, colour] = middle_of_lid(drawn);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    marker.points[i] = mrhi::to_message(drawn.surface.vertices[corners[i]]);
-    marker.colors[i] = to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
+    const bool is_middle = corners[i] == kMiddle;
+    marker.points[i] = mrhi::to_message(is_middle ? middle : drawn.surface.vertices[corners[i]]);
+    marker.colors[i] = is_middle ? to_message(colour, 1.0f)
+                                 : to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "../rendering/skin_paint.h"
@@ -33,7 +34,8 @@ class HandMarkers {
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
-  /// Three for each triangle, in an order that is counter-clockwise from outside for either side.
+  /// Three for each triangle, in an order that is counter-clockwise from outside for either side. What is no
+  /// vertex is the middle of the rim.
   using Corners = std::array<std::vector<std::uint32_t>, 2>;
   /// A hand as it was last drawn.
   struct Drawn {
@@ -46,16 +48,18 @@ class HandMarkers {
   };
   visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
   void add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer);
+  std::pair<Vector3, Rgb> middle_of_lid(const Drawn& drawn) const;
   void add_part(const Drawn& drawn, const Corners& corners, int id, MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
   using Chosen = std::function<bool(const std::array<int, 3>& triangle)>;
   static Corners corners_of(const Skin& skin, const Chosen& chosen);
-  static Corners closed(Corners corners);
+  static Corners closed(Corners corners, std::vector<std::uint32_t>& rim);
   bool fades(const std::array<int, 3>& triangle) const;
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
+  std::vector<std::uint32_t> rim_;  // where the opaque skin ends
   const Corners skin_corners_, wrist_corners_, outline_corners_;
   std::vector<Drawn> drawn_;     // by their place in the result
   SkinSurface ghost_, beneath_;  // kept for their memory, as are the rest

@@ -85,6 +85,48 @@ class LayoutsTest(unittest.TestCase):
         self.assertGreater(len(curves), 15)
         self.check(curves)
 
+    # As plot_docker.cpp reads it: sizes by number, a place for each child, anything else ends the reading.
+    def test_plotjuggler_finds_a_plot_and_a_size_for_each_part_of_a_splitter(self):
+        layout = xml.etree.ElementTree.parse(os.path.join(LAYOUTS, "plotjuggler.xml"))
+        self.assertEqual([child.tag for child in layout.getroot()].count("tabbed_widget"), 1)
+        self.assertEqual([tab.get("containers") for tab in layout.iter("Tab")],
+                         [str(len(tab.findall("Container"))) for tab in layout.iter("Tab")])
+        splitters = list(layout.iter("DockSplitter"))
+        self.assertGreater(len(splitters), 1)
+        for splitter in splitters:
+            self.assertIn(splitter.get("orientation"), ("-", "|"))
+            self.assertEqual(int(splitter.get("count")), len(splitter))
+            self.assertEqual(len(splitter.get("sizes").split(";")), len(splitter))
+            for area in splitter:
+                self.assertEqual((area.tag, len(area.findall("plot"))), ("DockArea", 1))
+        for plot in layout.iter("plot"):
+            self.assertIn(plot.get("style"), ("Lines", "Dots", "LinesAndDots", "Sticks", "Steps", "StepsInv"))
+            self.assertIn(plot.get("mode"), ("TimeSeries", "XYPlot"))
+
+    # As its *Config.cpp read it: a key of another name, or an enumeration's number beyond its last, is not heard of.
+    def test_rqt_multiplot_knows_every_key(self):
+        known = {"rqt_multiplot": {"table"},
+                 "table": {"background_color", "foreground_color", "link_cursor", "link_scale", "track_points", "plots"},
+                 "plots": {"row"}, "row": {"column"}, "column": {"axes", "curves", "legend", "plot_rate", "title"},
+                 "curves": {"curve"}, "curve": {"axes", "color", "data", "style", "subscriber_queue_size", "title"},
+                 "legend": {"visible"}, "axes": {"axes", "x_axis", "y_axis"},
+                 "scale": {"type", "absolute_maximum", "absolute_minimum", "relative_maximum", "relative_minimum"},
+                 "color": {"custom_color", "type"}, "data": {"circular_buffer_capacity", "time_frame_length", "type"},
+                 "style": {"lines_interpolate", "pen_style", "pen_width", "render_antialias", "steps_invert",
+                           "sticks_baseline", "sticks_orientation", "type"}}
+        axis = {"custom_title", "title_type", "title_visible", "field", "field_type", "scale", "topic", "type"}
+        known.update(x_axis=axis, y_axis=axis)
+        last = {"scale": 2, "color": 1, "data": 3, "style": 3}
+
+        def plain(element):
+            return re.sub(r"_\d+$", "", element.tag)
+
+        for element in xml.etree.ElementTree.parse(os.path.join(LAYOUTS, "rqt_multiplot.xml")).iter():
+            for child in element:
+                self.assertIn(plain(child), known.get(plain(element), set()), "in %s" % element.tag)
+            if plain(element) in last:
+                self.assertLessEqual(int(element.find("type").text), last[plain(element)])
+
     def test_a_field_that_is_not_there_is_noticed(self):
         self.assertIsNone(type_of(messages.ContactArray, ["contacts", "0", "along"]))
         self.assertIsNone(type_of(messages.ContactArray, ["contacts", "normal_force"]))

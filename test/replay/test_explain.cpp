@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
 
 #include "mr_hand_interaction/replay/frame_source.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
@@ -139,6 +143,77 @@ TEST(Explain, an_object_that_another_strikes_out_of_the_hand_is_lost_by_that_blo
   attempt.ball_velocity = {0.0, 2.0, 0.0};
   expect_cause(attempt, LossCause::blow);
   EXPECT_EQ(only_loss(attempt).by, "ball");
+}
+
+/// A story told again after its samples have been changed.
+Loss told_again(Explanation story, const std::function<void(ObjectSample&)>& change) {
+  for (ObjectSample& sample : story.objects.at("object").samples) change(sample);
+  story.losses.clear();
+  find_losses(story);
+  EXPECT_EQ(story.losses.size(), 1u);
+  return story.losses.empty() ? Loss() : story.losses.front();
+}
+
+Explanation only_loss_of(const Attempt& attempt) {
+  Explanation story = attempt.run();
+  EXPECT_EQ(story.losses.size(), 1u);
+  return story;
+}
+
+// A grip that help bears ends as the hand opens; here it is said to have borne what slides out of weak
+// fingers.
+TEST(Explain, help_that_bore_it_until_shortly_before_gave_way) {
+  const Explanation story = only_loss_of(weak());
+  const double until = story.losses.front().until;
+  const auto helped_until = [&](double before) {
+    return told_again(story, [&](ObjectSample& sample) { sample.helped = sample.time < until - before; });
+  };
+  const Loss late = helped_until(0.10), early = helped_until(0.20);
+  EXPECT_STREQ(to_string(late.cause), "help_gave_way") << late.text;
+  EXPECT_STREQ(to_string(early.cause), "too_little_force") << early.text;
+  for (const Loss& loss : {late, early})
+    EXPECT_NE(loss.text.find("Help for bare hands (contact/grasp_assist) bore it from "), std::string::npos)
+        << loss.text;
+  EXPECT_EQ(story.losses.front().text.find("Help"), std::string::npos);
+}
+
+TEST(Explain, a_hand_that_opens_has_opened_also_if_help_bore_what_it_held) {
+  Attempt attempt;
+  attempt.opens_at = 0.9;
+  const Loss loss = told_again(only_loss_of(attempt), [](ObjectSample& sample) { sample.helped = true; });
+  EXPECT_STREQ(to_string(loss.cause), "hand_opened") << loss.text;
+}
+
+std::string last_touches(const Loss& loss) {
+  const std::size_t from = loss.text.find("Last touches: ");
+  return loss.text.substr(from, loss.text.find(" Help", from) - from);
+}
+
+std::string at_seconds(double time) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%.2f s", time);
+  return text;
+}
+
+TEST(Explain, fingers_are_told_in_the_order_in_which_they_touched_last) {
+  const Explanation story = only_loss_of(weak());
+  const double until = story.losses.front().until;
+  const auto leaving = [&](int finger, double before) {
+    return told_again(story, [&](ObjectSample& sample) {
+      if (sample.time <= until - before) return;
+      auto& fingers = sample.fingers;
+      fingers.erase(std::remove_if(fingers.begin(), fingers.end(),
+                                   [&](const FingerTouch& touch) { return touch.finger == finger; }),
+                    fingers.end());
+    });
+  };
+  const double frame = std::floor((until - 0.055) * kRate) / kRate;  // the last sample by then
+  const std::string first = at_seconds(frame), last = at_seconds(until);
+  ASSERT_NE(first, last);
+  EXPECT_EQ(last_touches(leaving(0, 0.055)),
+            "Last touches: the thumb at " + first + ", then the index at " + last + ".");
+  EXPECT_EQ(last_touches(leaving(1, 0.055)),
+            "Last touches: the index at " + first + ", then the thumb at " + last + ".");
 }
 
 // What is told to be enough is tried.

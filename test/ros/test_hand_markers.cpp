@@ -1,6 +1,8 @@
 #include "shown_markers.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "rendering/skin.h"
@@ -51,6 +53,48 @@ TEST(HandMarkers, the_skin_is_opaque_and_closed_and_the_wrist_ends_in_nothing) {
     const auto [least, most] = std::minmax_element(wrist.colors.begin(), wrist.colors.end(), by_alpha);
     EXPECT_LT(least->a, 0.01f);
     EXPECT_EQ(most->a, 1.0f);
+  }
+}
+
+using Triangle = std::array<Vector3, 3>;
+
+std::vector<Triangle> triangles_of(const Marker& marker) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < marker.points.size(); i += 3)
+    triangles.push_back({from_message(marker.points[i]), from_message(marker.points[i + 1]),
+                         from_message(marker.points[i + 2])});
+  return triangles;
+}
+
+/// How often a surface goes round a point: 1 inside, 0 outside (van Oosterom & Strackee 1983).
+double turns_round(const Vector3& point, const std::vector<Triangle>& surface) {
+  double angle = 0.0;
+  for (const Triangle& triangle : surface) {
+    const Vector3 a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
+    const double x = a.norm(), y = b.norm(), z = c.norm();
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+  }
+  return angle / (4.0 * M_PI);
+}
+
+// A lid that stands out is seen as a row of dark teeth at the wrist.
+TEST(HandMarkers, the_lid_below_the_wrist_lies_within_the_hand) {
+  Shown shown;
+  shown.see_hands(1);
+  shown.update();
+  std::vector<std::vector<Triangle>> parts;
+  for (const Marker& marker : shown.array.markers)
+    if (marker.ns == "hand") parts.push_back(triangles_of(marker));
+  ASSERT_EQ(parts.size(), 2u);
+  std::vector<Triangle> surface = parts[0];
+  const std::size_t skin = Skin::human().triangles().size() - parts[1].size();
+  ASSERT_GT(surface.size(), skin + 10);
+  const std::vector<Triangle> lid(surface.begin() + static_cast<std::ptrdiff_t>(skin), surface.end());
+  surface.resize(skin);
+  surface.insert(surface.end(), parts[1].begin(), parts[1].end());
+  for (const Triangle& triangle : lid) {
+    const Vector3 centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+    EXPECT_GT(turns_round(centre, surface), 0.5) << (centre - triangle[0]).transpose();
   }
 }
 

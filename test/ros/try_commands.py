@@ -22,6 +22,7 @@ NOT_TRIED = (  # what the command begins with, and why it is not run here; beyon
     ("scripts/test$", "runs by itself: scripts/test_on"),
     ("scripts/test_on", "brings us here"),
     ("scripts/benchmark|scripts/fuzz|scripts/calibrate_study", "takes long"),
+    ("scripts/sanitize", "builds all anew with sanitizers, an hour"),
     ("scripts/ask_ratings .*--page", "asks on a page in a browser; test_ask_ratings"),
     ("rosrun mr_hand_interaction training_keys", "needs a participant; training.test"),
 )

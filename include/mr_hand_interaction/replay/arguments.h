@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/replay/compare.h"
 
 namespace mrhi {
 
@@ -23,10 +24,11 @@ struct ReplayArguments {
       demonstration;     ///< demonstration.csv and .bag too, at this rate [Hz]; 0: the frames' own
   bool explain = false;  ///< explain.json and explain.html too
   std::optional<std::pair<std::string, std::string>>
-      compare;         ///< folders of two runs; nothing is played then
-  std::string scene;   ///< name or URDF file
-  std::string input;   ///< .bag or .csv
-  std::string output;  ///< folder
+      compare;          ///< folders of two runs; nothing is played then
+  Tolerance tolerance;  ///< of --compare
+  std::string scene;    ///< name or URDF file
+  std::string input;    ///< .bag or .csv
+  std::string output;   ///< folder
   std::optional<std::string> topic;
   std::optional<std::string> parameter_file;
   std::vector<std::pair<std::string, std::string>> settings;  ///< name, YAML value
