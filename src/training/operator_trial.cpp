@@ -68,6 +68,7 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
   sight.object = object;
   sight.twist = twist;
   sight.held = held;
+  sight.gravity = task.gravity;
   const auto from = task.goals.begin() + static_cast<std::ptrdiff_t>(goal);
   const auto next = std::find_if(from, task.goals.end(), is_place);
   if (next == task.goals.end()) return sight;
@@ -96,8 +97,9 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
     const BodyState& state = simulation.state().bodies.front();
-    const Sight sight = sight_of(task, session.trial().goal(), state.pose,
-                                 twist_of(scene.bodies.front(), state), is_held(0, simulation.state()));
+    Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
+                           is_held(0, simulation.state()));
+    sight.grip = observe(simulation, 0).grip_force.value_or(0.0);
     const HandPlace hand = person.move(to_seconds(stamp - begin), sight);
     JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
     noise.apply(joints);
