@@ -20,14 +20,14 @@ constexpr double kPatience = 10.0;  // with an object that is held where it is w
 constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7, kAside = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.65;         // of the way to the object, when the hand begins to close
+constexpr double kWidest = 0.61;         // of the way to the object, when the hand begins to close
 constexpr double kTouch = 0.07;          // until what is felt is acted on [s]
 constexpr double kCorrecting = 2.0;      // of the misplacement that is seen, a second
 constexpr double kFastCorrection = 0.1;  // [m/s]
 constexpr double kUnseen = 0.5;          // of its misplacement
 constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
 constexpr double kUsualStiffness = 800.0, kLeastStiffness = 20.0;  // of the grip [N/m]
-constexpr double kFelt = 0.05;           // less is not felt [N]
+constexpr double kUnfelt = 0.15;         // of the wanted grip: less says that something else holds the object
 constexpr double kClosingSpeed = 0.05;   // most, of the depth [m/s]
 constexpr double kSwing = 1.0;           // [Hz]
 
@@ -134,13 +134,14 @@ void SimulatedOperator::squeeze(double time, double since) {
   if (!gripping_ || since <= 0.0) return;
   const Moment& touch = felt(time);
   const bool pressed = touch.depth > 0.0 && touch.time > *gripping_;
-  if (pressed) {
+  const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
+  const bool helped = share == 1.0 && touch.sight.held && touch.sight.grip < kUnfelt * wanted_;
+  if (pressed && !helped) {
     const double found = std::max(kLeastStiffness, touch.sight.grip / touch.depth);
     stiffness_ += std::min(1.0, since / kLearning) * (found - stiffness_);
   }
   const double load = mass_ * (acceleration(time) - touch.sight.gravity).norm();
   const double needed = load / (2.0 * friction_);
-  const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
   wanted_ = share * firmness_ * (skill_.least_grip + (1.0 + skill_.grip_margin) * needed);
   const double aim = std::min(postures_->deepest(), wanted_ / stiffness_), most = kClosingSpeed * since;
   const double from = postures_->near_depth * (1.0 - share);

@@ -29,8 +29,8 @@ OperatorSkill beginner_skill() {
   skill.placing_error = 0.006;
   skill.turning_error = 6.0 * kDegree;
   skill.tremor = 0.0004;
-  skill.least_grip = 2.0;
-  skill.grip_margin = 0.8;
+  skill.least_grip = 3.0;
+  skill.grip_margin = 1.2;
   skill.grip_depth = 0.021;
   skill.grip_spread = 0.2;
   return skill;
@@ -45,8 +45,8 @@ OperatorSkill veteran_skill() {
   skill.placing_error = 0.003;
   skill.turning_error = 3.0 * kDegree;
   skill.tremor = 0.0002;
-  skill.least_grip = 1.5;
-  skill.grip_margin = 0.5;
+  skill.least_grip = 2.5;
+  skill.grip_margin = 1.0;
   skill.grip_depth = 0.018;
   skill.grip_spread = 0.1;
   return skill;
