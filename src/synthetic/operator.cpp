@@ -10,15 +10,16 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
-constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;                      // [m] for Fitts' law
-constexpr double kLeastTime = 0.3;                                            // of a movement [s]
-constexpr double kCatchable = 0.1;   // what is faster is left to go [m/s]
-constexpr double kAstray = 0.05;     // from where the object was expected [m]
-constexpr double kOutOfHand = 0.04;  // from where the object was in the hand [m]
+constexpr double kApproach = 0.10;                        // [m] straight to the object with the hand open
+constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
+constexpr double kLeastTime = 0.3;                        // of a movement [s]
+constexpr double kCatchable = 0.1;                        // what is faster is left to go [m/s]
+constexpr double kAstray = 0.05;                          // from where the object was expected [m]
+constexpr double kOutOfHand = 0.04;                       // from where the object was in the hand [m]
 constexpr double kPatience = 10.0;  // with an object that is held where it is wanted, and nothing happens [s]
 constexpr double kFirmer = 1.2, kFirmest = 1.5;
-constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7, kAside = 0.8;  // times at pace 1 [s]
+constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
+                 kAside = 0.8;  // times at pace 1 [s]
 
 constexpr double kWidest = 0.61;         // of the way to the object, when the hand begins to close
 constexpr double kTouch = 0.07;          // until what is felt is acted on [s]
@@ -27,9 +28,9 @@ constexpr double kFastCorrection = 0.1;  // [m/s]
 constexpr double kUnseen = 0.5;          // of its misplacement
 constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
 constexpr double kUsualStiffness = 800.0, kLeastStiffness = 20.0;  // of the grip [N/m]
-constexpr double kUnfelt = 0.15;         // of the wanted grip: less says that something else holds the object
-constexpr double kClosingSpeed = 0.05;   // most, of the depth [m/s]
-constexpr double kSwing = 1.0;           // [Hz]
+constexpr double kUnfelt = 0.15;        // of the wanted grip: less says that something else holds the object
+constexpr double kClosingSpeed = 0.05;  // most, of the depth [m/s]
+constexpr double kSwing = 1.0;          // [Hz]
 
 const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, from where it begins to approach [m]
 
@@ -56,14 +57,10 @@ SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& obj
       usual_(shipped_grasp(object.name)),
       turns_(box_symmetries(object)),
       random_(seed),
+      tremor_(skill.tremor, random_),
       mass_(object.mass),
       friction_(std::max(0.1, object.material.static_friction)),
       stiffness_(kUsualStiffness) {
-  constexpr int kWaves = 3;
-  for (int i = 0; i < kWaves; ++i) {
-    const double frequency = 8.0 + 4.0 * random_.uniform(), phase = 2.0 * M_PI * random_.uniform();
-    tremor_.push_back({frequency, phase, random_.gaussian_vector(skill_.tremor * std::sqrt(2.0 / kWaves))});
-  }
   prepare_grasp();
   const Pose at = wrist_about({object.start.position, Quaternion::Identity()});
   now_ = {shifted(at, kApproach * retreat_ + kRest), relaxed_posture()};
@@ -82,7 +79,7 @@ HandPlace SimulatedOperator::move(double time, const Sight& sight) {
   if (since > 0.0) velocity_ = (next.wrist.position - now_.wrist.position) / since;
   last_time_ = time;
   now_ = next;
-  next.wrist.position += trembling(time);
+  next.wrist.position += tremor_.at(time);
   return next;
 }
 
@@ -335,13 +332,6 @@ double SimulatedOperator::distance_from_grip(const Moment& seen) const {
 double SimulatedOperator::movement_time(double distance, double width) const {
   const double fitts = skill_.movement_start + skill_.movement_per_bit * std::log2(distance / width + 1.0);
   return std::max(kLeastTime, fitts);
-}
-
-Vector3 SimulatedOperator::trembling(double time) const {
-  Vector3 sum = Vector3::Zero();
-  for (const Tremor& wave : tremor_)
-    sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
-  return sum;
 }
 
 }  // namespace mrhi

@@ -10,8 +10,8 @@
 
 namespace mrhi::testing {
 
-/// How the hand goes to an object, as it is measured of people: from when it is faster than 5 cm/s until it is
-/// slower again.
+/// How the hand goes to an object, as it is measured of people: from when it is faster than 5 cm/s until it
+/// is slower again.
 struct ReachFigures {
   double duration = 0.0;       ///< [s]
   double widest_at = 0.0;      ///< when thumb and index finger are farthest apart, share of the duration
@@ -28,7 +28,8 @@ struct GripFigures {
   double quantile(double share) const {
     std::vector<double> sorted = grip;
     std::sort(sorted.begin(), sorted.end());
-    return sorted.empty() ? 0.0 : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+    return sorted.empty() ? 0.0
+                          : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   }
   /// Pearson's of grip and load at the same time.
   double correlation() const {
@@ -86,7 +87,7 @@ class OperatorWatch {
   const ReachFigures& reach() const { return reach_; }
   const GripFigures& grip() const { return grip_; }
   double friction() const { return scene_.bodies.front().material.static_friction; }
-  bool held_all_the_time() const { return !lost_; }
+  bool lost_while_swinging() const { return lost_; }
 
  private:
   static constexpr double kRate = 115.0, kSettled = 3.0, kHeld = 8.0;  // [Hz], [s] after the grasp
@@ -120,8 +121,8 @@ class OperatorWatch {
       if (grasped < 0.0 && person.phase() == SimulatedOperator::Phase::carrying) grasped = time;
       if (grasped < 0.0) continue;
       if (time > grasped + kSettled + kHeld) break;
-      lost_ |= !held;
       if (time < grasped + kSettled) continue;
+      lost_ |= !held;
       velocity.push_back(twist.linear);
       grip_.grip.push_back(sight.grip);
     }

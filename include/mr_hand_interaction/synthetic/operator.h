@@ -7,36 +7,24 @@
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/synthetic/grip_postures.h"
 #include "mr_hand_interaction/synthetic/operator_skill.h"
+#include "mr_hand_interaction/synthetic/person.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_grasp.h"
-#include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "mr_hand_interaction/synthetic/tremor.h"
 
 namespace mrhi {
-
-/// What there is to see at one time.
-struct Sight {
-  Pose object;                   ///< in world
-  Twist twist;                   ///< world axes
-  std::optional<Vector3> place;  ///< where the object is wanted; nothing: it is to be let go
-  bool held = false;             ///< the system shows it as grasped
-  double precision = 1.0;        ///< that the place asks for, if it is more than the skill's [m]
-  double grip = 0.0;             ///< that the fingertips feel: half the sum of what presses on the object [N]
-  Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
-  Vector3 swing = Vector3::Zero();    ///< at the place the object is to go to and fro by so much, once a second [m]
-};
 
 /// A program in a person's place: takes an object, carries it where it is wanted and lets it go, by what it
 /// saw a reaction time ago; grips by the force it felt a moment ago and by the load it expects. A right hand;
 /// the same seed and sights give the same bits.
-class SimulatedOperator {
+class SimulatedOperator : public Person {
  public:
   enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
 
   /// The object is one that shipped_grasp() knows. Throws std::invalid_argument otherwise.
   SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed);
 
-  /// The hand in world at `time` [s], which increases from call to call.
-  HandPlace move(double time, const Sight& sight);
+  HandPlace move(double time, const Sight& sight) override;
 
   Phase phase() const { return phase_; }
   /// That it means to grip with now [N].
@@ -49,11 +37,6 @@ class SimulatedOperator {
     Pose wrist;
     double depth;
   };
-  struct Tremor {
-    double frequency, phase;
-    Vector3 amplitude;
-  };
-
   void decide(double time, const Moment& seen);
   void watch(double time, const Moment& seen);
   void reach(double time, const Moment& seen);
@@ -78,13 +61,12 @@ class SimulatedOperator {
   bool is_astray(const Moment& seen) const;
   double distance_from_grip(const Moment& seen) const;
   double movement_time(double distance, double width) const;
-  Vector3 trembling(double time) const;
 
   OperatorSkill skill_;
   Grasp usual_;                    ///< of the object as it lies in its shipped scene
   std::vector<Quaternion> turns_;  ///< that leave the object looking as it did
   Random random_;
-  std::vector<Tremor> tremor_;
+  Tremor tremor_;
   double mass_, friction_;
   double firmness_ = 1.0;  ///< grips harder after a loss
 
@@ -102,13 +84,13 @@ class SimulatedOperator {
   std::deque<Moment> past_;  ///< as long as the reaction time
   double began_ = 0.0;       ///< the way [s]
   std::vector<Keyframe> way_;
-  std::vector<Keyframe> fingers_;    ///< postures alone, where they keep other times than the wrist
-  Vector3 drift_ = Vector3::Zero();  ///< of all the way, with an object that drifts [m/s]
-  Vector3 bow_ = Vector3::Zero();    ///< of the way to the object, which ends as the hand leaves it
+  std::vector<Keyframe> fingers_;        ///< postures alone, where they keep other times than the wrist
+  Vector3 drift_ = Vector3::Zero();      ///< of all the way, with an object that drifts [m/s]
+  Vector3 bow_ = Vector3::Zero();        ///< of the way to the object, which ends as the hand leaves it
   Vector3 corrected_ = Vector3::Zero();  ///< of the way so far [m]
   std::optional<double> swing_began_;
   Vector3 swing_ = Vector3::Zero();
-  Moment aim_{};                     ///< that the way was planned by
+  Moment aim_{};  ///< that the way was planned by
   HandPlace now_;
   Vector3 velocity_ = Vector3::Zero();  ///< of the wrist
   double last_time_ = 0.0;
