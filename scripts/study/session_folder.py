@@ -239,7 +239,7 @@ def _add_counts(folder, trials, notes):
 def _as_begun(folder, trials, notes):
     """The trials without those in which a parameter was another one than the session was begun with."""
     path = os.path.join(folder, 'events.csv')
-    spans = _changed_spans(read_table(path, CHANGES, [])) if trials and os.path.exists(path) else []
+    spans = _changed_spans(read_table(path, CHANGES, [])) if trials and _has_columns(path, CHANGES) else []
     kept = []
     for row in trials:
         begin = row['start'] or 0.0
@@ -250,6 +250,13 @@ def _as_begun(folder, trials, notes):
         else:
             kept.append(row)
     return kept
+
+
+def _has_columns(path, columns):
+    if not os.path.exists(path):
+        return False
+    with open(path, encoding='utf-8-sig', errors='replace') as file:
+        return set(columns) <= {cell.strip() for cell in file.readline().split(',')}
 
 
 def _changed_spans(events):
