@@ -2,10 +2,7 @@
 
 #include <stdexcept>
 
-#include "box_box.h"
-#include "core_manifold.h"
-#include "cylinder_manifold.h"
-#include "mesh_manifold.h"
+#include "pair_manifolds.h"
 
 namespace mrhi {
 namespace {

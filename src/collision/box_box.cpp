@@ -1,8 +1,8 @@
-#include "box_box.h"
+#include "pair_manifolds.h"
 
 #include <algorithm>
 
-#include "face_clipping.h"
+#include "box_face.h"
 #include "mr_hand_interaction/collision/closest_features.h"
 
 namespace mrhi {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "contact_region.h"
 #include "oriented_shapes.h"
 
 namespace mrhi {
@@ -43,5 +44,9 @@ struct Border {
   double sign;
 };
 constexpr std::array<Border, 4> kBorders{{{1, 1.0}, {0, -1.0}, {1, -1.0}, {0, 1.0}}};
+
+/// The part of one box's face that stands over another's, in the other's coordinates along its sides; depth
+/// is below the other's plane.
+ContactRegion clip_face(const BoxFace& reference, const BoxFace& incident, bool reference_is_a);
 
 }  // namespace mrhi

@@ -1,4 +1,4 @@
-#include "core_manifold.h"
+#include "pair_manifolds.h"
 
 #include <algorithm>
 

@@ -1,10 +1,9 @@
-#include "cylinder_manifold.h"
+#include "pair_manifolds.h"
 
 #include <algorithm>
 
 #include "convex_axis.h"
 #include "flat_contact.h"
-#include "line_contact.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "disc_overlap.h"
+#include "flat_contact.h"
 
 #include <algorithm>
 

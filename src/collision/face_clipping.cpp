@@ -1,4 +1,4 @@
-#include "face_clipping.h"
+#include "box_face.h"
 
 #include <algorithm>
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "line_contact.h"
-
 namespace mrhi {
 namespace {
 
@@ -45,7 +43,7 @@ Manifold on_cap(const Disc& cap, const OrientedBox& b, double margin) {
 }
 
 /// By the cap of one cylinder against another.
-Manifold on_cap(const Disc& cap, bool cap_is_a, const OrientedCylinder& other, double margin) {
+Manifold on_cap_of(bool cap_is_a, const Disc& cap, const OrientedCylinder& other, double margin) {
   if (std::abs(other.axis.dot(cap.normal)) < kCapOrSide) {
     return line_on_disc(side_line(other, -cap.normal), !cap_is_a, cap, margin);
   }
@@ -56,6 +54,13 @@ Manifold on_cap(const Disc& cap, bool cap_is_a, const OrientedCylinder& other, d
   const Disc &whole = by_other ? disc : cap, &part = by_other ? cap : disc;
   const DiscOverlap overlap(whole, by_other != cap_is_a, normal, part.centre, part.normal);
   return flat(overlap, overlap.with_disc(part), normal, margin);
+}
+
+Manifold on_cap(const Disc& cap, const OrientedCylinder& b, double margin) {
+  return on_cap_of(true, cap, b, margin);
+}
+Manifold on_face(const OrientedCylinder& a, const Disc& cap, double margin) {
+  return on_cap_of(false, cap, a, margin);
 }
 
 /// Is no other direction better than the face's? Turned by t towards where the deepest point is w from the
@@ -99,16 +104,11 @@ bool reference_is_a(const Disc& cap, const FaceB& face, const Vector3& n) {
   return -cap.normal.dot(n) >= kSameFace && (!face_flat || first_is_reference(cap.area(), face.area(), n));
 }
 
-}  // namespace
-
-double deepest_depth(const Manifold& manifold) {
-  return manifold.count > 0 ? deepest_of(manifold)->depth : -1e300;
-}
-
-FlatContact flat_contact(const OrientedCylinder& a, const OrientedBox& b, const Vector3& n, double separation,
-                         double margin) {
+/// By the cap of a or the `face` of b.
+template <typename ShapeB, typename FaceB>
+FlatContact by_flat(const OrientedCylinder& a, const ShapeB& b, const FaceB& face, const Vector3& n,
+                    double separation, double margin) {
   const Disc cap(a, -n);
-  const BoxFace face(b, n);
   FlatContact flat;
   double border = 0.0;
   if (reference_is_a(cap, face, n)) {
@@ -123,21 +123,20 @@ FlatContact flat_contact(const OrientedCylinder& a, const OrientedBox& b, const 
   return flat;
 }
 
+}  // namespace
+
+double deepest_depth(const Manifold& manifold) {
+  return manifold.count > 0 ? deepest_of(manifold)->depth : -1e300;
+}
+
+FlatContact flat_contact(const OrientedCylinder& a, const OrientedBox& b, const Vector3& n, double separation,
+                         double margin) {
+  return by_flat(a, b, BoxFace(b, n), n, separation, margin);
+}
+
 FlatContact flat_contact(const OrientedCylinder& a, const OrientedCylinder& b, const Vector3& n,
                          double separation, double margin) {
-  const Disc cap_a(a, -n), cap_b(b, n);
-  FlatContact flat;
-  double border = 0.0;
-  if (reference_is_a(cap_a, cap_b, n)) {
-    flat.manifold = on_cap(cap_a, true, b, margin);
-    border = to_border(cap_a, flat.manifold);
-  } else if (cap_b.normal.dot(n) >= kSameFace) {
-    flat.manifold = on_cap(cap_b, false, a, margin);
-    border = to_border(cap_b, flat.manifold);
-  }
-  flat.found = as_deep(deepest_depth(flat.manifold), separation);
-  flat.certain = flat.found && is_certain(flat.manifold, border, 2.0 * std::min(a.reach(n), b.reach(n)));
-  return flat;
+  return by_flat(a, b, Disc(b, n), n, separation, margin);
 }
 
 }  // namespace mrhi

@@ -5,8 +5,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "sorted_mesh.h"
-
 namespace mrhi {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "line_contact.h"
+#include "flat_contact.h"
 
 #include <algorithm>
 

@@ -2,7 +2,6 @@
 
 #include "mesh_nearest.h"
 #include "mesh_shape.h"
-#include "mesh_way_out.h"
 #include "mr_hand_interaction/collision/mesh_collision.h"
 
 namespace mrhi {

@@ -1,12 +1,10 @@
-#include "mesh_manifold.h"
+#include "pair_manifolds.h"
 
 #include <algorithm>
 
 #include "box_face.h"
 #include "contact_region.h"
-#include "core_manifold.h"
-#include "disc_overlap.h"
-#include "line_contact.h"
+#include "flat_contact.h"
 #include "mesh_shape.h"
 
 namespace mrhi {

@@ -1,6 +1,6 @@
 #include "mesh_surface.h"
 
-#include "segment_pair.h"
+#include "segment.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesh_way_out.h"
+#include "mesh_nearest.h"
 
 #include <limits>
 #include <optional>

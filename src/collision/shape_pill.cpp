@@ -1,6 +1,6 @@
 #include "chord.h"
 #include "flat_part.h"
-#include "segment_pair.h"
+#include "segment.h"
 
 namespace mrhi {
 

@@ -1,4 +1,4 @@
-#include "sorted_mesh.h"
+#include "flat_faces.h"
 
 #include <algorithm>
 #include <numeric>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "../scene/body_limits.h"
+#include "../scene/limits.h"
 #include "../scene/material_fields.h"
 #include "../text/text.h"
 #include "../text/yaml_values.h"

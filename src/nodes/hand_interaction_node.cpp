@@ -4,9 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "../ros/end_in_order.h"
-#include "../ros/master_watch.h"
-#include "../ros/node_usage.h"
+#include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 

@@ -2,9 +2,7 @@
 
 #include <exception>
 
-#include "../ros/end_in_order.h"
-#include "../ros/master_watch.h"
-#include "../ros/node_usage.h"
+#include "../ros/node.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
 namespace {

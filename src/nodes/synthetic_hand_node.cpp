@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "../ros/end_in_order.h"
-#include "../ros/master_watch.h"
+#include "../ros/node.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 

@@ -6,8 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "../scene/append_scene.h"
-#include "../scene/remove_body.h"
+#include "../scene/scene_edit.h"
 #include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"

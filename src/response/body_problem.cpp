@@ -1,7 +1,7 @@
 #include "body_problem.h"
 
 #include "grip_springs.h"
-#include "spring_potential.h"
+#include "spring_contact.h"
 
 namespace mrhi {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "cholesky6.h"
+#include "block_system.h"
 #include "islands.h"
 #include "newton.h"
 #include "spring_contact.h"

@@ -1,4 +1,4 @@
-#include "edge_grip.h"
+#include "finger_limits.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "hand_strength.h"
+#include "finger_limits.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "implicit_model.h"
 
-#include "edge_grip.h"
-#include "hand_strength.h"
+#include "finger_limits.h"
 #include "newton.h"
 
 namespace mrhi {

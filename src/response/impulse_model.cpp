@@ -1,6 +1,21 @@
-#include "impulse_model.h"
+#include "impact_solver.h"
+#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
+namespace {
+
+/// Impulses only: every step in which a phalanx meets an object and still approaches it is an impact; nothing
+/// holds.
+class ImpulseModel : public ContactModel {
+ public:
+  void respond(ContactStep& step) override;
+
+ private:
+  Islands islands_;
+  ImpactSolver impacts_;
+};
+
+}  // namespace
 
 void ImpulseModel::respond(ContactStep& step) {
   for (Contact& contact : step.contacts) {

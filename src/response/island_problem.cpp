@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "grip_springs.h"
-#include "spring_potential.h"
+#include "spring_contact.h"
 
 namespace mrhi {
 namespace {

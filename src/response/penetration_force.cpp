@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "impact.h"
-#include "release.h"
 
 namespace mrhi {
 

@@ -30,4 +30,7 @@ SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four);
 /// The other way round.
 void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& four);
 
+/// Convex function of the velocities whose gradient gives the response at the limits that are set [W].
+double potential(const Spring<double>& spring, const Triple<double>& u, double spin);
+
 }  // namespace mrhi

@@ -1,4 +1,4 @@
-#include "end_in_order.h"
+#include "node.h"
 
 #include <ros/init.h>
 

@@ -1,4 +1,4 @@
-#include "master_watch.h"
+#include "node.h"
 
 #include <ros/console.h>
 #include <ros/init.h>

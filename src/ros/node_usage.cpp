@@ -1,4 +1,4 @@
-#include "node_usage.h"
+#include "node.h"
 
 #include <ros/init.h>
 

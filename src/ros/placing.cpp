@@ -55,7 +55,6 @@ void Placing::turn(bool on, const Simulation& simulation) {
   if (on == (server_ != nullptr)) return;
   server_ = on ? std::make_unique<interactive_markers::InteractiveMarkerServer>(topic_) : nullptr;
   if (on) renew(simulation);
-  const std::lock_guard<std::mutex> lock(mutex_);
   drags_.clear();
 }
 
@@ -84,7 +83,6 @@ void Placing::follow(const Simulation& simulation) {
 std::map<std::string, Pose> Placing::dragged() {
   std::map<std::string, Pose> poses;
   if (!server_) return poses;
-  const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
   for (auto drag = drags_.begin(); drag != drags_.end();) {
     if (now - drag->second.heard > kSilence) {
@@ -98,7 +96,6 @@ std::map<std::string, Pose> Placing::dragged() {
 }
 
 void Placing::take(const Feedback& feedback) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const auto drag = drags_.find(feedback.marker_name);
   if (feedback.event_type == Feedback::MOUSE_UP && drag != drags_.end()) drags_.erase(drag);
   if (feedback.event_type == Feedback::KEEP_ALIVE && drag != drags_.end())

@@ -89,20 +89,14 @@ class AddPoints {
  public:
   AddPoints(const Pose& to, Outline& added) : pose_(to), outline_(added) {}
 
-  void operator()(const Sphere& sphere) const { add(*sphere.core()); }
-  void operator()(const Pill& pill) const { add(*pill.core()); }
-  void operator()(const Box& box) const {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3 signs(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-      outline_.add(pose_ * signs.cwiseProduct(box.half_extents), 0.0);
-    }
-  }
-  void operator()(const Cylinder& cylinder) const {
+  /// By its core, or its outermost points above and below.
+  template <typename Convex>
+  void operator()(const Convex& shape) const {
+    if (const auto core = shape.core()) return add(*core);
     for (int i = 0; i < 16; ++i) {
       const double angle = M_PI * i / 8.0;
-      for (const double z : {-cylinder.half_length, cylinder.half_length})
-        outline_.add(
-            pose_ * (Vector3(cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z)), 0.0);
+      for (const double z : {-1.0, 1.0})
+        outline_.add(pose_ * shape.farthest({std::cos(angle), std::sin(angle), z}), 0.0);
     }
   }
   void operator()(const Mesh& mesh) const {

@@ -1,4 +1,4 @@
-#include "append_scene.h"
+#include "scene_edit.h"
 
 #include <stdexcept>
 

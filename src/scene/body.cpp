@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "../text/text.h"
-#include "body_limits.h"
+#include "limits.h"
 
 namespace mrhi {
 namespace {

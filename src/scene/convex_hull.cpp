@@ -1,4 +1,4 @@
-#include "convex_hull.h"
+#include "mesh_loader.h"
 
 #include <cstdio>
 #include <cstdlib>

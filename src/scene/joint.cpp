@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "../text/text.h"
-#include "joint_ranges.h"
+#include "limits.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {

@@ -1,4 +1,4 @@
-#include "joint_yaml.h"
+#include "scene_yaml.h"
 
 namespace mrhi {
 namespace {

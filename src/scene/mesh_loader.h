@@ -19,4 +19,8 @@ void make_solid(TriangleMesh& mesh);
 /// By the divergence theorem; negative if the triangles are turned inward [m^3].
 double signed_volume(const TriangleMesh& mesh);
 
+/// The convex hull of a mesh's vertices, by qhull. Throws std::runtime_error, whose text goes on from the
+/// mesh's name, if it has no volume.
+TriangleMesh convex_hull(const TriangleMesh& mesh);
+
 }  // namespace mrhi

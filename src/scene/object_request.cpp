@@ -3,12 +3,10 @@
 #include <cmath>
 
 #include "../collision/overlap.h"
-#include "../text/names.h"
 #include "../text/text.h"
 #include "scene_yaml.h"
 #include "shape_kinds.h"
-#include "urdf_scene.h"
-#include "urdf_tree.h"
+#include "urdf.h"
 
 namespace mrhi {
 namespace {

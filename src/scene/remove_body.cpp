@@ -1,4 +1,4 @@
-#include "remove_body.h"
+#include "scene_edit.h"
 
 namespace mrhi {
 namespace {

@@ -9,8 +9,9 @@
 #include <stdexcept>
 
 #include "../text/text.h"
-#include "joint_ranges.h"
+#include "limits.h"
 #include "material_fields.h"
+#include "shape_kinds.h"
 
 namespace mrhi {
 namespace {
@@ -49,6 +50,15 @@ std::string quoted(const std::string& text) {
     }
   }
   return result;
+}
+
+/// A box has its sizes in one attribute.
+std::string element(const ShapeKind& kind, const std::vector<double>& sizes) {
+  if (kind.name == "box") return "<box size=\"" + numbers(Vector3(sizes[0], sizes[1], sizes[2])) + "\"/>";
+  std::string text = "<" + kind.name;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    text += " " + kind.sizes[i] + "=\"" + text::exact(sizes[i]) + "\"";
+  return text + "/>";
 }
 
 class Writer {
@@ -124,17 +134,8 @@ class Writer {
   }
 
   std::string geometry(const Shape& shape, bool solid) {
-    const auto length = [](const char* name, double radius, double half) {
-      return std::string("<") + name + " radius=\"" + text::exact(radius) + "\" length=\"" +
-             text::exact(2.0 * half) + "\"/>";
-    };
-    if (const auto* box = std::get_if<Box>(&shape))
-      return "<box size=\"" + numbers(2.0 * box->half_extents) + "\"/>";
-    if (const auto* ball = std::get_if<Sphere>(&shape))
-      return "<sphere radius=\"" + text::exact(ball->radius) + "\"/>";
-    if (const auto* one = std::get_if<Cylinder>(&shape))
-      return length("cylinder", one->radius, one->half_length);
-    if (const auto* one = std::get_if<Pill>(&shape)) return length("capsule", one->radius, one->half_length);
+    for (const ShapeKind& kind : shape_kinds())
+      if (const auto sizes = kind.sizes_of(shape)) return element(kind, *sizes);
     const Mesh& mesh = std::get<Mesh>(shape);
     if (solid) return "<mesh filename=\"" + mesh_file(mesh) + "\"/>";
     return "<mesh filename=\"" + quoted(mesh.uri) + "\" scale=\"" + numbers(mesh.scale) + "\"/>";

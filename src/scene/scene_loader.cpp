@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "../collision/overlap.h"
-#include "../text/named_file.h"
+#include "../text/file_text.h"
 #include "../text/text.h"
 #include "scene_yaml.h"
-#include "urdf_scene.h"
+#include "urdf.h"
 
 namespace mrhi {
 namespace {

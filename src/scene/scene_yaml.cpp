@@ -4,9 +4,8 @@
 
 #include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "../text/yaml_element.h"
-#include "body_limits.h"
-#include "joint_yaml.h"
+#include "../text/yaml_values.h"
+#include "limits.h"
 #include "material_fields.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "../text/yaml_values.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -16,5 +17,9 @@ void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene
 /// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws
 /// SceneError.
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body);
+
+/// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is
+/// arrange_joints()'s to say. Throws YamlError.
+void read_joint_settings(const YamlElement& element, Scene& scene);
 
 }  // namespace mrhi

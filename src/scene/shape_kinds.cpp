@@ -8,25 +8,44 @@
 namespace mrhi {
 namespace {
 
+using Sizes = std::vector<double>;
+
 const std::string kPrefix = ":shape:";
+
+Sizes sizes(const Box& box) {
+  const Vector3 size = 2.0 * box.half_extents;
+  return {size.x(), size.y(), size.z()};
+}
+Sizes sizes(const Sphere& sphere) {
+  return {sphere.radius};
+}
+template <typename Long>
+Sizes sizes(const Long& shape) {
+  return {shape.radius, 2.0 * shape.half_length};
+}
+
+template <typename Kind>
+std::optional<Sizes> sizes_if(const Shape& shape) {
+  const Kind* const one = std::get_if<Kind>(&shape);
+  return one == nullptr ? std::nullopt : std::optional<Sizes>(sizes(*one));
+}
+
+template <typename Long>
+Shape make_long(const Sizes& s) {
+  return Long{s[0], 0.5 * s[1]};
+}
 
 }  // namespace
 
 const std::vector<ShapeKind>& shape_kinds() {
-  using Size = std::vector<double>;
   static const std::vector<ShapeKind> kinds{
-      {"box", {"x", "y", "z"}, [](const Size& s) -> Shape { return Box{0.5 * Vector3(s[0], s[1], s[2])}; }},
-      {"sphere", {"radius"}, [](const Size& s) -> Shape { return Sphere{s[0]}; }},
-      {"cylinder",
-       {"radius", "length"},
-       [](const Size& s) -> Shape {
-         return Cylinder{s[0], 0.5 * s[1]};
-       }},
-      {"capsule",
-       {"radius", "length"},
-       [](const Size& s) -> Shape {
-         return Pill{s[0], 0.5 * s[1]};
-       }},
+      {"box",
+       {"x", "y", "z"},
+       [](const Sizes& s) -> Shape { return Box{0.5 * Vector3(s[0], s[1], s[2])}; },
+       sizes_if<Box>},
+      {"sphere", {"radius"}, [](const Sizes& s) -> Shape { return Sphere{s[0]}; }, sizes_if<Sphere>},
+      {"cylinder", {"radius", "length"}, make_long<Cylinder>, sizes_if<Cylinder>},
+      {"capsule", {"radius", "length"}, make_long<Pill>, sizes_if<Pill>},
   };
   return kinds;
 }

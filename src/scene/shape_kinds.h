@@ -13,6 +13,8 @@ struct ShapeKind {
   std::string name;                ///< of the URDF's element
   std::vector<std::string> sizes;  ///< what they are called; but for a box, the element's attributes
   Shape (*make)(const std::vector<double>& size);
+  /// Of a shape of this kind, as `make` takes them; nothing of another.
+  std::optional<std::vector<double>> (*sizes_of)(const Shape& shape);
 
   std::string describe(const std::vector<double>& size) const;  ///< "cylinder radius 1 and length 2"
 };

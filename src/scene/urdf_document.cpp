@@ -1,4 +1,4 @@
-#include "urdf_document.h"
+#include "urdf.h"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>

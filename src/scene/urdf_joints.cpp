@@ -1,11 +1,9 @@
-#include "urdf_joints.h"
+#include "urdf.h"
 
 #include <algorithm>
 
-#include "../text/names.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "urdf_tree.h"
 
 namespace mrhi {
 namespace {

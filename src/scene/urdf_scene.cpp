@@ -1,12 +1,9 @@
-#include "urdf_scene.h"
+#include "urdf.h"
 
 #include <Eigen/Eigenvalues>
 
-#include "../text/names.h"
 #include "../text/text.h"
 #include "shape_inertia.h"
-#include "urdf_joints.h"
-#include "urdf_shapes.h"
 
 namespace mrhi {
 namespace {

@@ -1,10 +1,9 @@
-#include "urdf_shapes.h"
+#include "urdf.h"
 
 #include <filesystem>
 
 #include "../text/text.h"
-#include "body_limits.h"
-#include "convex_hull.h"
+#include "limits.h"
 #include "mesh_loader.h"
 #include "shape_kinds.h"
 

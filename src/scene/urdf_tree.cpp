@@ -1,4 +1,4 @@
-#include "urdf_tree.h"
+#include "urdf.h"
 
 #include "../text/text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"

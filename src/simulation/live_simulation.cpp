@@ -5,8 +5,7 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
-#include "../scene/append_scene.h"
-#include "../scene/remove_body.h"
+#include "../scene/scene_edit.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"

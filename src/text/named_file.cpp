@@ -1,4 +1,4 @@
-#include "named_file.h"
+#include "file_text.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "yaml_element.h"
+#include "yaml_values.h"
 
 #include <algorithm>
 #include <set>

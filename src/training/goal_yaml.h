@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "../text/yaml_element.h"
+#include "../text/yaml_values.h"
 #include "mr_hand_interaction/training/task.h"
 
 namespace mrhi::task_yaml {

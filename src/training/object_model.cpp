@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "../scene/remove_body.h"
+#include "../scene/scene_edit.h"
 #include "../text/file_text.h"
 #include "../text/safe_yaml.h"
 #include "../text/text.h"

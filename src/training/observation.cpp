@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../scene/remove_body.h"
+#include "../scene/scene_edit.h"
 
 namespace mrhi {
 

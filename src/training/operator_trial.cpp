@@ -5,7 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "../scene/append_scene.h"
+#include "../scene/scene_edit.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
 #include "mr_hand_interaction/training/object_model.h"

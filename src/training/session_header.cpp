@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "../text/names.h"
 #include "../text/safe_yaml.h"
 #include "../text/text.h"
 #include "../text/yaml_values.h"

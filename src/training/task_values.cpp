@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "../scene/body_limits.h"
-#include "../text/names.h"
+#include "../scene/limits.h"
 #include "../text/text.h"
 
 namespace mrhi::task_yaml {

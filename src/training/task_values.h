@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../text/yaml_element.h"
+#include "../text/yaml_values.h"
 
 /// Values of a task's file; each throws SceneError for what is not allowed.
 namespace mrhi::task_yaml {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <map>
 
-#include "../scene/body_limits.h"
-#include "../text/named_file.h"
+#include "../scene/limits.h"
+#include "../text/file_text.h"
 #include "../text/safe_yaml.h"
 #include "../text/text.h"
 #include "goal_yaml.h"

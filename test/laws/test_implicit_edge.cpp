@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "response/edge_grip.h"
+#include "response/finger_limits.h"
 #include "support/edge_pinch.h"
 
 namespace mrhi {

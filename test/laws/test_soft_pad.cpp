@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "../../src/response/soft_pad_model.h"
 #include "support/pinched_cube.h"
 
 namespace mrhi {
@@ -17,8 +16,9 @@ using testing::total_force;
 
 constexpr ContactModelKind kModel = ContactModelKind::soft_pad;
 constexpr double kRadius = 0.008;
-constexpr double kPitch = SoftPadModel::kSpacing * kRadius;
-constexpr double kPadStiffness = SoftPadModel::kStiffness / (SoftPadModel::kAlong * SoftPadModel::kAcross);
+constexpr double kStiffness = 500.0, kPads = 15.0;  // of all pads together [N/m], five by three
+constexpr double kPitch = 0.5 * kRadius;
+constexpr double kPadStiffness = kStiffness / kPads;
 
 /// One that stands on its tip, its axis tilted by `tilt` [rad] towards x.
 Hand standing(double z, double tilt) {
@@ -108,7 +108,7 @@ TEST(SoftPad, does_not_creep_while_its_outer_pads_slip) {
 /// line between them: the most within 2.5 s [rad].
 double turn_of_a_pinched_bar(ContactModelKind model) {
   Body bar = testing::box_body(Vector3(0.2, 0.02, 0.02), 0.05);
-  bar.material.stiffness = SoftPadModel::kStiffness;
+  bar.material.stiffness = kStiffness;
   Simulation simulation(testing::scene_of(bar), PinchedCube::configuration_of(model, Vector3::Zero()));
   const auto hand = [](double t) {
     const double z = 0.012 - 0.004 * smooth(t, 0.2) + kRadius;

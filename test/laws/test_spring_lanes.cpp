@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "response/cholesky6.h"
+#include "response/block_system.h"
 #include "response/spring_contact.h"
 #include "response/spring_lanes.h"
 

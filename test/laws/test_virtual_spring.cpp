@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "../../src/response/virtual_spring_model.h"
 #include "support/pinched_cube.h"
 
 namespace mrhi {
@@ -12,8 +11,9 @@ using testing::PinchedCube;
 using testing::total_force;
 
 constexpr ContactModelKind kModel = ContactModelKind::virtual_spring;
-constexpr double kStiffness = VirtualSpringModel::kStiffness;
-const double kDamping = 2.0 * std::sqrt(kStiffness * VirtualSpringModel::kPhalanxMass);
+constexpr double kStiffness = 500.0;   // the model's own [N/m]
+constexpr double kPhalanxMass = 0.01;  // of what the damper is critical for [kg]
+const double kDamping = 2.0 * std::sqrt(kStiffness * kPhalanxMass);
 
 TEST(VirtualSpring, force_at_rest_is_stiffness_times_overlap) {
   PinchedCube pinch(kModel);

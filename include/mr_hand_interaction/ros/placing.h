@@ -5,15 +5,14 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
 
-/// Interactive markers by which a free object is moved with the mouse in rviz, at ~place. Feedback may come
-/// in a thread of its own; what is dragged is asked for.
+/// Interactive markers by which a free object is moved with the mouse in rviz, at ~place. Feedback comes by
+/// the node's own queue of callbacks; what is dragged is asked for.
 class Placing {
  public:
   Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame);
@@ -36,7 +35,6 @@ class Placing {
 
   std::string topic_, fixed_frame_;
   std::unique_ptr<interactive_markers::InteractiveMarkerServer> server_;
-  std::mutex mutex_;
   std::map<std::string, Drag> drags_;
 };
 

@@ -32,7 +32,7 @@ struct Body {
 
 /// Fills inverse_inertia (zero for a fixture), its principal axes and bounding_radius from the rest. Throws
 /// std::invalid_argument naming the body and the value if a free body's mass or inertia is not positive
-/// (definite), or a number is beyond its limits (src/scene/body_limits.h).
+/// (definite), or a number is beyond its limits (src/scene/limits.h).
 void complete(Body& body);
 
 }  // namespace mrhi

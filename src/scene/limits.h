@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "../text/yaml_values.h"
 
 /// What the numbers of a body may be: far beyond what hands meet, and so near that squares and quotients of
@@ -15,3 +17,17 @@ constexpr Range kSpin{0, 1000};        ///< [rad/s]
 constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
 
 }  // namespace mrhi::body_limits
+
+/// And those of a joint, in m, rad, N, N m and their quotients.
+namespace mrhi::joint_ranges {
+
+constexpr std::size_t kMostJoints = 256;
+constexpr std::size_t kMostDetents = 64;
+constexpr double kLeastDetent = 1e-4;  // between two [rad], [m]
+constexpr Range kPlace{-1000.0, 1000.0};
+constexpr Range kForce{0.0, 1e5};
+constexpr Range kStiffness{0.0, 1e6};
+constexpr Range kRestitution{0.0, 1.0};
+constexpr Range kReach{1e-5, 10.0};
+
+}  // namespace mrhi::joint_ranges

@@ -7,6 +7,9 @@
 
 namespace mrhi {
 
+/// Adds the bodies and joints of `part`. Throws std::invalid_argument for a name that is taken.
+void append(const Scene& part, Scene& scene);
+
 /// The body and all that hangs on it by joints, in the scene's order.
 std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene);
 

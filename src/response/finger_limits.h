@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
@@ -14,5 +15,9 @@ void grip_edges(ContactStep& step);
 /// contact, `along`, perpendicular to it, the way in which the object holds the finger back:
 /// unit, in the frame of the shape, which is a box or a cylinder.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction);
+
+/// Tells every contact what the hand has for it: a finger's strength is shared by all its points that press,
+/// on whatever bodies, by their depths; the mass of a blow is that of the phalanx.
+void share_strength(const HandStrength& hand, std::vector<Contact>& contacts);
 
 }  // namespace mrhi

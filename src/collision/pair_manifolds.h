@@ -1,8 +1,29 @@
 #pragma once
 
+#include <optional>
+
 #include "mr_hand_interaction/collision/body_manifold.h"
+#include "oriented_shapes.h"
 
 namespace mrhi {
+
+/// Closest features of a capsule in the shape's frame, if nearer than `margin`: closed form or mesh.
+std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Capsule& capsule, double margin);
+
+/// A ball or a capsule, given in the frame `pose_a`, against any shape: at two points where it lies along
+/// something flat or straight (named 0 and 1, by the ends of its axis), otherwise at one (also 0 or 1 at an
+/// end, 2 between). Within 2.5 degrees of a face over which part of it stands, by that face.
+Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
+                       double margin);
+
+/// Two boxes by the separating axis theorem (Gottschalk, Lin & Manocha 1996), the faces that meet clipped by
+/// Sutherland & Hodgman 1974; where edges cross, a single point.
+Manifold box_box(const OrientedBox& a, const OrientedBox& b, double margin);
+
+/// A cylinder on a box or a cylinder: cap on face (four points of the rim), side on face (two), otherwise
+/// one.
+Manifold cylinder_box(const OrientedCylinder& a, const OrientedBox& b, double margin);
+Manifold cylinder_cylinder(const OrientedCylinder& a, const OrientedCylinder& b, double margin);
 
 /// A mesh against a box, a cylinder or a mesh: corners and edges of each are measured in the other, the
 /// deepest gives the normal, and of those that agree with it the farthest out in eight directions are the
