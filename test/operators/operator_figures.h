@@ -90,7 +90,7 @@ class OperatorWatch {
   bool lost_while_swinging() const { return lost_; }
 
  private:
-  static constexpr double kRate = 115.0, kSettled = 3.0, kHeld = 8.0;  // [Hz], [s] after the grasp
+  static constexpr double kRate = 115.0, kSettled = 3.0, kHeld = 6.0;  // [Hz], [s] after the grasp
 
   void watch() {
     Simulation simulation(scene_, stage_.configuration);
