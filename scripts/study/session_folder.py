@@ -82,6 +82,7 @@ TRIALS = collections.OrderedDict(
 # Of sessions since they are measured; before, grasps are the attempts, and these drops are counted in events.csv.
 ADDED = collections.OrderedDict([('grasps', count), ('manipulation_drops', count)])
 EVENTS = collections.OrderedDict([('trial', count), ('stage', str), ('event', str)])
+CHANGES = collections.OrderedDict([('time', amount), ('event', str), ('detail', str)])
 RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 
 
@@ -217,6 +218,7 @@ def read_session(folder):
     ratings = read_ratings(ratings_file, notes) if os.path.exists(ratings_file) else []
     _add_counts(folder, trials, notes)
     _check_trial_numbers(os.path.join(folder, 'trials.csv'), trials)
+    trials = _as_begun(folder, trials, notes)
     header.pop('version')
     return Session(folder=folder, trials=trials, ratings=_last_answers(ratings, folder, notes), notes=notes, **header)
 
@@ -232,6 +234,50 @@ def _add_counts(folder, trials, notes):
     for row in trials:
         row['grasps'] = row['attempts']
         row['manipulation_drops'] = None if dropped is None else dropped[row['trial']]
+
+
+def _as_begun(folder, trials, notes):
+    """The trials without those in which a parameter was another one than the session was begun with."""
+    path = os.path.join(folder, 'events.csv')
+    spans = _changed_spans(read_table(path, CHANGES, [])) if trials and _has_columns(path, CHANGES) else []
+    kept = []
+    for row in trials:
+        begin = row['start'] or 0.0
+        end = begin + (row['completion_time'] or 0.0)
+        said = [what for since, until, what in spans if since <= end and until >= begin]
+        if said:
+            notes.append('%s: trial %d: %s, which the session was not begun with: left out' % (folder, row['trial'], said[0]))
+        else:
+            kept.append(row)
+    return kept
+
+
+def _has_columns(path, columns):
+    if not os.path.exists(path):
+        return False
+    with open(path, encoding='utf-8-sig', errors='replace') as file:
+        return set(columns) <= {cell.strip() for cell in file.readline().split(',')}
+
+
+def _changed_spans(events):
+    """(since, until, what) of each parameter that was not what it was at the beginning."""
+    spans, now = [], {}
+
+    def close(key, until):
+        if key in now:
+            spans.append(now.pop(key) + (until,))
+    for row in events:
+        key = row['detail'].split(':')[0]
+        if row['event'] == 'session_resumed':
+            for each in list(now):
+                close(each, row['time'])
+        if row['event'] in ('parameter_changed', 'parameter_restored'):
+            close(key, row['time'])
+        if row['event'] == 'parameter_changed':
+            now[key] = (row['time'], row['detail'])
+    for key in list(now):
+        close(key, float('inf'))
+    return [(since, until, what) for since, what, until in spans]
 
 
 def _check_trial_numbers(path, trials):

@@ -29,30 +29,26 @@ double number_from(const ros::NodeHandle& parameters, const char* name, double o
                               std::to_string(lowest));
 }
 
+Body body_of(const TaskObject& object) {
+  constexpr double kUsualFriction = 0.8;
+  SceneOptions options;
+  options.default_material.static_friction = kUsualFriction;
+  const Scene scene = load_scene(find_scene_file(object.file, scene_folders()), options);
+  Body body = scene.bodies.at(find_body(scene, object.name).value_or(0));
+  body.start = object.start;
+  return body;
+}
+
 Task task_from(const ros::NodeHandle& parameters) {
   refuse_unknown(parameters, {"group", "noise", "rate", "seed", "task"});
   Task task = load_task(find_task_file(text_from(parameters, "task", "pick_and_place"), task_folders()));
-  for (const TaskObject& object : task.objects) shipped_grasp(object.name);
-  for (const Goal& goal : task.goals) {
-    if (goal.kind == GoalKind::pick || goal.kind == GoalKind::place || goal.kind == GoalKind::insert ||
-        goal.kind == GoalKind::release)
-      continue;
-    throw std::invalid_argument("task '" + task.name + "' has a goal '" + to_string(goal.kind) +
-                                "'; a simulated operator can do pick, place, insert, release");
-  }
+  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // or says why not
   return task;
 }
 
 OperatorSkill skill_from(const ros::NodeHandle& parameters, std::uint64_t seed) {
   const std::string group = text_from(parameters, "group", "none");
   return group == "none" ? OperatorSkill{} : draw_skill(group, seed);
-}
-
-Body body_of(const TaskObject& object) {
-  Scene scene = load_scene(find_scene_file(object.file, scene_folders()), {});
-  Body body = free_body(scene, object.name);
-  body.start = object.start;
-  return body;
 }
 
 }  // namespace
@@ -64,9 +60,17 @@ OperatorPublisher::OperatorPublisher(ros::NodeHandle node, const ros::NodeHandle
       noise_(number_from(parameters, "noise", 1.0, 0.0), seed_),
       publisher_(node, rate_) {
   skill_ = skill_from(parameters, seed_);
+  for (const TaskObject& object : task_.objects) {
+    if (const Body body = body_of(object); body.fixed) fixed_[object.name] = body.start;
+  }
   const auto hints = ros::TransportHints().tcpNoDelay();
-  subscribers_ = {node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
-                  node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
+  subscribers_ = {
+      node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
+      node.subscribe<mr_hand_interaction::ContactArray>(
+          "contacts", 1,
+          [this](const mr_hand_interaction::ContactArray::ConstPtr& message) { contacts_ = *message; },
+          nullptr, hints),
+      node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
   timer_ =
       node.createWallTimer(ros::WallDuration(1.0 / rate_), [this](const ros::WallTimerEvent&) { tick(); });
 }
@@ -85,6 +89,10 @@ void OperatorPublisher::tick() {
   const ros::Time now = ros::Time::now();
   const double since = std::clamp((now - ticked_).toSec(), 0.0, kLongestMove / rate_);
   ticked_ = now;
+  if (const auto fixed = fixed_.find(status_.object); fixed != fixed_.end()) {
+    object_.name = fixed->first;
+    object_.pose = to_message(fixed->second);
+  }
   const bool other = person_ && trial_ != status_.trial;
   if (!at_work() || other) {
     person_.reset();
@@ -111,17 +119,28 @@ void OperatorPublisher::begin() {
   if (object == task_.objects.end())
     throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
                                 "': training_node and the simulated operator must have the same task");
-  person_.emplace(skill_, body_of(*object), seed_ + trial_);
+  person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_);
 }
 
 void OperatorPublisher::move() {
   const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
   const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
-  const Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+  Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+  sight.grip = grip();
   const HandPlace hand = person_->move(time_, sight);
   hands_ = {
       hand_joints(human_hand(), Side::right, default_device_mount().inverse() * hand.wrist, hand.posture)};
   hands_.front().id = trial_;
+}
+
+/// As observe() has it.
+double OperatorPublisher::grip() const {
+  double pressing = 0.0;
+  for (const auto& contact : contacts_.contacts) {
+    if (contact.object == object_.name)
+      pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+  }
+  return 0.5 * pressing;
 }
 
 }  // namespace mrhi

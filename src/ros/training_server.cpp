@@ -51,10 +51,18 @@ std::string utc_now() {
 }
 
 /// As the node with the objects was told to be.
+Configuration configuration_of(const ros::NodeHandle& node, const TrainingParameters& parameters) {
+  return read_server_parameters(ros::NodeHandle(node, parameters.simulation)).configuration;
+}
+
+Configuration with_gravity(Configuration configuration, const Vector3& gravity) {
+  configuration.gravity = gravity;
+  return configuration;
+}
+
 SessionSetup setup_of(const ros::NodeHandle& node, const TrainingParameters& parameters) {
   const std::string file = find_task_file(parameters.task, task_folders());
-  const Configuration configuration =
-      read_server_parameters(ros::NodeHandle(node, parameters.simulation)).configuration;
+  const Configuration configuration = configuration_of(node, parameters);
   return session_setup(file, load_task(file), configuration, scene_folders(), scene_options(configuration),
                        MR_HAND_INTERACTION_VERSION);
 }
@@ -84,6 +92,7 @@ TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_nod
       session_(task_of(parameters), header_of(parameters), place_of(parameters), parameters.folder, now(),
                setup_of(node, parameters), {utc_now, [this](const EventRow& row) { publish(row); }}),
       scene_(node, parameters.simulation, session_.task()),
+      parameters_(with_gravity(configuration_of(node, parameters), session_.task().gravity)),
       participant_(parameters.header.participant),
       auto_next_(parameters.auto_next) {
   for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
@@ -98,6 +107,7 @@ TrainingServer::TrainingServer(ros::NodeHandle node, ros::NodeHandle private_nod
   subscribers_ = {
       node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
       node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
+      node.subscribe("simulation_input", kQueue, &TrainingServer::take_input, this, hints),
       node.subscribe<Contacts>(
           "contacts", kQueue, [this](const Contacts::ConstPtr& message) { contacts_ = *message; }, nullptr,
           hints),
@@ -258,6 +268,20 @@ void TrainingServer::take_event(const mr_hand_interaction::InteractionEvent& eve
   tracking_losses_ += event.kind == event.HAND_LOST;
   put_back_ |= event.kind == event.OUT_OF_BOUNDS &&
                find_body(scene_.model(session_.object().name).scene, event.object).has_value();
+}
+
+/// Who changes the system while a session runs is not stopped, but it is written down.
+void TrainingServer::take_input(const mr_hand_interaction::SimulationInput& message) {
+  try {
+    for (const ParameterWatch::Difference& parameter : parameters_.take(message)) {
+      session_.note_parameter(parameter.name, parameter.value, parameter.as_begun, now());
+      ROS_WARN("%s is %s%s", parameter.name.c_str(), parameter.value.c_str(),
+               parameter.as_begun ? " again, as the session was begun with"
+                                  : ", which is not what the session was begun with: events.csv says so");
+    }
+  } catch (const std::exception& error) {
+    ROS_WARN("a change of the running system cannot be read: %s", error.what());
+  }
 }
 
 void TrainingServer::tick() {

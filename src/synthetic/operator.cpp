@@ -3,21 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../math/minimum_jerk.h"
 #include "box_symmetries.h"
 #include "motions.h"
 
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
-constexpr double kReachWidth = 0.03, kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
-constexpr double kLeastTime = 0.3;                                            // of a movement [s]
-constexpr double kCatchable = 0.1;   // what is faster is left to go [m/s]
-constexpr double kAstray = 0.05;     // from where the object was expected [m]
-constexpr double kOutOfHand = 0.04;  // from where the object was in the hand [m]
+constexpr double kApproach = 0.10;                        // [m] straight to the object with the hand open
+constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
+constexpr double kLeastTime = 0.3;                        // of a movement [s]
+constexpr double kCatchable = 0.1;                        // what is faster is left to go [m/s]
+constexpr double kAstray = 0.05;                          // from where the object was expected [m]
+constexpr double kOutOfHand = 0.04;                       // from where the object was in the hand [m]
 constexpr double kPatience = 10.0;  // with an object that is held where it is wanted, and nothing happens [s]
 constexpr double kFirmer = 1.2, kFirmest = 1.5;
-constexpr double kNear = 0.6, kClose = 0.7, kOpen = 0.5, kRetreat = 0.7, kAside = 0.8;  // times at pace 1 [s]
+constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
+                 kAside = 0.8;  // times at pace 1 [s]
+
+constexpr double kWidest = 0.61;         // of the way to the object, when the hand begins to close
+constexpr double kTouch = 0.07;          // until what is felt is acted on [s]
+constexpr double kCorrecting = 2.0;      // of the misplacement that is seen, a second
+constexpr double kFastCorrection = 0.1;  // [m/s]
+constexpr double kUnseen = 0.5;          // of its misplacement
+constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
+constexpr double kUsualStiffness = 800.0, kLeastStiffness = 20.0;  // of the grip [N/m]
+constexpr double kUnfelt = 0.15;        // of the wanted grip: less says that something else holds the object
+constexpr double kClosingSpeed = 0.05;  // most, of the depth [m/s]
+constexpr double kSwing = 1.0;          // [Hz]
 
 const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, from where it begins to approach [m]
 
@@ -40,12 +53,14 @@ Pose expected(const Sight& sight, double ahead) {
 }  // namespace
 
 SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed)
-    : skill_(skill), usual_(shipped_grasp(object.name)), turns_(box_symmetries(object)), random_(seed) {
-  constexpr int kWaves = 3;
-  for (int i = 0; i < kWaves; ++i) {
-    const double frequency = 8.0 + 4.0 * random_.uniform(), phase = 2.0 * M_PI * random_.uniform();
-    tremor_.push_back({frequency, phase, random_.gaussian_vector(skill_.tremor * std::sqrt(2.0 / kWaves))});
-  }
+    : skill_(skill),
+      usual_(shipped_grasp(object.name)),
+      turns_(box_symmetries(object)),
+      random_(seed),
+      tremor_(skill.tremor, random_),
+      mass_(object.mass),
+      friction_(std::max(0.1, object.material.static_friction)),
+      stiffness_(kUsualStiffness) {
   prepare_grasp();
   const Pose at = wrist_about({object.start.position, Quaternion::Identity()});
   now_ = {shifted(at, kApproach * retreat_ + kRest), relaxed_posture()};
@@ -53,16 +68,81 @@ SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& obj
 }
 
 HandPlace SimulatedOperator::move(double time, const Sight& sight) {
-  past_.push_back({time, sight, now_.wrist});
+  past_.push_back({time, sight, now_.wrist, depth_});
   while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
   if (past_.front().time <= time - skill_.reaction_time) decide(time, past_.front());
-  HandPlace next = hand_at(way_, time - began_);
-  next.wrist.position += (time - began_) * drift_;
-  if (time > last_time_) velocity_ = (next.wrist.position - now_.wrist.position) / (time - last_time_);
+  const double since = time - last_time_;
+  correct(since, past_.front());
+  squeeze(time, since);
+  HandPlace next = planned(time);
+  if (gripping_) next.posture = postures_->at(depth_);
+  if (since > 0.0) velocity_ = (next.wrist.position - now_.wrist.position) / since;
   last_time_ = time;
   now_ = next;
-  next.wrist.position += trembling(time);
+  next.wrist.position += tremor_.at(time);
   return next;
+}
+
+HandPlace SimulatedOperator::planned(double time) const {
+  const double on_way = time - began_;
+  HandPlace place = hand_at(way_, on_way);
+  if (!fingers_.empty()) place.posture = hand_at(fingers_, on_way).posture;
+  const double share = minimum_jerk(std::clamp(on_way / std::max(way_.back().time, kLeastTime), 0.0, 1.0));
+  place.wrist.position += on_way * drift_ + 2.0 * share * (1.0 - share) * bow_ + corrected_ + swung(time);
+  return place;
+}
+
+/// Up from the place and down, and so on, from rest; the first second it swings less.
+Vector3 SimulatedOperator::swung(double time) const {
+  if (!swing_began_) return Vector3::Zero();
+  const double since = time - *swing_began_;
+  return 0.5 * std::sin(2.0 * M_PI * kSwing * since) * minimum_jerk(std::clamp(since, 0.0, 1.0)) * swing_;
+}
+
+Vector3 SimulatedOperator::acceleration(double time) const {
+  constexpr double kStep = 0.01;
+  const auto at = [&](double t) -> Vector3 { return planned(t).wrist.position; };
+  return (at(time + kStep) - 2.0 * at(time) + at(time - kStep)) / (kStep * kStep);
+}
+
+/// Sees where the object is between its fingers while it closes them, and moves the hand to suit.
+void SimulatedOperator::correct(double since, const Moment& seen) {
+  const bool closing = phase_ == Phase::reaching && last_time_ - began_ > kWidest * way_.back().time;
+  if (since <= 0.0 || !(closing || (phase_ == Phase::grasping && !arrived(last_time_)))) return;
+  Vector3 off = seen.wrist.orientation * (seen.wrist.to_local(seen.sight.object.position) - middle_);
+  if (closing) {
+    const Vector3 where = expected(aim_.sight, seen.time - aim_.time).position;
+    off = seen.sight.object.position - where - (1.0 - kUnseen) * beside_ - corrected_;
+  }
+  Vector3 speed = kCorrecting * off;
+  if (speed.norm() > kFastCorrection) speed *= kFastCorrection / speed.norm();
+  corrected_ += since * speed;
+}
+
+/// What it felt a moment ago.
+const SimulatedOperator::Moment& SimulatedOperator::felt(double time) const {
+  const auto later = std::find_if(past_.begin(), past_.end(),
+                                  [&](const Moment& moment) { return moment.time > time - kTouch; });
+  return later == past_.begin() ? *later : *(later - 1);
+}
+
+/// Wants a grip above what the load it is about to cause needs, and has learned how deep that is.
+void SimulatedOperator::squeeze(double time, double since) {
+  if (!gripping_ || since <= 0.0) return;
+  const Moment& touch = felt(time);
+  const bool pressed = touch.depth > 0.0 && touch.time > *gripping_;
+  const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
+  const bool helped = share == 1.0 && touch.sight.held && touch.sight.grip < kUnfelt * wanted_;
+  if (pressed && !helped) {
+    const double found = std::max(kLeastStiffness, touch.sight.grip / touch.depth);
+    stiffness_ += std::min(1.0, since / kLearning) * (found - stiffness_);
+  }
+  const double load = mass_ * (acceleration(time) - touch.sight.gravity).norm();
+  const double needed = load / (2.0 * friction_);
+  wanted_ = share * firmness_ * (skill_.least_grip + (1.0 + skill_.grip_margin) * needed);
+  const double aim = std::min(postures_->deepest(), wanted_ / stiffness_), most = kClosingSpeed * since;
+  const double from = postures_->near_depth * (1.0 - share);
+  depth_ += std::clamp(from + aim - depth_, -most, most);
 }
 
 void SimulatedOperator::decide(double time, const Moment& seen) {
@@ -104,32 +184,31 @@ void SimulatedOperator::watch(double time, const Moment& seen) {
   then(kLeastTime, shifted(now_.wrist, 0.5 * kLeastTime * velocity_), now_.posture);
 }
 
+/// One movement: the hand opens on the way, and has closed round the object as it arrives.
 void SimulatedOperator::reach(double time, const Moment& seen) {
   prepare_grasp();
   const double lag = time - seen.time;
   const double distance = (wrist_about(seen.sight.object).position - now_.wrist.position).norm();
-  const double duration = movement_time(distance, kReachWidth);
+  const double duration = movement_time(distance, kGraspWidth);
   const Vector3 drift = seen.sight.twist.linear;
   const Pose wrist = wrist_about(expected(seen.sight, lag + duration));
   plan(Phase::reaching, seen, drift);
-  then(duration, shifted(wrist, kApproach * retreat_ - duration * drift), postures_->open);
+  then(duration, shifted(wrist, -duration * drift), postures_->near);
+  bow_ = kApproach * retreat_ + 0.5 * (way_.back().wrist.position - way_.front().wrist.position);
+  fingers_ = {way_.front(), way_.front(), way_.back()};
+  fingers_[1].time = kWidest * duration;
+  fingers_[1].posture = postures_->open;
 }
 
 void SimulatedOperator::grasp(double time, const Moment& seen) {
-  const double approach = movement_time(kApproach, kGraspWidth);
-  const double near = kNear * skill_.pace, close = kClose * skill_.pace;
-  const double settle = skill_.reaction_time + skill_.decision_time;
-  const double until_closed = approach + near + 0.5 * close;
-  const Vector3 drift = seen.sight.twist.linear;
-  const Pose met = wrist_about(expected(seen.sight, time - seen.time + until_closed));
-  const Pose wrist = shifted(met, -until_closed * drift);
+  const double close = kLoad * skill_.pace, settle = skill_.reaction_time + skill_.decision_time;
+  const Vector3 drift = drift_;
+  const Pose wrist = now_.wrist;
   plan(Phase::grasping, seen, drift);
-  then(approach, wrist, postures_->open);
-  then(near, wrist, postures_->near);
-  then(close, wrist, postures_->pressing);
-  way_.back().via = postures_->touching;
-  way_.back().via_share = postures_->touching_share;
-  then(settle, shifted(wrist, -0.5 * settle * drift), postures_->pressing);
+  gripping_ = time;
+  depth_ = postures_->near_depth;
+  then(close, wrist, now_.posture);
+  then(settle, shifted(wrist, -0.5 * settle * drift), now_.posture);
   way_.back().velocity = -drift;
 }
 
@@ -145,6 +224,11 @@ void SimulatedOperator::carry(const Moment& seen) {
 /// The object should be where it was wanted.
 void SimulatedOperator::follow_up(double time, const Moment& seen) {
   if (!seen.sight.place) return let_go();
+  if (seen.sight.swing != Vector3::Zero()) {
+    if (!swing_began_) swing_began_ = time;
+    swing_ = seen.sight.swing;
+    return;
+  }
   const double precision = std::min(skill_.precision, seen.sight.precision);
   const bool missed = (seen.sight.object.position - *seen.sight.place).norm() > precision;
   if (missed) return carry(seen);
@@ -154,9 +238,7 @@ void SimulatedOperator::follow_up(double time, const Moment& seen) {
 void SimulatedOperator::let_go() {
   const Pose wrist = now_.wrist;
   plan(Phase::letting_go, aim_);
-  then(kClose * skill_.pace, wrist, postures_->near);
-  way_.back().via = postures_->touching;
-  way_.back().via_share = 1.0 - postures_->touching_share;
+  close_to(postures_->near_depth, kUnload * skill_.pace);
   then(kOpen * skill_.pace, wrist, postures_->open);
   then(kRetreat * skill_.pace, shifted(wrist, kApproach * retreat_), postures_->open);
   way_.back().velocity = 0.1 * retreat_;
@@ -174,6 +256,7 @@ void SimulatedOperator::shake_off() {
 
 void SimulatedOperator::lose() {
   firmness_ = std::min(kFirmest, kFirmer * firmness_);
+  gripping_.reset();
   plan(Phase::withdrawing, aim_);
   then(kOpen * skill_.pace, shifted(now_.wrist, kApproach * retreat_), postures_->open);
 }
@@ -182,11 +265,11 @@ void SimulatedOperator::prepare_grasp() {
   Grasp grasp = usual_;
   const double usual_depth = grasp.contacts[0].depth + grasp.contacts[1].depth;
   for (FingertipContact& contact : grasp.contacts) {
-    contact.depth *= firmness_ * skill_.grip_depth / usual_depth;
+    contact.depth /= usual_depth;
     contact.depth *= std::max(0.0, 1.0 + skill_.grip_spread * random_.gaussian());
   }
   grasp.opening = skill_.opening;
-  postures_.emplace(grasp);
+  postures_.emplace(grasp, skill_.grip_depth);
   misplaced_.position = random_.gaussian_vector(skill_.placing_error);
   misplaced_.orientation = rotation(random_.gaussian_vector(skill_.turning_error));
 }
@@ -203,6 +286,8 @@ Pose SimulatedOperator::wrist_about(const Pose& object) {
   const Pose wrist = misplaced_ * Pose{Vector3::Zero(), turn} * usual_.wrist;
   retreat_ = object.orientation * turn * usual_.retreat;
   in_hand_ = wrist.to_local(Vector3::Zero());
+  middle_ = in_hand_ + (1.0 - kUnseen) * (wrist.orientation.conjugate() * misplaced_.position);
+  beside_ = object.orientation * misplaced_.position;
   return object * wrist;
 }
 
@@ -214,10 +299,25 @@ void SimulatedOperator::plan(Phase phase, const Moment& seen, const Vector3& dri
   aim_ = seen;
   drift_ = drift;
   way_ = {{0.0, now_.wrist, now_.posture, velocity}};
+  fingers_.clear();
+  bow_ = corrected_ = Vector3::Zero();
+  swing_began_.reset();
+  if (phase == Phase::reaching || phase == Phase::withdrawing) gripping_.reset();
 }
 
 void SimulatedOperator::then(double duration, const Pose& wrist, const HandPosture& posture) {
   way_.push_back({way_.back().time + duration, wrist, posture});
+}
+
+/// The fingers alone.
+void SimulatedOperator::close_to(double depth, double duration) {
+  constexpr int kSteps = 8;
+  const Pose wrist = now_.wrist;
+  gripping_.reset();
+  for (int i = 1; i <= kSteps; ++i) {
+    const double share = minimum_jerk(static_cast<double>(i) / kSteps);
+    then(duration / kSteps, wrist, postures_->at(depth_ + share * (depth - depth_)));
+  }
 }
 
 bool SimulatedOperator::is_astray(const Moment& seen) const {
@@ -232,13 +332,6 @@ double SimulatedOperator::distance_from_grip(const Moment& seen) const {
 double SimulatedOperator::movement_time(double distance, double width) const {
   const double fitts = skill_.movement_start + skill_.movement_per_bit * std::log2(distance / width + 1.0);
   return std::max(kLeastTime, fitts);
-}
-
-Vector3 SimulatedOperator::trembling(double time) const {
-  Vector3 sum = Vector3::Zero();
-  for (const Tremor& wave : tremor_)
-    sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
-  return sum;
 }
 
 }  // namespace mrhi

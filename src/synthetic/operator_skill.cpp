@@ -15,7 +15,8 @@ constexpr double kSpread = 0.2, kLeast = 0.5, kMost = 1.6;  // of one person aga
 constexpr double OperatorSkill::*kPersonal[] = {
     &OperatorSkill::reaction_time, &OperatorSkill::movement_start, &OperatorSkill::movement_per_bit,
     &OperatorSkill::pace,          &OperatorSkill::decision_time,  &OperatorSkill::placing_error,
-    &OperatorSkill::turning_error, &OperatorSkill::tremor,         &OperatorSkill::grip_depth};
+    &OperatorSkill::turning_error, &OperatorSkill::tremor,         &OperatorSkill::grip_depth,
+    &OperatorSkill::least_grip,    &OperatorSkill::grip_margin};
 
 }  // namespace
 
@@ -28,7 +29,9 @@ OperatorSkill beginner_skill() {
   skill.placing_error = 0.006;
   skill.turning_error = 6.0 * kDegree;
   skill.tremor = 0.0004;
-  skill.grip_depth = 0.014;
+  skill.least_grip = 3.0;
+  skill.grip_margin = 1.2;
+  skill.grip_depth = 0.021;
   skill.grip_spread = 0.2;
   return skill;
 }
@@ -42,7 +45,9 @@ OperatorSkill veteran_skill() {
   skill.placing_error = 0.003;
   skill.turning_error = 3.0 * kDegree;
   skill.tremor = 0.0002;
-  skill.grip_depth = 0.010;
+  skill.least_grip = 2.5;
+  skill.grip_margin = 1.0;
+  skill.grip_depth = 0.018;
   skill.grip_spread = 0.1;
   return skill;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <stdexcept>
 
 #include "../scene/scene_edit.h"
 #include "mr_hand_interaction/simulation.h"
@@ -14,6 +16,9 @@ namespace {
 constexpr double kReach = 0.35;      // of the arm, each way from where the object starts [m]
 constexpr double kFallen = 0.05;     // below the stand [m]
 constexpr double kHalfStand = 0.02;  // [m]
+constexpr double kSlap = 1.0;        // a blow may be as fast as that, a tap not [m/s]
+constexpr double kAjar = 0.1;        // [rad]
+constexpr double kFlight = 3.5;      // that what flies past may be followed for [s]
 
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
@@ -24,7 +29,47 @@ bool is_place(const Goal& goal) {
   return goal.kind == GoalKind::place || goal.kind == GoalKind::insert;
 }
 
+/// Nothing: to be let go, which the motion that took it does.
+std::optional<PractisedGoal> practised(const Goal& goal) {
+  switch (goal.kind) {
+    case GoalKind::catch_it:
+      return PractisedGoal{Skilled::catch_ball};
+    case GoalKind::nudge_into:
+      return PractisedGoal{Skilled::nudge, goal.position};
+    case GoalKind::strike:
+      return PractisedGoal{goal.max_speed < kSlap ? Skilled::tap : Skilled::slap};
+    case GoalKind::release:
+      return std::nullopt;
+    default:
+      break;
+  }
+  if (goal.joint == "button_3_slide") return PractisedGoal{Skilled::press_button};
+  if (goal.joint == "hatch_hinge" && goal.below < kAjar) return PractisedGoal{Skilled::close_hatch};
+  if (goal.joint == "hatch_hinge" || goal.joint == "latch_top_axle" || goal.joint == "latch_bottom_axle")
+    return PractisedGoal{Skilled::open_hatch};
+  throw std::invalid_argument("a simulated operator cannot work joint '" + goal.joint +
+                              "'; allowed: those of the task hatch");
+}
+
+bool is_carried(const Goal& goal) {
+  return is_place(goal) || goal.kind == GoalKind::pick || goal.kind == GoalKind::release;
+}
+
 }  // namespace
+
+std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
+                                    std::uint64_t seed) {
+  if (std::all_of(task.goals.begin(), task.goals.end(), is_carried))
+    return std::make_unique<SimulatedOperator>(skill, object, seed);
+  if (std::any_of(task.goals.begin(), task.goals.end(),
+                  [](const Goal& goal) { return is_carried(goal) && goal.kind != GoalKind::release; }))
+    throw std::invalid_argument("task '" + task.name +
+                                "': a simulated operator either carries or strikes, catches, " +
+                                "nudges and works joints; allowed: goals of one of the two");
+  std::vector<std::optional<PractisedGoal>> goals;
+  std::transform(task.goals.begin(), task.goals.end(), std::back_inserter(goals), practised);
+  return std::make_unique<PractisedPerson>(skill, std::move(goals), object, seed);
+}
 
 Body stand_under(const Body& body) {
   constexpr double kRail = 0.006, kFlat = 0.01;
@@ -54,6 +99,9 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
   for (const Fixture& fixture : task.fixtures)
     append(load_fixture(fixture, stage.scene_folders, stage.scene_options).scene, scene);
   scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
+  const Vector3 end = object.start.position + kFlight * object.twist.linear;
+  scene.bounds.min = scene.bounds.min.cwiseMin((end.array() - kReach).matrix());
+  scene.bounds.max = scene.bounds.max.cwiseMax((end.array() + kReach).matrix());
   if (task.gravity != Vector3::Zero() && !model.is_device()) {
     scene.bodies.push_back(stand_under(scene.bodies.front()));
     const Body& stand = scene.bodies.back();
@@ -68,6 +116,8 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
   sight.object = object;
   sight.twist = twist;
   sight.held = held;
+  sight.gravity = task.gravity;
+  sight.goal = goal;
   const auto from = task.goals.begin() + static_cast<std::ptrdiff_t>(goal);
   const auto next = std::find_if(from, task.goals.end(), is_place);
   if (next == task.goals.end()) return sight;
@@ -89,16 +139,17 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   configuration.gravity = task.gravity;
   Simulation simulation(scene, configuration);
   Random seeds(seed);
-  SimulatedOperator person(skill, scene.bodies.front(), seeds.bits());
+  const std::unique_ptr<Person> person = make_person(skill, task, scene.bodies.front(), seeds.bits());
   TrackingNoise noise(stage.noise, seeds.bits());
   Nanoseconds stamp = begin;
   session.begin(begin);
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
     const BodyState& state = simulation.state().bodies.front();
-    const Sight sight = sight_of(task, session.trial().goal(), state.pose,
-                                 twist_of(scene.bodies.front(), state), is_held(0, simulation.state()));
-    const HandPlace hand = person.move(to_seconds(stamp - begin), sight);
+    Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
+                           is_held(0, simulation.state()));
+    sight.grip = observe(simulation, 0).grip_force.value_or(0.0);
+    const HandPlace hand = person->move(to_seconds(stamp - begin), sight);
     JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
     noise.apply(joints);
     simulation.advance({stamp, {complete_hand(joints.hands.front(), Pose{})}});

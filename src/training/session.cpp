@@ -125,6 +125,13 @@ void Session::repeat(Nanoseconds now) {
   log_event("repeat", now);
 }
 
+void Session::note_parameter(const std::string& name, const std::string& value, bool as_begun,
+                             Nanoseconds now) {
+  std::string detail = text::one_line(name + ": " + value, 120);
+  std::replace(detail.begin(), detail.end(), ',', ' ');  // of a vector; it is one field
+  log_event(as_begun ? "parameter_restored" : "parameter_changed", now, detail);
+}
+
 void Session::abort(Nanoseconds now) {
   if (active()) end(TrialResult::aborted, now);
 }
@@ -162,11 +169,12 @@ void Session::log_trial_events() {
   }
 }
 
-void Session::log_event(const char* event, Nanoseconds now) {
+void Session::log_event(const char* event, Nanoseconds now, const std::string& detail) {
   EventRow row;
   row.time = time(now);
   row.stamp = now;
   row.event = event;
+  row.detail = detail;
   if (active()) {
     row.trial = number_;
     row.stage = trial_.stage();

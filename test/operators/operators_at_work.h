@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/synthetic/operator.h"
 #include "mr_hand_interaction/training/operator_trial.h"

@@ -30,16 +30,15 @@ TEST(Operator, moves_only_once_the_reaction_time_is_over) {
   EXPECT_NEAR(time, 0.3, kFrame);
 }
 
-// Fitts' law says how long; the way ends 10 cm off the grasp along the way in, at rest.
+// Fitts' law says how long; the way ends at the grasp, at rest.
 TEST(Operator, reach_ends_where_and_when_it_should) {
   const Body cube = testing::shipped_body("cube");
   const OperatorSkill skill;
   SimulatedOperator person(skill, cube, 1);
   const Vector3 rest = person.move(0.0, at_rest(cube)).wrist.position;
-  const Grasp grasp = shipped_grasp("cube");
-  const Vector3 held = cube.start.position + grasp.wrist.position, before = held + 0.10 * grasp.retreat;
+  const Vector3 held = cube.start.position + shipped_grasp("cube").wrist.position;
   const double duration =
-      skill.movement_start + skill.movement_per_bit * std::log2((held - rest).norm() / 0.03 + 1.0);
+      skill.movement_start + skill.movement_per_bit * std::log2((held - rest).norm() / 0.01 + 1.0);
   double time = 0.0, began = 0.0;
   Vector3 wrist = rest, wrist_before = rest;
   while (person.phase() == Phase::watching || person.phase() == Phase::reaching) {
@@ -51,8 +50,7 @@ TEST(Operator, reach_ends_where_and_when_it_should) {
   }
   EXPECT_NEAR(time - began, duration, 2.0 * kFrame);
   // The frame before is at most two frames before the end, where minimum jerk has 10 (t/T)^3 of the way left.
-  EXPECT_LT((wrist_before - before).norm(),
-            10.0 * std::pow(2.0 * kFrame / duration, 3) * (before - rest).norm());
+  EXPECT_LT((wrist_before - held).norm(), 10.0 * std::pow(2.0 * kFrame / duration, 3) * (held - rest).norm());
 }
 
 TEST(Operator, learns_of_a_leap_of_the_object_a_reaction_time_later) {

@@ -23,6 +23,7 @@ from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
 
 from mr_hand_interaction.msg import HandFrame, ObjectStateArray, TrainingStatus
+from mr_hand_interaction.srv import SetParameter
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -147,6 +148,14 @@ class TrainingTest(unittest.TestCase):
         for row in rows:
             self.assertGreaterEqual(float(row["maintenance_time"]), 9.0, "three places for 3 s each")
             self.assertLess(float(row["release_drift"]), DRIFT)
+
+    def test_an_operator_taps(self):
+        """Six trials; who is kept waiting by the machine may strike too late, and strikes again."""
+        with self.training("hands:=operator", "task:=tap", "auto_next:=0.2", "record:=false"):
+            wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 200.0)
+        rows = trials(self.folder)
+        self.assertEqual([row["object"] for row in rows].count("long_cuboid"), 3)
+        self.assertGreaterEqual([row["result"] for row in rows].count("completed"), 5)
 
     def check_analysis(self):
         if not has_pandas():
@@ -289,6 +298,29 @@ class TrainingTest(unittest.TestCase):
         rospy.delete_param("/other_node")
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"'contact_model: implicit', this one has 'contact_model: soft_pad'", answer.stdout)
+
+    def parameter_events(self):
+        with open(os.path.join(self.folder, "events.csv"), newline="") as file:
+            return [(row["event"], row["detail"], row["trial"]) for row in csv.DictReader(file)
+                    if row["event"].startswith("parameter_")]
+
+    def test_a_parameter_changed_while_the_session_runs_is_in_its_events(self):
+        with self.training("record:=false", "auto_next:=-1"):
+            self.wait_for(TrainingStatus.READY)
+            self.begin()
+            change = rospy.ServiceProxy("interaction_node/set", SetParameter)
+            self.assertTrue(change("contact_model", "soft_pad").success)
+            wait_until(lambda: len(self.parameter_events()) == 1, "the change's event")
+            self.assertTrue(change("contact_model", "implicit").success)
+            wait_until(lambda: len(self.parameter_events()) == 2, "the event of the change back")
+            self.assertTrue(change("contact_model", "implicit").success, "changes nothing")
+            self.assertTrue(change("gravity", "[0, 0, -1.5]").success)
+            wait_until(lambda: len(self.parameter_events()) == 3, "the event of gravity")
+        changed, restored, gravity = self.parameter_events()
+        self.assertEqual(changed, ("parameter_changed", "contact_model: soft_pad", "1"))
+        self.assertEqual(restored, ("parameter_restored", "contact_model: implicit", "1"))
+        self.assertEqual(gravity[0], "parameter_changed")
+        self.assertRegex(gravity[1], r"^gravity: \[0 +0 +-1\.5\]$")
 
 
 if __name__ == "__main__":

@@ -49,6 +49,21 @@ class Reading(Folders):
         self.assertEqual(session.ratings[1], {'condition': 'implicit', 'question': 'efficiency', 'score': 10})
         self.assertEqual(session.notes, [])
 
+    def test_a_trial_under_a_parameter_that_was_changed_meanwhile_is_left_out(self):
+        where = made_up_study.write_session(os.path.join(self.root, 'one'), ratings=[], trials=[
+            {'start': start, 'completion_time': 8.0, 'attempts': 1, 'drops': 0} for start in (0.0, 10.0, 20.0, 30.0)])
+        events = [(12.0, 'parameter_changed', 'filter/type: none'), (15.0, 'parameter_changed', 'step: 0.002'),
+                  (16.0, 'parameter_restored', 'filter/type: constant_velocity'), (25.0, 'parameter_restored', 'step: 0.001')]
+        columns = ['time', 'trial', 'stage', 'event', 'object', 'detail']
+        made_up_study.write_table(os.path.join(where, 'events.csv'), columns,
+                                  [dict(dict.fromkeys(columns, ''), time=time, event=event, detail=detail)
+                                   for time, event, detail in events])
+        session = session_folder.read_session(where)
+        self.assertEqual([row['start'] for row in session.trials], [0.0, 30.0])
+        self.assertEqual(len(session.notes), 2)
+        self.assertIn('trial 2: filter/type: none, which the session was not begun with: left out', session.notes[0])
+        self.assertIn('trial 3: step: 0.002', session.notes[1])
+
     def test_columns_in_another_order_and_further_ones_do_no_harm(self):
         self.folder()
         path = os.path.join(self.root, 'one', 'ratings.csv')

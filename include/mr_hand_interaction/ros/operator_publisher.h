@@ -1,10 +1,12 @@
 #pragma once
 
+#include <mr_hand_interaction/ContactArray.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
 #include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
 
-#include <optional>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "mr_hand_interaction/ros/leap_human_publisher.h"
@@ -29,6 +31,7 @@ class OperatorPublisher {
   bool at_work() const;
   void begin();
   void move();
+  double grip() const;
 
   Task task_;
   OperatorSkill skill_;
@@ -37,7 +40,9 @@ class OperatorPublisher {
   TrackingNoise noise_;
   mr_hand_interaction::TrainingStatus status_;
   mr_hand_interaction::ObjectState object_;  ///< of the trial; without a name: not seen yet
-  std::optional<SimulatedOperator> person_;
+  std::map<std::string, Pose> fixed_;        ///< what no message has: devices, by name
+  mr_hand_interaction::ContactArray contacts_;
+  std::unique_ptr<Person> person_;
   std::uint32_t trial_ = 0;
   ros::Time ticked_;
   double time_ = 0.0;  ///< that the person has moved since the trial's begin, by the frames' stamps [s]

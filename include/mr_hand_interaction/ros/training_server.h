@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/ros/parameter_watch.h"
 #include "mr_hand_interaction/ros/training_parameters.h"
 #include "mr_hand_interaction/ros/training_scene.h"
 #include "mr_hand_interaction/training/session.h"
@@ -33,6 +34,7 @@ class TrainingServer {
   bool starts(const Observation& seen) const;
   const Body& watched() const;
   void take_event(const mr_hand_interaction::InteractionEvent& event);
+  void take_input(const mr_hand_interaction::SimulationInput& message);
   void take_hands(const mr_hand_interaction::HandFrame& message, bool filtered);
   Nanoseconds on_our_clock(const ros::Time& stamp);
   std::optional<Observation> observed(const mr_hand_interaction::ObjectStateArray& message);
@@ -54,6 +56,7 @@ class TrainingServer {
   ros::Publisher event_;  ///< before the session, which has events as it begins
   Session session_;
   TrainingScene scene_;
+  ParameterWatch parameters_;
   std::string participant_, fixed_frame_ = "world";
   double auto_next_;
   ros::WallTime next_;  ///< when the next trial begins by itself; zero: when told to

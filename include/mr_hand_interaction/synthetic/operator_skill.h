@@ -16,8 +16,10 @@ struct OperatorSkill {
   double turning_error = 0.0;     ///< likewise about an axis [rad]
   double precision = 0.008;       ///< a place missed by more than this is corrected [m]
   double tremor = 0.0;            ///< of the hand, 8 to 12 Hz, rms on an axis [m]
-  double grip_depth = 0.008;      ///< thumb and fingers together close this far beyond the surface [m]
-  double grip_spread = 0.0;       ///< deviation of each tip's share of that
+  double least_grip = 2.5;        ///< that it holds with what has no load [N]
+  double grip_margin = 1.0;       ///< of the grip beyond that, above what the load needs in order not to slip
+  double grip_depth = 0.018;      ///< thumb and fingers together close no farther beyond the surface [m]
+  double grip_spread = 0.0;       ///< deviation of each tip's share of the depth
   double opening = 0.018;         ///< gap between each tip and the object before closing [m]
 };
 

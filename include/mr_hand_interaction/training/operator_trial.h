@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/synthetic/operator.h"
+#include "mr_hand_interaction/synthetic/practised_person.h"
 #include "mr_hand_interaction/training/session.h"
 
 namespace mrhi {
@@ -28,6 +30,11 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
 /// What there is to see of an object and of the task's goals from `goal` on. Into a hole it is wanted first
 /// outside of it on its axis, then inside.
 Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held);
+
+/// Who can do the task with the object, a SimulatedOperator or a PractisedPerson. Throws
+/// std::invalid_argument that names the goal, or the object, and what is allowed.
+std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
+                                    std::uint64_t seed);
 
 /// A simulated operator does the session's next trial: it sees the object, and through the noisy tracker its
 /// hand moves in a simulation. Stamps count on from `begin`; the result is the stamp of the last frame. No

@@ -56,6 +56,8 @@ class Session {
   /// The running trial is aborted and is the next one; if none is running, the one before is to be done
   /// again.
   void repeat(Nanoseconds now);
+  /// A parameter of the running system is from now on another one than `setup` says, or that one again.
+  void note_parameter(const std::string& name, const std::string& value, bool as_begun, Nanoseconds now);
   /// For the end of the program: a running trial is aborted.
   void abort(Nanoseconds now);
 
@@ -72,7 +74,7 @@ class Session {
   void end(TrialResult result, Nanoseconds now);
   void go_on_from(std::size_t position);
   void log_trial_events();
-  void log_event(const char* event, Nanoseconds now);
+  void log_event(const char* event, Nanoseconds now, const std::string& detail = "");
   void log(EventRow row);
   void note_result();
 
