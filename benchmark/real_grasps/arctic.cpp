@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "finger_forces.h"
+#include "joints/joint_law.h"
+#include "math/registration.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
@@ -40,17 +42,25 @@ Pose pose_in(const CsvColumns& row) {
   return pose;
 }
 
+/// Index of the body whose place is captured.
+std::size_t root_of(const Scene& scene) {
+  return scene.joints.empty() ? 0 : static_cast<std::size_t>(scene.joints.front().parent);
+}
+
 Window load_window(const std::string& path, const Configuration& configuration) {
   Window window;
   SceneOptions options;
   options.default_material = default_material(configuration);
   window.scene = load_scene(path + ".urdf", options);
+  if (window.scene.joints.size() > 1 || window.scene.bodies.size() != window.scene.joints.size() + 1)
+    throw RecordingError(path + ".urdf: a body, or two on a joint, are needed");
   window.scene.bounds = {Vector3::Constant(-kFurthest), Vector3::Constant(kFurthest)};
   window.frames = read_recording_csv(path + ".csv");
-  const Pose body_in_link = window.scene.bodies.at(0).link_in_body.inverse();
+  const Pose body_in_link = window.scene.bodies.at(root_of(window.scene)).link_in_body.inverse();
   read_rows(path + "_object.csv", [&](const CsvColumns& row, const std::string&) {
     if (row.required("free") == 0.0) window.free_from = window.places.size() + 1;
     window.places.push_back(pose_in(row) * body_in_link);
+    if (!window.scene.joints.empty()) window.angles.push_back(row.required("angle"));
   });
   if (window.places.size() != window.frames.size() || window.free_from + 2 > window.frames.size())
     throw RecordingError(path +
@@ -58,24 +68,35 @@ Window load_window(const std::string& path, const Configuration& configuration) 
   return window;
 }
 
-/// As it was captured about a frame.
-Twist twist_at(const Window& window, std::size_t frame) {
+Pose captured_pose(const Window& window, std::size_t frame, std::size_t body) {
+  const Pose& root = window.places[frame];
+  if (body == root_of(window.scene)) return root;
+  const Joint& joint = window.scene.joints.front();
+  return root * joint.in_parent * joint_motion(joint, window.angles[frame]) * joint.in_child.inverse();
+}
+
+/// About a frame.
+Twist captured_twist(const Window& window, std::size_t frame, std::size_t body) {
   const std::size_t a = frame > 0 ? frame - 1 : 0, b = std::min(frame + 1, window.places.size() - 1);
   const double seconds = to_seconds(window.frames[b].stamp - window.frames[a].stamp);
-  const Pose &from = window.places[a], &to = window.places[b];
+  const Pose from = captured_pose(window, a, body), to = captured_pose(window, b, body);
   const Eigen::AngleAxisd turn(to.orientation * from.orientation.conjugate());
   return {(to.position - from.position) / seconds, turn.angle() / seconds * turn.axis()};
 }
 
-BodyState captured(const Window& window, std::size_t frame, const Body& like) {
-  Body body = like;
-  body.start = window.places[frame];
-  body.start_twist = twist_at(window, frame);
-  return start_state(body);
-}
-
-void put(const BodyState& body, SimulationState state, Simulation& simulation) {
-  state.bodies.front() = body;
+/// Puts the object where it was captured, into a state of which all else stays.
+void put(const Window& window, std::size_t frame, SimulationState state, Simulation& simulation) {
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    Body body = simulation.scene().bodies[i];
+    body.start = captured_pose(window, frame, i);
+    body.start_twist = captured_twist(window, frame, i);
+    state.bodies[i] = start_state(body);
+  }
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    Joint joint = simulation.scene().joints[i];
+    joint.start = window.angles[frame];
+    state.joints[i] = start_state(joint);
+  }
   simulation.set_state(state);
 }
 
@@ -89,16 +110,52 @@ bool advance(const Window& window, std::size_t frame, Simulation& simulation) {
 SimulationState led(const Window& window, Configuration configuration, std::size_t from) {
   configuration.gravity = Vector3::Zero();
   Scene scene = window.scene;
-  scene.bodies.front().mass *= kLed;
-  scene.bodies.front().inertia *= kLed;
+  for (Body& body : scene.bodies) body.mass *= kLed, body.inertia *= kLed;
   Simulation simulation(scene, configuration);
-  const Body& heavy = simulation.scene().bodies.front();
-  put(captured(window, from, heavy), simulation.state(), simulation);
+  put(window, from, simulation.state(), simulation);
   for (std::size_t i = from; i <= window.free_from; ++i) {
     advance(window, i, simulation);
-    put(captured(window, i, heavy), simulation.state(), simulation);
+    put(window, i, simulation.state(), simulation);
   }
   return simulation.state();
+}
+
+/// Where the last phalanges of a hand are.
+std::vector<Vector3> last_phalanges(const Hand& hand) {
+  std::vector<Vector3> points;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, kBonesPerFinger - 1))];
+    points.insert(points.end(), {bone.start, bone.end});
+  }
+  return points;
+}
+
+std::optional<Hand> hand_in(const Window& window, std::size_t frame, Side side) {
+  std::vector<std::string> left_out;
+  const auto hands = complete_frame(window.frames[frame], device_mount(), left_out);
+  if (!hands) return std::nullopt;
+  const auto hand = std::find_if(hands->hands.begin(), hands->hands.end(),
+                                 [side](const Hand& candidate) { return candidate.side == side; });
+  return hand == hands->hands.end() ? std::nullopt : std::optional<Hand>(*hand);
+}
+
+/// Of an object that goes with one hand's last phalanges. A hand that is not seen carries nothing.
+std::vector<double> away_with(const Window& window, Side side) {
+  std::vector<double> away(window.places.size() - window.free_from - 1, kFurthest);
+  const auto first = hand_in(window, window.free_from, side);
+  if (!first) return away;
+  const std::vector<Vector3> from = last_phalanges(*first);
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    const std::size_t frame = window.free_from + 1 + i;
+    const auto hand = hand_in(window, frame, side);
+    if (!hand) continue;
+    const std::vector<Vector3> to = last_phalanges(*hand);
+    const auto carried = registered(from.data(), to.data(), from.size());
+    if (!carried) continue;
+    const Vector3 arm = window.places[window.free_from].position - carried->from;
+    away[i] = (carried->to + carried->rotation * arm - window.places[frame].position).norm();
+  }
+  return away;
 }
 
 }  // namespace
@@ -119,23 +176,31 @@ WindowOutcome play(const Window& window, const Configuration& configuration, dou
   std::size_t from = 0;
   while (window.frames[from].stamp < begin) ++from;
   Simulation simulation(window.scene, configuration);
-  const Body& body = simulation.scene().bodies.front();
-  put(captured(window, window.free_from, body), led(window, configuration, from), simulation);
+  put(window, window.free_from, led(window, configuration, from), simulation);
   WindowOutcome outcome;
   for (std::size_t i = window.free_from + 1; i < window.frames.size(); ++i) {
     if (advance(window, i, simulation)) add_finger_forces(simulation.result(), outcome.forces);
-    const Vector3& place = simulation.state().bodies.front().pose.position;
+    const SimulationState& state = simulation.state();
+    const Vector3& place = state.bodies[root_of(window.scene)].pose.position;
     outcome.away.push_back((place - window.places[i].position).norm());
+    if (!state.joints.empty())
+      outcome.turned.push_back(std::abs(state.joints.front().position - window.angles[i]));
   }
   return outcome;
 }
 
-double share_within(const std::vector<WindowOutcome>& outcomes, double limit) {
+WindowOutcome play_rigidly(const Window& window) {
+  WindowOutcome right{away_with(window, Side::right), {}, {}}, left{away_with(window, Side::left), {}, {}};
+  constexpr double kNear = 0.02;  // the tightest limit that is told of [m]
+  return share_within({right}, kNear) < share_within({left}, kNear) ? left : right;
+}
+
+double share_within(const std::vector<WindowOutcome>& outcomes, double limit, double angle) {
   std::size_t frames = 0, within = 0;
   for (const WindowOutcome& outcome : outcomes) {
     frames += outcome.away.size();
-    within += static_cast<std::size_t>(std::count_if(outcome.away.begin(), outcome.away.end(),
-                                                     [limit](double away) { return away < limit; }));
+    for (std::size_t i = 0; i < outcome.away.size(); ++i)
+      within += outcome.away[i] < limit && (outcome.turned.empty() || outcome.turned[i] < angle);
   }
   return frames > 0 ? static_cast<double>(within) / static_cast<double>(frames) : 0.0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,11 @@ namespace mrhi::real_grasps {
 struct Window {
   std::string name;
   bool first = false;               ///< of its capture
-  Scene scene;                      ///< the object alone, at 1 g
+  Scene scene;                      ///< the object alone, at 1 g: a body, or two on a hinge
   std::vector<JointsFrame> frames;  ///< as a device at the default mount sees the hands
-  std::vector<Pose> places;         ///< of the object's centre of mass, in each frame
-  std::size_t free_from = 0;        ///< frame in which it is let free
+  std::vector<Pose> places;    ///< of the object's body, of two that which carries the other, in each frame
+  std::vector<double> angles;  ///< of its hinge, likewise, if it has one [rad]
+  std::size_t free_from = 0;   ///< frame in which it is let free
 };
 
 /// Throws RecordingError, SceneError.
@@ -25,6 +27,7 @@ std::vector<Window> load_windows(const std::string& folder, const Configuration&
 /// What became of the object, from the frame after it was let free.
 struct WindowOutcome {
   std::vector<double> away;    ///< from where it was recorded, in each frame [m]
+  std::vector<double> turned;  ///< its hinge, from what was recorded, likewise [rad]
   std::vector<double> forces;  ///< of each finger that presses, in each frame [N]
 };
 
@@ -32,8 +35,15 @@ struct WindowOutcome {
 /// as they come to it; then it is free, with the velocity recorded.
 WindowOutcome play(const Window& window, const Configuration& configuration, double lead);
 
-/// Share of all frames in which the object is less than `limit` [m] from its recorded place.
-double share_within(const std::vector<WindowOutcome>& outcomes, double limit);
+/// What a hand that carried the object as if it were one with it would do: the object keeps its pose in the
+/// last phalanges (least squares) of the hand that is best in hindsight. No fingers move in it, nothing slips
+/// or falls.
+WindowOutcome play_rigidly(const Window& window);
+
+/// Share of all frames in which the object is less than `limit` [m] from its recorded place, and its hinge,
+/// if it has one, less than `angle` [rad] from where it was recorded.
+double share_within(const std::vector<WindowOutcome>& outcomes, double limit,
+                    double angle = std::numeric_limits<double>::infinity());
 
 /// Windows in which it is so in every frame.
 std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit);

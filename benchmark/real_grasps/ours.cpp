@@ -38,6 +38,8 @@ Scene scene_of(const Row& row, const Closing& closing, const Configuration& conf
 void look(const Simulation& simulation, Story& story) {
   const FrameResult& result = simulation.result();
   const BodyState& state = simulation.state().bodies.front();
+  if (!story.blow && !story.moments.empty())
+    story.blow = first_blow(simulation, 0, to_seconds(result.stamp) - story.moments.back().time);
   Moment moment{to_seconds(result.stamp), state.pose.position,
                 twist_of(simulation.scene().bodies.front(), state).linear};
   for (const Contact& contact : result.contacts) moment.pressed |= contact.touching();

@@ -1,11 +1,14 @@
 #include "report.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "statistics.h"
 
 namespace mrhi::real_grasps {
 namespace {
+
+constexpr double kHinge = 10.0 * M_PI / 180.0;  // [rad]
 
 std::string time_or_dash(const std::optional<double>& time) {
   if (!time) return "-";
@@ -35,6 +38,24 @@ Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
   sum.force = quantile(forces, 0.5), sum.away = quantile(aways, 0.5), sum.release = quantile(releases, 0.5);
   sum.frame_time = quantile(times, 0.5), sum.frame_time_p99 = quantile(times, 0.99);
   return sum;
+}
+
+LostTo lost_to(const std::vector<Event>& events) {
+  LostTo lost;
+  for (const Event& event : events) {
+    if (event.outcome.held) continue;
+    const auto& blow = event.outcome.blow;
+    ++(blow ? lost.blows[static_cast<std::size_t>(blow->blow)] : lost.none);
+  }
+  return lost;
+}
+
+std::string line(const LostTo& lost) {
+  std::string text = "  lost, first moved by:";
+  for (const Blow blow : {Blow::back, Blow::sweep, Blow::closing, Blow::open})
+    text += std::string(" ") + to_string(blow) + " " +
+            std::to_string(lost.blows[static_cast<std::size_t>(blow)]) + ",";
+  return text + " nothing " + std::to_string(lost.none);
 }
 
 std::string line(const Event& event) {
@@ -74,14 +95,17 @@ std::string line(const std::string& name, const std::vector<Event>& events) {
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes) {
   std::size_t frames = 0;
   for (const WindowOutcome& outcome : outcomes) frames += outcome.away.size();
-  char text[200];
+  char text[200], hinge[100];
   std::snprintf(text, sizeof text,
                 "%-26s %4zu frames; within 50 mm %3.0f %%, within 20 mm %3.0f %%; p90 force %5.1f N; to the "
                 "end %zu of %zu",
                 name.c_str(), frames, 100.0 * share_within(outcomes, 0.05),
                 100.0 * share_within(outcomes, 0.02), force_p90(outcomes), stayed(outcomes, 0.05),
                 outcomes.size());
-  return text;
+  if (outcomes.empty() || outcomes.front().turned.empty()) return text;
+  std::snprintf(hinge, sizeof hinge, "; with its hinge within 10 degrees 50 mm %.0f %%, 20 mm %.0f %%",
+                100.0 * share_within(outcomes, 0.05, kHinge), 100.0 * share_within(outcomes, 0.02, kHinge));
+  return std::string(text) + hinge;
 }
 
 }  // namespace mrhi::real_grasps

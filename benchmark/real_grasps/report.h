@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -34,10 +35,19 @@ struct Summary {
 /// Of one half, or of all.
 Summary summarise(const std::vector<Event>& events, std::optional<Half> half = std::nullopt);
 
+/// What first set in motion those that were lost: of how many the back of the hand, the hand as a whole, a
+/// closing finger, an open hand, and nothing that was seen.
+struct LostTo {
+  std::array<std::size_t, 4> blows{};  ///< by Blow
+  std::size_t none = 0;
+};
+LostTo lost_to(const std::vector<Event>& events);
+
 /// A line of text each.
 std::string line(const Event& event);
 std::string line(const std::string& name, const std::vector<Event>& events);
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes);
+std::string line(const LostTo& lost);
 
 /// real_grasps.csv: a line for each contender, row and half.
 void write_header(std::ostream& csv);

@@ -46,7 +46,7 @@ void write_rows(std::ostream& csv, const Contender& contender, const std::string
 void write_events_header(std::ostream& csv) {
   csv << "engine,setting,row,recording,closed_s,opens_s,held,carried,away_mm,early_mm,force_p90_N,grasp_"
          "began_s,"
-         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note,taken\n";
+         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note,taken,blow_s,blow_by\n";
 }
 
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
@@ -58,7 +58,8 @@ void write_events(std::ostream& csv, const Contender& contender, const std::stri
         << kMilli * o.away << ',' << kMilli * o.early << ',' << o.force << ','
         << number_or_nothing(o.grasp_began) << ',' << number_or_nothing(o.grasp_ended) << ','
         << number_or_nothing(o.let_go) << ',' << kMilli * o.release << ',' << o.speed << ',' << quoted(o.note)
-        << ',' << o.taken << '\n';
+        << ',' << o.taken << ',' << (o.blow ? std::to_string(o.blow->time) : "") << ','
+        << (o.blow ? to_string(o.blow->blow) : "") << '\n';
   }
 }
 

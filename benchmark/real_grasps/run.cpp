@@ -77,30 +77,52 @@ void play_closings(const std::vector<Recording>& recordings, const Arguments& ar
     if (arguments.list)
       for (const Event& event : events) std::cout << line(event) << '\n';
     std::cout << line(row.name, events) << std::endl;
+    if (arguments.list) std::cout << line(lost_to(events)) << std::endl;
     write_rows(rows, contender, row.name, events);
     write_events(closings, contender, row.name, events);
   }
 }
 
+/// Outcomes of windows, in the groups that are told of.
+struct Groups {
+  std::vector<WindowOutcome> first, tuned, held_out, all;
+
+  void add(const Window& window, const WindowOutcome& outcome) {
+    all.push_back(outcome);
+    if (window.first) first.push_back(outcome);
+    (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(outcome);
+  }
+  void tell(const std::string& name, std::ostream& csv, const Contender& contender) const {
+    for (const auto& [group, outcomes] :
+         {std::make_pair("_first", &first), {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}}) {
+      if (outcomes->empty()) continue;
+      std::cout << line(name + group, *outcomes) << std::endl;
+      write_arctic(csv, contender, name + group, *outcomes);
+    }
+  }
+};
+
 void play_windows(const Arguments& arguments, const Contender& contender) {
   if (arguments.arctic.empty()) return;
   if (arguments.paths.empty()) std::cout << contender.engine << ", " << contender.setting << std::endl;
   std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
-  std::vector<WindowOutcome> all, first, tuned, held_out;
+  Groups groups;
   for (const Window& window : load_windows(arguments.arctic, contender.configuration)) {
-    all.push_back(play(window, contender.configuration, arguments.lead));
-    if (window.first) first.push_back(all.back());
-    (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(all.back());
-    if (arguments.list) std::cout << line(window.name, {all.back()}) << '\n';
+    groups.add(window, play(window, contender.configuration, arguments.lead));
+    if (arguments.list) std::cout << line(window.name, {groups.all.back()}) << '\n';
   }
-  for (const auto& [name, outcomes] : {std::make_pair("arctic_first", &first),
-                                       {"arctic_tuned", &tuned},
-                                       {"arctic_held_out", &held_out},
-                                       {"arctic", &all}}) {
-    if (outcomes->empty()) continue;
-    std::cout << line(name, *outcomes) << std::endl;
-    write_arctic(csv, contender, name, *outcomes);
-  }
+  groups.tell("arctic", csv, contender);
+}
+
+/// What no model has a part in: how far the captured hands, each as one piece, have the object with them.
+void play_windows_rigidly(const Arguments& arguments) {
+  if (arguments.arctic.empty()) return;
+  const Contender hand{"none", "rigid hand", arguments.configuration, {}};
+  std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
+  Groups groups;
+  for (const Window& window : load_windows(arguments.arctic, arguments.configuration))
+    groups.add(window, play_rigidly(window));
+  groups.tell("rigid", csv, hand);
 }
 
 /// Other engines play free bodies alone.
@@ -144,6 +166,7 @@ void run(const Arguments& arguments) {
     play_closings(recordings, arguments, arguments.jobs, contender);
     play_windows(arguments, contender);
   }
+  play_windows_rigidly(arguments);
   for (const std::string& module : arguments.engines) play_engine(recordings, arguments, module);
 }
 

@@ -76,6 +76,7 @@ Outcome judge(const Story& story, const Track& track, const Closing& closing, co
   outcome.speed = fastest(story) / closing.hand_speed;
   outcome.frame_times = story.frame_times;
   outcome.taken = story.taken;
+  outcome.blow = story.blow;
   outcome.grasp_began = story.grasp_began;
   outcome.grasp_ended = story.grasp_ended;
   const bool began = story.grasp_began && *story.grasp_began < closing.opens;

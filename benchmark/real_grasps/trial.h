@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "closing.h"
+#include "first_blow.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/body.h"
 #include "take.h"
@@ -27,6 +28,7 @@ struct Story {
   std::optional<double> grasp_began, grasp_ended;  ///< first of each [s]
   bool has_grasps = false;                         ///< the engine knows what a grasp is
   bool taken = false;                              ///< contact/grasp_assist bore the body
+  std::optional<FirstBlow> blow;                   ///< what first set it in motion; ours alone
 };
 
 /// What became of a body that was put where a hand closes. Times are the recording's [s].
@@ -35,10 +37,11 @@ struct Outcome {
   bool carried = false;  ///< in the hand in that frame, and pressed until shortly before: also told of
                          ///< engines that do not know what a grasp is, for which `held` is this
   bool taken = false;    ///< help bore it
-  double away = 0.0;     ///< of the body from the grip, in that frame [m]
-  double early = 1.0;    ///< by how much it had been nudged as the hand closed [m]
-  double force = 0.0;    ///< of a finger while it presses, nine frames of ten at most [N]; 0: no touch
-  double speed = 0.0;    ///< of the body at its fastest, over the hand's fastest joint's
+  std::optional<FirstBlow> blow;  ///< what first set it in motion
+  double away = 0.0;              ///< of the body from the grip, in that frame [m]
+  double early = 1.0;             ///< by how much it had been nudged as the hand closed [m]
+  double force = 0.0;  ///< of a finger while it presses, nine frames of ten at most [N]; 0: no touch
+  double speed = 0.0;  ///< of the body at its fastest, over the hand's fastest joint's
   std::optional<double> grasp_began, grasp_ended;  ///< first begin; first end
   std::optional<double> let_go;                    ///< time of the first frame without touch after it opened
   double release = 0.0;                            ///< then, of the body against the palm [m/s]

@@ -6,6 +6,7 @@ import unittest
 
 import rospy
 import rostest
+from sensor_msgs.msg import JointState
 
 from mr_hand_interaction.msg import Hand, HandFrame, HapticsArray, ObjectStateArray, Phalanx, PhalanxHaptics
 
@@ -18,23 +19,29 @@ STEP = 0.002  # s, of the node that tells by step
 MASS = 0.1  # kg, of the cube
 
 
+LEVER = -9.81 * 0.1 * 0.04  # N m: weight of the lever times its arm
+JOINTS = {"button_slide", "switch_hinge", "valve_axle", "lever_hinge", "drawer_slide", "door_hinge"}
+
+
 class HapticsTest(unittest.TestCase):
     def test_a_glove_is_told_of_the_blow_by_frame_and_by_step(self):
         rospy.init_node("haptics_test")
-        frames, steps, shown = [], [], {}
+        frames, steps, joints, shown = [], [], [], {}
         by_frame = rospy.Subscriber("haptics", HapticsArray, frames.append)
         by_step = rospy.Subscriber("by_step/haptics", HapticsArray, steps.append)
+        by_joint = rospy.Subscriber("panel/haptics/joints", JointState, joints.append)
+        none = rospy.Subscriber("haptics/joints", JointState, lambda _: self.fail("a scene without joints"))
         objects = [rospy.Subscriber(topic, ObjectStateArray, lambda m, of=topic: shown.update({of: m.header.stamp}))
-                   for topic in ("objects", "by_step/objects")]
+                   for topic in ("objects", "by_step/objects", "panel/objects")]
         hands = rospy.Publisher("hand_frame", HandFrame, queue_size=10)
-        wait_until(lambda: hands.get_num_connections() == 2, "the two nodes")
-        wait_until(lambda: all(s.get_num_connections() > 0 for s in [by_frame, by_step] + objects), "publishers")
-        clock = StandingClock(lambda: min(shown.values()) if len(shown) == 2 else rospy.Time())
+        wait_until(lambda: hands.get_num_connections() == 3, "the three nodes")
+        wait_until(lambda: all(s.get_num_connections() > 0 for s in [by_frame, by_step, by_joint, none] + objects), "publishers")
+        clock = StandingClock(lambda: min(shown.values()) if len(shown) == 3 else rospy.Time())
         clock.keep_up()
 
         def greeted():
             hands.publish(frame(clock.next_stamp(PERIOD)))
-            return frames and steps
+            return frames and steps and joints
         wait_until(greeted, "all that is published")
         clock.keep_up()
         begin = clock.stamp
@@ -42,7 +49,8 @@ class HapticsTest(unittest.TestCase):
             stamp = clock.next_stamp(PERIOD)
             hands.publish(frame(stamp, hand(tip)))
             clock.keep_up()
-        wait_until(lambda: frames[-1].header.stamp >= stamp and steps[-1].header.stamp >= stamp, "haptics")
+        wait_until(lambda: frames[-1].header.stamp >= stamp and steps[-1].header.stamp >= stamp and
+                   joints[-1].header.stamp >= stamp, "haptics")
         count = int(round((stamp - begin).to_sec() / PERIOD))
         frames = [m for m in frames if m.hands and m.header.stamp <= stamp]
         steps = [m for m in steps if m.hands and m.header.stamp <= stamp]
@@ -56,6 +64,7 @@ class HapticsTest(unittest.TestCase):
             self.assertAlmostEqual(length, STEP if touching or length < 0.5 * PERIOD else PERIOD, delta=1e-6)
         for messages in (frames, steps):
             self.check(messages)
+        self.check_joints([m for m in joints if begin < m.header.stamp <= stamp], stamp - begin)
 
     def check(self, messages):
         told = [phalanx for message in messages for phalanx in message.hands[0].phalanges]
@@ -69,6 +78,18 @@ class HapticsTest(unittest.TestCase):
             self.assertGreaterEqual(phalanx.pressure, 0.0)
         self.assertEqual({m.header.frame_id for m in messages}, {"world"})
         self.assertGreater(sum(phalanx.impulse.x for phalanx in told), 0.5 * MASS * SPEED)
+
+    def check_joints(self, messages, duration):
+        """Of a panel at 1 g that nothing touches: the lever's friction bears its weight."""
+        self.assertGreaterEqual(len(messages), int(round(duration.to_sec() / PERIOD)))
+        stamps = [m.header.stamp for m in messages]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        for message in messages:
+            self.assertEqual(message.header.frame_id, "world")
+            self.assertEqual(set(message.name), JOINTS)
+            effort = dict(zip(message.name, message.effort))
+            self.assertAlmostEqual(effort["lever_hinge"], LEVER, delta=1e-6)  # held to 1e-4 of the inertia in a step
+            self.assertEqual(effort["drawer_slide"], 0.0)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include "../report.h"
 #include "../statistics.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "synthetic/motions.h"
 
 namespace mrhi::real_grasps {
 namespace {
@@ -190,6 +191,38 @@ TEST(Disturbed, IsEvenlySpacedAsNoisyAsSaidAndTheSameForOneSeed) {
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(frames.size())), 0.002, 0.15 * 0.002);
 }
 
+/// What first sets the scene's cube in motion in a scripted hand's way, or one `aside` of it [m].
+std::optional<FirstBlow> blow_of(const std::string& motion, double aside = 0.0) {
+  SyntheticHandOptions options;
+  options.motion = motion;
+  SyntheticHand hand(options);
+  Scene scene;
+  scene.bodies.push_back(body_of({"cube", Kind::pinch, false, 0.05, 0.1},
+                                 {scene_object() + aside * Vector3::UnitY(), Quaternion::Identity()}, {}));
+  Configuration configuration;
+  configuration.contact.grasp_assist = false;
+  Simulation simulation(scene, configuration);
+  std::vector<std::string> left_out;
+  double before = 0.0;
+  while (hand.next_run() == 0) {
+    const auto frame = complete_frame(hand.next(), device_mount(), left_out);
+    if (!frame || simulation.advance(*frame) != Rejection::none) continue;
+    const double time = to_seconds(simulation.result().stamp);
+    if (before > 0.0)
+      if (const auto blow = first_blow(simulation, 0, time - before)) return blow;
+    before = time;
+  }
+  return std::nullopt;
+}
+
+TEST(FirstBlow, IsToldByWhatTheHandDid) {
+  ASSERT_TRUE(blow_of("slap"));
+  EXPECT_EQ(blow_of("slap")->blow, Blow::sweep);
+  ASSERT_TRUE(blow_of("tap"));
+  EXPECT_EQ(blow_of("tap")->blow, Blow::closing);
+  EXPECT_FALSE(blow_of("slap", 1.0));
+}
+
 TEST(Statistics, WilsonsIntervalIsThatOfTables) {
   // Brown, Cai and DasGupta (2001), equation 4, by hand.
   EXPECT_NEAR(wilson(8, 10).low, 0.4902, 1e-4);
@@ -211,8 +244,77 @@ TEST(Halves, WindowsOfOneCaptureAreInOne) {
   EXPECT_EQ(half_of("ul_vr_d"), Half::tuned);
 }
 
+/// Two hands that move by `step` along x from frame to frame, the left one twice as fast, and an object that
+/// is at `object` steps.
+Window carried(double step, double object) {
+  Window window;
+  for (int i = 0; i < 5; ++i) {
+    window.frames.push_back({i * Nanoseconds(33'000'000), {}});
+    for (const Side side : {Side::right, Side::left}) {
+      HandJoints hand;
+      hand.id = side == Side::right ? 1 : 2;
+      hand.side = side;
+      const Vector3 at((side == Side::right ? 1 : 2) * step * i, 0, side == Side::right ? 0 : 1);
+      for (std::size_t f = 0; f < kFingers; ++f) {
+        for (std::size_t j = 0; j < 5; ++j)
+          hand.joints[f][j] = at + Vector3(0.02 * static_cast<double>(f), f == 0 ? 0.03 : 0.0,
+                                           0.1 - 0.03 * static_cast<double>(j));
+      }
+      window.frames.back().hands.push_back(hand);
+    }
+    const Pose there{Vector3(object * i, 0, 0), Quaternion::Identity()};
+    window.places.push_back(device_mount() * there);
+  }
+  window.free_from = 1;
+  return window;
+}
+
+TEST(Arctic, ARigidHandCarriesWhatGoesWithEitherHand) {
+  for (const double faster : {1.0, 2.0}) {
+    const WindowOutcome outcome = play_rigidly(carried(0.03, 0.03 * faster));
+    ASSERT_EQ(outcome.away.size(), 3u);
+    for (const double away : outcome.away) EXPECT_LT(away, 1e-6) << "sizes are in float32";
+  }
+  const WindowOutcome left_behind = play_rigidly(carried(0.03, 0.0));
+  ASSERT_EQ(left_behind.away.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(left_behind.away[i], 0.03 * static_cast<double>(i + 1), 1e-6);
+}
+
+TEST(Arctic, AnObjectOnAHingeIsLetFreeWithTheSpeedThatItsHingeHad) {
+  constexpr double kSpeed = 1.0;  // [rad/s]
+  Window window = carried(0.0, 0.0);
+  window.scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};
+  Body lid = body_of(kCube, {Vector3(5.05, 0, 0), Quaternion::Identity()}, {}), box = lid;
+  box.name = "box", lid.name = "lid";
+  box.start.position.x() = 5.0;           // out of the hands' reach
+  box.mass *= 90.0, box.inertia *= 90.0;  // as good as fixed beside a lid of a tenth of a gram
+  lid.mass *= 1e-3, lid.inertia *= 1e-3;
+  window.scene.bodies = {box, lid};
+  Joint hinge;
+  hinge.name = "hinge", hinge.parent = 0, hinge.child = 1, hinge.axis = Vector3::UnitZ();
+  hinge.in_child.position = Vector3(-0.05, 0, 0);
+  window.scene.joints = {hinge};
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    window.places[i] = box.start;
+    window.angles.push_back(kSpeed * to_seconds(window.frames[i].stamp));
+  }
+  const WindowOutcome outcome = play(window, Configuration(), 0.0);
+  ASSERT_EQ(outcome.turned.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(outcome.away[i], 1e-5);
+    EXPECT_LT(outcome.turned[i], 1e-4);
+  }
+}
+
+TEST(Arctic, AHingeThatIsElsewhereIsNotWithin) {
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.01}, {0.1, 0.3}, {}}};
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 1.0);
+  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02, 0.2), 0.5);
+}
+
 TEST(Arctic, SharesAreOfAllFramesTogether) {
-  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {1.0}}, {{0.0}, {2.0, 3.0}}};
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {}, {1.0}}, {{0.0}, {}, {2.0, 3.0}}};
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.05), 0.75);
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 0.5);
   EXPECT_EQ(stayed(outcomes, 0.05), 1u);

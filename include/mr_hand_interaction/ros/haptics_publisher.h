@@ -2,6 +2,7 @@
 
 #include <mr_hand_interaction/HapticsArray.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
 
 #include <cstdint>
 #include <string>
@@ -13,7 +14,8 @@ namespace mrhi {
 
 enum class HapticsRate : std::uint8_t { frame, step };
 
-/// Publishes `haptics`, a message for each frame or each step, while somebody listens.
+/// Publishes `haptics`, and `haptics/joints` (what each joint of the scene does by itself, as effort) where
+/// there are any, a message for each frame or each step, while somebody listens.
 class HapticsPublisher {
  public:
   HapticsPublisher(ros::NodeHandle& node, HapticsRate rate);
@@ -24,9 +26,13 @@ class HapticsPublisher {
   void publish(const Simulation& simulation, const FrameResult& result, const std_msgs::Header& header);
 
  private:
+  void add(const Simulation& simulation, const std::vector<Contact>& contacts,
+           const std_msgs::Header& header);
+
   HapticsRate rate_;
-  ros::Publisher publisher_;
+  ros::Publisher publisher_, joint_publisher_;
   std::vector<mr_hand_interaction::HapticsArrayPtr> steps_;
+  std::vector<sensor_msgs::JointStatePtr> joint_steps_;
 };
 
 }  // namespace mrhi

@@ -1,0 +1,73 @@
+#include "first_blow.h"
+
+#include <algorithm>
+
+#include "mr_hand_interaction/integration/body_state.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+constexpr double kMoves = 0.03;    // [m/s]
+constexpr double kBack = -0.3;     // cosine of the normal with the way out of the back of the hand
+constexpr double kSweeps = 0.1;    // of the palm towards the body [m/s]
+constexpr double kPart = 0.5;      // and of what the phalanx has
+constexpr double kClosing = -0.1;  // of the way between a finger's tip and the thumb's [m/s]
+
+/// The one that pushed most.
+const Contact* hardest(const FrameResult& result, int body, double seconds) {
+  const auto push = [seconds](const Contact& contact) {
+    return contact.impulse.norm() + seconds * contact.force.norm();
+  };
+  const Contact* most = nullptr;
+  for (const Contact& contact : result.contacts)
+    if (contact.key.body == body && (most == nullptr || push(contact) > push(*most))) most = &contact;
+  return most;
+}
+
+/// From the thumb's tip to the finger's, or of the thumb to the index finger's [m].
+double opening(const Hand& hand, int finger) {
+  const auto tip = [&hand](int f) {
+    return hand.capsules[static_cast<std::size_t>(capsule_index(f, kBonesPerFinger - 1))].end;
+  };
+  return (tip(std::clamp(finger, 1, kFingers - 1)) - tip(0)).norm();
+}
+
+Blow kind(const Contact& contact, const HandTrack& track, double seconds) {
+  const Hand &from = track.previous, &to = track.current;
+  if (contact.normal.dot(to.palm.orientation * Vector3::UnitZ()) < kBack) return Blow::back;
+  const double palm = -contact.normal.dot(to.palm.position - from.palm.position) / seconds;
+  const double phalanx = -contact.normal.dot(contact.hand_velocity);
+  if (palm > std::max(kSweeps, kPart * phalanx)) return Blow::sweep;
+  const int finger = finger_of(contact.key.capsule);
+  const bool closes = finger < kFingers && (opening(to, finger) - opening(from, finger)) / seconds < kClosing;
+  return closes ? Blow::closing : Blow::open;
+}
+
+}  // namespace
+
+const char* to_string(Blow blow) {
+  switch (blow) {
+    case Blow::back:
+      return "back of the hand";
+    case Blow::sweep:
+      return "hand as a whole";
+    case Blow::closing:
+      return "closing finger";
+    case Blow::open:
+      break;
+  }
+  return "open hand";
+}
+
+std::optional<FirstBlow> first_blow(const Simulation& simulation, int body, double seconds) {
+  const auto b = static_cast<std::size_t>(body);
+  const Body& what = simulation.scene().bodies[b];
+  if (!(seconds > 0.0) || twist_of(what, simulation.state().bodies[b]).linear.norm() < kMoves)
+    return std::nullopt;
+  const Contact* contact = hardest(simulation.result(), body, seconds);
+  if (contact == nullptr) return std::nullopt;
+  return FirstBlow{to_seconds(simulation.result().stamp),
+                   kind(*contact, simulation.state().hands[contact->key.hand], seconds)};
+}
+
+}  // namespace mrhi::real_grasps
