@@ -1,14 +1,13 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "mr_hand_interaction/replay/arguments.h"
+#include "../text/command_line.h"
 #include "mr_hand_interaction/ros/mount_calibration.h"
 
 namespace {
@@ -41,51 +40,24 @@ struct Arguments {
   double max_rms = 0.005;  // [m]
 };
 
-double number(const std::string& option, const std::string& text, double lowest, double highest) {
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(text, &used);
-    if (used == text.size() && value >= lowest && value <= highest) return value;
-  } catch (const std::exception&) {
-  }
-  throw mrhi::UsageError(option + " '" + text + "' is not allowed; allowed: a number from " +
-                         std::to_string(static_cast<int>(lowest)) + " to " +
-                         std::to_string(static_cast<int>(highest)));
-}
-
-void read_option(Arguments& arguments, const std::string& name, const std::string& value) {
-  if (name == "--topic") {
-    arguments.topic = value;
-  } else if (name == "--save") {
-    arguments.save = value;
-  } else if (name == "--samples") {
-    arguments.samples = static_cast<std::size_t>(number(name, value, 1, 10000));
-  } else if (name == "--max-rms") {
-    arguments.max_rms = 1e-3 * number(name, value, 0, 1000);
-  } else if (name == "--side" && (value == "left" || value == "right")) {
-    arguments.side = value == "left" ? mrhi::Side::left : mrhi::Side::right;
-  } else if (name == "--side") {
-    throw mrhi::UsageError("--side '" + value + "' is not allowed; allowed: left or right");
-  } else {
-    throw mrhi::UsageError("unknown argument '" + name +
-                           "'; allowed: --topic, --side, --samples, --max-rms, --save, --help");
-  }
-}
-
 Arguments parse(const std::vector<std::string>& words) {
+  using mrhi::Given;
   Arguments arguments;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--help" || words[i] == "-h") {
-      arguments.help = true;
-    } else if (words[i].compare(0, 2, "--") != 0) {
-      if (!arguments.file.empty()) throw mrhi::UsageError("one file of points, not also '" + words[i] + "'");
-      arguments.file = words[i];
-    } else {
-      if (i + 1 == words.size()) throw mrhi::UsageError(words[i] + " needs a value");
-      read_option(arguments, words[i], words[i + 1]);
-      ++i;
-    }
-  }
+  mrhi::CommandLine line;
+  line.once("--topic", "TOPIC", arguments.topic).once("--save", "FILE.yaml", arguments.save);
+  line.once("--side", "left|right", [&](const Given& given) {
+    if (given.text != "left" && given.text != "right") given.refuse("left or right");
+    arguments.side = given.text == "left" ? mrhi::Side::left : mrhi::Side::right;
+  });
+  line.once("--samples", "N",
+            [&](const Given& given) { arguments.samples = static_cast<std::size_t>(given.whole(1, 10000)); });
+  line.once("--max-rms", "MM",
+            [&](const Given& given) { arguments.max_rms = 1e-3 * given.number(0.0, 1000.0); });
+  line.words([&](const Given& given) {
+    if (!arguments.file.empty()) throw mrhi::UsageError("one file of points, not also '" + given.text + "'");
+    arguments.file = given.text;
+  });
+  arguments.help = !line.read(words);
   if (!arguments.help && arguments.file.empty())
     throw mrhi::UsageError("the file of points is missing; --help shows the usage");
   return arguments;
@@ -123,19 +95,13 @@ void calibrate(const Arguments& arguments, int argc, char** argv) {
 int main(int argc, char** argv) {
   std::vector<std::string> words;
   ros::removeROSArgs(argc, argv, words);
-  try {
+  return mrhi::exit_status("calibrate_mount", [&] {
     const Arguments arguments = parse({words.begin() + 1, words.end()});
     if (arguments.help) {
       std::cout << kHelp;
     } else {
       calibrate(arguments, argc, argv);
     }
-  } catch (const mrhi::UsageError& error) {
-    std::cerr << "calibrate_mount: " << error.what() << std::endl;
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "calibrate_mount: " << error.what() << std::endl;
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -1,11 +1,11 @@
-#include <exception>
 #include <iostream>
 
+#include "../text/command_line.h"
 #include "mr_hand_interaction/replay/compare.h"
 #include "mr_hand_interaction/replay/replay.h"
 
 int main(int argc, char** argv) {
-  try {
+  return mrhi::exit_status("replay", [&] {
     const mrhi::ReplayArguments arguments = mrhi::parse_replay_arguments({argv + 1, argv + argc});
     if (arguments.help) {
       std::cout << mrhi::replay_help();
@@ -17,12 +17,6 @@ int main(int argc, char** argv) {
     } else {
       mrhi::replay(arguments);
     }
-  } catch (const mrhi::UsageError& error) {
-    std::cerr << "replay: " << error.what() << std::endl;
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "replay: " << error.what() << std::endl;
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -1,12 +1,8 @@
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
-#include <sstream>
 
+#include "../text/command_line.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/replay/arguments.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/random.h"
@@ -30,6 +26,7 @@ const char* const kHelp =
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
     "  --seed N                 a whole number; default 1\n";
 
+constexpr long kMost = 1000000;               // of whole numbers
 constexpr double kStandardGravity = 9.80665;  // [m/s^2]
 
 struct Study {
@@ -42,68 +39,31 @@ struct Study {
   bool help = false;
 };
 
-double number(const std::string& option, const std::string& text, double lowest, double highest) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(value >= lowest && value <= highest)) {
-    std::ostringstream what;
-    what << option << " '" << text << "' is not allowed; allowed: a number from " << lowest << " to "
-         << highest;
-    throw UsageError(what.str());
-  }
-  return value;
-}
-
-int whole(const std::string& option, const std::string& text, int lowest) {
-  const double value = number(option, text, lowest, 1e6);
-  if (value != std::floor(value))
-    throw UsageError(option + " '" + text + "' is not allowed; allowed: a whole number");
-  return static_cast<int>(value);
-}
-
-void read_operators(const std::string& text, Study& study) {
-  const std::size_t dash = text.find('-');
-  study.first = whole("--operators", text.substr(0, dash), 1);
-  study.last = dash == std::string::npos ? study.first : whole("--operators", text.substr(dash + 1), 1);
-  if (study.last < study.first)
-    throw UsageError("--operators '" + text + "' is not allowed; allowed: FIRST-LAST, FIRST at most LAST");
-}
-
-void read_option(const std::string& option, const std::string& value, Study& study) {
-  if (option == "--output") {
-    study.output = value;
-  } else if (option == "--operators") {
-    read_operators(value, study);
-  } else if (option == "--group-size") {
-    study.group_size = whole(option, value, 0);
-  } else if (option == "--model") {
-    study.models.push_back(value);
-  } else if (option == "--gravity") {
-    study.gravities.push_back(number(option, value, 0.0, 10.0));
-  } else if (option == "--task") {
-    study.task = value;
-  } else if (option == "--seed") {
-    study.seed = static_cast<std::uint64_t>(whole(option, value, 0));
-  } else if (option == "--set") {
-    const std::size_t equals = value.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw UsageError("--set '" + value + "' is not allowed; allowed: KEY=VALUE");
-    study.settings.emplace_back(value.substr(0, equals), value.substr(equals + 1));
-  } else {
-    throw UsageError("option '" + option + "' is not known; see --help");
-  }
+void read_operators(const Given& given, Study& study) {
+  const std::size_t dash = given.text.find('-');
+  const auto part = [&](const std::string& text) {
+    return static_cast<int>(Given{given.option, given.form, text}.whole(1, kMost));
+  };
+  study.first = part(given.text.substr(0, dash));
+  study.last = dash == std::string::npos ? study.first : part(given.text.substr(dash + 1));
+  if (study.last < study.first) given.refuse("FIRST-LAST, FIRST at most LAST");
 }
 
 Study read_arguments(const std::vector<std::string>& arguments) {
   Study study;
-  for (std::size_t i = 0; i < arguments.size(); i += 2) {
-    if (arguments[i] == "--help" || arguments[i] == "-h") {
-      study.help = true;
-      return study;
-    }
-    if (i + 1 == arguments.size()) throw UsageError(arguments[i] + ": no value; see --help");
-    read_option(arguments[i], arguments[i + 1], study);
-  }
+  CommandLine line;
+  line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
+  line.once("--operators", "FIRST-LAST", [&](const Given& given) { read_operators(given, study); });
+  line.once("--group-size", "N",
+            [&](const Given& given) { study.group_size = static_cast<int>(given.whole(0, kMost)); });
+  line.each("--model", "NAME", [&](const Given& given) { study.models.push_back(given.text); });
+  line.each("--gravity", "G",
+            [&](const Given& given) { study.gravities.push_back(given.number(0.0, 10.0)); });
+  line.each("--set", "KEY=VALUE", [&](const Given& given) { study.settings.push_back(given.setting()); });
+  line.once("--seed", "N",
+            [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMost)); });
+  study.help = !line.read(arguments);
+  if (study.help) return study;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
   if (study.models.empty())
     for (const ContactModelEntry* model : contact_models()) study.models.emplace_back(model->name);
@@ -176,19 +136,13 @@ void play(Study study) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return mrhi::exit_status("simulated_study", [&] {
     const Study study = read_arguments({argv + 1, argv + argc});
     if (study.help) {
       std::cout << kHelp;
     } else {
       play(study);
     }
-  } catch (const mrhi::UsageError& error) {
-    std::cerr << "simulated_study: " << error.what() << std::endl;
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "simulated_study: " << error.what() << std::endl;
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

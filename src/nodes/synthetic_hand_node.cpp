@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../ros/node.h"
+#include "../text/command_line.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 
@@ -31,43 +32,30 @@ recording, which needs no master.
   ~reset    the service that a run begins with; default none
 )";
 
-double number(const std::string& option, const std::string& text) {
-  std::size_t used = 0;
-  double value = 0.0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size())
-    throw std::invalid_argument(option + " '" + text + "' is not a number");
-  return value;
-}
-
 /// Writes one run as a recording; needs no master.
-void write_recording(const std::vector<std::string>& arguments) {
+int write_recording(const std::vector<std::string>& arguments) {
+  using mrhi::Given;
   mrhi::SyntheticHandOptions options;
   std::string file;
-  for (std::size_t i = 0; i < arguments.size(); i += 2) {
-    const std::string& name = arguments[i];
-    const bool known = name == "--csv" || name == "--motion" || name == "--side" || name == "--rate" ||
-                       name == "--noise" || name == "--seed";
-    if (!known || i + 1 == arguments.size())
-      throw std::invalid_argument((known ? "value missing after " : "unknown option ") + name +
-                                  "; see --help");
-    const std::string& value = arguments[i + 1];
-    if (name == "--csv") file = value;
-    if (name == "--motion") options.motion = value;
-    if (name == "--side") options.side = value;
-    if (name == "--rate") options.rate = number("rate", value);
-    if (name == "--noise") options.noise = number("noise", value);
-    if (name == "--seed") options.seed = static_cast<std::uint64_t>(number("seed", value));
+  mrhi::CommandLine line;
+  line.once("--csv", "FILE", file).once("--motion", "NAME", options.motion);
+  line.once("--side", "left|right", options.side);
+  line.once("--rate", "HZ", [&](const Given& given) { options.rate = given.number(1.0, 1000.0); });
+  line.once("--noise", "AMPLITUDE", [&](const Given& given) { options.noise = given.number(0.0, 10.0); });
+  line.once("--seed", "N", [&](const Given& given) {
+    options.seed = static_cast<std::uint64_t>(given.whole(0, 1000000000));
+  });
+  if (!line.read(arguments)) {
+    std::cout << kUsage;
+    return 0;
   }
-  if (file.empty()) throw std::invalid_argument("--csv FILE is missing; see --help");
+  if (file.empty()) throw mrhi::UsageError("--csv FILE is missing; see --help");
   const auto frames = mrhi::record_motion(options);
   std::ofstream out(file);
   mrhi::write_recording_csv(out, frames);
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + file);
+  return 0;
 }
 
 }  // namespace
@@ -75,18 +63,10 @@ void write_recording(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
-  if (arguments.size() > 1 && (arguments[1] == "--help" || arguments[1] == "-h")) {
-    std::cout << kUsage;
-    return 0;
-  }
   if (arguments.size() > 1) {
-    try {
-      write_recording({arguments.begin() + 1, arguments.end()});
-    } catch (const std::exception& error) {
-      std::cerr << "synthetic_hand_node: " << error.what() << '\n';
-      return 1;
-    }
-    return 0;
+    return mrhi::exit_status("synthetic_hand_node", [&] {
+      return write_recording({arguments.begin() + 1, arguments.end()});
+    });
   }
   ros::init(argc, argv, "synthetic_hand_node");
   mrhi::end_in_order();

@@ -1,10 +1,8 @@
 #include "mr_hand_interaction/replay/arguments.h"
 
 #include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <map>
 
+#include "../text/command_line.h"
 #include "../text/text.h"
 
 namespace mrhi {
@@ -12,100 +10,49 @@ namespace {
 
 constexpr double kShortestQuaternion = 1e-6;
 
-/// The values of one option, for reading and for saying what is wrong with them.
-struct OptionText {
-  std::string option, form, text;
-
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw UsageError(option + " " + text + ": " + what + "; allowed: " + option + " " + form);
-  }
-
-  std::vector<double> numbers(const std::vector<std::string>& fields, std::size_t first,
-                              std::size_t count) const {
-    if (fields.size() != first + count) {
-      refuse(std::to_string(fields.size()) + " fields instead of " + std::to_string(first + count));
-    }
-    std::vector<double> values;
-    for (std::size_t i = first; i < fields.size(); ++i) {
-      char* end = nullptr;
-      values.push_back(std::strtod(fields[i].c_str(), &end));
-      if (fields[i].empty() || *end != '\0' || !std::isfinite(values.back())) {
-        refuse("'" + fields[i] + "' is no finite number");
-      }
-    }
-    return values;
-  }
-
-  Pose pose(const std::vector<std::string>& fields, std::size_t first) const {
-    const std::vector<double> v = numbers(fields, first, 7);
-    Quaternion orientation(v[6], v[3], v[4], v[5]);
-    const double length = orientation.norm();
-    if (!std::isfinite(length) || length < kShortestQuaternion) refuse("the quaternion has no direction");
-    orientation.coeffs() /= length;
-    return {{v[0], v[1], v[2]}, orientation};
-  }
-
-  Twist twist(const std::vector<std::string>& fields, std::size_t first) const {
-    const std::vector<double> v = numbers(fields, first, 6);
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-  }
-
-  const std::string& object_name(const std::vector<std::string>& fields) const {
-    if (fields.front().empty()) refuse("the object's name is missing");
-    return fields.front();
-  }
-};
-
-struct Option {
-  std::string form;
-  bool repeatable;
-  std::function<void(ReplayArguments&, const OptionText&)> read;
-};
-
-void read_setting(ReplayArguments& arguments, const OptionText& value) {
-  const std::size_t equals = value.text.find('=');
-  if (equals == std::string::npos || equals == 0) value.refuse("no KEY=VALUE");
-  arguments.settings.emplace_back(value.text.substr(0, equals), value.text.substr(equals + 1));
+Pose pose(const Given& given, std::size_t first) {
+  const std::vector<double> v = given.numbers(first, 7);
+  Quaternion orientation(v[6], v[3], v[4], v[5]);
+  const double length = orientation.norm();
+  if (!std::isfinite(length) || length < kShortestQuaternion) given.fail("the quaternion has no direction");
+  orientation.coeffs() /= length;
+  return {{v[0], v[1], v[2]}, orientation};
 }
 
-const std::map<std::string, Option>& options() {
-  using A = ReplayArguments;
-  static const std::map<std::string, Option> table{
-      {"--scene", {"NAME|FILE", false, [](A& a, const OptionText& v) { a.scene = v.text; }}},
-      {"--input", {"FILE.bag|FILE.csv", false, [](A& a, const OptionText& v) { a.input = v.text; }}},
-      {"--output", {"DIR", false, [](A& a, const OptionText& v) { a.output = v.text; }}},
-      {"--topic", {"TOPIC", false, [](A& a, const OptionText& v) { a.topic = v.text; }}},
-      {"--params", {"FILE.yaml", false, [](A& a, const OptionText& v) { a.parameter_file = v.text; }}},
-      {"--set", {"KEY=VALUE", true, read_setting}},
-      {"--export",
-       {"HZ", false,
-        [](A& a, const OptionText& v) {
-          a.demonstration = v.numbers({v.text}, 0, 1).front();
-          if (!(*a.demonstration == 0.0 || (*a.demonstration >= 1.0 && *a.demonstration <= 1000.0)))
-            v.refuse("is no rate from 1 to 1000 Hz, and not 0 for the recording's");
-        }}},
-      {"--object-pose",
-       {"NAME,x,y,z,qx,qy,qz,qw", true,
-        [](A& a, const OptionText& v) {
-          const auto fields = text::split(v.text);
-          a.object_poses.emplace_back(v.object_name(fields), v.pose(fields, 1));
-        }}},
-      {"--object-twist",
-       {"NAME,vx,vy,vz,wx,wy,wz", true,
-        [](A& a, const OptionText& v) {
-          const auto fields = text::split(v.text);
-          a.object_twists.emplace_back(v.object_name(fields), v.twist(fields, 1));
-        }}},
-      {"--hand-transform", {"x,y,z,qx,qy,qz,qw", false, [](A& a, const OptionText& v) {
-                              a.hand_transform = v.pose(text::split(v.text), 0);
-                            }}}};
-  return table;
+Twist twist(const Given& given) {
+  const std::vector<double> v = given.numbers(1, 6);
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
-std::string option_names() {
-  std::string names = "--help, --compare, --explain";
-  for (const auto& entry : options()) names += ", " + entry.first;
-  return names;
+std::string object_name(const Given& given) {
+  const std::string name = text::split(given.text).front();
+  if (name.empty()) given.fail("the object's name is missing");
+  return name;
+}
+
+double rate(const Given& given) {
+  const double rate = given.numbers(0, 1).front();
+  if (!(rate == 0.0 || (rate >= 1.0 && rate <= 1000.0)))
+    given.fail("is no rate from 1 to 1000 Hz, and not 0 for the recording's");
+  return rate;
+}
+
+CommandLine command_line(ReplayArguments& a, bool& compare) {
+  CommandLine line;
+  line.flag("--compare", compare).flag("--explain", a.explain);
+  line.once("--scene", "NAME|FILE", a.scene).once("--input", "FILE.bag|FILE.csv", a.input);
+  line.once("--output", "DIR", a.output);
+  line.once("--topic", "TOPIC", [&a](const Given& given) { a.topic = given.text; });
+  line.once("--params", "FILE.yaml", [&a](const Given& given) { a.parameter_file = given.text; });
+  line.each("--set", "KEY=VALUE", [&a](const Given& given) { a.settings.push_back(given.setting()); });
+  line.once("--export", "HZ", [&a](const Given& given) { a.demonstration = rate(given); });
+  line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw",
+            [&a](const Given& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
+  line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz",
+            [&a](const Given& given) { a.object_twists.emplace_back(object_name(given), twist(given)); });
+  line.once("--hand-transform", "x,y,z,qx,qy,qz,qw",
+            [&a](const Given& given) { a.hand_transform = pose(given, 0); });
+  return line;
 }
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -138,10 +85,10 @@ void read_comparison(const std::vector<std::string>& arguments, ReplayArguments&
   if (arguments.size() != 3 && !tolerant) throw UsageError(kCompareUsage);
   parsed.compare = {arguments[1], arguments[2]};
   if (!tolerant) return;
-  const OptionText text{"--tolerance", "METRES,RADIANS, each from 0 to 1", arguments[4]};
-  const std::vector<double> values = text.numbers(text::split(text.text), 0, 2);
+  const Given given{"--tolerance", "METRES,RADIANS, each from 0 to 1", arguments[4]};
+  const std::vector<double> values = given.numbers(0, 2);
   for (const double value : values)
-    if (!(value >= 0.0 && value <= 1.0)) text.refuse("out of range");
+    if (!(value >= 0.0 && value <= 1.0)) given.fail("out of range");
   parsed.tolerance = {values[0], values[1]};
 }
 
@@ -149,34 +96,16 @@ void read_comparison(const std::vector<std::string>& arguments, ReplayArguments&
 
 ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments) {
   ReplayArguments parsed;
-  std::map<std::string, int> seen;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& name = arguments[i];
-    if (name == "--help" || name == "-h") {
-      parsed.help = true;
-      return parsed;
-    }
-    if (name == "--compare") {
-      if (i != 0) throw UsageError(kCompareUsage);
-      read_comparison(arguments, parsed);
-      return parsed;
-    }
-    if (name == "--explain") {
-      parsed.explain = true;
-      continue;
-    }
-    const auto option = options().find(name);
-    if (option == options().end()) {
-      throw UsageError("unknown argument '" + name + "'; allowed: " + option_names());
-    }
-    const auto& [form, repeatable, read] = option->second;
-    if (++seen[name] > 1 && !repeatable) throw UsageError(name + " is given twice; allowed: once");
-    if (i + 1 == arguments.size() || arguments[i + 1].empty() || options().count(arguments[i + 1]) > 0) {
-      throw UsageError(name + " needs a value: " + name + " " + form);
-    }
-    read(parsed, {name, form, arguments[++i]});
+  bool compare = false;
+  if (!arguments.empty() && arguments[0] == "--compare") {
+    read_comparison(arguments, parsed);
+  } else if (!command_line(parsed, compare).read(arguments)) {
+    parsed.help = true;
+  } else if (compare) {
+    throw UsageError(kCompareUsage);
+  } else {
+    check(parsed);
   }
-  check(parsed);
   return parsed;
 }
 

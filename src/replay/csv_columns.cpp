@@ -1,8 +1,5 @@
 #include "csv_columns.h"
 
-#include <locale.h>
-#include <stdlib.h>
-
 #include <utility>
 
 #include "../text/text.h"
@@ -14,12 +11,6 @@ namespace {
 std::vector<std::string> split(std::string line) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
   return text::split(line);
-}
-
-/// strtod that takes the decimal point whatever the process's locale.
-double parse(const char* text, char** end) {
-  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
-  return strtod_l(text, end, c_locale);
 }
 
 }  // namespace
@@ -40,9 +31,8 @@ std::optional<double> CsvColumns::number(const std::string& column) const {
   for (std::size_t i = 0; i < names_.size(); ++i) {
     if (names_[i] != column) continue;
     if (cells_[i].empty()) return std::nullopt;
-    char* end = nullptr;
-    const double value = parse(cells_[i].c_str(), &end);
-    if (*end != '\0') fail(column, "'" + cells_[i] + "' is not a number");
+    const auto value = text::to_number(cells_[i]);
+    if (!value) fail(column, "'" + cells_[i] + "' is not a number");
     return value;
   }
   return std::nullopt;

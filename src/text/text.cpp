@@ -1,5 +1,8 @@
 #include "text.h"
 
+#include <locale.h>
+#include <stdlib.h>
+
 #include <algorithm>
 #include <locale>
 #include <sstream>
@@ -35,6 +38,14 @@ std::string exact(double value) {
   int digits = 6;
   while (digits < kEnough && read_back(with_digits(value, digits)) != value) ++digits;
   return with_digits(value, digits);
+}
+
+std::optional<double> to_number(const std::string& text) {
+  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  char* end = nullptr;
+  const double value = strtod_l(text.c_str(), &end, c_locale);
+  if (text.empty() || *end != '\0') return std::nullopt;
+  return value;
 }
 
 std::string vector(const Vector3& value) {

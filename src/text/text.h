@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ std::string number(double value);
 /// The shortest that is read back as the same bits.
 std::string exact(double value);
 std::string vector(const Vector3& value);
+/// The number that is the whole text, with a decimal point whatever the locale; nothing of anything else.
+std::optional<double> to_number(const std::string& text);
 std::string joined(const std::vector<std::string>& names);
 /// What is between the commas: one more than there are.
 std::vector<std::string> split(const std::string& text);

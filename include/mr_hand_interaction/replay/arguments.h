@@ -1,21 +1,15 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/replay/compare.h"
+#include "mr_hand_interaction/usage_error.h"
 
 namespace mrhi {
-
-/// A command line that cannot be followed. what() is one line: the option, what it says, what is allowed.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// The command line of `replay`.
 struct ReplayArguments {
