@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "world.h"
@@ -43,7 +44,13 @@ class EngineMaker {
   virtual std::unique_ptr<Engine> make(const std::string& setting, const World& world, double step) const = 0;
 };
 
-/// Makes engines that can do every world, by a table of their settings.
+/// Whether an engine says that it has hinges: kHinges.
+template <typename EngineType, typename = void>
+constexpr bool kHasHinges = false;
+template <typename EngineType>
+constexpr bool kHasHinges<EngineType, std::void_t<decltype(EngineType::kHinges)>> = true;
+
+/// Makes engines that can do every world, but for hinges, by a table of their settings.
 template <typename EngineType, const auto& kTable>
 class TableMaker final : public EngineMaker {
  public:
@@ -53,6 +60,7 @@ class TableMaker final : public EngineMaker {
     return names;
   }
   std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
+    if (!world.hinges.empty() && !kHasHinges<EngineType>) return nullptr;
     for (const auto& setting : kTable)
       if (name == setting.name) return std::make_unique<EngineType>(setting, world, step);
     return nullptr;

@@ -26,6 +26,8 @@ class Experiment {
   virtual double duration() const = 0;  ///< of a trial [s]
   /// Where the hand's parts are at time t; `poses` has one per World::kinematics.
   virtual void hand(int /*trial*/, double /*t*/, std::vector<Pose>& /*poses*/) const {}
+  /// Whether observe() asks how hard the hand's parts are pressed.
+  virtual bool watches_forces() const { return false; }
   /// After each step. False ends the trial: nothing more to be learnt.
   virtual bool observe(int trial, double t, const Engine& engine) = 0;
   virtual std::vector<Measure> measures() const = 0;
@@ -60,5 +62,6 @@ void add_catch_scenes(std::vector<ScenePlan>& scenes);
 void add_recording_scenes(std::vector<ScenePlan>& scenes);
 void add_cost_scenes(std::vector<ScenePlan>& scenes);
 void add_crowd_scenes(std::vector<ScenePlan>& scenes);
+void add_joint_scenes(std::vector<ScenePlan>& scenes);
 
 }  // namespace mrhi::benchmark

@@ -108,6 +108,7 @@ bool play(const EngineMaker& maker, const std::string& setting, Experiment& expe
     for (std::size_t i = 0; i < now.size(); ++i) world.kinematics[i].pose = now[i];
     const auto engine = maker.make(setting, world, step);
     if (!engine) return false;
+    if (experiment.watches_forces()) engine->watch_forces();
     for (int k = 1; k <= steps; ++k) {
       const double t = k * step;
       experiment.hand(trial, t, next);

@@ -14,6 +14,7 @@ std::vector<ScenePlan> all_scenes() {
   add_recording_scenes(scenes);
   add_cost_scenes(scenes);
   add_crowd_scenes(scenes);
+  add_joint_scenes(scenes);
   return scenes;
 }
 

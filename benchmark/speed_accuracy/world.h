@@ -26,6 +26,14 @@ struct KinematicSpec {
   Pose pose;                      ///< at the start
 };
 
+/// What holds a body to the world, so that it turns about one axis alone.
+struct HingeSpec {
+  std::size_t body = 0;
+  Vector3 anchor = Vector3::Zero();  ///< on the axis, world
+  Vector3 axis = Vector3::UnitZ();   ///< unit, world
+  double friction = 0.0;             ///< Coulomb's [N m]
+};
+
 /// What every engine is given. One friction coefficient and one restitution hold between all surfaces.
 struct World {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
@@ -34,6 +42,7 @@ struct World {
   bool sleep = true;  ///< what lies still may
   std::vector<BodySpec> bodies;
   std::vector<KinematicSpec> kinematics;
+  std::vector<HingeSpec> hinges;  ///< engines without them are left out
 };
 
 /// A homogeneous box; `size` holds whole edge lengths [m].

@@ -44,6 +44,7 @@ Vector3 from_bullet(const btVector3& v) {
 
 class BulletEngine final : public Engine {
  public:
+  static constexpr bool kHinges = true;
   BulletEngine(const Setting& setting, const World& world, double step)
       : awake_(setting.awake || !world.sleep), setting_(setting), step_(static_cast<btScalar>(step)) {
     // Bullet multiplies the coefficients of the two surfaces.
@@ -57,8 +58,10 @@ class BulletEngine final : public Engine {
     }
     for (const BodySpec& spec : world.bodies) bodies_.push_back(&add(spec));
     for (const KinematicSpec& spec : world.kinematics) hand_.push_back(&add(spec));
+    for (const HingeSpec& spec : world.hinges) add(spec, world.bodies[spec.body].pose);
   }
   ~BulletEngine() override {
+    for (const auto& hinge : hinges_) world_.removeConstraint(hinge.get());
     for (const auto& body : all_) world_.removeRigidBody(body.get());
   }
 
@@ -132,6 +135,16 @@ class BulletEngine final : public Engine {
     return body;
   }
 
+  /// Friction is a motor to rest.
+  void add(const HingeSpec& spec, const Pose& pose) {
+    hinges_.push_back(
+        std::make_unique<btHingeConstraint>(*bodies_[spec.body], to_bullet(pose.to_local(spec.anchor)),
+                                            to_bullet(Vector3(pose.orientation.conjugate() * spec.axis))));
+    if (spec.friction > 0.0)
+      hinges_.back()->enableAngularMotor(true, 0, static_cast<btScalar>(spec.friction) * step_);
+    world_.addConstraint(hinges_.back().get());
+  }
+
   btRigidBody& add(btScalar mass, btCollisionShape& shape, const btVector3& inertia, const Pose& pose) {
     states_.push_back(std::make_unique<btDefaultMotionState>(to_bullet(pose)));
     btRigidBody::btRigidBodyConstructionInfo info(mass, states_.back().get(), &shape, inertia);
@@ -153,6 +166,7 @@ class BulletEngine final : public Engine {
   std::vector<std::unique_ptr<btMotionState>> states_;
   std::vector<std::unique_ptr<btRigidBody>> all_;
   std::vector<btRigidBody*> bodies_, hand_;
+  std::vector<std::unique_ptr<btHingeConstraint>> hinges_;
 };
 
 using BulletMaker = TableMaker<BulletEngine, kSettings>;

@@ -4,6 +4,7 @@
 #include <Jolt/Core/JobSystemSingleThreaded.h>
 #include <Jolt/Core/TempAllocator.h>
 #include <Jolt/Physics/Body/BodyCreationSettings.h>
+#include <Jolt/Physics/Body/BodyLock.h>
 #include <Jolt/Physics/Collision/BroadPhase/BroadPhaseLayerInterfaceTable.h>
 #include <Jolt/Physics/Collision/BroadPhase/ObjectVsBroadPhaseLayerFilterTable.h>
 #include <Jolt/Physics/Collision/ObjectLayerPairFilterTable.h>
@@ -11,6 +12,7 @@
 #include <Jolt/Physics/Collision/Shape/CapsuleShape.h>
 #include <Jolt/Physics/Collision/Shape/SphereShape.h>
 #include <Jolt/Physics/Collision/Shape/StaticCompoundShape.h>
+#include <Jolt/Physics/Constraints/HingeConstraint.h>
 #include <Jolt/Physics/PhysicsSystem.h>
 #include <Jolt/RegisterTypes.h>
 
@@ -79,6 +81,7 @@ struct Layers {
 
 class JoltEngine final : public Engine {
  public:
+  static constexpr bool kHinges = true;
   JoltEngine(const Setting& setting, const World& world, double step)
       : setting_(setting), step_(static_cast<float>(step)), world_(started(world)) {
     system_.Init(kMostBodies, 0, kMostPairs, kMostContacts, layers_.broad, filter_, layers_.pairs);
@@ -92,6 +95,7 @@ class JoltEngine final : public Engine {
     system_.SetPhysicsSettings(settings);
     for (const BodySpec& spec : world.bodies) bodies_.push_back(add(spec));
     for (const KinematicSpec& spec : world.kinematics) hand_.push_back(add(spec));
+    for (const HingeSpec& spec : world.hinges) add(spec);
     system_.OptimizeBroadPhase();
   }
 
@@ -162,6 +166,16 @@ class JoltEngine final : public Engine {
     JPH::BodyCreationSettings settings(compound.Create().Get(), to_jolt(spec.pose.position),
                                        to_jolt(spec.pose.orientation), JPH::EMotionType::Kinematic, kHand);
     return create(settings);
+  }
+
+  void add(const HingeSpec& spec) {
+    JPH::HingeConstraintSettings settings;
+    settings.mPoint1 = settings.mPoint2 = to_jolt(spec.anchor);
+    settings.mHingeAxis1 = settings.mHingeAxis2 = to_jolt(spec.axis);
+    settings.mNormalAxis1 = settings.mNormalAxis2 = to_jolt(spec.axis).GetNormalizedPerpendicular();
+    settings.mMaxFrictionTorque = static_cast<float>(spec.friction);
+    const JPH::BodyLockWrite lock(system_.GetBodyLockInterfaceNoLock(), bodies_[spec.body]);
+    system_.AddConstraint(settings.Create(JPH::Body::sFixedToWorld, lock.GetBody()));
   }
 
   Setting setting_;

@@ -84,6 +84,18 @@ std::size_t stack_size(const World& world) {
   return std::min<std::size_t>(400'000 + 16 * freedoms * freedoms, 64'000'000);
 }
 
+/// What lets a body move: all ways, or about its hinge. In its own frame.
+std::string freedom(const World& world, std::size_t body) {
+  for (const HingeSpec& hinge : world.hinges) {
+    if (hinge.body != body) continue;
+    const Pose& pose = world.bodies[body].pose;
+    return "<joint type=\"hinge\" pos=\"" + text(pose.to_local(hinge.anchor)) + "\" axis=\"" +
+           text(Vector3(pose.orientation.conjugate() * hinge.axis)) + "\" frictionloss=\"" +
+           std::to_string(hinge.friction) + "\"/>";
+  }
+  return "<freejoint/>";
+}
+
 std::string xml(const Setting& setting, const World& world, double step) {
   // Room for constraints, which MuJoCo takes as dense rows: four contacts of four rows on the floor.
   const std::size_t rows = world.gravity.isZero() ? 4 : 16;
@@ -94,11 +106,12 @@ std::string xml(const Setting& setting, const World& world, double step) {
       << 200 + 10 * world.bodies.size() << "\" nstack=\"" << stack_size(world)
       << "\"/><default><geom friction=\"" << world.friction << " 0.005 0.0001\""
       << solref(setting, world, step) << "/></default><worldbody>";
-  for (const BodySpec& spec : world.bodies) {
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const BodySpec& spec = world.bodies[i];
     if (spec.fixed) {
       out << geometry(spec) << place(spec.pose) << " contype=\"1\" conaffinity=\"1\"/>";
     } else {
-      out << "<body" << place(spec.pose) << "><freejoint/>" << inertial(spec.mass, spec.inertia)
+      out << "<body" << place(spec.pose) << ">" << freedom(world, i) << inertial(spec.mass, spec.inertia)
           << geometry(spec) << " contype=\"1\" conaffinity=\"3\"/></body>";
     }
   }
@@ -131,16 +144,19 @@ mjModel* load(const std::string& text) {
 
 class MujocoEngine final : public Engine {
  public:
+  static constexpr bool kHinges = true;
   MujocoEngine(const Setting& setting, const World& world, double step)
       : setting_(setting),
         step_(step),
+        hinged_(!world.hinges.empty()),
         gravity_(world.gravity),
         model_(load(xml(setting, world, step))),
         data_(mj_makeData(model_)) {
     int joint = 0;
     for (const BodySpec& spec : world.bodies) {
       joints_.push_back(spec.fixed ? -1 : joint++);
-      if (!spec.fixed) set_twist(joints_.back(), spec.pose.orientation, spec.twist);
+      if (!spec.fixed && is_free(joints_.back()))
+        set_twist(joints_.back(), spec.pose.orientation, spec.twist);
     }
     for (std::size_t i = 0; i < world.kinematics.size(); ++i) {
       hand_.push_back(joint++);
@@ -155,7 +171,7 @@ class MujocoEngine final : public Engine {
 
   void move(std::size_t kinematic, const Pose& now, const Pose& next) override {
     const int joint = hand_[kinematic];
-    mjtNum* q = data_->qpos + 7 * joint;
+    mjtNum* q = data_->qpos + model_->jnt_qposadr[joint];
     Eigen::Map<Vector3> position(q);
     position = now.position;
     q[3] = now.orientation.w(), q[4] = now.orientation.x(), q[5] = now.orientation.y(),
@@ -182,12 +198,15 @@ class MujocoEngine final : public Engine {
     // MuJoCo puts a world that has blown up back to its start and goes on.
     for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
       if (data_->warning[kind].number > 0) throw std::runtime_error("unstable");
+    if (hinged_) mj_kinematics(model_, data_);  // which a step leaves as it began
   }
 
   Motion motion(std::size_t index) const override {
     const int joint = joints_[index];
     if (joint < 0) return {};
-    const mjtNum *q = data_->qpos + 7 * joint, *v = data_->qvel + 6 * joint;
+    const mjtNum* v = data_->qvel + model_->jnt_dofadr[joint];
+    if (!is_free(joint)) return hinged(joint, *v);
+    const mjtNum* q = data_->qpos + model_->jnt_qposadr[joint];
     const Quaternion turn(q[3], q[4], q[5], q[6]);
     return {{{q[0], q[1], q[2]}, turn}, {{v[0], v[1], v[2]}, turn * Vector3(v[3], v[4], v[5])}};
   }
@@ -206,9 +225,19 @@ class MujocoEngine final : public Engine {
   }
 
  private:
+  bool is_free(int joint) const { return model_->jnt_type[joint] == mjJNT_FREE; }
+  Motion hinged(int joint, double speed) const {
+    const int body = model_->jnt_bodyid[joint];
+    const mjtNum *p = data_->xpos + 3 * body, *q = data_->xquat + 4 * body;
+    const Eigen::Map<const Vector3> position(p), anchor(data_->xanchor + 3 * joint),
+        axis(data_->xaxis + 3 * joint);
+    const Vector3 spin = speed * axis;
+    return {{position, Quaternion(q[0], q[1], q[2], q[3])}, {spin.cross(position - anchor), spin}};
+  }
+
   /// MuJoCo has a free body's angular velocity in body axes.
   void set_twist(int joint, const Quaternion& turn, const Twist& twist) {
-    mjtNum* v = data_->qvel + 6 * joint;
+    mjtNum* v = data_->qvel + model_->jnt_dofadr[joint];
     Eigen::Map<Vector3> linear(v), angular(v + 3);
     linear = twist.linear;
     angular = turn.conjugate() * twist.angular;
@@ -216,6 +245,7 @@ class MujocoEngine final : public Engine {
 
   Setting setting_;
   double step_;
+  bool hinged_;
   Vector3 gravity_;
   mjModel* model_;
   mjData* data_;

@@ -44,6 +44,7 @@ struct Library {
 
 class OdeEngine final : public Engine {
  public:
+  static constexpr bool kHinges = true;
   OdeEngine(const Setting& setting, const World& world, double step)
       : setting_(setting), step_(step), friction_(world.friction), restitution_(world.restitution) {
     static const Library library;
@@ -54,6 +55,7 @@ class OdeEngine final : public Engine {
     if (!setting.dantzig) dWorldSetQuickStepNumIterations(world_, setting.iterations);
     for (const BodySpec& spec : world.bodies) add(spec);
     for (const KinematicSpec& spec : world.kinematics) add(spec);
+    for (const HingeSpec& spec : world.hinges) add(spec);
   }
   ~OdeEngine() override {
     dJointGroupDestroy(contacts_);
@@ -151,6 +153,15 @@ class OdeEngine final : public Engine {
       dGeomSetOffsetQuaternion(geometry, turn);
     }
     hand_.push_back(body);
+  }
+
+  /// Friction is a motor to rest.
+  void add(const HingeSpec& spec) {
+    const dJointID hinge = dJointCreateHinge(world_, nullptr);
+    dJointAttach(hinge, bodies_[spec.body], nullptr);
+    dJointSetHingeAnchor(hinge, spec.anchor.x(), spec.anchor.y(), spec.anchor.z());
+    dJointSetHingeAxis(hinge, spec.axis.x(), spec.axis.y(), spec.axis.z());
+    if (spec.friction > 0.0) dJointSetHingeParam(hinge, dParamFMax, spec.friction);
   }
 
   static bool is_free(dBodyID body) { return body != nullptr && !dBodyIsKinematic(body); }

@@ -59,6 +59,17 @@ mrhi::Scene scene_of(const World& world, const Configuration& configuration) {
   scene.bounds = {Vector3::Constant(-1e3), Vector3::Constant(1e3)};
   for (const BodySpec& spec : world.bodies)
     scene.bodies.push_back(body_of(spec, material, scene.bodies.size()));
+  for (const HingeSpec& hinge : world.hinges) {
+    const Pose at{hinge.anchor, Quaternion::Identity()};
+    Joint joint;
+    joint.name = "hinge_" + std::to_string(scene.joints.size());
+    joint.child = static_cast<int>(hinge.body);
+    joint.axis = hinge.axis;
+    joint.in_parent = at;
+    joint.in_child = world.bodies[hinge.body].pose.inverse() * at;
+    joint.friction = hinge.friction;
+    scene.joints.push_back(joint);
+  }
   return scene;
 }
 
@@ -75,6 +86,7 @@ Configuration configuration_of(const Setting& setting, const World& world, doubl
 
 class OurEngine final : public Engine {
  public:
+  static constexpr bool kHinges = true;
   OurEngine(const Setting& setting, const World& world, double step)
       : measured_(setting.measured),
         step_(std::llround(step * 1e9)),
@@ -114,6 +126,16 @@ class OurEngine final : public Engine {
   Motion motion(std::size_t body) const override {
     const BodyState& state = simulation_.state().bodies[body];
     return {state.pose, twist_of(simulation_.scene().bodies[body], state)};
+  }
+
+  double pressing(std::size_t part) const override {
+    double sum = 0.0;
+    for (const Contact& contact : simulation_.state().contacts) {
+      const std::size_t index = contact.key.hand * kCapsules + contact.key.capsule;
+      if (index >= first_capsule_[part] && index < first_capsule_[part] + parts_[part].capsules.size())
+        sum += contact.force.norm();
+    }
+    return sum;
   }
 
  private:
