@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../text/command_line.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/ros/mount_calibration.h"
 
 namespace {

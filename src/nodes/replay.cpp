@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "../text/command_line.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/replay/compare.h"
 #include "mr_hand_interaction/replay/replay.h"
 

@@ -9,6 +9,7 @@
 
 #include "../ros/node.h"
 #include "../text/command_line.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 

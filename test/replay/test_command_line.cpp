@@ -1,5 +1,7 @@
 #include "../../src/text/command_line.h"
 
+#include "../../src/nodes/exit_status.h"
+
 #include <gtest/gtest.h>
 
 namespace mrhi {
