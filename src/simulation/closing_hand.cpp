@@ -66,6 +66,12 @@ std::optional<ClosestFeatures> ClosingHand::nearest(const Capsule& capsule, int 
   return result;
 }
 
+bool ClosingHand::is_near(const Hand& hand, int body, const Pose& pose, double distance) const {
+  return std::any_of(hand.capsules.begin(), hand.capsules.end(), [&](const Capsule& capsule) {
+    return capsule.radius > 0.0 && nearest(capsule, body, pose, distance);
+  });
+}
+
 bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body,
                                     const Pose& pose) const {
   const auto under = [&](int capsule) {

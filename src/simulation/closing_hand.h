@@ -43,6 +43,8 @@ class ClosingHand {
 
   void begin_frame(double seconds) { seconds_ = seconds; }
   Look look_at(const HandTrack& track, int body, const Pose& pose) const;
+  /// Whether any of the hand is nearer to the body than `distance` [m].
+  bool is_near(const Hand& hand, int body, const Pose& pose, double distance) const;
   /// The way between the finger's tip and what it closes against shrinks, and not by the way as a hand
   /// sweeps.
   bool closes(const HandTrack& track, bool by_palm, int finger) const;

@@ -35,6 +35,8 @@ constexpr double kSmallest = 0.04, kLargest = 0.06;
 constexpr double kOpens = 0.5;
 /// Nor do those that open faster than this: half of it would be a kick [m/s].
 constexpr double kLeaves = 0.35;
+/// A hand that is further from what it bears has left it, whatever its fingers do [m].
+constexpr double kAway = 0.02;
 /// Bond of a hand that nothing limits [N].
 constexpr double kUnlimited = 1e5;
 /// Grip force over what slip needs, in people 1.2 to 2 (Johansson & Westling 1984).
@@ -181,11 +183,16 @@ void GraspAssist::let_go(SimulationState& state) {
 }
 
 bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
-  const double now = opening(grip, state.hands[grip.hand].current);
+  const Hand& hand = state.hands[grip.hand].current;
+  const Sides sides(grip, state.contacts);
+  if (grip.bears && sides.base.count + sides.fingers.count == 0 &&
+      !closing_hand_.is_near(hand, grip.body, state.bodies[grip.body].pose, kAway))
+    return true;
+  const double now = opening(grip, hand);
   grip.least = std::min(grip.least, now);
   const double opened = now - grip.least;
   if (opened > way_to_let_go(grip, kOpened)) return true;
-  return opened > kOpenedLeast && !Sides(grip, state.contacts).both();
+  return opened > kOpenedLeast && !sides.both();
 }
 
 /// On what hangs on joints no touch gives way: tongs are closed by pressing either arm from one side.

@@ -235,6 +235,27 @@ TEST(GraspAssist, drags_nothing_that_friction_could_not_hold) {
             2.0 * 0.8 * HandStrength::of_a_person().finger / 1000.0 + 0.02);
 }
 
+// Nor is it drawn by a hand that has long gone on, still closed.
+TEST(GraspAssist, lets_go_of_what_it_has_left_behind) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.grasp_assist = true;
+  configuration.contact.hand = HandStrength::of_a_person();
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 1000.0)),
+                        configuration);
+  bool borne = false;
+  testing::play(
+      simulation, 0.0, 2.0, 120.0,
+      [&](double t) {
+        return reaching(std::min(t / 0.2, 1.0), 0.012, 0.0,
+                        Vector3(0, 0.5 * testing::smooth(t - 0.3, 1.0), 0));
+      },
+      [&](const Simulation& s) {
+        for (const Grip& grip : s.state().grips) borne = borne || grip.bears;
+      });
+  EXPECT_TRUE(borne) << "as long as the hand was there";
+  EXPECT_TRUE(simulation.state().grips.empty());
+}
+
 TEST(GraspAssist, same_input_same_bits) {
   const Outcome first = outcome_of({}), second = outcome_of({});
   EXPECT_EQ(first.off, second.off);
