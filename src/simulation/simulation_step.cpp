@@ -27,6 +27,7 @@ bool Simulation::Impl::quiet(double seconds) const {
 /// springs that hold it, should they let go.
 double Simulation::Impl::driven(double step) const {
   double most = 0.0;
+  if (neighbours.pairs().empty()) return most;  // nothing to send against another
   const auto let_go = [&](std::size_t body, const Vector3& force) {
     return step * force.norm() / scene.bodies[body].mass;
   };
