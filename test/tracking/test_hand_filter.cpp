@@ -51,6 +51,17 @@ TEST(WindowFilter, is_the_mean_of_the_last_F_frames_with_gain_one) {
   EXPECT_DOUBLE_EQ(x_after({0.25, 0.25, 0.25, 0.25}, kWindow), 0.25);
 }
 
+TEST(WindowFilter, is_the_mean_of_palm_and_wrist_too) {
+  std::vector<Hand> hands{hand_at(0), hand_at(0), hand_at(0)};
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    hands[i].palm.position = static_cast<double>(i) * Vector3(3, 0, 0);
+    hands[i].wrist = static_cast<double>(i) * Vector3(0, 3, 0);
+  }
+  const Hand mean = last_of(hands, kWindow);
+  EXPECT_NEAR((mean.palm.position - Vector3(3, 0, 0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((mean.wrist - Vector3(0, 3, 0)).norm(), 0.0, 1e-15);
+}
+
 TEST(WindowFilter, takes_fewer_frames_at_the_start) {
   EXPECT_DOUBLE_EQ(x_after({1.0}, kWindow), 1.0);
   EXPECT_DOUBLE_EQ(x_after({1.0, 2.0}, kWindow), 1.5);
