@@ -10,7 +10,7 @@ from scipy import stats
 from . import exact, pairwise, permutation
 from .anova import mixed_anova
 from .linear import ORDER, PERIOD, Model
-from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, plain
+from .measures import COMPARED, CONDITIONS, GROUPS, OBJECTS, OF, QUESTIONS, in_order, is_tested, plain
 from .questions import scale_of
 from .study_data import SIMULATED, measures_in, of_part, parts
 
@@ -197,6 +197,10 @@ def _add_permutations(table, head, factor, wide):
 def _analyse_conditions(tables, notes, head, cells):
     """Group and condition, each participant's mean over the objects, for who has a value of each; and pairs of
     conditions, each participant's mean over the objects with a value under both."""
+    tested = cells['condition'].map(is_tested)
+    for condition in in_order(cells[~tested]['condition'], CONDITIONS):
+        notes.add(head, 'all measures', '%s was training: not compared with the other conditions' % condition)
+    cells = cells[tested]
     if cells['condition'].nunique() < 2:
         return
     for measure in measures_in(cells):

@@ -34,6 +34,13 @@ OBJECTS = ('cube', 'flat_cuboid', 'long_cuboid')
 CONDITIONS = ('implicit', 'seed', 'penetration', 'impulse', 'virtual_spring', 'soft_pad')
 
 
+TRAINING = '_training'  # ends the condition of a phase that is there to learn, and is not compared with the tested ones
+
+
+def is_tested(condition):
+    return not condition.endswith(TRAINING)
+
+
 def in_order(names, known):
     """The known names first, in their order, then the others by the alphabet."""
     return sorted(set(names), key=lambda name: (known.index(name) if name in known else len(known), name))

@@ -6,6 +6,8 @@ import datetime
 import random
 import re
 
+from .measures import TRAINING
+
 COLUMNS = ('participant', 'group', 'place', 'date', 'time', 'day', 'step', 'phase', 'condition', 'task', 'session', 'seed',
            'run', 'afterwards')
 NAME = re.compile(r'[A-Za-z0-9][A-Za-z0-9_.-]{0,63}')
@@ -100,8 +102,8 @@ def _date(given, place, day, slots):
 
 
 def _row(given, participant, group, place, date, time, day, step, phase, condition):
-    # A training phase is a condition of its own, which the analysis keeps apart from the test.
-    named = condition + '_training' if phase == 'training' else condition
+    # A training phase is a condition of its own, which the analysis does not compare with the tests.
+    named = condition + TRAINING if phase == 'training' else condition
     command = ('roslaunch mr_hand_interaction training.launch participant:=%s group:=%s contact_model:=%s condition:=%s '
                'task:=%s session:=%d number:=%d seed:=%d' % (participant, group, condition, named, given.task, day, place,
                                                              given.seed))

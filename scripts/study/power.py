@@ -8,7 +8,7 @@ import pandas
 
 from . import exact, permutation
 from .linear import Model
-from .measures import CONDITIONS, GROUPS, OBJECTS, OF, in_order
+from .measures import CONDITIONS, GROUPS, OBJECTS, OF, in_order, is_tested
 from .session_folder import find_sessions, read_session
 from .study_data import gather, parts
 
@@ -46,7 +46,7 @@ def _cells(given):
     data = gather([read_session(folder) for folder in find_sessions(given.folders)])
     if len(parts(data)) != 1:
         raise ValueError('the pilot has people and simulated operators, or several gravities; allowed: one of each')
-    cells = data.cells[data.cells['measure'] == given.measure]
+    cells = data.cells[(data.cells['measure'] == given.measure) & data.cells['condition'].map(is_tested)]
     if cells.empty:
         raise ValueError('the pilot has no values of ' + given.measure)
     return cells

@@ -30,10 +30,8 @@ def run(folders, output, pairs, ask_r=False, objects=()):
     if data:
         notes = data.notes + results.notes + notes
         blocks = learning.blocks(data.trials)
-        _write_tables(output, data, results, notes, blocks, people)
+        _write_tables(output, data, results, notes, blocks, people, of_r)
         progress.write_pages(blocks, output)
-        if of_r is not None:
-            of_r.to_csv(os.path.join(output, 'r_models.csv'), index=False, float_format='%.10g')
         for part in parts(data):
             _draw_part(figures, pictures, part, data, results)
             some = of_part(blocks, part)
@@ -91,7 +89,7 @@ def _read_paths(sessions, pairs):
     return [(label, source, read(raw), read(filtered)) for label, source, raw, filtered in found], notes
 
 
-def _write_tables(output, data, results, notes, blocks, people):
+def _write_tables(output, data, results, notes, blocks, people, of_r):
     tables = dict(results._asdict(), trials=data.trials)
     tables.pop('notes')
     keys = HEAD + ['object']
@@ -100,6 +98,8 @@ def _write_tables(output, data, results, notes, blocks, people):
     tables['tidy'] = _tidy(data)
     tables['learning'], tables['learning_tests'] = learning.curves(blocks), learning.slopes(blocks)
     tables['demographics'] = pandas.DataFrame(people, columns=('participant', 'group') + demographics.FIELDS)
+    if of_r is not None:
+        tables['r_models'] = of_r
     tables['data_dictionary'] = dictionary.table(tables)
     for name, table in tables.items():
         table.to_csv(os.path.join(output, name + '.csv'), index=False, float_format='%.10g')

@@ -7,7 +7,7 @@ import tempfile
 
 import pandas
 
-from .measures import OF
+from .measures import OF, is_tested
 from .session_folder import StudyError
 
 PACKAGES = ('lme4', 'lmerTest', 'pbkrtest', 'emmeans', 'glmmTMB')
@@ -33,8 +33,11 @@ def models(cells):
         given, made = os.path.join(folder, 'cells.csv'), os.path.join(folder, 'models.csv')
         _long(cells).to_csv(given, index=False, float_format='%.17g')
         script = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'mixed_models.R')
-        done = subprocess.run(['Rscript', '--vanilla', script, given, made], stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=LONGEST)
+        try:
+            done = subprocess.run(['Rscript', '--vanilla', script, given, made], stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, universal_newlines=True, timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            raise StudyError('Rscript: took more than %g s' % LONGEST) from None
         if done.returncode != 0 or not os.path.exists(made):
             raise StudyError('Rscript: ' + ' '.join(done.stderr.split())[-300:])
         table = pandas.read_csv(made)
@@ -45,8 +48,9 @@ def _long(cells):
     """Each condition by itself, and all conditions together where there are several."""
     kinds = cells['measure'].map(lambda name: OF[name].kind)
     parts = [cells.assign(kind=kinds, condition_of=cells['condition'])]
-    several = cells.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1
-    parts.append(cells[several].assign(kind=kinds[several], condition_of='all'))
+    tested = cells[cells['condition'].map(is_tested)]
+    several = tested[tested.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1]
+    parts.append(several.assign(kind=kinds[several.index], condition_of='all'))
     table = pandas.concat(parts, ignore_index=True)
     positive = table.groupby(['source', 'gravity_g', 'condition_of', 'measure'])['value'].transform('min') > 0
     return table.assign(logarithm=((table['kind'] == 'time') & positive).astype(int))

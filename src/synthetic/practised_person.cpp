@@ -38,6 +38,15 @@ std::vector<Keyframe> until(std::vector<Keyframe> way, double end) {
   return way;
 }
 
+/// The last part, of so many seconds.
+std::vector<Keyframe> last(std::vector<Keyframe> way, double seconds) {
+  const double begin = way.back().time - seconds;
+  way.erase(way.begin(),
+            std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time >= begin; }));
+  for (Keyframe& key : way) key.time -= begin;
+  return way;
+}
+
 std::vector<Keyframe> backwards(const std::vector<Keyframe>& way) {
   std::vector<Keyframe> back;
   for (auto key = way.rbegin(); key != way.rend(); ++key) {
@@ -144,6 +153,8 @@ std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const M
       return moved(make_motion("press_button").keyframes, Vector3(0.0, 0.0, 0.17 - 0.36));
     case Skilled::open_hatch:
       return make_motion("open_hatch").keyframes;
+    case Skilled::pull_hatch:
+      return last(make_motion("open_hatch").keyframes, kByTheHandle);
     case Skilled::close_hatch:
       break;
   }

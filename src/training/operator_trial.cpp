@@ -45,7 +45,8 @@ std::optional<PractisedGoal> practised(const Goal& goal) {
   }
   if (goal.joint == "button_3_slide") return PractisedGoal{Skilled::press_button};
   if (goal.joint == "hatch_hinge" && goal.below < kAjar) return PractisedGoal{Skilled::close_hatch};
-  if (goal.joint == "hatch_hinge" || goal.joint == "latch_top_axle" || goal.joint == "latch_bottom_axle")
+  if (goal.joint == "hatch_hinge") return PractisedGoal{Skilled::pull_hatch};
+  if (goal.joint == "latch_top_axle" || goal.joint == "latch_bottom_axle")
     return PractisedGoal{Skilled::open_hatch};
   throw std::invalid_argument("a simulated operator cannot work joint '" + goal.joint +
                               "'; allowed: those of the task hatch");

@@ -11,7 +11,17 @@
 namespace mrhi {
 
 /// What a practised person can do besides to take, carry and let go.
-enum class Skilled : std::uint8_t { tap, slap, catch_ball, nudge, press_button, open_hatch, close_hatch };
+/// `open_hatch` undoes the latches first, `pull_hatch` takes the handle at once.
+enum class Skilled : std::uint8_t {
+  tap,
+  slap,
+  catch_ball,
+  nudge,
+  press_button,
+  open_hatch,
+  pull_hatch,
+  close_hatch
+};
 
 /// One thing to be done.
 struct PractisedGoal {
