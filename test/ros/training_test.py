@@ -157,6 +157,22 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual([row["object"] for row in rows].count("long_cuboid"), 3)
         self.assertGreaterEqual([row["result"] for row in rows].count("completed"), 5)
 
+    def test_an_operator_opens_the_hatch_and_closes_it(self):
+        """Undisturbed: 33 s, of which nearly all is waiting. A hand that lost frames may miss, and then tries again."""
+        task = os.path.join(HERE, "training_hatch.yaml")
+        for run in range(RUNS):
+            self.clear()
+            self.folder = os.path.join(self.parent, "session%d" % run)
+            with self.training("hands:=operator", "group:=none", "task:=" + task, "record:=false"):
+                wait_until(lambda: self.status and self.status.phase == TrainingStatus.FINISHED, "the session's end", 200.0)
+            (row,) = trials(self.folder)
+            if row["result"] == "completed" or self.longest_break < HELD_UP:
+                break
+        self.assertEqual(row["result"], "completed")
+        with open(os.path.join(self.folder, "events.csv"), newline="") as file:
+            achieved = [row["detail"] for row in csv.DictReader(file) if row["event"] == "goal_achieved"]
+        self.assertEqual(achieved, ["1", "2", "3", "4", "5"])
+
     def check_analysis(self):
         if not has_pandas():
             print("analyse_study is not tried: python3-pandas, -scipy or -matplotlib is absent")
