@@ -1,16 +1,20 @@
 // Where each contact model stays stable: a cube between fingertips, over mass, step, stiffness, number of
 // contacts and restitution. See docs/stability.md.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "mr_hand_interaction/response/contact_model.h"
+#include "nodes/exit_status.h"
 #include "support/stability_map.h"
+#include "text/command_line.h"
 
 namespace mrhi::testing {
 namespace {
@@ -31,7 +35,7 @@ std::vector<double> steps() {
   return values;
 }
 
-StabilityGrid grid() {
+StabilityGrid whole_grid() {
   return {geometric(0.001, 100.0, kMasses),
           steps(),
           {50.0, 300.0, 2000.0, 14000.0, 1e5},
@@ -39,11 +43,25 @@ StabilityGrid grid() {
           {0.0, 0.5, 1.0}};
 }
 
-void map_model(const char* name, ContactModelKind model, std::ostream& csv) {
+template <typename Value>
+std::vector<Value> every_second(const std::vector<Value>& values) {
+  std::vector<Value> kept;
+  for (std::size_t i = 0; i < values.size(); i += 2) kept.push_back(values[i]);
+  return kept;
+}
+
+/// Both ends of each quantity are in it.
+StabilityGrid coarse_grid() {
+  const StabilityGrid whole = whole_grid();
+  return {every_second(whole.masses), every_second(whole.steps), every_second(whole.stiffnesses),
+          every_second(whole.contacts), every_second(whole.restitutions)};
+}
+
+void map_model(const char* name, ContactModelKind model, const StabilityGrid& grid, std::ostream& csv) {
   constexpr std::size_t kOutcomes = 4;
   int counts[kOutcomes] = {}, cells = 0;
   const auto start = std::chrono::steady_clock::now();
-  grid().for_every_cell(model, [&](const StabilityCell& cell) {
+  grid.for_every_cell(model, [&](const StabilityCell& cell) {
     const StabilityResult result = StabilityRun(cell).play();
     csv << name << ',' << cell.mass << ',' << cell.step << ',' << cell.stiffness << ',' << cell.contacts
         << ',' << cell.restitution << ',' << to_string(result.outcome) << ',' << result.largest_speed << '\n';
@@ -58,27 +76,63 @@ void map_model(const char* name, ContactModelKind model, std::ostream& csv) {
   std::fflush(stdout);
 }
 
-int run(const std::string& folder) {
-  const std::string path = folder + "/stability_map.csv";
+constexpr char kUsage[] = R"(usage: stability_map [--quick] [--model NAME]... --output DIR
+  --quick       540 cells of each model instead of 7425: every second value of each quantity
+  --model NAME  this contact model alone; repeatable
+  --output DIR  created if need be; stability_map.csv
+docs/stability.md says what a cell is.
+)";
+
+struct Arguments {
+  bool quick = false, help = false;
+  std::vector<std::string> models;
+  std::string folder;
+
+  bool wants(const std::string& model) const {
+    return models.empty() || std::find(models.begin(), models.end(), model) != models.end();
+  }
+};
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const ContactModelEntry* model : contact_models()) names.emplace_back(model->name);
+  return names;
+}
+
+Arguments arguments_of(const std::vector<std::string>& words) {
+  Arguments arguments;
+  CommandLine line;
+  line.flag("--quick", arguments.quick)
+      .each("--model", "NAME",
+            [&](const Given& given) { arguments.models.push_back(given.one_of(model_names())); })
+      .once("--output", "DIR", arguments.folder);
+  arguments.help = !line.read(words);
+  if (!arguments.help && arguments.folder.empty()) throw UsageError("--output DIR is missing");
+  return arguments;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.help) {
+    std::cout << kUsage;
+    return 0;
+  }
+  std::filesystem::create_directories(arguments.folder);
+  const std::string path = arguments.folder + "/stability_map.csv";
   std::ofstream csv(path);
   csv.precision(9);
   csv << "model,mass_kg,step_s,stiffness_n_m,contacts,restitution,outcome,largest_speed_m_s\n";
-  for (const ContactModelEntry* model : contact_models()) {
-    if (csv) map_model(model->name, {model->name}, csv);
-  }
+  const StabilityGrid grid = arguments.quick ? coarse_grid() : whole_grid();
+  for (const ContactModelEntry* model : contact_models())
+    if (arguments.wants(model->name)) map_model(model->name, {model->name}, grid, csv);
   csv.close();
   if (csv) return 0;
-  std::cerr << "stability_map: cannot write " << path << '\n';
-  return 1;
+  throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace
 }  // namespace mrhi::testing
 
 int main(int argc, char** argv) {
-  if (argc != 3 || std::string(argv[1]) != "--output") {
-    std::cerr << "usage: stability_map --output DIR\n";
-    return 2;
-  }
-  return mrhi::testing::run(argv[2]);
+  using namespace mrhi::testing;
+  return mrhi::exit_status("stability_map", [&] { return run(arguments_of({argv + 1, argv + argc})); });
 }

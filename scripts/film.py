@@ -16,7 +16,7 @@ import yaml
 from mr_hand_interaction.msg import HandFrame, TrainingStatus
 
 from rviz_stage import STARTED, Stage, TOPICS, drawn, wait_for_rviz
-from screenshot import REPOSITORY
+from screenshot import FONT, REPOSITORY
 from watch_demo import join_master
 
 Scene = collections.namedtuple("Scene", "caption launch view lead")  # lead: seconds before the moment that it is about
@@ -29,7 +29,6 @@ SCENES = {
     "training": Scene("training", ["training.launch", "rviz:=false", "record:=false", "participant:=P01", "hands:=operator"],
                       "training", 3.0),
 }
-FONT = "/usr/share/rviz/ogre_media/fonts/liberation-sans/LiberationSans-Regular.ttf"
 WIDER = 1.2  # farther away than rviz begins
 BACKGROUND = "#3a3f47"
 

@@ -8,9 +8,11 @@ import sys
 import tempfile
 import time
 
+import rospkg
 import rospy
 import yaml
 from std_srvs.srv import SetBool
+from visualization_msgs.msg import MarkerArray
 
 from watch_demo import COLOURS, Demo, colours_of, grab, join_master
 
@@ -19,6 +21,7 @@ MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
 LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "shadows", "text", "Grid")
+FONT = os.path.join(rospkg.RosPack().get_path("rviz"), "ogre_media", "fonts", "liberation-sans", "LiberationSans-Regular.ttf")
 OFF_AT_FIRST = ("capsules", "newtons", "share")
 
 
@@ -145,6 +148,24 @@ def stop_at_moment(demo, options, deadline):
         return middle(demo)
 
 
+def text_shown(deadline):
+    """What the scene's text says. It hangs below the scene, where a picture from near by has no room for it."""
+    told = []
+
+    def take(array):
+        told.extend(marker.text for marker in array.markers if marker.ns == "text")
+    subscriber = rospy.Subscriber("markers", MarkerArray, take)
+    while not told and time.monotonic() < deadline:
+        time.sleep(0.05)
+    subscriber.unregister()
+    return told[-1] if told else ""
+
+
+def write_below(text, file):
+    subprocess.run(["convert", file, "-font", FONT, "-pointsize", "15", "-fill", "#d0d4da", "-gravity", "southwest",
+                    "-annotate", "+14+12", text, "-strip", file], check=True)
+
+
 def main():
     options = parse(sys.argv[1:])
     if options.check:
@@ -156,9 +177,13 @@ def main():
     if focus is None:
         print(f"screenshot: the moment has not come within {options.time_limit:.0f} s", file=sys.stderr)
         return 1
+    text = "" if "text" in options.hide else text_shown(deadline)
+    options.hide.append("text")
     if not draw(options, focus, deadline):
         print(f"screenshot: rviz has not drawn it within {options.time_limit:.0f} s", file=sys.stderr)
         return 1
+    if text:
+        write_below(text, options.output)
     return 0
 
 

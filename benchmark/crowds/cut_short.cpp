@@ -71,7 +71,7 @@ class Falling {
 
   void advance(Sizes* sizes) {
     neighbours_.begin_step(bodies_, kStep);
-    finder_.find(neighbours_, bodies_, asleep_, kStep, touches_);
+    finder_.find(neighbours_, bodies_, asleep_, kStep, 0.0, touches_);
     if (sizes != nullptr) compare(*sizes);
     changes_.reset(bodies_.size());
     ContactStep step = at(touches_, bodies_);

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -93,13 +95,16 @@ std::uint64_t stamp_in(const ShapeShifter& message, std::size_t offset) {
 
 class Measurement {
  public:
-  Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options)
+  /// `topics` of the node whose messages are waited for, each with its header first or, markers, in its
+  /// first.
+  Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options,
+              const std::vector<std::string>& topics)
       : node_(node), hand_(options) {
     message_.morph(mrhi::LeapHumanEncoder::md5(), mrhi::LeapHumanEncoder::type(),
                    mrhi::LeapHumanEncoder::definition(), "");
     to_node_ = message_.advertise(node_, "/leap_motion/leap_device", kQueue);
     to_relay_ = message_.advertise(node_, "relay_in", kQueue);
-    const auto listen = [&](const char* topic, Track& track, std::size_t offset) {
+    const auto listen = [&](const std::string& topic, Track& track, std::size_t offset) {
       const auto handler = [&track, offset](const ShapeShifter::ConstPtr& message) {
         const Clock::time_point now = Clock::now();
         track.arrived(stamp_in(*message, offset), now, message->size());
@@ -108,7 +113,8 @@ class Measurement {
           topic, kQueue, boost::function<void(const ShapeShifter::ConstPtr&)>(handler), nullptr,
           ros::TransportHints().tcpNoDelay()));
     };
-    listen("markers", pictures_, 4);  // after the array's length
+    for (const std::string& topic : topics)
+      listen(topic, answers_[topic], topic == "markers" ? 4 : 0);  // after the array's length
     listen("relay_out", relayed_, 0);
   }
 
@@ -118,32 +124,40 @@ class Measurement {
     ros::WallRate half_period(2.0 * kRate);
     const long frames = std::lround((kWarmUp + seconds) * kRate);
     for (long i = 0; i < frames && ros::ok(); ++i) {
-      pictures_.counting = relayed_.counting = i >= std::lround(kWarmUp * kRate);
+      relayed_.counting = i >= std::lround(kWarmUp * kRate);
       mrhi::JointsFrame frame = hand_.next();
-      send(frame, to_node_, pictures_);
+      prepare(frame);
+      for (auto& [topic, track] : answers_) {
+        track.counting = relayed_.counting;
+        track.sent(frame_stamp_);
+      }
+      to_node_.publish(message_);
       half_period.sleep();
-      send(frame, to_relay_, relayed_);
+      prepare(frame);
+      relayed_.sent(frame_stamp_);
+      to_relay_.publish(message_);
       half_period.sleep();
     }
     ros::WallDuration(0.2).sleep();
     const auto counted = static_cast<std::size_t>(std::lround(seconds * kRate));
     std::printf("| | arrived | message [kB] | p50 [ms] | p99 [ms] | max [ms] |\n|---|---|---|---|---|---|\n");
     relayed_.report("relay", counted);
-    pictures_.report("hand to markers", counted);
-    std::printf("p50 %.2f, p99 %.2f times the relay's\n", pictures_.quantile(0.5) / relayed_.quantile(0.5),
-                pictures_.quantile(0.99) / relayed_.quantile(0.99));
+    for (auto& [topic, track] : answers_) track.report(("hand to " + topic).c_str(), counted);
+    for (const auto& [topic, track] : answers_)
+      std::printf("%s: p50 %.2f, p99 %.2f times the relay's\n", topic.c_str(),
+                  track.quantile(0.5) / relayed_.quantile(0.5),
+                  track.quantile(0.99) / relayed_.quantile(0.99));
     std::fflush(stdout);
   }
 
  private:
-  void send(mrhi::JointsFrame frame, ros::Publisher& publisher, Track& track) {
+  void prepare(mrhi::JointsFrame frame) {
     frame.stamp = mrhi::from_ros_time(ros::Time::now());
     std::vector<std::uint8_t> bytes =
         mrhi::LeapHumanEncoder::encode(frame, "leap_hands", sequence_++, static_cast<float>(kRate));
     ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     message_.read(stream);
-    track.sent(static_cast<std::uint64_t>(frame.stamp));
-    publisher.publish(message_);
+    frame_stamp_ = static_cast<std::uint64_t>(frame.stamp);
   }
 
   ros::NodeHandle& node_;
@@ -151,8 +165,10 @@ class Measurement {
   ShapeShifter message_;
   ros::Publisher to_node_, to_relay_;
   std::vector<ros::Subscriber> listeners_;
-  Track pictures_, relayed_;
+  std::map<std::string, Track> answers_;  // by topic
+  Track relayed_;
   std::uint32_t sequence_ = 0;
+  std::uint64_t frame_stamp_ = 0;  // of the message [ns]
 };
 
 }  // namespace
@@ -169,7 +185,8 @@ int main(int argc, char** argv) {
   mrhi::SyntheticHandOptions options;
   options.rate = kRate;
   options.motion = parameters.param<std::string>("motion", options.motion);
-  Measurement measurement(node, options);
+  std::istringstream topics(parameters.param<std::string>("topics", "markers"));
+  Measurement measurement(node, options, {std::istream_iterator<std::string>(topics), {}});
   ros::AsyncSpinner spinner(1);
   spinner.start();
   measurement.run(parameters.param("seconds", 30.0));

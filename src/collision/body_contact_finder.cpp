@@ -9,10 +9,12 @@
 namespace mrhi {
 namespace {
 
-/// Contacts are followed from this gap on; pairs farther apart are swept through the step [m].
-constexpr double kMargin = 0.001;
+/// Contacts are followed from this gap on, at most; pairs farther apart are swept through the step [m].
+constexpr double kMostFollowed = 0.001;
 /// Surfaces this far apart have ended their approach: the next one may strike again [m].
 constexpr double kApart = 1e-5;
+/// What is struck may leave this much faster than what strikes it (twice, by far heavier things).
+constexpr double kStruck = 2.0;
 
 /// Two alike bodies have their own; the springs of a pair are in series.
 Material together(const Material& a, const Material& b) {
@@ -75,10 +77,10 @@ std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
   return Touch{touch->features, touch->time};
 }
 
-std::optional<Touch> find_touch(const ShapePair& pair, double step, double margin) {
+std::optional<Touch> find_touch(const ShapePair& pair, double step, double followed, double margin) {
   const Manifold manifold = pair.now(margin);
   if (manifold.count == 0) return std::nullopt;
-  if (deepest(manifold).depth >= -kMargin) return Touch{manifold};
+  if (deepest(manifold).depth >= -followed) return Touch{manifold};
   return swept(pair, step, margin);
 }
 
@@ -137,9 +139,10 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
 }
 
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
-                             const std::vector<char>& asleep, double step,
+                             const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
+  followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
   reached_ = 0;
   reaches_.resize(bodies.size());
   for (const int body : neighbours.paired()) {
@@ -156,13 +159,28 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   contacts.swap(found_);
 }
 
+/// No farther than one thing's blow may send another within the step. Where nothing moves, next to nothing:
+/// the bricks of a wall have no contact with those beside them.
+double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
+                                       const std::vector<char>& asleep, double step, double driven) const {
+  double fastest = driven;
+  for (const int listed : neighbours.paired()) {
+    const auto b = static_cast<std::size_t>(listed);
+    const Body& body = scene_.bodies[b];
+    if (body.fixed || asleep[b]) continue;
+    const double spin = body.inverse_inertia.trace() * bodies[b].angular_momentum.norm();  // at most
+    fastest = std::max(fastest, bodies[b].linear_momentum.norm() / body.mass + body.bounding_radius * spin);
+  }
+  return std::min(kMostFollowed, kApart + kStruck * step * fastest);
+}
+
 /// The axis-aligned box that a body may touch another from within in this step.
 BodyContactFinder::Reach BodyContactFinder::reach_of(const Body& body, const BodyState& state,
                                                      double step) const {
   Reach reach;
   reach.centre = state.pose.position;
   reach.half = Vector3::Constant(body.bounding_radius);
-  reach.travel = 0.5 * kMargin;
+  reach.travel = 0.5 * followed_;
   if (!body.fixed) {
     reach.travel += step * (state.linear_momentum.norm() / body.mass + 0.5 * step * gravity_.norm());
   }
@@ -197,7 +215,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
-      auto touch = find_touch(pair, step, margin);
+      auto touch = find_touch(pair, step, followed_, margin);
       if (!touch) continue;
       // Pairs come sorted, so that only the points of one need to be.
       std::sort(touch->manifold.points.begin(), touch->manifold.points.begin() + touch->manifold.count,

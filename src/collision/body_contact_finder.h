@@ -16,15 +16,18 @@ class BodyContactFinder {
   BodyContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
 
   /// Every step: replaces `contacts` (sorted by key) by those of now, but for bodies that are `asleep`.
-  /// Contacts that last keep their memory.
+  /// Contacts that last keep their memory. By no more than `driven` may hands change a body's velocity within
+  /// the step [m/s].
   void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
-            const std::vector<char>& asleep, double step, std::vector<BodyContact>& contacts);
+            const std::vector<char>& asleep, double step, double driven, std::vector<BodyContact>& contacts);
 
  private:
   struct Reach {
     Vector3 centre, half;  // of a box [m]
     double travel;         // in the step, and half the gap from which contacts are followed [m]
   };
+  double followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
+                      const std::vector<char>& asleep, double step, double driven) const;
   Reach reach_of(const Body& body, const BodyState& state, double step) const;
   const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
   void find_pair(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double step,
@@ -33,6 +36,7 @@ class BodyContactFinder {
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
+  double followed_ = 0.0;       // gap from which contacts are followed in this step [m]
   std::vector<Reach> reaches_;  // by body, of those that have neighbours
   std::vector<BodyContact> found_;
   std::size_t reached_ = 0;  // of the contacts before

@@ -7,24 +7,6 @@
 #include <tuple>
 
 namespace mrhi {
-namespace {
-
-/// Surfaces farther apart than this, that do not close within the step, do not couple their bodies [m].
-constexpr double kCoupled = 1e-4;
-
-bool couples(const ContactStep& step, const BodyContact& contact) {
-  if (contact.depth > -kCoupled || contact.first_touch >= 0.0) return true;
-  const auto a = static_cast<std::size_t>(contact.key.a), b = static_cast<std::size_t>(contact.key.b);
-  const Twist twist_a = twist_of(step.scene.bodies[a], step.bodies[a]);
-  const Twist twist_b = twist_of(step.scene.bodies[b], step.bodies[b]);
-  const Vector3 relative = twist_a.linear + twist_a.angular.cross(contact.arm_a) - twist_b.linear -
-                           twist_b.angular.cross(contact.arm_b);
-  const double fall = 0.5 * step.step * step.step * step.gravity.norm();
-  return contact.depth - step.step * contact.normal.dot(relative) + fall > 0.0;
-}
-
-}  // namespace
-
 int Islands::root_of(int body) {
   auto b = static_cast<std::size_t>(body);
   while (parent_[b] != static_cast<int>(b)) {
@@ -73,7 +55,6 @@ void Islands::link_bodies(const ContactStep& step) {
   };
   for (std::size_t i = 0; i < step.body_contacts.size(); ++i) {
     const BodyContact& contact = step.body_contacts[i];
-    if (!couples(step, contact)) continue;
     links_.push_back({contact.key.b, i});
     list(contact.key.b);
     if (step.scene.bodies[contact.key.a].fixed) continue;

@@ -3,6 +3,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -17,7 +18,7 @@ constexpr double kFull = 0.012;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
 constexpr std::uint32_t kMiddle = std::numeric_limits<std::uint32_t>::max();
 constexpr double kLidDepth = 0.01;     // [m]
-constexpr int kSpare = 3 * kMaxHands;  // skin, wrist and ghost of each
+constexpr int kSpare = 8 * kMaxHands;  // skin, wrist's sides and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
 HandStyle capsule_style() {
@@ -55,12 +56,29 @@ HandMarkers::HandMarkers(const Skin& skin)
       paint_(skin_),
       skin_corners_(
           closed(corners_of(skin_, [this](const auto& triangle) { return !fades(triangle); }), rim_)),
-      wrist_corners_(corners_of(skin_, [this](const auto& triangle) { return fades(triangle); })),
+      wrist_corners_(corners_of_wrist()),
       outline_corners_(corners_of(outline_, [](const auto&) { return true; })) {}
 
 bool HandMarkers::fades(const std::array<int, 3>& triangle) const {
   const auto faded = [this](int v) { return paint_.opacity(static_cast<std::size_t>(v)) < 1.0f; };
   return std::any_of(triangle.begin(), triangle.end(), faded);
+}
+
+int HandMarkers::side_of_wrist(const std::array<int, 3>& triangle) const {
+  Vector3 centre = Vector3::Zero();
+  for (const int vertex : triangle) centre += skin_.rest()[static_cast<std::size_t>(vertex)] / 3.0;
+  const double turns = 0.5 + std::atan2(centre.z(), centre.y()) / (2.0 * M_PI);
+  return std::min(kWristSides - 1, static_cast<int>(kWristSides * turns));
+}
+
+std::array<HandMarkers::Corners, HandMarkers::kWristSides> HandMarkers::corners_of_wrist() const {
+  std::array<Corners, kWristSides> sides;
+  for (int side = 0; side < kWristSides; ++side) {
+    sides[static_cast<std::size_t>(side)] = corners_of(skin_, [this, side](const auto& triangle) {
+      return fades(triangle) && side_of_wrist(triangle) == side;
+    });
+  }
+  return sides;
 }
 
 HandMarkers::Corners HandMarkers::corners_of(const Skin& skin, const Chosen& chosen) {
@@ -134,8 +152,13 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
     drawn.hand = hand.id, drawn.side = hand.side, drawn.touching = rendered.touching;
     paint_.paint(rendered, drawn.surface, drawn.colours);
   }
-  add_part(drawn, skin_corners_, id, layer);
-  add_part(drawn, wrist_corners_, id + 1, layer);
+  add_part(drawn, skin_corners_, Vector3::Zero(), id, layer);
+  for (const Corners& side : wrist_corners_) {
+    Vector3 middle = Vector3::Zero();
+    const auto& corners = side[static_cast<std::size_t>(drawn.side)];
+    for (const std::uint32_t vertex : corners) middle += drawn.surface.vertices[vertex];
+    add_part(drawn, side, middle / static_cast<double>(corners.size()), ++id, layer);
+  }
 }
 
 /// A little below the rim, within the wrist: level with it, flat stretches of skin would be above the lid.
@@ -151,15 +174,17 @@ std::pair<Vector3, Rgb> HandMarkers::middle_of_lid(const Drawn& drawn) const {
   return {rim - kLidDepth * (all - rim).normalized(), colour};
 }
 
-void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, int id, MarkerLayer& layer) {
+void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, const Vector3& origin, int id,
+                           MarkerLayer& layer) {
   Marker& marker = add_triangles(id, layer);
+  marker.pose.position = mrhi::to_message(origin);
   const auto& corners = of_either_side[static_cast<std::size_t>(drawn.side)];
   marker.points.resize(corners.size());
   marker.colors.resize(corners.size());
   const auto [middle, colour] = middle_of_lid(drawn);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const bool is_middle = corners[i] == kMiddle;
-    marker.points[i] = mrhi::to_message(is_middle ? middle : drawn.surface.vertices[corners[i]]);
+    marker.points[i] = mrhi::to_message((is_middle ? middle : drawn.surface.vertices[corners[i]]) - origin);
     marker.colors[i] = is_middle ? to_message(colour, 1.0f)
                                  : to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
   }

@@ -13,8 +13,7 @@ namespace mrhi {
 
 /// Where hands are drawn.
 struct HandLayers {
-  MarkerLayer&
-      hand;  ///< the rendered hand's skin, and apart from it the wrist, as what is translucent hides nothing
+  MarkerLayer& hand;   ///< the rendered hand's skin, and apart from it the wrist's sides
   MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
 };
 
@@ -34,6 +33,9 @@ class HandMarkers {
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
+  /// What is translucent hides nothing, and is drawn from the farthest marker's place to the nearest: in one
+  /// marker the wrist's far side would stand before its near one.
+  static constexpr int kWristSides = 6;
   /// Three for each triangle, in an order that is counter-clockwise from outside for either side. What is no
   /// vertex is the middle of the rim.
   using Corners = std::array<std::vector<std::uint32_t>, 2>;
@@ -49,18 +51,24 @@ class HandMarkers {
   visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
   void add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer);
   std::pair<Vector3, Rgb> middle_of_lid(const Drawn& drawn) const;
-  void add_part(const Drawn& drawn, const Corners& corners, int id, MarkerLayer& layer);
+  void add_part(const Drawn& drawn, const Corners& corners, const Vector3& origin, int id,
+                MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
   using Chosen = std::function<bool(const std::array<int, 3>& triangle)>;
   static Corners corners_of(const Skin& skin, const Chosen& chosen);
   static Corners closed(Corners corners, std::vector<std::uint32_t>& rim);
   bool fades(const std::array<int, 3>& triangle) const;
+  /// On which side of the wrist, as seen along the forearm.
+  int side_of_wrist(const std::array<int, 3>& triangle) const;
+  std::array<Corners, kWristSides> corners_of_wrist() const;
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
   std::vector<std::uint32_t> rim_;  // where the opaque skin ends
-  const Corners skin_corners_, wrist_corners_, outline_corners_;
+  const Corners skin_corners_;
+  const std::array<Corners, kWristSides> wrist_corners_;
+  const Corners outline_corners_;
   std::vector<Drawn> drawn_;     // by their place in the result
   SkinSurface ghost_, beneath_;  // kept for their memory, as are the rest
   std::vector<float> alphas_;

@@ -63,26 +63,32 @@ void ResultPublisher::note_step() {
 void ResultPublisher::publish(const FrameResult& result) {
   const ros::Time stamp = to_ros_time(clock_.to_stamp(result.stamp));
   const std_msgs::Header when = header(stamp);
+  // What robots and gloves wait for, then what eyes do, then what may come later.
+  haptics_.publish(*simulation_, result, when);
+  publish_contacts(result, when);
+  publish_objects(when);
+  if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
   publish_markers(result, when);
   let_picture_go();
-  haptics_.publish(*simulation_, result, when);
+  publish_transforms(when);
   if (rendered_hands_.getNumSubscribers() > 0)
     publish_shared(rendered_hands_, rendered_message(result, when));
   if (tracked_hands_.getNumSubscribers() > 0) publish_shared(tracked_hands_, tracked_message(result, when));
-  if (contacts_.getNumSubscribers() > 0) {
-    publish_shared(contacts_, contacts_message(simulation_->scene(), result, simulation_->state(), when));
-  }
   publish_events(result.events);
-  publish_objects(when);
-  if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
   publish_rest(result, when);
 }
 
 void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& stamp) {
   publish_markers(result, header(stamp));
   publish_objects(header(stamp));
+  publish_transforms(header(stamp));
   if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
   publish_rest(result, header(stamp));
+}
+
+void ResultPublisher::publish_contacts(const FrameResult& result, const std_msgs::Header& header) {
+  if (contacts_.getNumSubscribers() == 0) return;
+  publish_shared(contacts_, contacts_message(simulation_->scene(), result, simulation_->state(), header));
 }
 
 void ResultPublisher::publish_events(const std::vector<Event>& events) {
@@ -128,6 +134,9 @@ void ResultPublisher::publish_objects(const std_msgs::Header& header) {
     publish_shared(objects_, objects_message(simulation_->scene(), simulation_->state(), header));
   if (!simulation_->scene().joints.empty() && joint_states_.getNumSubscribers() > 0)
     publish_shared(joint_states_, joint_states_message(simulation_->scene(), simulation_->state(), header));
+}
+
+void ResultPublisher::publish_transforms(const std_msgs::Header& header) {
   if (header.stamp == transforms_stamp_) return;  // tf2 warns of a stamp that it has
   transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
   transforms_stamp_ = header.stamp;

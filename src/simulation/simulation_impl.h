@@ -40,6 +40,7 @@ struct Simulation::Impl {
 
   // A step.
   bool quiet(double seconds) const;
+  double driven(double step) const;
   void advance_step(double fraction, double step);
   void keep_in_bounds();
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "../integration/free_flight.h"
 #include "../joints/put_back.h"
 #include "frame_report.h"
@@ -21,6 +23,26 @@ bool Simulation::Impl::quiet(double seconds) const {
   return true;
 }
 
+/// By how much hands may change a body's velocity within the step, at most [m/s]: to their own, and by the
+/// springs that hold it, should they let go.
+double Simulation::Impl::driven(double step) const {
+  double most = 0.0;
+  if (neighbours.pairs().empty()) return most;  // nothing to send against another
+  const auto let_go = [&](std::size_t body, const Vector3& force) {
+    return step * force.norm() / scene.bodies[body].mass;
+  };
+  for (const Contact& contact : state.contacts) {
+    if (scene.bodies[contact.key.body].fixed) continue;
+    most = std::max(most, contact.hand_velocity.norm() + let_go(contact.key.body, contact.force));
+  }
+  for (const Grip& grip : state.grips) {
+    if (!grip.bears) continue;
+    for (const Vector3& velocity : grip.velocity)
+      most = std::max(most, velocity.norm() + let_go(grip.body, grip.force));
+  }
+  return most;
+}
+
 /// One step, `fraction` of the way into the frame.
 void Simulation::Impl::advance_step(double fraction, double step) {
   for (HandMotion& hand : hands) hand.move_to(fraction);
@@ -30,7 +52,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
   assist.begin_step(fraction, step, state);
   end_stage(Stage::hand_contacts);
-  body_finder.find(neighbours, state.bodies, state.asleep, step, state.body_contacts);
+  body_finder.find(neighbours, state.bodies, state.asleep, step, driven(step), state.body_contacts);
   end_stage(Stage::body_contacts);
   changes.reset(scene.bodies.size());
   ContactStep contact_step{scene,        gravity, step,       state.contacts, state.body_contacts,

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mr_hand_interaction/synthetic/random.h"
 #include "support/slap.h"
 
@@ -70,6 +72,24 @@ TEST(ImplicitPlate, a_capsule_that_passes_by_does_not_touch_it) {
   play(simulation, 0.0, 0.2, 60.0,
        hitter(10.0, 0.0025, 0.1, Vector3(0, 0, 0.05 + testing::kHitterRadius + 0.001)));
   EXPECT_EQ(object_twist(simulation).linear.norm(), 0.0);
+}
+
+// What rests 0.3 mm behind it is struck by it in the same step.
+TEST(ImplicitSlap, sends_no_box_into_the_one_behind_it) {
+  Scene scene = scene_of(slab(Vector3::Constant(0.05), 1.0));
+  Body behind = slab(Vector3::Constant(0.05), 1.0);
+  behind.name = "behind";
+  behind.start.position.x() = 0.0503;
+  scene.bodies.push_back(behind);
+  Simulation simulation(scene, implicit(0.001));
+  double deepest = -1.0;
+  play(simulation, 0.0, 0.08, 1000.0, hitter(3.0, 0.025, 0.0503, Vector3::Zero()), [&](const Simulation& s) {
+    const auto& bodies = s.state().bodies;
+    deepest = std::max(deepest, 0.05 - (bodies[1].pose.position.x() - bodies[0].pose.position.x()));
+  });
+  // A hand's blow and what it sends on are dealt with at once: the second has no restitution.
+  EXPECT_GT(object_twist(simulation, 1).linear.x(), 2.99);
+  EXPECT_LT(deepest, 1e-5);
 }
 
 /// Newton's restitution together with friction alone would make up to half of it more here. A body turns on

@@ -18,13 +18,12 @@ from mr_hand_interaction.msg import TrainingStatus
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
-from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, to_run  # noqa: E402
+from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, shortened, to_run  # noqa: E402
 
 PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "doctor", "explain",
             "hand_interaction_node", "hand_tracking_node", "interaction_node", "marker_relay_node", "plan_study",
             "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
             "training_keys", "training_node")
-
 
 
 class CommandsTest(unittest.TestCase):
@@ -80,7 +79,7 @@ class CommandsTest(unittest.TestCase):
             for command in to_run("rosrun "):
                 words, options = self.user.words(command), {}
                 if "simulated_study" in words:
-                    words += ["--operators", "1-1", "--model", "implicit", "--gravity", "0"]
+                    words = shortened(words, ("--model", "implicit"))
                 if "training_keys" in words:
                     options["stdin"] = "q"
                 with self.each(failures, command):

@@ -31,11 +31,12 @@ EXCEPTED = (  # what the command begins with, and why it is not run here
     ("source devel/setup.bash", "this test would not be found without"),
     ("export ROS_", "addresses of the user's machines"),
     ("rosrun rqt_(reconfigure|plot|multiplot)|plotjuggler", "Debian 12 does not have it"),
-    ("rosrun mr_hand_interaction (filters|stability_map)", "takes long; built with BUILD_BENCHMARKS alone"),
+    ("rosrun mr_hand_interaction (filters|stability_map|real_grasps)", "measures; built by name alone"),
     ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "test_analyse_study and test_ask_ratings run it"),
-    ("roslaunch benchmark/latency", "measures the machine; built with BUILD_BENCHMARKS alone"),
+    ("roslaunch benchmark/latency", "measures the machine; built by name alone"),
     ("roslaunch --wait .*role:=view|roslaunch .*role:=view", "multi_machine.test runs it"),
-    ("real_grasps|benchmark/", "need recordings or results; benchmark/real_grasps/test has its own"),
+    ("real_grasps --help", "as rosrun, above"),
+    ("benchmark/", "need recordings or results; benchmark/real_grasps/test has its own"),
     ("snakemake", "test_workflow runs it"),
     ("make ", "builds"),
     ("simulated_study", "as rosrun, below"),
@@ -121,6 +122,13 @@ def excepted(text):
     return [index for index, (beginning, _) in enumerate(EXCEPTED) if re.match(beginning, text)]
 
 
+def shortened(words, *options):
+    """Words of simulated_study with one operator at 0 g, and these options, but where they say something else."""
+    for option, value in (("--operators", "1-1"), ("--gravity", "0")) + options:
+        words = words if option in words else words + [option, value]
+    return words
+
+
 def to_run(beginning):
     return [command for command in COMMANDS if command.text.startswith(beginning) and not excepted(command.text)]
 
@@ -168,9 +176,9 @@ class User:
         text = text.replace("$HOME", self.folder)
         return [re.sub("^~(?=/|$)", self.folder, word) for word in shlex.split(text)]
 
-    def run(self, words, timeout=120, stdin=""):
+    def run(self, words, timeout=120, stdin="", folder=None):
         """Status and output."""
-        done = subprocess.run(words, cwd=self.folder, env=self.environment, input=stdin, timeout=timeout, check=False,
+        done = subprocess.run(words, cwd=folder or self.folder, env=self.environment, input=stdin, timeout=timeout, check=False,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         return done.returncode, done.stdout
 

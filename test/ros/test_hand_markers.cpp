@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "rendering/skin.h"
@@ -10,11 +11,26 @@
 namespace mrhi {
 namespace {
 
+constexpr int kWristSides = 6;
+
+/// The skin, then the wrist's sides.
+std::vector<const Marker*> parts_of(const Shown& shown) {
+  std::vector<const Marker*> parts;
+  for (const Marker& marker : shown.array.markers)
+    if (marker.ns == "hand") parts.push_back(&marker);
+  return parts;
+}
+
+/// In world; markers are not turned.
+Vector3 place_of(const Marker& marker, std::size_t i) {
+  return from_message(marker.pose.position) + from_message(marker.points[i]);
+}
+
 TEST(HandMarkers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   Shown shown;
   shown.see_hands(2);
   auto added = shown.update();
-  EXPECT_EQ(added["hand"], 4);  // two skins, and their wrists
+  EXPECT_EQ(added["hand"], 2 * (1 + kWristSides));  // two skins, and the sides of their wrists
   const int capsules = added["capsules"];
   EXPECT_GT(capsules, 2 * kPhalanges);
   const Marker& skin = shown.first("hand");
@@ -22,8 +38,8 @@ TEST(HandMarkers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   EXPECT_EQ(skin.colors.size(), skin.points.size());
   shown.see_hands(1);
   added = shown.update();
-  EXPECT_EQ(added["hand"], 2);
-  EXPECT_EQ(shown.deleted("hand"), 2);
+  EXPECT_EQ(added["hand"], 1 + kWristSides);
+  EXPECT_EQ(shown.deleted("hand"), 1 + kWristSides);
   EXPECT_EQ(shown.deleted("capsules"), capsules / 2);
   shown.update();
   EXPECT_EQ(shown.deleted("hand"), 0);
@@ -34,12 +50,14 @@ TEST(HandMarkers, the_skin_is_opaque_and_closed_and_the_wrist_ends_in_nothing) {
     Shown shown;
     shown.see_hands(1, side);
     shown.update();
-    std::vector<const Marker*> parts;
-    for (const Marker& marker : shown.array.markers) {
-      if (marker.ns == "hand") parts.push_back(&marker);
+    const std::vector<const Marker*> parts = parts_of(shown);
+    ASSERT_EQ(parts.size(), 1u + kWristSides);
+    const Marker& skin = *parts[0];
+    Marker wrist;
+    for (std::size_t part = 1; part < parts.size(); ++part) {
+      wrist.points.insert(wrist.points.end(), parts[part]->points.begin(), parts[part]->points.end());
+      wrist.colors.insert(wrist.colors.end(), parts[part]->colors.begin(), parts[part]->colors.end());
     }
-    ASSERT_EQ(parts.size(), 2u);
-    const Marker &skin = *parts[0], &wrist = *parts[1];
     EXPECT_GE(skin.points.size() + wrist.points.size(), 3 * Skin::human().triangles().size());
     EXPECT_LT(wrist.points.size(), skin.points.size() / 3);
     Vector3 area = Vector3::Zero();  // of a closed surface it is none
@@ -61,8 +79,7 @@ using Triangle = std::array<Vector3, 3>;
 std::vector<Triangle> triangles_of(const Marker& marker) {
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i < marker.points.size(); i += 3)
-    triangles.push_back({from_message(marker.points[i]), from_message(marker.points[i + 1]),
-                         from_message(marker.points[i + 2])});
+    triangles.push_back({place_of(marker, i), place_of(marker, i + 1), place_of(marker, i + 2)});
   return triangles;
 }
 
@@ -82,19 +99,46 @@ TEST(HandMarkers, the_lid_below_the_wrist_lies_within_the_hand) {
   Shown shown;
   shown.see_hands(1);
   shown.update();
-  std::vector<std::vector<Triangle>> parts;
-  for (const Marker& marker : shown.array.markers)
-    if (marker.ns == "hand") parts.push_back(triangles_of(marker));
-  ASSERT_EQ(parts.size(), 2u);
-  std::vector<Triangle> surface = parts[0];
-  const std::size_t skin = Skin::human().triangles().size() - parts[1].size();
+  const std::vector<const Marker*> parts = parts_of(shown);
+  ASSERT_EQ(parts.size(), 1u + kWristSides);
+  std::vector<Triangle> surface = triangles_of(*parts[0]), wrist;
+  for (std::size_t part = 1; part < parts.size(); ++part)
+    for (const Triangle& triangle : triangles_of(*parts[part])) wrist.push_back(triangle);
+  const std::size_t skin = Skin::human().triangles().size() - wrist.size();
   ASSERT_GT(surface.size(), skin + 10);
   const std::vector<Triangle> lid(surface.begin() + static_cast<std::ptrdiff_t>(skin), surface.end());
   surface.resize(skin);
-  surface.insert(surface.end(), parts[1].begin(), parts[1].end());
+  surface.insert(surface.end(), wrist.begin(), wrist.end());
   for (const Triangle& triangle : lid) {
     const Vector3 centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
     EXPECT_GT(turns_round(centre, surface), 0.5) << (centre - triangle[0]).transpose();
+  }
+}
+
+// rviz draws what is translucent from the farthest marker's place to the nearest: where the wrist's far side
+// stood before its near one, a step of tone went across it.
+TEST(HandMarkers, the_sides_of_the_wrist_that_face_the_eye_are_nearer_to_it_than_those_that_do_not) {
+  Shown shown;
+  shown.see_hands(1);
+  shown.update();
+  const std::vector<const Marker*> parts = parts_of(shown);
+  Vector3 wrist = Vector3::Zero();
+  for (std::size_t part = 1; part < parts.size(); ++part)
+    wrist += from_message(parts[part]->pose.position) / kWristSides;
+  for (const Vector3& towards : {Vector3(0, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(0, 0, -1)}) {
+    const Vector3 eye = wrist + 0.4 * towards;
+    double farthest_facing = 0.0, nearest_averted = 1.0;
+    for (std::size_t part = 1; part < parts.size(); ++part) {
+      Vector3 area = Vector3::Zero();
+      for (const Triangle& t : triangles_of(*parts[part])) area += (t[1] - t[0]).cross(t[2] - t[0]);
+      const Vector3 place = from_message(parts[part]->pose.position);
+      const double facing = area.normalized().dot((eye - place).normalized());
+      if (facing > 0.3) farthest_facing = std::max(farthest_facing, (eye - place).norm());
+      if (facing < -0.3) nearest_averted = std::min(nearest_averted, (eye - place).norm());
+    }
+    ASSERT_GT(farthest_facing, 0.0);
+    ASSERT_LT(nearest_averted, 1.0);
+    EXPECT_LT(farthest_facing, nearest_averted) << towards.transpose();
   }
 }
 

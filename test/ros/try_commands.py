@@ -14,19 +14,23 @@ import rosgraph
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
-from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, page_packages  # noqa: E402
+from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, page_packages, shortened  # noqa: E402
 
 TIME_LIMIT = 900  # s, of a command; a picture on a slow machine takes minutes
 NOT_TRIED = (  # what the command begins with, and why it is not run here; beyond what EXCEPTED says
     ("scripts/demo$", "has been run to come here"),
     ("scripts/test$", "runs by itself: scripts/test_on"),
     ("scripts/test_on", "brings us here"),
-    ("scripts/benchmark|scripts/fuzz|scripts/calibrate_study", "takes long"),
-    ("scripts/sanitize", "builds all anew with sanitizers, an hour"),
+    ("scripts/benchmark --(full|real|jolt)|scripts/fuzz|scripts/calibrate_study", "takes long"),
+    ("scripts/sanitize address", "builds all anew with sanitizers, an hour"),
     ("scripts/ask_ratings .*--page", "asks on a page in a browser; test_ask_ratings"),
     ("rosrun mr_hand_interaction training_keys", "needs a participant; training.test"),
 )
-RUN_AFTER_ALL = ("rosrun mr_hand_interaction (analyse_study|ask_ratings)", "apt-get install")
+RUN_AFTER_ALL = (  # what EXCEPTED says of other places
+    "rosrun mr_hand_interaction (analyse_study|ask_ratings|stability_map --quick|real_grasps --list)",
+    "make -C build/catkin (stability_map|real_grasps|latency)", "benchmark/count_stability_map.py stability/",
+    "roslaunch benchmark/latency", "apt-get install")
+IN_THE_PACKAGE = ("make -C build/catkin", "roslaunch benchmark/")
 ANSWERS = "yes\n31\nfemale\nright\nnone\n" + "4\n" * 20  # to whatever asks
 
 
@@ -124,6 +128,9 @@ class Tries:
         text = command.text
         words = self.user.words(command)
         self.background.want_demo(re.match("rosrun|rosservice", text) is not None)
+        if text.startswith(IN_THE_PACKAGE):
+            self.user.check_runs(command, words, timeout=TIME_LIMIT, folder=PACKAGE)
+            return
         if text.startswith("roslaunch "):
             self.user.check_comes_up(command)
             subprocess.run(["rosparam", "set", "/use_sim_time", "false"], check=True)
@@ -133,9 +140,9 @@ class Tries:
             assert "master" in self.user.run(words, timeout=TIME_LIMIT)[1]
             return
         if "simulated_study" in text:
-            words += ["--operators", "1-1", "--gravity", "0"]
+            words = shortened(words)
         words = self.filled_in(words)
-        if words[0].startswith("scripts/"):
+        if words[0].startswith(("scripts/", "benchmark/")):
             words[0] = os.path.join(PACKAGE, words[0])
         output = self.user.check_runs(command, words, timeout=TIME_LIMIT, stdin=ANSWERS)
         assert not text.startswith("rosservice") or "success: True" in output, "%s\n%s" % (command, output)

@@ -43,7 +43,9 @@ class ResultPublisher {
   void publish_markers(const FrameResult& result, const std_msgs::Header& header);
   void let_picture_go() const;
   void publish_rest(const FrameResult& result, const std_msgs::Header& header);
+  void publish_contacts(const FrameResult& result, const std_msgs::Header& header);
   void publish_objects(const std_msgs::Header& header);
+  void publish_transforms(const std_msgs::Header& header);
 
   std::string fixed_frame_;
   const StampClock& clock_;
