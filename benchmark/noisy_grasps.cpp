@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "synthetic/performance.h"
+#include "text/csv.h"
 
 namespace mrhi {
 namespace {
@@ -25,9 +26,12 @@ int share_held(const std::string& motion, testing::Staging staging, int seeds) {
 void write_row(const std::string& motion, const testing::Staging& estimated, int seeds) {
   testing::Staging fixed = estimated;
   fixed.filter.noise = kUsualNoise;
-  std::cout << motion << ',' << (estimated.stand ? "table" : "0 g") << ',' << 1e3 * estimated.noise << ','
-            << estimated.correlation << ',' << estimated.dropped << ',' << estimated.rate << ','
-            << share_held(motion, estimated, seeds) << ',' << share_held(motion, fixed, seeds) << std::endl;
+  const std::string place = estimated.stand ? "table" : "0 g";
+  (CsvRows(std::cout) << motion << place << 1e3 * estimated.noise << estimated.correlation
+                      << estimated.dropped << estimated.rate << share_held(motion, estimated, seeds)
+                      << share_held(motion, fixed, seeds))
+      .end_row();
+  std::cout.flush();
 }
 
 /// Noise of a stream beside its size.

@@ -15,6 +15,7 @@
 #include "nodes/exit_status.h"
 #include "support/stability_map.h"
 #include "text/command_line.h"
+#include "text/csv.h"
 
 namespace mrhi::testing {
 namespace {
@@ -63,8 +64,9 @@ void map_model(const char* name, ContactModelKind model, const StabilityGrid& gr
   const auto start = std::chrono::steady_clock::now();
   grid.for_every_cell(model, [&](const StabilityCell& cell) {
     const StabilityResult result = StabilityRun(cell).play();
-    csv << name << ',' << cell.mass << ',' << cell.step << ',' << cell.stiffness << ',' << cell.contacts
-        << ',' << cell.restitution << ',' << to_string(result.outcome) << ',' << result.largest_speed << '\n';
+    (CsvRows(csv) << name << cell.mass << cell.step << cell.stiffness << cell.contacts << cell.restitution
+                  << to_string(result.outcome) << result.largest_speed)
+        .end_row();
     ++counts[static_cast<std::size_t>(result.outcome)];
     ++cells;
   });

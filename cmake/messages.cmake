@@ -6,6 +6,9 @@ add_message_files(FILES
 add_service_files(FILES DeleteObject.srv SaveWorld.srv SetParameter.srv SpawnObject.srv SpawnUrdf.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 generate_dynamic_reconfigure_options(cfg/Tune.cfg)
+# Which reads the filters' numbers there.
+add_custom_command(OUTPUT ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_INCLUDE_DESTINATION}/TuneConfig.h
+  APPEND DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/config/default.yaml)
 
 set(run_packages ${ros_packages} message_runtime)
 list(REMOVE_ITEM run_packages message_generation rosbag_storage)  # the latter: inside the library alone

@@ -2,6 +2,8 @@
 file(GLOB ros_sources src/ros/*.cpp src/replay/*.cpp)
 set(SANITIZED_SOURCES "" CACHE STRING "What scripts/sanitize adds to the ROS library")
 add_library(${PROJECT_NAME}_ros ${ros_sources} ${SANITIZED_SOURCES})
+write_tracker_registry(src/ros)
+target_include_directories(${PROJECT_NAME}_ros PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated src)
 target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})

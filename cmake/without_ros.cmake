@@ -1,6 +1,6 @@
 # What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
 set(replay_parts
-  arguments change change_yaml compare csv_columns csv_file demonstration dictionary explain_chart explain_drawing explain_html explain_json explain_losses explain_moments explain_stay explain_watch grip_margin
+  arguments change change_yaml compare csv_columns demonstration dictionary explain_chart explain_drawing explain_html explain_json explain_losses explain_moments explain_stay explain_watch grip_margin
   frame_source json_text prepare_simulation progress_bar
   recording_csv replay replay_log result_writer run summary urdf_meshes world)
 file(GLOB without_ros src/without_ros/*.cpp)

@@ -10,6 +10,7 @@
 #include "scores.h"
 #include "settings.h"
 #include "support/recordings.h"
+#include "text/csv.h"
 
 namespace mrhi::filter_benchmark {
 namespace {
@@ -37,32 +38,33 @@ std::vector<Group> load_groups(const std::vector<std::string>& files) {
 
 constexpr double kMilli = 1e3;
 
-std::string named(const Setting& setting) {
-  return setting.filter + ',' + setting.series + ',' + setting.setting + ',' +
-         (setting.is_default ? "1" : "0");
+CsvRows& named(const Setting& setting, CsvRows& row) {
+  return row << setting.filter << setting.series << setting.setting << setting.is_default;
 }
 
 void write_recordings(const std::vector<std::string>& files, std::ostream& csv) {
   csv << "input,frames_per_s,filter,series,setting,default,jitter_mm,lag_ms,lag_p90_ms,moving_error_mm,"
          "still_error_mm,moving_jitter_mm,bone_error_mm,moves\n";
+  CsvRows row(csv);
   for (const Group& group : load_groups(files)) {
     for (const Setting& setting : settings()) {
       const Scores scores = score(group.takes, setting.configuration);
-      csv << group.input << ',' << group.rate << ',' << named(setting);
+      named(setting, row << group.input << group.rate);
       for (const double value : {scores.jitter, scores.lag, scores.lag_p90, scores.moving_error,
                                  scores.still_error, scores.moving_jitter, scores.bone_error})
-        csv << ',' << kMilli * value;
-      csv << ',' << scores.moves << '\n';
+        row << kMilli * value;
+      (row << scores.moves).end_row();
     }
   }
 }
 
 void write_rides(std::ostream& csv) {
   csv << "filter,series,setting,default,true_slip_mm,displacement_mm,jitter_mm\n";
+  CsvRows row(csv);
   for (const Setting& setting : settings()) {
     const Ride held = ride(setting.configuration);
-    csv << named(setting) << ',' << kMilli * held.true_slip << ',' << kMilli * held.displacement << ','
-        << kMilli * held.jitter << '\n';
+    named(setting, row) << kMilli * held.true_slip << kMilli * held.displacement << kMilli * held.jitter;
+    row.end_row();
   }
 }
 

@@ -1,6 +1,9 @@
 #include "settings.h"
 
+#include <algorithm>
+
 #include "mr_hand_interaction/parameters.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi::filter_benchmark {
 namespace {
@@ -27,9 +30,10 @@ const std::vector<Series>& all_series() {
 }
 
 bool same(const FilterConfiguration& a, const FilterConfiguration& b) {
-  return a.type == b.type && a.window == b.window && a.min_cutoff == b.min_cutoff && a.beta == b.beta &&
-         a.derivative_cutoff == b.derivative_cutoff && a.noise == b.noise &&
-         a.acceleration == b.acceleration && a.agility == b.agility;
+  return a.type == b.type &&
+         std::all_of(filter_settings().begin(), filter_settings().end(), [&](const FilterSetting& setting) {
+           return std::visit([&](auto value) { return a.*value == b.*value; }, setting.value);
+         });
 }
 
 Setting setting_of(const Series& series, const std::string& value) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
+#include "text/text.h"
 
 namespace mrhi::real_grasps {
 namespace {
@@ -12,8 +12,7 @@ namespace {
 std::vector<Row> rows_of(const std::string& names) {
   const std::vector<Row> all = all_rows();
   std::vector<Row> rows;
-  std::istringstream list(names);
-  for (std::string name; std::getline(list, name, ',');) {
+  for (const std::string& name : text::split(names)) {
     const auto row = std::find_if(all.begin(), all.end(), [&](const Row& r) { return r.name == name; });
     if (row == all.end()) {
       std::string known;
@@ -22,7 +21,6 @@ std::vector<Row> rows_of(const std::string& names) {
     }
     rows.push_back(*row);
   }
-  if (rows.empty()) throw UsageError("--only: a row's name is needed");
   return rows;
 }
 

@@ -3,17 +3,12 @@
 
 #include "report.h"
 #include "statistics.h"
+#include "text/csv.h"
 
 namespace mrhi::real_grasps {
 namespace {
 
 constexpr double kMilli = 1e3;
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
 
 std::string number_or_nothing(const std::optional<double>& value) {
   return value ? std::to_string(*value) : "";
@@ -22,11 +17,11 @@ std::string number_or_nothing(const std::optional<double>& value) {
 void write_row(std::ostream& csv, const Contender& contender, const std::string& row, const char* half,
                const Summary& sum) {
   const Interval interval = wilson(sum.carried, sum.events);
-  csv << contender.engine << ',' << quoted(contender.setting) << ',' << row << ',' << half << ','
-      << sum.events << ',' << sum.held << ',' << sum.carried << ',' << interval.low << ',' << interval.high
-      << ',' << sum.fair << ',' << sum.held_fair << ',' << sum.carried_fair << ',' << sum.force << ','
-      << kMilli * sum.away << ',' << kMilli * sum.release << ',' << sum.frame_time << ','
-      << sum.frame_time_p99 << ',' << sum.taken << '\n';
+  (CsvRows(csv) << contender.engine << contender.setting << row << half << sum.events << sum.held
+                << sum.carried << interval.low << interval.high << sum.fair << sum.held_fair
+                << sum.carried_fair << sum.force << kMilli * sum.away << kMilli * sum.release
+                << sum.frame_time << sum.frame_time_p99 << sum.taken)
+      .end_row();
 }
 
 }  // namespace
@@ -53,13 +48,14 @@ void write_events(std::ostream& csv, const Contender& contender, const std::stri
                   const std::vector<Event>& events) {
   for (const Event& event : events) {
     const Outcome& o = event.outcome;
-    csv << contender.engine << ',' << quoted(contender.setting) << ',' << row << ',' << event.recording << ','
-        << event.closing.closed << ',' << event.closing.opens << ',' << o.held << ',' << o.carried << ','
-        << kMilli * o.away << ',' << kMilli * o.early << ',' << o.force << ','
-        << number_or_nothing(o.grasp_began) << ',' << number_or_nothing(o.grasp_ended) << ','
-        << number_or_nothing(o.let_go) << ',' << kMilli * o.release << ',' << o.speed << ',' << quoted(o.note)
-        << ',' << o.taken << ',' << (o.blow ? std::to_string(o.blow->time) : "") << ','
-        << (o.blow ? to_string(o.blow->blow) : "") << '\n';
+    const std::string blow_time = o.blow ? std::to_string(o.blow->time) : "";
+    const std::string blow_by = o.blow ? to_string(o.blow->blow) : "";
+    (CsvRows(csv) << contender.engine << contender.setting << row << event.recording << event.closing.closed
+                  << event.closing.opens << o.held << o.carried << kMilli * o.away << kMilli * o.early
+                  << o.force << number_or_nothing(o.grasp_began) << number_or_nothing(o.grasp_ended)
+                  << number_or_nothing(o.let_go) << kMilli * o.release << o.speed << o.note << o.taken
+                  << blow_time << blow_by)
+        .end_row();
   }
 }
 
@@ -71,9 +67,10 @@ void write_arctic(std::ostream& csv, const Contender& contender, const std::stri
                   const std::vector<WindowOutcome>& outcomes) {
   const std::size_t to_the_end = stayed(outcomes, 0.05);
   const Interval interval = wilson(to_the_end, outcomes.size());
-  csv << contender.engine << ',' << quoted(contender.setting) << ',' << group << ',' << outcomes.size() << ','
-      << to_the_end << ',' << interval.low << ',' << interval.high << ',' << share_within(outcomes, 0.05)
-      << ',' << share_within(outcomes, 0.02) << ',' << force_p90(outcomes) << '\n';
+  (CsvRows(csv) << contender.engine << contender.setting << group << outcomes.size() << to_the_end
+                << interval.low << interval.high << share_within(outcomes, 0.05)
+                << share_within(outcomes, 0.02) << force_p90(outcomes))
+      .end_row();
 }
 
 }  // namespace mrhi::real_grasps

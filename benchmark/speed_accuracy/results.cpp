@@ -3,15 +3,18 @@
 #include <cmath>
 #include <iostream>
 
+#include "text/csv.h"
+
 namespace mrhi::benchmark {
 namespace {
 
 void write_row(std::ostream& csv, const std::string& scene, const Contender& contender, double step,
                const Measure& measure) {
   const StepTime& time = contender.result().time;
-  csv << scene << measure.suffix << ',' << contender.engine() << ',' << contender.setting() << ',' << step
-      << ',' << time.median << ',' << time.percentile_99 << ',' << measure.error << ',' << measure.unit << ','
-      << (measure.failed || !std::isfinite(measure.error)) << '\n';
+  (CsvRows(csv) << scene + measure.suffix << contender.engine() << contender.setting() << step << time.median
+                << time.percentile_99 << measure.error << measure.unit
+                << (measure.failed || !std::isfinite(measure.error)))
+      .end_row();
 }
 
 }  // namespace
@@ -49,8 +52,9 @@ void write_times(std::ostream& csv, const std::string& scene, double step,
   for (const auto& contender : contenders) {
     if (!contender->result().supported || !contender->trouble().empty()) continue;
     const StepTime& time = contender->result().time;
-    csv << scene << ',' << contender->engine() << ',' << contender->setting() << ',' << step << ','
-        << time.mean << ',' << time.median << ',' << time.percentile_99 << ',' << time.most << '\n';
+    (CsvRows(csv) << scene << contender->engine() << contender->setting() << step << time.mean << time.median
+                  << time.percentile_99 << time.most)
+        .end_row();
   }
 }
 

@@ -27,10 +27,23 @@ inline constexpr ContactModelKind ContactModelKind::impulse{"impulse"};
 inline constexpr ContactModelKind ContactModelKind::virtual_spring{"virtual_spring"};
 inline constexpr ContactModelKind ContactModelKind::soft_pad{"soft_pad"};
 
-enum class FilterKind { none, window, one_euro, constant_velocity };
+/// Names one of hand_filters() (src/tracking/hand_filter.h), as a ContactModelKind does a contact model.
+struct FilterKind {
+  std::string_view name;  ///< of static storage
+
+  static const FilterKind none, window, one_euro, constant_velocity;
+
+  friend bool operator==(const FilterKind& a, const FilterKind& b) { return a.name == b.name; }
+  friend bool operator!=(const FilterKind& a, const FilterKind& b) { return !(a == b); }
+};
+inline constexpr FilterKind FilterKind::none{"none"};
+inline constexpr FilterKind FilterKind::window{"window"};
+inline constexpr FilterKind FilterKind::one_euro{"one_euro"};
+inline constexpr FilterKind FilterKind::constant_velocity{"constant_velocity"};
 
 constexpr double kUsualNoise = 0.0004;  ///< of a good tracker's sample, rms on an axis [m]
 
+/// The kind of filter, and the settings of all. A setting is one when its filter's entry names it.
 struct FilterConfiguration {
   FilterKind type = FilterKind::constant_velocity;
   int window = 3;                   ///< F of Eq. 1, frames

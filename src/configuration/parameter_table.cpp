@@ -7,8 +7,8 @@
 #include "../scene/material_fields.h"
 #include "../text/text.h"
 #include "../text/yaml_values.h"
+#include "../tracking/hand_filter.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/tracking/filter_memory.h"
 
 namespace mrhi {
 namespace {
@@ -179,34 +179,38 @@ std::vector<ParameterEntry> refinements() {
   return entries;
 }
 
+/// By what a filter's setting is of: a whole number, a number, or one that may be a word.
+struct FilterParameter {
+  const FilterSetting& setting;
+  const std::string name = std::string("filter/") + setting.name;
+
+  template <class T>
+  static Member<T> member(T FilterConfiguration::*value) {
+    return [value](Configuration & c) -> auto& {
+      return c.filter.*value;
+    };
+  }
+  ParameterEntry operator()(int FilterConfiguration::*value) const {
+    return integer(name, static_cast<int>(setting.range.min), static_cast<int>(setting.range.max),
+                   member(value));
+  }
+  ParameterEntry operator()(double FilterConfiguration::*value) const {
+    return number(name, setting.unit, setting.range, setting.slider, member(value));
+  }
+  ParameterEntry operator()(std::optional<double> FilterConfiguration::*value) const {
+    return number_or({setting.word, setting.meaning}, name, setting.unit, setting.range, setting.slider,
+                     member(value));
+  }
+};
+
 std::vector<ParameterEntry> filter_parameters() {
-  using C = Configuration;
-  return {
-      choice<FilterKind>(
-          "filter/type",
-          {{"none", FilterKind::none},
-           {"window", FilterKind::window},
-           {"one_euro", FilterKind::one_euro},
-           {"constant_velocity", FilterKind::constant_velocity}},
-          [](C & c) -> auto& { return c.filter.type; }),
-      integer(
-          "filter/window", 1, kMaxFilterWindow, [](C & c) -> auto& { return c.filter.window; }),
-      number(
-          "filter/min_cutoff", " [Hz]", {0.01, 1000}, {0.1, 10},
-          [](C & c) -> auto& { return c.filter.min_cutoff; }),
-      number(
-          "filter/beta", " [Hz per m/s]", {0, 10000}, {0, 500}, [](C & c) -> auto& { return c.filter.beta; }),
-      number(
-          "filter/derivative_cutoff", " [Hz]", {0.01, 1000}, {0.1, 100},
-          [](C & c) -> auto& { return c.filter.derivative_cutoff; }),
-      number_or(
-          {"estimated", "for what the stream shows"}, "filter/noise", " [m]", {1e-6, 0.1}, {1e-5, 0.01},
-          [](C & c) -> auto& { return c.filter.noise; }),
-      number(
-          "filter/acceleration", " [m/s^2]", {0.001, 1000}, {0.01, 10},
-          [](C & c) -> auto& { return c.filter.acceleration; }),
-      number(
-          "filter/agility", " [1/s]", {0, 1000}, {0, 30}, [](C & c) -> auto& { return c.filter.agility; })};
+  std::vector<std::pair<std::string, FilterKind>> names;
+  for (const HandFilter* filter : hand_filters()) names.push_back({filter->name, {filter->name}});
+  std::vector<ParameterEntry> entries{choice<FilterKind>(
+      "filter/type", names, [](Configuration & c) -> auto& { return c.filter.type; })};
+  for (const FilterSetting& setting : filter_settings())
+    entries.push_back(std::visit(FilterParameter{setting}, setting.value));
+  return entries;
 }
 
 std::vector<std::pair<std::string, ContactModelKind>> contact_model_names() {

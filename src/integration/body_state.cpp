@@ -7,6 +7,8 @@ Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation) {
   return rotation * body.inverse_inertia * rotation.transpose();
 }
 
+// w = R I^-1 R' L. Momenta are what is kept, since nothing changes them in flight; velocities follow from
+// them.
 Twist twist_of(const Body& body, const BodyState& state) {
   if (body.fixed) return {};
   const Quaternion& q = state.pose.orientation;

@@ -40,6 +40,8 @@ void turn(const Body& body, const Vector3& angular_momentum, double step, Quater
 
 }  // namespace
 
+// Exact for any step: a parabola, and Euler's equations in their closed form. The angular momentum in world
+// axes stays as it is to the bit; only the axes turn under it.
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
   const Vector3 velocity = state.linear_momentum / body.mass;

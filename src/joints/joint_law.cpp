@@ -12,6 +12,8 @@ namespace {
 /// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
 constexpr double kStopOverInertia = 1e4;
 
+/// Half-way to its nearest neighbour a detent gives way, and there its spring has the force that it is known
+/// by.
 double detent_stiffness(const Detents& detents) {
   double least = detents.at.back() - detents.at.front();
   for (std::size_t i = 1; i < detents.at.size(); ++i)
@@ -91,6 +93,7 @@ double JointLaw::Hold::force(double way) const {
 double JointLaw::Hold::slope(double way) const {
   return std::abs(wanted(way)) < most ? stiffness : 0.0;
 }
+// A spring that slips at `most`: a parabola, and a straight line from there on (Huber's function).
 double JointLaw::Hold::energy(double way) const {
   if (stiffness <= 0.0) return 0.0;
   const double size = std::abs(wanted(way));
@@ -105,6 +108,7 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double velocit
   step_ = step;
   constant_ = 0.0;
   linear_ = joint.damping;
+  // At the step's end, as contacts are: k (to - x - h v).
   const auto spring = [&](double stiffness, double to) {
     constant_ += stiffness * (to - state.position);
     linear_ += stiffness * step;
@@ -161,6 +165,7 @@ double JointLaw::size(double velocity) const {
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
   state.effort = force(velocity);
+  // Dry friction holds by a spring to an anchor, which follows where the force at the limit holds it no more.
   if (friction_.stiffness > 0.0)
     state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "../simulation/contact_phase.h"
+#include "../text/csv.h"
 #include "mr_hand_interaction/replay/result_writer.h"
 
 namespace mrhi {
@@ -85,25 +86,21 @@ void write_pose(const Pose& pose, CsvFile& file) {
   file << pose.position << q.x() << q.y() << q.z() << q.w();
 }
 
-void write_nothing(std::size_t cells, CsvFile& file) {
-  for (std::size_t i = 0; i < cells; ++i) file << std::string();
-}
-
 void write_object(const DemonstrationFrame& frame, const std::string& name, CsvFile& file) {
   const auto found = frame.objects.find(name);
-  if (found == frame.objects.end()) return write_nothing(kObjectColumns.size(), file);
+  if (found == frame.objects.end()) return file.skip(kObjectColumns.size());
   write_pose(found->second.pose, file);
   file << found->second.force << found->second.torque << (found->second.held ? 1 : 0);
 }
 
 void write_hand(const std::optional<Hand>& hand, CsvFile& file) {
-  if (!hand) return write_nothing(kPalmColumns.size() + 3 * kPhalanges, file);
+  if (!hand) return file.skip(kPalmColumns.size() + 3 * kPhalanges);
   write_pose(hand->palm, file);
   for (int capsule = 0; capsule < kPhalanges; ++capsule) {
     if (hand->has(capsule)) {
       file << hand->capsules[static_cast<std::size_t>(capsule)].end;
     } else {
-      write_nothing(3, file);
+      file.skip(3);
     }
   }
 }

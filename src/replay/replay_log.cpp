@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "../simulation/state_bytes.h"
+#include "../text/csv.h"
 #include "../text/text.h"
 #include "dictionary.h"
 #include "mr_hand_interaction/parameters.h"

@@ -1,9 +1,12 @@
 #include "mr_hand_interaction/replay/result_writer.h"
 
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <stdexcept>
 
 #include "../simulation/contact_phase.h"
+#include "../text/csv.h"
 #include "dictionary.h"
 
 namespace mrhi {
@@ -52,25 +55,33 @@ const char* event_name(EventKind kind) {
   return "";
 }
 
+struct ResultWriter::Tables {
+  explicit Tables(const std::string& folder)
+      : objects(made_folder(folder) + "/objects.csv", table_of("objects.csv").header()),
+        contacts(folder + "/contacts.csv", table_of("contacts.csv").header()),
+        hands(folder + "/hands.csv", table_of("hands.csv").header()),
+        events(folder + "/events.csv", table_of("events.csv").header()) {}
+
+  CsvFile objects, contacts, hands, events;
+  std::optional<CsvFile> joints;  // of a scene that has any
+};
+
 ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
-    : scene_(&scene),
-      objects_(made_folder(folder) + "/objects.csv", table_of("objects.csv").header()),
-      contacts_(folder + "/contacts.csv", table_of("contacts.csv").header()),
-      hands_(folder + "/hands.csv", table_of("hands.csv").header()),
-      events_(folder + "/events.csv", table_of("events.csv").header()) {
+    : scene_(&scene), tables_(std::make_unique<Tables>(folder)) {
   const std::string path = folder + "/schema.json";
   std::ofstream schema(path);
   schema << schema_json() << std::flush;
   if (!schema) throw std::runtime_error("cannot write " + path);
-  if (!scene.joints.empty()) joints_.emplace(folder + "/joints.csv", table_of("joints.csv").header());
+  if (!scene.joints.empty()) tables_->joints.emplace(folder + "/joints.csv", table_of("joints.csv").header());
 }
+ResultWriter::~ResultWriter() = default;
 
 void ResultWriter::write(const FrameResult& result, const SimulationState& state) {
   if (!begun_) first_stamp_ = result.stamp;
   begun_ = true;
   const double time = to_seconds(result.stamp - first_stamp_);
   write_objects(time, state);
-  if (joints_) write_joints(time, state);
+  if (tables_->joints) write_joints(time, state);
   write_contacts(time, result, state);
   for (const Hand& hand : result.tracked) write_hand(time, hand, nullptr);
   for (const RenderedHand& rendered : result.rendered) write_hand(time, rendered.hand, &rendered);
@@ -78,8 +89,9 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
 }
 
 void ResultWriter::flush() {
-  for (CsvFile* file : {&objects_, &contacts_, &hands_, &events_}) file->flush();
-  if (joints_) joints_->flush();
+  Tables& t = *tables_;
+  for (CsvFile* file : {&t.objects, &t.contacts, &t.hands, &t.events}) file->flush();
+  if (t.joints) t.joints->flush();
 }
 
 void ResultWriter::write_objects(double time, const SimulationState& state) {
@@ -87,19 +99,19 @@ void ResultWriter::write_objects(double time, const SimulationState& state) {
     const Body& body = scene_->bodies[i];
     if (body.fixed) continue;
     const Twist twist = twist_of(body, state.bodies[i]);
-    objects_ << time << body.name << state.bodies[i].pose.position;
-    add_quaternion(objects_, state.bodies[i].pose.orientation);
-    objects_ << twist.linear << twist.angular;
-    objects_.end_row();
+    tables_->objects << time << body.name << state.bodies[i].pose.position;
+    add_quaternion(tables_->objects, state.bodies[i].pose.orientation);
+    tables_->objects << twist.linear << twist.angular;
+    tables_->objects.end_row();
   }
 }
 
 void ResultWriter::write_joints(double time, const SimulationState& state) {
   for (std::size_t i = 0; i < scene_->joints.size(); ++i) {
     const JointState& joint = state.joints[i];
-    *joints_ << time << scene_->joints[i].name << joint.position << joint_velocity(*scene_, i, state.bodies)
-             << joint.effort;
-    joints_->end_row();
+    *tables_->joints << time << scene_->joints[i].name << joint.position
+                     << joint_velocity(*scene_, i, state.bodies) << joint.effort;
+    tables_->joints->end_row();
   }
 }
 
@@ -108,12 +120,13 @@ void ResultWriter::write_contacts(double time, const FrameResult& result, const 
     const Body& body = scene_->bodies[contact.key.body];
     const int capsule = contact.key.capsule;
     const FrictionUse use = friction_use(contact, body.material);
-    contacts_ << time << body.name << hand_id(contact, state) << finger_of(capsule) << bone_of(capsule)
-              << static_cast<int>(phase(contact)) << contact.point << contact.normal << contact.depth
-              << contact.impulse << contact.force << std::string(finger_name(capsule))
-              << std::string(bone_name(capsule)) << std::string(phase_name(phase(contact))) << use.normal
-              << use.tangential << use.limit << (use.limit > 0.0 ? use.tangential / use.limit : 0.0);
-    contacts_.end_row();
+    tables_->contacts << time << body.name << hand_id(contact, state) << finger_of(capsule)
+                      << bone_of(capsule) << static_cast<int>(phase(contact)) << contact.point
+                      << contact.normal << contact.depth << contact.impulse << contact.force
+                      << finger_name(capsule) << bone_name(capsule) << phase_name(phase(contact))
+                      << use.normal << use.tangential << use.limit
+                      << (use.limit > 0.0 ? use.tangential / use.limit : 0.0);
+    tables_->contacts.end_row();
   }
 }
 
@@ -122,20 +135,20 @@ void ResultWriter::write_hand(double time, const Hand& hand, const RenderedHand*
     if (!hand.has(i)) continue;
     const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
     const bool touching = rendered != nullptr && rendered->touching[static_cast<std::size_t>(i)];
-    hands_ << time << hand.id << static_cast<int>(hand.side) << finger_of(i) << bone_of(i)
-           << (rendered != nullptr ? 1 : 0) << capsule.start << capsule.end << capsule.radius
-           << (touching ? 1 : 0);
-    hands_.end_row();
+    tables_->hands << time << hand.id << static_cast<int>(hand.side) << finger_of(i) << bone_of(i)
+                   << (rendered != nullptr ? 1 : 0) << capsule.start << capsule.end << capsule.radius
+                   << (touching ? 1 : 0);
+    tables_->hands.end_row();
   }
 }
 
 void ResultWriter::write_events(const FrameResult& result) {
   for (const Event& event : result.events) {
     const bool has_body = event.body >= 0;
-    events_ << to_seconds(event.stamp - first_stamp_) << std::string(event_name(event.kind))
-            << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
-            << event.hand_id;
-    events_.end_row();
+    tables_->events << to_seconds(event.stamp - first_stamp_) << event_name(event.kind)
+                    << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
+                    << event.hand_id;
+    tables_->events.end_row();
   }
 }
 

@@ -56,6 +56,7 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   inertia_ = rotation * body.inertia * rotation.transpose();
   gyration_squared_ = body.inertia.trace() / (3.0 * body.mass);
+  // Newton's method begins where the forces of the step before would bring the body.
   start_.head<3>() = state.linear_momentum / body.mass;
   start_.tail<3>() = rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
   free_ = start_;
@@ -64,6 +65,8 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
   velocity_.tail<3>() = free_.tail<3>() + step_ * state.pushed.angular;
 }
 
+// Backward Euler: M (v - v_free) = h J' f(v), with forces as they are at the step's end. The gradient is the
+// impulse that is still missing.
 void BodyProblem::evaluate(bool renew_limits) {
   lanes_.respond(springs_.data(), springs_.data() + springs_.size(), velocity_.data(), renew_limits, sum_);
   const Vector6 change = velocity_ - free_;
@@ -71,6 +74,7 @@ void BodyProblem::evaluate(bool renew_limits) {
   gradient_.tail<3>() = inertia_ * change.tail<3>() - step_ * Eigen::Map<const Vector3>(sum_.torque);
 }
 
+// M - h J' (df/dv) J: symmetric, and positive definite as no contact's slope is negative.
 void BodyProblem::factorise() {
   SpringSlope slope;
   lanes_.slope(springs_.data(), springs_.data() + springs_.size(), slope);
@@ -82,6 +86,7 @@ void BodyProblem::factorise() {
   factors_.factorise(slope.entry);
 }
 
+// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
 double BodyProblem::error_squared() const {
   return gradient_.head<3>().squaredNorm() + gradient_.tail<3>().squaredNorm() / gyration_squared_;
 }
@@ -108,6 +113,8 @@ void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) co
   state.pushed.angular = (velocity_ - free_).tail<3>() / step_;
   state.linear_momentum = mass_ * velocity_.head<3>();
   state.angular_momentum = inertia_ * velocity_.tail<3>();
+  // M v less what is missing is M v_free + h J' f: momentum changes by what the contacts give, to rounding,
+  // and what one body gains another loses.
   if (agree) {
     state.linear_momentum -= gradient_.head<3>();
     state.angular_momentum -= gradient_.tail<3>();

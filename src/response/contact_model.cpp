@@ -10,9 +10,9 @@
 
 namespace mrhi {
 
-#define MRHI_DECLARE(name) extern const ContactModelEntry name##_model;
-#define MRHI_ADDRESS(name) &name##_model,
-MRHI_CONTACT_MODELS(MRHI_DECLARE)
+#define MRHI_DECLARE(name) extern const ContactModelEntry name;
+#define MRHI_ADDRESS(name) &name,
+MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
 
@@ -68,7 +68,7 @@ class WithJoints : public ContactModel {
 };
 
 std::vector<const ContactModelEntry*> in_their_places() {
-  std::vector<const ContactModelEntry*> models{MRHI_CONTACT_MODELS(MRHI_ADDRESS)};
+  std::vector<const ContactModelEntry*> models{MRHI_ENTRIES(MRHI_ADDRESS)};
   std::sort(models.begin(), models.end(), [](const auto* a, const auto* b) {
     return std::make_pair(a->place, std::string_view(a->name)) <
            std::make_pair(b->place, std::string_view(b->name));

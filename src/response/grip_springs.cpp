@@ -5,6 +5,8 @@
 
 namespace mrhi {
 
+// With no normal and no depth the spring acts in all directions, and what it bears is the bond alone: a
+// Coulomb contact whose limit does not hang on a push.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
                       int point, SpringContact<double>& result) {
   const auto i = static_cast<std::size_t>(point);
@@ -31,6 +33,8 @@ void settle_grip(const ContactStep& step, const SpringContact<double>& solved, i
   grip.force += force;
   if (response.wanted_squared <= spring.slip_limit * spring.slip_limit) return;
   grip.slips = true;
+  // Ideal plasticity: the end on the body goes after by what the force at the limit does not stretch, as far
+  // as the step goes of the time that the spring looks ahead.
   const double followed = step.step / spring.ahead;
   const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
   const Pose& pose = step.bodies[grip.body].pose;

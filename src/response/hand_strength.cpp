@@ -19,6 +19,8 @@ double pressed_by(const Contact& contact) {
 
 }  // namespace
 
+// A finger gives way once its contacts together push with its strength: each has the part of it that it has
+// of the depths, as equal springs side by side.
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
   std::array<std::array<double, kParts>, kMaxHands> depths{};
   const auto of = [&depths](const ContactKey& key) -> double& {

@@ -7,6 +7,8 @@
 
 namespace mrhi {
 
+// An impulse p at r changes v by p / m and w by I^-1 (r x p), so the point at r by p / m + (I^-1 [r]x p) x r,
+// which is p / m - [r]x I^-1 [r]x p.
 Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r) {
   const Matrix3 arm = cross_matrix(r);
   return inverse_mass * Matrix3::Identity() - arm * world_inverse_inertia * arm;

@@ -11,12 +11,16 @@ PenetrationLaw penetration_law(const ContactConfiguration& configuration) {
   return {configuration.damping, configuration.release_fade};
 }
 
+// Eqs. 16 and 17: gamma times the depth, along n alone. The factor behind it is not in the paper: without any
+// loss what is held in microgravity rings for ever.
 double normal_force(double stiffness, double depth, double normal_velocity, double fade) {
   if (depth <= 0.0) return 0.0;
   const double parting = std::max(normal_velocity, 0.0) * fade;
   return stiffness * depth * std::max(1.0 - parting, 0.0);
 }
 
+// Eqs. 18 to 20. As printed a sliding contact gives phi f_t, which grows with the stretch without bound; here
+// it gives phi |f_n| in the direction of f_t, which is Coulomb's law.
 Tangential coulomb(const Vector3& spring_force, double normal_force, const Material& material,
                    Friction before) {
   const double wanted = spring_force.norm();
@@ -38,10 +42,12 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 
   const Vector3 reach = contact.hand_point - contact.point;
   const Vector3 stretch = reach - n.dot(reach) * n;
+  // The dashpot beside the spring is within the cone too: friction bears both, or slides.
   const Vector3 drag = damping * contact.share * (velocity - n.dot(velocity) * n);
   const Tangential tangential = coulomb(stiffness * stretch + drag, push, body.material, contact.friction);
   contact.friction = tangential.friction;
   if (tangential.friction == Friction::slipping) {
+    // The god object follows to where the spring has just the force that is left.
     contact.point += stretch - tangential.force / stiffness;
     contact.god_object = state.pose.to_local(contact.point);
   }
@@ -61,6 +67,7 @@ void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
     double share = 0.0;  // the number of phalanges in touch
     for (auto contact = first; contact != last; ++contact)
       share += contact->touching() ? contact->share : 0.0;
+    // Of N phalanges in touch c = 2 zeta sqrt(N gamma m) together: each has c / N, times its share.
     const double damping =
         body.fixed || share == 0.0 || !law.damping
             ? 0.0

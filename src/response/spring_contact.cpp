@@ -17,7 +17,8 @@ constexpr double kRelaxation = 0.005;
 /// Lever at which the tangential springs of a fingertip's contact patch resist twisting about the normal [m].
 constexpr double kTwistLever = 0.025;
 
-/// Friction torque of a patch that presses evenly, over friction times push times its radius.
+/// Friction torque of a patch that presses evenly, over friction times push times its radius: the mean
+/// distance of a disc's points from its middle.
 constexpr double kPatchTorque = 2.0 / 3.0;
 
 /// Nothing is damped before it touches.
@@ -43,6 +44,8 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.stretch = reach - n.dot(reach) * n;
   spring.depth = each(&Contact::pressed);
   spring.twist = each(&Contact::twist);
+  // Kelvin and Voigt's f = k (q + tau q') at the step's end: there q has grown by h q', so it is k (q + (h +
+  // tau) q') with the q of now and the rate that is solved for. `ahead` is h + tau.
   spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
   spring.fade = constant<Real>(release_fade(configuration.release_fade));
   const HandStrength& hand = configuration.hand;
@@ -51,6 +54,7 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
   spring.yields = each(&Contact::strength) / greater(spring.stiffness, constant<Real>(1e-300));
   spring.bond = constant<Real>(0.0);
+  // Springs k at a lever l: a turn by 1 rad stretches them by l, and they give k l at that lever.
   const double twisting = configuration.torsion ? kTwistLever * kTwistLever : 0.0;
   spring.twist_stiffness = spring.stiffness * constant<Real>(twisting);
   spring.friction =
@@ -92,6 +96,8 @@ SpringContact<double> contact_in(int, const SpringContact<double>& only) {
 Vector3 slide(const SpringContact<double>& solved, double dynamic_friction, double step) {
   const Spring<double>& spring = solved.spring;
   const SpringResponse<double>& response = solved.response;
+  // The ends part by h u = (h / ahead) (drawn - stretch). Spring and dashpot take up as much of it as the
+  // force F at the rim stretches them by in h, (h / ahead) (F / k - stretch). The rest is slid.
   const double followed = step / spring.ahead;
   const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
   const Vector3 tangential = vector(response.force + response.push * spring.normal);
@@ -142,6 +148,7 @@ template <typename Stored, typename Touch>
 void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
   const auto of = [lane](const auto& value) { return lane_of(lane, value); };
   touch.force = vector(of(solved.response.force));
+  // What slips sticks again well within the limit only: at the limit it would change over in every step.
   const double limit =
       (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * of(solved.spring.slip_limit);
   const bool sticks = of(solved.response.wanted_squared) <= limit * limit;
@@ -259,6 +266,8 @@ double push_energy(const Spring<double>& spring, double rate) {
 
 }  // namespace
 
+// Minus its gradient is the force. With Coulomb's limits held it is convex, since each force falls as its own
+// rate grows; so the step has one solution, and a line search along Newton's direction finds it.
 double potential(const Spring<double>& spring, const Triple<double>& u, double spin) {
   const double rate = u.dot(spring.normal);
   const Triple<double> drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);

@@ -14,6 +14,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// When two points `apart` that part by `velocity` are `distance` from each other for the first time [s].
 double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
+  // |apart + t velocity| = distance has two roots: the first, in the form that does not cancel.
   const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
   if (outside <= 0.0) return 0.0;
   const double discriminant = closing * closing - velocity.squaredNorm() * outside;
@@ -63,6 +64,8 @@ void Strike::move_to(double later) {
   const double wait = later - time;
   time = later;
   if (!is_of_balls()) {
+    // rate() is the step's start's: by gravity it has grown by a t, in the mean of the wait by a (t - wait /
+    // 2).
     gap += wait * (rate() + acceleration * (time - 0.5 * wait));
     move_arms(wait);
     return;
@@ -89,6 +92,7 @@ void Strike::prepare() {
   magnitude = 0.0;
   drag.setZero();
   a.recoil.setZero();
+  // Eq. 12 of both: an impulse p parts the points by (K_a + K_b) p. Along n its effective mass is 1 / n.K n.
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
   normal_mass = 1.0 / normal.dot(k * normal);
   if (friction <= 0.0) return;
@@ -97,6 +101,7 @@ void Strike::prepare() {
   tangential_mass = (tangents.transpose() * k * tangents).inverse();
 }
 
+// A row of projected Gauss-Seidel (Catto 2005): the sum of the impulses must not pull, a single one may.
 double Strike::relax_normal() {
   const double velocity = normal.dot(relative_velocity());
   const double wanted = std::max(0.0, magnitude + normal_mass * (target - velocity));
@@ -107,6 +112,8 @@ double Strike::relax_normal() {
   return std::abs(change) / normal_mass;
 }
 
+// Likewise, within Coulomb's disc of radius mu j. Both directions at once: limited one by one they would make
+// a square, and friction at its corners be 1.4 times too strong.
 double Strike::relax_tangential() {
   if (friction <= 0.0) return 0.0;
   const Eigen::Vector2d needed = tangential_mass * (tangents.transpose() * relative_velocity());

@@ -1,9 +1,9 @@
 #include "mr_hand_interaction/ros/marker_relay.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
+#include "../text/text.h"
 #include "private_parameters.h"
 
 namespace mrhi {
@@ -16,11 +16,10 @@ constexpr double kAfresh = 1.0;  // what was lost on the way is made up for afte
 
 std::set<std::string> left_out_from(const ros::NodeHandle& parameters) {
   refuse_unknown(parameters, {"leave_out", "rate"});
-  std::string names, name;
+  std::string names;
   read_parameter(parameters, "leave_out", "a string", names);
-  std::set<std::string> left_out;
-  for (std::istringstream in(names); std::getline(in, name, ',');) left_out.insert(name);
-  return left_out;
+  const std::vector<std::string> left_out = text::split(names);
+  return {left_out.begin(), left_out.end()};
 }
 
 double rate_from(const ros::NodeHandle& parameters) {

@@ -4,14 +4,13 @@
 #include <tuple>
 #include <vector>
 
-#include "tracker_point_cloud.h"
-#include "tracker_pose_array.h"
+#include "tracker_list.h"
 
 namespace mrhi {
 
-/// Every message that trackers may give hands in besides the Leap's. Each has a struct with the type,
-/// Message, how its topics end, kTopic, and what it says, read().
-using TrackerMessages = std::tuple<PoseArrayTracker, PointCloudTracker>;
+// TrackerMessages is every message that trackers may give hands in besides the Leap's. Each has a file,
+// tracker_NAME.h, with a struct NAMETracker: the type, Message, how its topics end, kTopic, and what it says,
+// read(). The build finds it.
 
 /// Calls `use` with one of each.
 template <class Use>

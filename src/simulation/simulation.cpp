@@ -61,6 +61,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, gravity, refinements(configuration)),
       renderer(scene, finder) {
+  check_filter(configuration.filter.type);
   reset();
 }
 

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "../tracking/hand_filter.h"
+
 namespace mrhi {
 namespace {
 
@@ -20,6 +22,10 @@ constexpr std::uint64_t kFormat = 0x6d72686900000003ull;
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
                               "; allowed: a whole one of this version");
+}
+
+void below(int number, double most) {
+  if (number < 0 || number > most) refuse("has a number that is too large");
 }
 
 std::uint64_t checksum(const char* data, std::size_t size) {
@@ -102,7 +108,7 @@ class Parts {
   }
   void up_to(int& number, int most) {
     one(number);
-    if (number < 0 || number > most) refuse("has a number that is too large");
+    below(number, most);
   }
   template <class Item>
   void one(std::vector<Item>& items) {
@@ -182,10 +188,22 @@ class Parts {
     all(from, begin, duration);
   }
   void one(FilterConfiguration& part) {
-    auto& [type, window, min_cutoff, beta, derivative_cutoff, noise, acceleration, agility] = part;
-    one_of(type, FilterKind::constant_velocity);
-    up_to(window, kMaxFilterWindow);
-    all(min_cutoff, beta, derivative_cutoff, noise, acceleration, agility);
+    one(part.type);
+    for (const FilterSetting& setting : filter_settings()) {
+      std::visit([&](auto value) { one(part.*value); }, setting.value);
+      if (const auto* whole = std::get_if<int FilterConfiguration::*>(&setting.value))
+        below(part.**whole, setting.range.max);
+    }
+  }
+  /// By its place.
+  void one(FilterKind& kind) {
+    const auto& filters = hand_filters();
+    const auto at = std::find_if(filters.begin(), filters.end(),
+                                 [&](const HandFilter* filter) { return filter->name == kind.name; });
+    auto place = static_cast<std::uint8_t>(at - filters.begin());
+    one(place);
+    if (place >= filters.size()) refuse("has a value of no meaning");
+    kind.name = filters[place]->name;
   }
   void one(FilterChange& part) {
     auto& [from, memory, begin] = part;

@@ -1,7 +1,9 @@
 #include "mr_hand_interaction/synthetic/recording_writer.h"
 
-#include <cstdio>
 #include <string>
+
+#include "../text/csv.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {
@@ -24,49 +26,41 @@ std::string header() {
   return line;
 }
 
-std::string cell(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, ",%.6f", value);
-  return text;
-}
-
-std::string cell(const std::optional<float>& value) {
-  return value ? cell(static_cast<double>(*value)) : ",";
-}
-
-std::string cells(const std::optional<Vector3>& value) {
-  if (!value) return ",,,";
-  return cell(value->x()) + cell(value->y()) + cell(value->z());
-}
-
-std::string hand_cells(const HandJoints& hand) {
-  std::string line = "," + std::to_string(hand.id) + (hand.side == Side::left ? ",1" : ",0");
-  line += cell(static_cast<double>(hand.confidence)) + cell(static_cast<double>(hand.grab_strength)) +
-          cell(static_cast<double>(hand.pinch_strength));
-  line += cells(hand.palm_centre) + std::string(9, ',') + cells(hand.wrist) + ",,," + cell(hand.palm_width);
+void write_hand(const HandJoints& hand, CsvRows& row) {
+  constexpr std::size_t kVector = 3;
+  row << hand.id << (hand.side == Side::left) << hand.confidence << hand.grab_strength << hand.pinch_strength
+      << hand.palm_centre;
+  row.skip(3 * kVector) << hand.wrist;
+  row.skip(kVector) << hand.palm_width;
   for (std::size_t finger = 0; finger < kFingers; ++finger) {
-    line += cell(hand.finger_width[finger]);
-    for (const auto& joint : hand.joints[finger]) line += cells(joint);
+    row << hand.finger_width[finger];
+    for (const auto& joint : hand.joints[finger]) row << joint;
   }
-  return line;
 }
 
 }  // namespace
 
 void write_recording_csv(std::ostream& out, const std::vector<JointsFrame>& frames) {
   const std::string columns = header();
-  std::string no_hand = ",-1";
-  for (std::size_t i = 0, column = 0; i < columns.size(); ++i) {
-    if (columns[i] == ',' && ++column > 2) no_hand += ',';
-  }
+  const std::size_t of_hand = text::split(columns).size() - 2;
   out << columns << '\n';
+  const auto flags = out.setf(std::ios::fixed, std::ios::floatfield);
+  const auto digits = out.precision(6);
+  CsvRows row(out);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const JointsFrame& frame = frames[i];
-    char start[64];
-    std::snprintf(start, sizeof start, "%.6f,%zu", to_seconds(frame.stamp - frames.front().stamp), i);
-    if (frame.hands.empty()) out << start << no_hand << '\n';
-    for (const HandJoints& hand : frame.hands) out << start << hand_cells(hand) << '\n';
+    const double time = to_seconds(frames[i].stamp - frames.front().stamp);
+    if (frames[i].hands.empty()) {
+      row << time << i << -1;
+      row.skip(of_hand - 1).end_row();
+    }
+    for (const HandJoints& hand : frames[i].hands) {
+      row << time << i;
+      write_hand(hand, row);
+      row.end_row();
+    }
   }
+  out.flags(flags);
+  out.precision(digits);
 }
 
 }  // namespace mrhi

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters.h"
+#include "hand_filter.h"
+#include "noise_estimate.h"
 
 namespace mrhi {
 namespace {
@@ -51,8 +52,6 @@ void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Qua
   turn += gain.velocity * innovation;
 }
 
-}  // namespace
-
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (!filter.noise) observe_noise(memory.history, memory.noise);
   const double noise = filter.noise.value_or(filter_noise(memory.noise));
@@ -74,5 +73,20 @@ Hand constant_velocity(double elapsed, const FilterConfiguration& filter, Filter
   follow_turn(gain, elapsed, memory.filtered.palm.orientation, hand.palm.orientation, memory.velocity.turn);
   return hand;
 }
+
+}  // namespace
+
+/// Every point goes on as it went, but for accelerations unknown: a Kalman filter of position and velocity,
+/// one gain for the whole hand. The acceleration expected grows with the hand's speed.
+extern const HandFilter constant_velocity_filter{
+    "constant_velocity", 3,
+    []() -> std::vector<FilterSetting> {
+      using F = FilterConfiguration;
+      return {
+          {"noise", " [m]", {1e-6, 0.1}, {1e-5, 0.01}, &F::noise, "estimated", "for what the stream shows"},
+          {"acceleration", " [m/s^2]", {0.001, 1000}, {0.01, 10}, &F::acceleration},
+          {"agility", " [1/s]", {0, 1000}, {0, 30}, &F::agility}};
+    },
+    [](const FilterConfiguration& filter) { return filter.noise ? 1 : kNoiseSamples; }, constant_velocity};
 
 }  // namespace mrhi

@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/tracking/filter_memory.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mrhi {
 namespace {
@@ -34,6 +35,17 @@ Vector3& hand_point(Hand& hand, std::size_t point) {
 
 bool has_point(const Hand& hand, std::size_t point) {
   return point < 2 || hand.capsules[(point - 2) / 2].radius > 0.0;
+}
+
+double rms_speed(const HandVelocity& velocity, const Hand& hand) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t point = 2; point < kHandPoints; ++point) {
+    if (!has_point(hand, point)) continue;
+    sum += velocity.points[point].squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
 void FilterMemory::restart(const Hand& sample) {

@@ -1,62 +1,62 @@
 #include "hand_filter.h"
 
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
+#include <string>
 
-#include "filters.h"
+#include "hand_filter_list.h"
 
 namespace mrhi {
+
+#define MRHI_DECLARE(name) extern const HandFilter name;
+#define MRHI_ADDRESS(name) &name,
+MRHI_ENTRIES(MRHI_DECLARE)
+
 namespace {
 
-int samples_needed(const FilterConfiguration& filter) {
-  switch (filter.type) {
-    case FilterKind::window:
-      return std::min(filter.window, kMaxFilterWindow);
-    case FilterKind::one_euro:
-      return 2;
-    case FilterKind::constant_velocity:
-      return filter.noise ? 1 : kNoiseSamples;
-    case FilterKind::none:
-      break;
-  }
-  return 1;
+std::vector<const HandFilter*> in_their_places() {
+  std::vector<const HandFilter*> filters{MRHI_ENTRIES(MRHI_ADDRESS)};
+  std::sort(filters.begin(), filters.end(), [](const auto* a, const auto* b) { return a->place < b->place; });
+  return filters;
 }
 
-Hand pass(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
-  switch (filter.type) {
-    case FilterKind::window:
-      return window_mean(filter, memory);
-    case FilterKind::one_euro:
-      return one_euro(elapsed, filter, memory);
-    case FilterKind::constant_velocity:
-      return constant_velocity(elapsed, filter, memory);
-    case FilterKind::none:
-      break;
-  }
-  return memory.history.samples[0];
+std::vector<FilterSetting> settings_of_all() {
+  std::vector<FilterSetting> all;
+  for (const HandFilter* filter : hand_filters())
+    for (const FilterSetting& setting : filter->settings()) all.push_back(setting);
+  return all;
 }
 
 }  // namespace
+
+const std::vector<const HandFilter*>& hand_filters() {
+  static const std::vector<const HandFilter*> filters = in_their_places();
+  return filters;
+}
+
+const HandFilter& hand_filter(FilterKind kind) {
+  std::string names;
+  for (const HandFilter* filter : hand_filters()) {
+    if (filter->name == kind.name) return *filter;
+    names += (names.empty() ? "" : ", ") + std::string(filter->name);
+  }
+  throw std::invalid_argument("filter '" + std::string(kind.name) + "' is not known; allowed: " + names);
+}
+
+const std::vector<FilterSetting>& filter_settings() {
+  static const std::vector<FilterSetting> settings = settings_of_all();
+  return settings;
+}
 
 Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (memory.empty()) {
     memory.restart(sample);
     return sample;
   }
-  memory.history.push(sample, elapsed, samples_needed(filter));
-  memory.filtered = pass(elapsed, filter, memory);
+  const HandFilter& chosen = hand_filter(filter.type);
+  memory.history.push(sample, elapsed, chosen.samples_needed(filter));
+  memory.filtered = chosen.pass(elapsed, filter, memory);
   return memory.filtered;
-}
-
-double rms_speed(const HandVelocity& velocity, const Hand& hand) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t point = 2; point < kHandPoints; ++point) {
-    if (!has_point(hand, point)) continue;
-    sum += velocity.points[point].squaredNorm();
-    ++count;
-  }
-  return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
 }  // namespace mrhi

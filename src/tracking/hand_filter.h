@@ -1,9 +1,51 @@
 #pragma once
 
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "../text/yaml_values.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/tracking/filter_memory.h"
 
 namespace mrhi {
+
+/// A number that a filter is set by: the parameter filter/NAME. One that may be absent stands for what the
+/// filter finds itself, by `word` and what that means.
+struct FilterSetting {
+  using Value = std::variant<int FilterConfiguration::*, double FilterConfiguration::*,
+                             std::optional<double> FilterConfiguration::*>;
+
+  const char* name;
+  const char* unit;  ///< " [Hz]"
+  Range range, slider;
+  Value value;
+  const char* word = "";
+  const char* meaning = "";
+};
+
+/// All that there is of a filter. The file src/tracking/NAME_filter.cpp defines NAME_filter; the build finds
+/// it, and all else asks hand_filters().
+struct HandFilter {
+  const char* name;
+  int place;  ///< in lists, and in recorded states: a new one comes last
+  std::vector<FilterSetting> (*settings)();
+  /// Of the newest samples, how many pass() looks at; 1 at least.
+  int (*samples_needed)(const FilterConfiguration& filter);
+  /// The filtered hand. The newest sample, taken `elapsed` seconds after the one before, is in front of the
+  /// memory's history; the rest of the memory is as the frame before left it, but for `filtered`, which the
+  /// caller keeps.
+  Hand (*pass)(double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
+};
+
+/// In the order of their places.
+const std::vector<const HandFilter*>& hand_filters();
+
+/// Throws std::invalid_argument for a name that is not known.
+const HandFilter& hand_filter(FilterKind kind);
+
+/// The settings of all filters, filter by filter.
+const std::vector<FilterSetting>& filter_settings();
 
 /// The filtered hand for `sample`, taken `elapsed` seconds (above 0) after the one before. A memory that is
 /// empty starts with `sample` as it is. All points of a hand are filtered alike: a joint that two bones share

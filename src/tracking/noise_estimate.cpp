@@ -1,9 +1,11 @@
+#include "noise_estimate.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
-#include "filters.h"
+#include "mr_hand_interaction/configuration.h"
 
 // The third difference of a joint's path is what no parabola explains. Where a hand moves, one is like the
 // next; where samples tremble, each by itself, one is the other way round than the next. So the product of

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "filters.h"
+#include "hand_filter.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -23,8 +23,6 @@ void follow_velocity(const Hand& from, const Hand& to, double elapsed, double sh
   }
 }
 
-}  // namespace
-
 Hand one_euro(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   const Hand& sample = memory.history.samples[0];
   follow_velocity(memory.history.samples[1], sample, elapsed, weight(filter.derivative_cutoff, elapsed),
@@ -32,5 +30,19 @@ Hand one_euro(double elapsed, const FilterConfiguration& filter, FilterMemory& m
   const double cutoff = filter.min_cutoff + filter.beta * rms_speed(memory.velocity, sample);
   return blend(memory.filtered, sample, weight(cutoff, elapsed));
 }
+
+}  // namespace
+
+/// A low-pass whose cutoff grows with the hand's speed (Casiez, Roussel & Vogel 2012), one cutoff for the
+/// whole hand.
+extern const HandFilter one_euro_filter{
+    "one_euro", 2,
+    []() -> std::vector<FilterSetting> {
+      using F = FilterConfiguration;
+      return {{"min_cutoff", " [Hz]", {0.01, 1000}, {0.1, 10}, &F::min_cutoff},
+              {"beta", " [Hz per m/s]", {0, 10000}, {0, 500}, &F::beta},
+              {"derivative_cutoff", " [Hz]", {0.01, 1000}, {0.1, 100}, &F::derivative_cutoff}};
+    },
+    [](const FilterConfiguration&) { return 2; }, one_euro};
 
 }  // namespace mrhi

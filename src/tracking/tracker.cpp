@@ -147,6 +147,10 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
   }
 }
 
+void check_filter(FilterKind kind) {
+  hand_filter(kind);
+}
+
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands) {
   for (HandTrack& track : hands) {
     if (!track.active || track.filter.empty()) continue;

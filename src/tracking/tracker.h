@@ -14,6 +14,9 @@ namespace mrhi {
 void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
                  std::vector<Event>& events);
 
+/// Throws std::invalid_argument for a filter that is not known.
+void check_filter(FilterKind kind);
+
 /// From `now` on the hands are filtered otherwise: continuous in position and velocity, within 0.2 s.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);
 

@@ -1,7 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "filters.h"
+#include "hand_filter.h"
 
 namespace mrhi {
 namespace {
@@ -35,9 +35,7 @@ Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsul
   return {sum.start / present, sum.end / present, sum.radius / present};
 }
 
-}  // namespace
-
-Hand window_mean(const FilterConfiguration& filter, const FilterMemory& memory) {
+Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory) {
   const SampleHistory& history = memory.history;
   const int count = std::min(filter.window, history.size);
   Hand mean = history.samples[0];
@@ -55,5 +53,16 @@ Hand window_mean(const FilterConfiguration& filter, const FilterMemory& memory) 
   for (std::size_t c = 0; c < kCapsules; ++c) mean.capsules[c] = mean_capsule(history, count, c);
   return mean;
 }
+
+}  // namespace
+
+/// Eq. 1 read as the mean of the last F frames, fewer at the start; the palm's orientation is the chordal
+/// mean (Markley et al. 2007); a phalanx is averaged over the newest unbroken run of samples that have it.
+extern const HandFilter window_filter{
+    "window", 1,
+    []() -> std::vector<FilterSetting> {
+      return {{"window", "", {1, kMaxFilterWindow}, {1, kMaxFilterWindow}, &FilterConfiguration::window}};
+    },
+    [](const FilterConfiguration& filter) { return std::min(filter.window, kMaxFilterWindow); }, window_mean};
 
 }  // namespace mrhi

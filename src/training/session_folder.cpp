@@ -6,6 +6,7 @@
 #include <locale>
 #include <sstream>
 
+#include "../text/csv.h"
 #include "../text/text.h"
 #include "session_header.h"
 
@@ -29,18 +30,18 @@ class Line {
     stream_.setf(std::ios::fixed);
   }
   template <class Value>
-  Line& add(const Value& value) {
-    stream_ << (empty_ ? "" : ",") << value;
-    empty_ = false;
+  Line& operator<<(const Value& value) {
+    row_ << value;
     return *this;
   }
-  Line& add(const Vector3& value) { return add(value.x()).add(value.y()).add(value.z()); }
-  Line& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
-  std::string text() const { return stream_.str() + '\n'; }
+  std::string text() {
+    row_.end_row();
+    return stream_.str();
+  }
 
  private:
   std::ostringstream stream_;
-  bool empty_ = true;
+  CsvRows row_{stream_};
 };
 
 std::string read_all(const fs::path& file) {
@@ -153,30 +154,30 @@ std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name
 
 void SessionFolder::log(const EventRow& row) {
   Line line;
-  line.add(row.time);
-  row.trial > 0 ? line.add(row.trial) : line.add("");
-  line.add(to_string(row.stage)).add(row.event).add(row.object).add(row.detail);
-  line.add(stamp_text(row.stamp)).add(row.utc);
+  line << row.time;
+  line << (row.trial > 0 ? std::make_optional(row.trial) : std::nullopt);
+  line << to_string(row.stage) << row.event << row.object << row.detail;
+  line << stamp_text(row.stamp) << row.utc;
   write_now(events_, line.text(), path_ + "/events.csv");
 }
 
 void SessionFolder::log(const TrialRow& row) {
   const TrialMeasures& m = row.measures;
   Line line;
-  line.add(row.trial).add(row.object).add(condition_).add(row.repetition).add(to_string(row.result));
-  line.add(row.start).add(m.completion_time);
-  for (const std::optional<double>& time : m.stage_times) line.add(time);
-  line.add(m.attempts).add(m.drops).add(m.path_length).add(m.grip_force_mean).add(m.grip_force_max);
-  line.add(m.release_drift).add(m.release_speed).add(m.tracking_losses);
-  line.add(m.attempts).add(m.manipulation_drops);
+  line << row.trial << row.object << condition_ << row.repetition << to_string(row.result);
+  line << row.start << m.completion_time;
+  for (const std::optional<double>& time : m.stage_times) line << time;
+  line << m.attempts << m.drops << m.path_length << m.grip_force_mean << m.grip_force_max;
+  line << m.release_drift << m.release_speed << m.tracking_losses;
+  line << m.attempts << m.manipulation_drops;
   write_now(trials_, line.text(), path_ + "/trials.csv");
 }
 
 void SessionFolder::log(const HandRow& row) {
   constexpr int kIndex = 1, kDistal = 3, kTracked = 0, kUntouched = 0;
   Line line;
-  line.add(row.time).add(row.hand).add(row.side).add(kIndex).add(kDistal).add(kTracked);
-  line.add(row.start).add(row.end).add(row.radius).add(kUntouched);
+  line << row.time << row.hand << row.side << kIndex << kDistal << kTracked;
+  line << row.start << row.end << row.radius << kUntouched;
   const char* const name = row.filtered ? "hands.csv" : "hands_raw.csv";
   std::ofstream& out = row.filtered ? hands_ : hands_raw_;
   if (!out.is_open()) open_file(name, kHandColumns, out);

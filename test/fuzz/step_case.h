@@ -9,6 +9,7 @@
 #include "support/fixtures.h"
 #include "support/posed_hand.h"
 #include "support/postures.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi::fuzzing {
 
@@ -132,15 +133,13 @@ inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
 
 inline Configuration configuration_of(Bytes& bytes) {
   static const double steps[] = {0.001, 0.0005, 0.004, 0.0083, 0.02};
-  static const FilterKind filters[] = {FilterKind::none, FilterKind::window, FilterKind::one_euro,
-                                       FilterKind::constant_velocity};
   static const ContactModelKind models[] = {ContactModelKind::implicit,    ContactModelKind::implicit,
                                             ContactModelKind::seed,        ContactModelKind::impulse,
                                             ContactModelKind::penetration, ContactModelKind::virtual_spring,
                                             ContactModelKind::soft_pad,    ContactModelKind::implicit};
   Configuration configuration;
   configuration.step = steps[bytes.below(5)];
-  configuration.filter.type = filters[bytes.below(4)];
+  configuration.filter.type = {hand_filters()[bytes.below(4)]->name};
   if (bytes.one_in(4)) configuration.contact_model = models[bytes.below(8)];
   if (bytes.one_in(3)) configuration.contact.hand = HandStrength::of_a_person();
   configuration.contact.grasp_assist = bytes.one_in(2);

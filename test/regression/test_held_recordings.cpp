@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 
 #include "mr_hand_interaction/replay/replay.h"
 #include "regression/grip.h"
 #include "replay/replay_files.h"
 #include "support/recordings.h"
+#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -190,13 +190,8 @@ TEST_P(HeldRecording, holds_the_object_against_1_g) {
 
 /// time, name, then the position.
 Vector3 last_position(const std::string& objects_csv) {
-  std::istringstream row(test::lines_of(objects_csv).back());
-  Vector3 position;
-  std::string cell;
-  std::getline(row, cell, ',');
-  std::getline(row, cell, ',');
-  for (int i = 0; i < 3 && std::getline(row, cell, ','); ++i) position[i] = std::stod(cell);
-  return position;
+  const std::vector<std::string> row = text::split(test::lines_of(objects_csv).back());
+  return {std::stod(row.at(2)), std::stod(row.at(3)), std::stod(row.at(4))};
 }
 
 // The tolerance is the tables' twelve digits; joints are recorded to the micrometre, so that nothing is lost

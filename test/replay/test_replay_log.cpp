@@ -3,7 +3,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/replay/world.h"
@@ -12,6 +11,7 @@
 #include "replay/run.h"
 #include "simulation/state_bytes.h"
 #include "text/file_text.h"
+#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -270,11 +270,10 @@ TEST(ReplayLog, a_state_of_an_older_or_newer_format_gives_one_line_and_begins_at
     // The cube is where the scene has it, and in no hand: the recording began as it was held.
     const std::string first = test::lines_of(replayed.folder / "out/objects.csv").at(1);
     const Scene scene = load_scene("config/scenes/cube.urdf", {});
-    std::istringstream cells(first.substr(first.find("cube,") + 5));
+    const std::vector<std::string> cells = text::split(first.substr(first.find("cube,") + 5));
     for (int axis = 0; axis < 3; ++axis) {
-      std::string cell;
-      std::getline(cells, cell, ',');
-      EXPECT_NEAR(std::stod(cell), scene.bodies.back().start.position[axis], 1e-3)
+      EXPECT_NEAR(std::stod(cells.at(static_cast<std::size_t>(axis))),
+                  scene.bodies.back().start.position[axis], 1e-3)
           << first;  // 0.1 m/s^2, 10 ms
     }
   }

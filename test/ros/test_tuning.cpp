@@ -6,6 +6,7 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi {
 namespace {
@@ -50,13 +51,22 @@ TEST(Tuning, sliders_end_where_the_parameters_table_says) {
   expect_ends_of_the_table(low.ints, high.ints);
 }
 
-TEST(Tuning, offers_every_contact_model) {
-  std::string offered;
+/// What a field is offered as.
+std::string offered(const std::string& field) {
   for (const auto& parameter : Config::__getParamDescriptions__())
-    if (parameter->name == "contact_model") offered = parameter->edit_method;
-  for (const ContactModelEntry* model : contact_models())
-    EXPECT_NE(offered.find("'" + std::string(model->name) + "'"), std::string::npos)
-        << model->name << offered;
+    if (parameter->name == field) return parameter->edit_method + " " + parameter->description;
+  return "";
+}
+
+void expect_offers(const std::string& field, const std::string& word) {
+  EXPECT_NE(offered(field).find("'" + word + "'"), std::string::npos) << word << ": " << offered(field);
+}
+
+TEST(Tuning, offers_every_contact_model_and_every_filter_with_its_numbers) {
+  for (const ContactModelEntry* model : contact_models()) expect_offers("contact_model", model->name);
+  for (const HandFilter* filter : hand_filters()) expect_offers("filter_type", filter->name);
+  for (const FilterSetting& setting : filter_settings())
+    EXPECT_NE(offered(std::string("filter_") + setting.name), "") << setting.name;
 }
 
 TEST(Tuning, numbers_begin_at_the_parameters_defaults) {

@@ -1,9 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <random>
+#include <set>
+#include <sstream>
 
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/simulation.h"
 #include "support/fixtures.h"
+#include "text/text.h"
 #include "tracking/hand_filter.h"
 
 namespace mrhi {
@@ -230,24 +236,66 @@ TEST_P(EveryFilter, keeps_its_gain_of_one_at_uneven_intervals) {
   EXPECT_NEAR(last.capsules[kTip].start.x(), 0.2 * t, 1e-9);
 }
 
-std::string name_of(const ::testing::TestParamInfo<FilterKind>& tested) {
-  switch (tested.param) {
-    case FilterKind::window:
-      return "window";
-    case FilterKind::one_euro:
-      return "one_euro";
-    case FilterKind::constant_velocity:
-      return "constant_velocity";
-    case FilterKind::none:
-      break;
-  }
-  return "none";
+std::vector<FilterKind> every_kind() {
+  std::vector<FilterKind> kinds;
+  for (const HandFilter* filter : hand_filters()) kinds.push_back({filter->name});
+  return kinds;
 }
 
-INSTANTIATE_TEST_SUITE_P(kinds, EveryFilter,
-                         ::testing::Values(FilterKind::none, FilterKind::window, FilterKind::one_euro,
-                                           FilterKind::constant_velocity),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(kinds, EveryFilter, ::testing::ValuesIn(every_kind()),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(HandFilters, have_names_of_their_own_and_keep_the_places_that_recorded_states_know) {
+  std::set<std::string> names;
+  for (const HandFilter* filter : hand_filters()) names.insert(filter->name);
+  EXPECT_EQ(names.size(), hand_filters().size());
+  const FilterKind recorded[] = {FilterKind::none, FilterKind::window, FilterKind::one_euro,
+                                 FilterKind::constant_velocity};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(hand_filters().at(i)->name, recorded[i].name);
+    EXPECT_EQ(hand_filters().at(i)->place, static_cast<int>(i));
+  }
+}
+
+TEST(HandFilters, can_be_set_by_name_and_so_can_each_of_their_numbers) {
+  for (const HandFilter* filter : hand_filters()) {
+    Configuration configuration;
+    set_parameter(configuration, "filter/type", filter->name);
+    EXPECT_EQ(configuration.filter.type.name, filter->name);
+    for (const FilterSetting& setting : filter->settings()) {
+      const std::string name = std::string("filter/") + setting.name;
+      set_parameter(configuration, name, text::exact(setting.range.max));
+      EXPECT_EQ(std::stod(parameter_text(configuration, name)), setting.range.max) << name;
+    }
+  }
+}
+
+TEST(HandFilters, one_that_is_not_known_is_refused_by_name_before_a_hand_comes) {
+  Configuration configuration;
+  configuration.filter.type = {"kalman"};
+  try {
+    Simulation simulation(Scene(), configuration);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "filter 'kalman' is not known; allowed: none, window, one_euro, constant_velocity");
+  }
+}
+
+// What cannot ask the registry: what people read, and Tune.cfg, which reads default.yaml.
+TEST(HandFilters, are_told_with_their_numbers_where_people_look) {
+  for (const char* file : {"config/default.yaml", "docs/filters.md"}) {
+    std::ostringstream stream;
+    stream << std::ifstream(file).rdbuf();
+    const std::string text = stream.str();
+    ASSERT_FALSE(text.empty()) << file;
+    for (const HandFilter* filter : hand_filters()) {
+      EXPECT_NE(text.find(filter->name), std::string::npos) << filter->name << " is not in " << file;
+      for (const FilterSetting& setting : filter->settings())
+        EXPECT_NE(text.find(setting.name), std::string::npos) << setting.name << " is not in " << file;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace mrhi

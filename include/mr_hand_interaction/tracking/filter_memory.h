@@ -34,6 +34,9 @@ struct HandVelocity {
   HandVelocity() { points.fill(Vector3::Zero()); }
 };
 
+/// Root mean square over the points of the capsules that `hand` has [m/s].
+double rms_speed(const HandVelocity& velocity, const Hand& hand);
+
 /// How far an estimate may be off, the same for every point and axis: variances of position and speed, and
 /// their covariance.
 struct MotionVariance {

@@ -1,0 +1,28 @@
+# Of what is added by a file of its own: each FOLDER/NAME_KIND.cpp defines the entry NAME_KIND, and
+# generated/LIST.h lists the names as MRHI_ENTRIES(ENTRY), for the file that has the registry, KEEPER.
+function(write_registry folder kind keeper list)
+  file(GLOB files RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${folder}/*_${kind}.cpp)
+  list(REMOVE_ITEM files ${keeper})
+  set(entries "")
+  foreach(file ${files})
+    string(REPLACE ".cpp" "" entry ${file})
+    string(APPEND entries "ENTRY(${entry}) ")
+  endforeach()
+  configure_file(cmake/registry.h.in generated/${list}.h @ONLY)
+endfunction()
+
+# Of the messages of trackers: the struct NAMETracker that each FOLDER/tracker_*.h has, and the headers.
+function(write_tracker_registry folder)
+  file(GLOB headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${folder}/tracker_*.h)
+  list(REMOVE_ITEM headers tracker_messages.h)
+  set(includes "")
+  set(trackers "")
+  foreach(header ${headers})
+    file(STRINGS ${folder}/${header} line REGEX "^struct [A-Za-z0-9]+Tracker ")
+    string(REGEX REPLACE "^struct ([A-Za-z0-9]+) .*" "\\1" tracker "${line}")
+    string(APPEND includes "#include \"ros/${header}\"\n")
+    list(APPEND trackers ${tracker})
+  endforeach()
+  string(REPLACE ";" ", " trackers "${trackers}")
+  configure_file(cmake/tracker_list.h.in generated/tracker_list.h @ONLY)
+endfunction()

@@ -1,0 +1,11 @@
+#include "hand_filter.h"
+
+namespace mrhi {
+
+/// The hand as it is tracked.
+extern const HandFilter none_filter{
+    "none", 0, []() -> std::vector<FilterSetting> { return {}; },
+    [](const FilterConfiguration&) { return 1; },
+    [](double, const FilterConfiguration&, FilterMemory& memory) { return memory.history.samples[0]; }};
+
+}  // namespace mrhi
