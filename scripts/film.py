@@ -17,7 +17,7 @@ from mr_hand_interaction.msg import HandFrame, TrainingStatus
 
 from rviz_stage import STARTED, Stage, TOPICS, drawn, wait_for_rviz
 from screenshot import FONT, REPOSITORY
-from watch_demo import join_master
+from watch_demo import join_master, leave
 
 Scene = collections.namedtuple("Scene", "caption launch view lead")  # lead: seconds before the moment that it is about
 DEMO = ["demo.launch", "rviz:=false"]
@@ -195,6 +195,4 @@ if __name__ == "__main__":
     except (RuntimeError, OSError, subprocess.SubprocessError) as error:
         print("film: %s" % error, file=sys.stderr)
         code = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # rospy's threads would hold it up
+    leave(code)

@@ -14,7 +14,7 @@ import yaml
 from std_srvs.srv import SetBool
 from visualization_msgs.msg import MarkerArray
 
-from watch_demo import COLOURS, Demo, colours_of, grab, join_master
+from watch_demo import COLOURS, Demo, colours_of, grab, join_master, leave
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
@@ -188,7 +188,4 @@ def main():
 
 
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # rospy's threads would hold it up
+    leave(main())

@@ -136,6 +136,13 @@ def rviz_listens():
     return any(topic == "/markers" and "/rviz" in nodes for topic, nodes in subscribers)
 
 
+def leave(code):
+    """Ends the program, which rospy's threads would hold up."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
 def grab(file):
     """What is on the screen."""
     subprocess.run(["import", "-silent", "-window", "root", file], check=True)
@@ -239,8 +246,7 @@ def main():
         file.write(text)
     if not done:
         print(f"watch_demo: {options.motion} was not seen done within {options.time_limit:.0f} s", file=sys.stderr)
-    sys.stdout.flush()
-    os._exit(0 if done else 1)
+    leave(0 if done else 1)
 
 
 if __name__ == "__main__":

@@ -171,7 +171,8 @@ void print_cut_short() {
     play(dropped(count, 0.04, "").scene, 1.0, 10, heaps);
   print("heap", heaps);
   Sizes blocks;
-  for (const int count : {6, 12, 24, 48, 96, 192, 384, 700, 1000}) play(block(count).scene, 0.05, 5, blocks);
+  for (const int count : {6, 12, 24, 48, 96, 192, 384, 700, 1000})
+    play(block(count, 1e-6).scene, 0.05, 5, blocks);
   print("block", blocks);
 }
 

@@ -88,15 +88,15 @@ Crowd dropped(int count, double edge, const char* name) {
   return crowd;
 }
 
-Crowd block(int count) {
+Crowd block(int count, double gap) {
   constexpr double kEdge = 0.04;
   Crowd crowd{"block of " + std::to_string(count) + " at rest, awake", on_floor(), count > 500 ? 0.3 : 1.0};
   crowd.sleep = false;
   const int side = std::max(1, static_cast<int>(std::lround(std::cbrt(count * 1.0))));
   for (int i = 0; i < count; ++i) {
-    // Faces press on each other upwards, and are 20 um apart sideways.
-    const Vector3 apart(1.0005, 1.0005, 1.0);
-    add_cube(crowd.scene, kEdge, in_square(i, side, kEdge).cwiseProduct(apart) + Vector3(0, 0, 0.5 * kEdge));
+    const double apart = (kEdge + gap) / kEdge;
+    add_cube(crowd.scene, kEdge,
+             in_square(i, side, kEdge).cwiseProduct(Vector3(apart, apart, 1.0)) + Vector3(0, 0, 0.5 * kEdge));
   }
   return crowd;
 }
@@ -159,6 +159,13 @@ Crowd lifted(int count) {
   return crowd;
 }
 
+/// A block without gaps.
+Crowd wall() {
+  Crowd crowd = block(200, 1e-6);
+  crowd.name = "block of 200 without gaps, awake";
+  return crowd;
+}
+
 std::vector<Crowd> all_crowds() {
   return {dropped(8, 0.016, "8 dice dropped"),
           dropped(12, 0.016, "12 dice dropped"),
@@ -168,6 +175,7 @@ std::vector<Crowd> all_crowds() {
           block(50),
           block(200),
           block(1000),
+          wall(),
           overlapping(4),
           overlapping(8),
           overlapping(12),

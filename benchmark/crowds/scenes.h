@@ -21,8 +21,8 @@ struct Crowd {
 
 /// Cubes let go of a hand's breadth above a floor, turned every way.
 Crowd dropped(int count, double edge, const char* name);
-/// Cubes that touch each other's faces, at rest on a floor.
-Crowd block(int count);
+/// Cubes at rest on a floor and on each other, with gaps sideways [m].
+Crowd block(int count, double gap = 2e-5);
 /// Equal boxes, each half inside the next.
 Crowd overlapping(int count);
 Crowd far_spinning(int count);

@@ -20,7 +20,7 @@ PAIRS = ('source gravity_g condition measure at a b test n_a n_b centre_a centre
          'comparisons p_bonferroni stars effect_name effect low high')
 COLUMNS = {
     'bars': 'source gravity_g condition group object measure unit n mean sd ci95',
-    'comparison': 'source gravity_g condition quantity unit n mean sd',
+    'comparison': 'source gravity_g condition quantity unit n mean sd ci95',
     'anova': 'source gravity_g condition within measure effect n df df_error f epsilon correction p p_uncorrected '
              'p_greenhouse_geisser p_huynh_feldt partial_eta_squared',
     'sphericity': 'source gravity_g condition within measure n w chi_squared df p greenhouse_geisser huynh_feldt',
@@ -197,7 +197,7 @@ def _add_permutations(table, head, factor, wide):
 def _analyse_conditions(tables, notes, head, cells):
     """Group and condition, each participant's mean over the objects, for who has a value of each; and pairs of
     conditions, each participant's mean over the objects with a value under both."""
-    tested = cells['condition'].map(is_tested)
+    tested = cells['condition'].map(is_tested).astype(bool)
     for condition in in_order(cells[~tested]['condition'], CONDITIONS):
         notes.add(head, 'all measures', '%s was training: not compared with the other conditions' % condition)
     cells = cells[tested]
@@ -323,13 +323,11 @@ def _compare(table, head, trials, cells, ratings):
         for measure in [m for m in COMPARED if m in set(cells['measure'])]:
             some = cells[(cells['condition'] == condition) & (cells['measure'] == measure)]
             row = summary(some.groupby('participant')['value'].mean())
-            row.pop('ci95')
             table.append(dict(head_of, quantity=measure, unit=OF[measure].unit, **row))
         for question in in_order(ratings['question'], QUESTIONS):
             some = ratings[(ratings['condition'] == condition) & (ratings['question'] == question)]
             if len(some):
                 row = summary(some['score'].astype(float))
-                row.pop('ci95')
                 table.append(dict(head_of, quantity=question, unit=scale_of(question), **row))
 
 

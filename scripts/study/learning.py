@@ -5,14 +5,14 @@ import collections
 import numpy as np
 import pandas
 
-from . import mixed_model
+from . import mixed_model, permutation
 from .measures import CONDITIONS, MEASURES, OF, in_order
 from .style import INK, colours, finish, new_figure, save
 
 CURVES = ('completion_time', 'drops', 'grip_force_mean', 'release_drift')
 COLUMNS = ('source', 'gravity_g', 'condition', 'group', 'session', 'block', 'measure', 'n', 'mean', 'sd')
-SLOPES = ('source', 'gravity_g', 'condition', 'measure', 'scale', 'effect', 'n', 'values', 'estimate', 'low', 'high', 'df',
-          'p')
+SLOPES = ('source', 'gravity_g', 'condition', 'measure', 'test', 'scale', 'effect', 'n', 'values', 'estimate', 'low', 'high',
+          'df', 'p')
 
 
 def blocks(trials):
@@ -49,29 +49,57 @@ def curves(table):
 
 def slopes(table):
     """Of each condition and measure: the change with each doubling of the blocks (a power law of practice), and the change
-    from the last block of a session to the first of the next (retention). Times as ratios."""
+    from the last block of a session to the first of the next (retention). Times as ratios; counts by permutation."""
     rows = []
     for key, some in table.groupby(['source', 'gravity_g', 'condition', 'measure']):
-        if some['block'].nunique() < 2 or OF[key[3]].kind == 'count' or some['participant'].nunique() < 2:
+        if some['block'].nunique() < 2 or some['participant'].nunique() < 2:
+            continue
+        if OF[key[3]].kind == 'count':
+            rows += [dict(zip(SLOPES, key[:4] + row)) for row in _of_counts(some)]
             continue
         logarithm = OF[key[3]].kind == 'time' and bool((some['value'] > 0).all())
         for effect, contrast, used in _contrasts(some, logarithm):
             shown = np.exp if logarithm else float
             rows.append(dict(zip(SLOPES, key[:4] + (
-                'ratio' if logarithm else 'difference', effect, used['participant'].nunique(), len(used),
+                'mixed model t', 'ratio' if logarithm else 'difference', effect, used['participant'].nunique(), len(used),
                 *[float(shown(x)) for x in (contrast.estimate, contrast.low, contrast.high)], contrast.df, contrast.p))))
     return pandas.DataFrame(rows, columns=SLOPES)
 
 
-def _contrasts(some, logarithm):
-    yield from _fitted('each doubling of blocks', some, np.log2(some['block'].values.astype(float)), logarithm)
+def _columns(some):
+    """(effect, rows, what goes up by 1 with it)."""
+    yield 'each doubling of blocks', some, np.log2(some['block'].values.astype(float))
     sessions = sorted(some['session_number'].unique())
     for before, after in zip(sessions, sessions[1:]):
         last = some[some['session_number'] == before]['block'].max()
         first = some[some['session_number'] == after]['block'].min()
         pair = some[some['block'].isin((last, first))]
-        yield from _fitted('retention: first of session %d after last of %d' % (after, before), pair,
-                           (pair['block'] == first).values.astype(float), logarithm)
+        yield ('retention: first of session %d after last of %d' % (after, before), pair,
+               (pair['block'] == first).values.astype(float))
+
+
+def _contrasts(some, logarithm):
+    for effect, used, column in _columns(some):
+        yield from _fitted(effect, used, column, logarithm)
+
+
+def _of_counts(some):
+    """Each participant's own slope; without learning it could as well have been the opposite one. The interval is that of
+    resampled participants."""
+    for effect, used, column in _columns(some):
+        of_person = [_slope(column[rows], used['value'].values[rows])
+                     for rows in used.reset_index(drop=True).groupby('participant').indices.values()]
+        own = np.array([slope for slope in of_person if np.isfinite(slope)])
+        if len(own) < 2:
+            continue
+        low, high = permutation.interval_of_mean(own)
+        yield ('permutation', 'difference', effect, len(own), len(used), float(own.mean()), low, high, np.nan,
+               permutation.pairs(own, np.zeros(len(own))))
+
+
+def _slope(x, y):
+    spread = x - x.mean()
+    return np.nan if not np.any(spread) else float(spread @ y / (spread @ spread))
 
 
 def _fitted(effect, some, column, logarithm):

@@ -20,6 +20,7 @@ Contrast = collections.namedtuple('Contrast', 'estimate se df p low high')
 
 MOST_STEPS, MOST_HALVINGS, TOLERANCE = 200, 30, 1e-10
 MANY = 1e6  # degrees of freedom: more make no difference
+CLOSE = 1e-6  # to 0, of differences of ones
 
 
 def fit(values, design, blocks, components):
@@ -174,11 +175,12 @@ def _kenward_roger(terms, rows):
     g = ((width + 1) * a1 - (width + 4) * a2) / ((width + 2) * a2)
     below = 3 * width + 2 * (1 - g)
     c1, c2, c3 = g / below, (width - g) / below, (width + 2 - g) / below
-    mean = 1 / (1 - a2 / width)
+    of_mean, of_variance = 1 - a2 / width, 1 - c2 * b
+    # At 2 degrees of freedom both are 0: F has no mean there.
+    ratio = 1.0 if max(abs(of_mean), abs(of_variance)) < CLOSE else of_mean / of_variance
     with np.errstate(divide='ignore'):
-        variance = 2 / width * (1 + c1 * b) / ((1 - c2 * b) ** 2 * (1 - c3 * b))
-    rho = variance / (2 * mean ** 2)
+        rho = ratio ** 2 * (1 + c1 * b) / (width * (1 - c3 * b))
     df = 4 + (width + 2) / (width * rho - 1)
     if not 0 < df < MANY:
         return MANY, 1.0
-    return float(df), float(df / (mean * (df - 2))) if df > 2 else 1.0
+    return float(df), float(df * of_mean / (df - 2)) if df - 2 > 2 * CLOSE else 1.0

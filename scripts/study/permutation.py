@@ -136,6 +136,14 @@ def ratio_of_pairs(a, b):
     return _ratio(a, b, len(a))
 
 
+def interval_of_mean(values):
+    """The 95 % interval that resampled participants give."""
+    random, values = np.random.RandomState(SEED), np.asarray(values, float)
+    means = np.concatenate([values[random.randint(0, len(values), (100, len(values)))].mean(axis=1)
+                            for _ in range(BOOTSTRAPPED // 100)])
+    return tuple(float(limit) for limit in _percentiles(means))
+
+
 def _ratio(a, b, paired):
     if not len(a) or not len(b) or b.sum() == 0:
         return np.nan, np.nan, np.nan

@@ -46,7 +46,7 @@ def _cells(given):
     data = gather([read_session(folder) for folder in find_sessions(given.folders)])
     if len(parts(data)) != 1:
         raise ValueError('the pilot has people and simulated operators, or several gravities; allowed: one of each')
-    cells = data.cells[(data.cells['measure'] == given.measure) & data.cells['condition'].map(is_tested)]
+    cells = data.cells[(data.cells['measure'] == given.measure) & data.cells['condition'].map(is_tested).astype(bool)]
     if cells.empty:
         raise ValueError('the pilot has no values of ' + given.measure)
     return cells

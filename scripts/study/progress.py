@@ -5,30 +5,44 @@ import re
 
 import numpy as np
 
-from .measures import OF
+from .measures import CONDITIONS, OF, in_order, plain
 from .report import Report, number
 from .study_data import SIMULATED
 from .style import INK, PALE, finish, new_figure, save
 
 SHOWN = ('completion_time', 'drops', 'grip_force_mean', 'release_drift')
+STYLES = ('-', '--', ':', '-.')
 
 
 def write_pages(blocks, output):
-    """trainees/NAME.html for each who has more than one block."""
+    """trainees/NAME.html for each person, and for each simulated operator with more than one block."""
+    folder, taken = os.path.join(output, 'trainees'), set()
     for (participant, source), mine in blocks.groupby(['participant', 'source']):
-        if mine['block'].nunique() < 2:
+        if source == SIMULATED and mine['block'].nunique() < 2:
             continue
-        folder = os.path.join(output, 'trainees')
-        name = re.sub(r'[^A-Za-z0-9_.-]', '_', ('simulated_' if source == SIMULATED else '') + participant)
-        others = blocks[(blocks['source'] == source) & (blocks['participant'] != participant)]
-        path = _draw(mine, others, participant, source, os.path.join(folder, 'figures'), name)
+        name = _free_name(('simulated_' if source == SIMULATED else '') + participant, taken)
         report = Report('Progress of ' + participant)
         if source == SIMULATED:
             report.text(source, 'simulated')
-        report.figure(path, 'Progress over blocks')
-        for condition, some in mine.groupby('condition'):
-            report.table(condition, ['Session', 'Block'] + [_named(m) for m in SHOWN], _rows(some))
+        for gravity, at in mine.groupby('gravity_g'):
+            others = blocks[(blocks['source'] == source) & (blocks['participant'] != participant) &
+                            (blocks['gravity_g'] == gravity)]
+            title = 'Progress of %s at %g g' % (participant, gravity)
+            path = _draw(at, others, title, source, os.path.join(folder, 'figures'), '%s_%gg' % (name, gravity))
+            report.heading('%g g' % gravity)
+            report.figure(path, title)
+            for condition, some in at.groupby('condition'):
+                report.table(condition, ['Session', 'Block'] + [_named(m) for m in SHOWN], _rows(some))
         report.write(os.path.join(folder, name + '.html'))
+
+
+def _free_name(text, taken):
+    """That a file can have, and no other of these has."""
+    name = base = re.sub(r'[^A-Za-z0-9_.-]', '_', text)
+    while name in taken:
+        name = '%s_%d' % (base, len(taken))
+    taken.add(name)
+    return name
 
 
 def _named(measure):
@@ -43,16 +57,24 @@ def _rows(some):
     return rows
 
 
-def _draw(mine, others, participant, source, folder, name):
+def _draw(mine, others, title, source, folder, name):
     figure, panels = new_figure(len(SHOWN), 1.3 + 2.4 * len(SHOWN), 3.2)
+    conditions = in_order(mine['condition'], CONDITIONS)
     for axes, measure in zip(panels.flat, SHOWN):
-        theirs = others[others['measure'] == measure].groupby('block')['value'].mean()
-        axes.plot(theirs.index, theirs.values, color=PALE, marker='.')
-        for _, some in mine[mine['measure'] == measure].groupby(['condition', 'session_number']):
-            axes.plot(some['block'], some['value'], color=INK, marker='o', markersize=4)
+        for i, condition in enumerate(conditions):
+            style = STYLES[i % len(STYLES)]
+            theirs = others[(others['measure'] == measure) & (others['condition'] == condition)]
+            theirs = theirs.groupby('block')['value'].mean()
+            axes.plot(theirs.index, theirs.values, color=PALE, linestyle=style, marker='.')
+            own = mine[(mine['measure'] == measure) & (mine['condition'] == condition)]
+            for _, some in own.groupby('session_number'):
+                axes.plot(some['block'], some['value'], color=INK, linestyle=style, marker='o', markersize=4)
         axes.set_title(_named(measure), loc='left', fontsize=8)
         axes.set_xlabel('block')
         axes.set_ylim(0, None)
-    finish(figure, 'Progress of ' + participant, 'Dark: this person, a line for each session and condition. '
-           'Pale: mean of all others.', source)
+    if len(conditions) > 1:
+        axes.legend(handles=[axes.plot([], [], color=INK, linestyle=STYLES[i % len(STYLES)], label=plain(condition))[0]
+                             for i, condition in enumerate(conditions)], fontsize=7, frameon=False)
+    finish(figure, title, 'Dark: this person, a line for each session and condition. Pale: mean of all others under the same '
+           'condition.', source)
     return save(figure, folder, name)

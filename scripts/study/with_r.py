@@ -48,7 +48,7 @@ def _long(cells):
     """Each condition by itself, and all conditions together where there are several."""
     kinds = cells['measure'].map(lambda name: OF[name].kind)
     parts = [cells.assign(kind=kinds, condition_of=cells['condition'])]
-    tested = cells[cells['condition'].map(is_tested)]
+    tested = cells[cells['condition'].map(is_tested).astype(bool)]
     several = tested[tested.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1]
     parts.append(several.assign(kind=kinds[several.index], condition_of='all'))
     table = pandas.concat(parts, ignore_index=True)

@@ -49,10 +49,11 @@ std::string TrainingScene::set_up() {
 }
 
 std::string TrainingScene::prepare(const TaskObject& object) {
+  if (!names_) return "the simulation has not told yet what moves in its scene";
   for (const TaskObject& other : task_.objects) {
     if (models_.at(other.name).is_device()) remove(other.name);
   }
-  for (const std::string& name : names_) remove(name);
+  for (const std::string& name : *names_) remove(name);
   if (!set_up_) {
     if (const std::string wrong = set_up(); !wrong.empty()) return wrong;
   }

@@ -288,7 +288,7 @@ void TrainingServer::tick() {
   const ros::WallTime time = ros::WallTime::now();
   if (session_.phase() == SessionPhase::ready && !paused_ && !next_.isZero() && time >= next_) {
     const std::string wrong = begin_trial();
-    if (!wrong.empty()) ROS_WARN_THROTTLE(10.0, "the trial cannot begin yet: %s", wrong.c_str());
+    if (!wrong.empty()) ROS_WARN_DELAYED_THROTTLE(10.0, "the trial cannot begin yet: %s", wrong.c_str());
     next_ = wrong.empty() ? ros::WallTime() : time + kRetry;
   }
   publish();

@@ -5,6 +5,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+from unittest import mock
 import xml.etree.ElementTree as ElementTree
 
 import pandas
@@ -12,6 +13,7 @@ import pandas
 import paths
 import made_up_study
 from study import trajectories, with_r
+from study.run import run
 
 TABLES = {name + '.csv' for name in (
     'any anova bars classical_pairs comparison data_dictionary demographics effects learning learning_tests participants '
@@ -96,6 +98,17 @@ class Program(unittest.TestCase):
             a, b = (table.loc[condition, 'completion_time', effect] for table in (ours, theirs))
             self.assertLess(abs(a.p - b.p), 2e-3, (a, b))
         self.assertTrue(any(test.startswith('glmmTMB') for test in theirs['test']))
+        told = pandas.read_csv(os.path.join(self.output, 'data_dictionary.csv'))
+        told = told[(told['table'] == 'r_models') & told['meaning'].notna()]
+        self.assertEqual(set(told['column']), set(theirs.reset_index().columns))
+
+    def test_without_r_it_is_said_what_is_lost_and_all_else_is_there(self):
+        made_up_study.write_study(os.path.join(self.root, 'a'), 4, measures=SOME)
+        with mock.patch.dict(os.environ, PATH=self.root):
+            notes = run([os.path.join(self.root, 'a')], self.output, [], ask_r=True)
+        self.assertTrue(any('Rscript (r-base-core) not installed: no Poisson or negative binomial' in note for note in notes))
+        self.assertFalse(os.path.exists(os.path.join(self.output, 'r_models.csv')))
+        self.assertIn('mixed model F', self.read('effects.csv'))
 
     def test_one_participant_with_one_trial(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 1, objects=('cube',), repetitions=1,

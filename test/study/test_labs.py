@@ -193,6 +193,32 @@ class Learning(Labs):
         slope = tests.loc['completion_time', 'each doubling of blocks']
         self.assertTrue(slope.low < 2 ** -0.2 < slope.high, slope)
 
+    def test_drops_that_get_fewer_are_found_by_permutation(self):
+        """Eight people: 3, 2, 2, 1 drops over four blocks. Slope on log2(block), by hand: -0.9035. All 2^8 signs: 2 / 256."""
+        for person in range(8):
+            made_up_study.write_session(os.path.join(self.root, 's', str(person)), 'P%d' % person, trials=[
+                {'repetition': block, 'drops': drops} for block, drops in enumerate((3, 2, 2, 1), 1)])
+        tests = self.table(self.analyse(os.path.join(self.root, 's')), 'learning_tests').set_index(['measure', 'effect'])
+        slope = tests.loc['drops', 'each doubling of blocks']
+        self.assertEqual((slope.test, slope.n), ('permutation', 8))
+        self.assertAlmostEqual(slope.p, 2 / 256)
+        logs = [0.0, 1.0, np.log2(3), 2.0]
+        by_hand = np.polyfit(logs, [3, 2, 2, 1], 1)[0]
+        for value in (slope.estimate, slope.low, slope.high):
+            self.assertAlmostEqual(value, by_hand)
+
+    def test_each_person_has_a_page_and_each_gravity_a_table_in_it(self):
+        for folder, name, gravity, drift in (('a', 'P 1', (0, 0, 0), 0.0123), ('b', 'P 1', EARTH, 0.0456), ('c', 'P_1', EARTH, 0.0789)):
+            made_up_study.write_session(os.path.join(self.root, 's', folder), name, gravity=gravity,
+                                        trials=[{'completion_time': 20, 'release_drift': drift}])
+        folder = os.path.join(self.analyse(os.path.join(self.root, 's')), 'trainees')
+        pages = sorted(name for name in os.listdir(folder) if name.endswith('.html'))
+        self.assertEqual(len(pages), 2, pages)
+        with open(os.path.join(folder, 'P_1.html'), encoding='utf-8') as file:
+            page = file.read()
+        for told in ('<h2>0 g</h2>', '<h2>1 g</h2>', '0.0123', '0.0456'):
+            self.assertIn(told, page)
+
     def test_practice_counts_in_no_table_but_that_of_trials(self):
         folder = made_up_study.write_session(os.path.join(self.root, 's'), trials=[
             {'completion_time': 99, 'repetition': 0}, {'completion_time': 10, 'repetition': 1}])
@@ -220,6 +246,28 @@ class Tables(Labs):
         gravity = effects[(effects['effect'] == 'gravity') & (effects['measure'] == 'completion_time')]
         self.assertEqual((len(gravity), gravity['n'].iloc[0]), (1, 4))
         self.assertTrue(2 <= gravity['df_error'].iloc[0] < 4)  # 2, and more where a variance is estimated as 0
+
+    def test_the_paper_s_procedure_keeps_its_beginners_in_the_comparison_of_conditions(self):
+        """Veterans alone have a training phase; what is compared is what all were tested in."""
+        made_up_study.write_study(os.path.join(self.root, 's', 'test'), 8, conditions=('implicit', 'seed'))
+        for number in (2, 4, 6, 8):
+            made_up_study.write_session(os.path.join(self.root, 's', 'training', str(number)), 'P%02d' % number, 'veteran',
+                                        'implicit_training', trials=[{'completion_time': 20 + number, 'drops': 0}])
+        output = self.analyse(os.path.join(self.root, 's'))
+        for name in ('effects', 'anova'):
+            table = self.table(output, name)
+            table = table[(table['condition'] == 'all') & (table['measure'] == 'completion_time')]
+            self.assertEqual(set(table['n']), {8}, name)
+            self.assertIn('group x condition', set(table['effect']), name)
+        pairs = self.table(output, 'post_hoc')
+        pairs = pairs[(pairs['condition'] == 'all') & (pairs['measure'] == 'completion_time')]
+        self.assertEqual([(row.a, row.b, row.comparisons) for row in pairs.itertuples()], [('implicit', 'seed', 1)])
+        self.assertIn('implicit_training', set(self.table(output, 'bars')['condition']))
+        with open(os.path.join(output, 'left_out.txt'), encoding='utf-8') as file:
+            self.assertIn('implicit_training was training: not compared', file.read())
+        done = self.run_script('power_study', os.path.join(self.root, 's'), '--effect', 'condition', '--size', '8',
+                               '--studies', '5')
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_of_some_objects_alone(self):
         made_up_study.write_study(os.path.join(self.root, 's'), 4)

@@ -70,6 +70,21 @@ class AgainstOthers(unittest.TestCase):
         for (_, test), effect in zip(model.effects(), mixed_anova(table, labels).effects):
             np.testing.assert_allclose((test.f, test.df_error), (effect.f, effect.df_error), rtol=1e-7)
 
+    def test_so_it_is_of_four_people_with_two_degrees_of_freedom(self):
+        """F has no mean there: what is divided by it is lost in rounding, or is nothing at all."""
+        random, tested = np.random.RandomState(1), 0
+        for _ in range(20):
+            table = 10 + 3 * random.normal(size=(4, 1)) + random.normal(size=(4, 3))
+            labels = ['a', 'a', 'b', 'b']
+            cells = pandas.DataFrame([(str(i), labels[i], 'xyz'[j], table[i, j]) for i in range(4) for j in range(3)],
+                                     columns=['participant', 'group', 'object', 'value'])
+            model = Model(cells, {'group': ['a', 'b'], 'object': list('xyz')})
+            if min(model.variances().values()) > 0.1:
+                group, of_table = dict(model.effects())[('group',)], mixed_anova(table, labels).effects[0]
+                np.testing.assert_allclose((group.f, group.df_error, group.p), (of_table.f, 2, of_table.p), rtol=1e-6)
+                tested += 1
+        self.assertGreater(tested, 10)
+
 
 class Behaviour(unittest.TestCase):
     def cells(self, n=8, seed=1, effect=0.0):

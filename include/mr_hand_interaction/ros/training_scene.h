@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -32,8 +33,8 @@ class TrainingScene {
   std::string remove(const std::string& name);
 
   const Task& task_;
-  std::map<std::string, ObjectModel> models_;  // of objects and fixtures
-  std::set<std::string> names_;
+  std::map<std::string, ObjectModel> models_;   // of objects and fixtures
+  std::optional<std::set<std::string>> names_;  // none before the first message
   bool set_up_ = false;
   ros::ServiceClient spawn_, spawn_urdf_, delete_, set_, pause_;
 };
