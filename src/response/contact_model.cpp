@@ -11,7 +11,7 @@
 namespace mrhi {
 
 #define MRHI_DECLARE(name) extern const ContactModelEntry name;
-#define MRHI_ADDRESS(name) &name,
+#define MRHI_ADDRESS(name) &(name),
 MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {

@@ -9,7 +9,7 @@
 namespace mrhi {
 
 #define MRHI_DECLARE(name) extern const HandFilter name;
-#define MRHI_ADDRESS(name) &name,
+#define MRHI_ADDRESS(name) &(name),
 MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
