@@ -22,7 +22,7 @@ NOT_TRIED = (  # what the command begins with, and why it is not run here; beyon
     ("scripts/test$", "runs by itself: scripts/test_on"),
     ("scripts/test_on", "brings us here"),
     ("scripts/benchmark --(full|real|jolt)|scripts/fuzz|scripts/calibrate_study", "takes long"),
-    ("scripts/sanitize address", "builds all anew with sanitizers, an hour"),
+    ("scripts/sanitize", "builds the core anew with sanitizers, over a quarter of an hour on two processors"),
     ("scripts/ask_ratings .*--page", "asks on a page in a browser; test_ask_ratings"),
     ("rosrun mr_hand_interaction training_keys", "needs a participant; training.test"),
 )
