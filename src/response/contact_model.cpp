@@ -1,9 +1,6 @@
 #include "mr_hand_interaction/response/contact_model.h"
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-
+#include "../text/registry.h"
 #include "contact_model_list.h"
 #include "implicit_model.h"
 #include "joint_response.h"
@@ -67,29 +64,15 @@ class WithJoints : public ContactModel {
   std::vector<Grip> no_grips_;
 };
 
-std::vector<const ContactModelEntry*> in_their_places() {
-  std::vector<const ContactModelEntry*> models{MRHI_ENTRIES(MRHI_ADDRESS)};
-  std::sort(models.begin(), models.end(), [](const auto* a, const auto* b) {
-    return std::make_pair(a->place, std::string_view(a->name)) <
-           std::make_pair(b->place, std::string_view(b->name));
-  });
-  return models;
-}
-
 const ContactModelEntry& entry_of(ContactModelKind kind) {
-  std::string names;
-  for (const ContactModelEntry* model : contact_models()) {
-    if (model->name == kind.name) return *model;
-    names += (names.empty() ? "" : ", ") + std::string(model->name);
-  }
-  throw std::invalid_argument("contact model '" + std::string(kind.name) +
-                              "' is not known; allowed: " + names);
+  return entry_named(contact_models(), kind.name, "contact model");
 }
 
 }  // namespace
 
 const std::vector<const ContactModelEntry*>& contact_models() {
-  static const std::vector<const ContactModelEntry*> models = in_their_places();
+  static const std::vector<const ContactModelEntry*> models =
+      in_their_places<ContactModelEntry>({MRHI_ENTRIES(MRHI_ADDRESS)});
   return models;
 }
 

@@ -1,9 +1,6 @@
 #include "hand_filter.h"
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-
+#include "../text/registry.h"
 #include "hand_filter_list.h"
 
 namespace mrhi {
@@ -13,12 +10,6 @@ namespace mrhi {
 MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
-
-std::vector<const HandFilter*> in_their_places() {
-  std::vector<const HandFilter*> filters{MRHI_ENTRIES(MRHI_ADDRESS)};
-  std::sort(filters.begin(), filters.end(), [](const auto* a, const auto* b) { return a->place < b->place; });
-  return filters;
-}
 
 std::vector<FilterSetting> settings_of_all() {
   std::vector<FilterSetting> all;
@@ -30,17 +21,13 @@ std::vector<FilterSetting> settings_of_all() {
 }  // namespace
 
 const std::vector<const HandFilter*>& hand_filters() {
-  static const std::vector<const HandFilter*> filters = in_their_places();
+  static const std::vector<const HandFilter*> filters =
+      in_their_places<HandFilter>({MRHI_ENTRIES(MRHI_ADDRESS)});
   return filters;
 }
 
 const HandFilter& hand_filter(FilterKind kind) {
-  std::string names;
-  for (const HandFilter* filter : hand_filters()) {
-    if (filter->name == kind.name) return *filter;
-    names += (names.empty() ? "" : ", ") + std::string(filter->name);
-  }
-  throw std::invalid_argument("filter '" + std::string(kind.name) + "' is not known; allowed: " + names);
+  return entry_named(hand_filters(), kind.name, "filter");
 }
 
 const std::vector<FilterSetting>& filter_settings() {
