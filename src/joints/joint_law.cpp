@@ -103,9 +103,9 @@ double JointLaw::Stop::over(double way) const {
   return std::max(0.0, sign * way - room);
 }
 
-void JointLaw::begin(const Joint& joint, const JointState& state, double velocity, double inertia,
-                     double step) {
+void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
+  blow_ = 0.0;
   constant_ = 0.0;
   linear_ = joint.damping;
   // At the step's end, as contacts are: k (to - x - h v).
@@ -119,15 +119,13 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double velocit
   friction_ = latch_ = {};
   if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
   if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
-  const auto stop = [&](double room, double sign) {
-    // One that is met within this step answers by Newton's law.
-    const double speed = sign * velocity;
-    if (joint.restitution > 0.0 && room > 0.0 && step * speed > room)
-      room = -joint.restitution * step * speed;
-    return Stop{room, sign};
+  // What has swung beyond a limit comes back as fast as in a usual step: all the way within a far shorter one
+  // would be a throw.
+  const auto room = [part = std::min(1.0, step / usual)](double left) {
+    return left < 0.0 ? part * left : left;
   };
-  lower_ = stop(state.position - joint.lower, -1.0);
-  upper_ = stop(joint.upper - state.position, 1.0);
+  lower_ = {room(state.position - joint.lower), -1.0};
+  upper_ = {room(joint.upper - state.position), 1.0};
 }
 
 bool JointLaw::acts(double speed) const {
@@ -164,7 +162,7 @@ double JointLaw::size(double velocity) const {
 
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
-  state.effort = force(velocity);
+  state.effort = force(velocity) + blow_ / step_;
   // Dry friction holds by a spring to an anchor, which follows where the force at the limit holds it no more.
   if (friction_.stiffness > 0.0)
     state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;

@@ -11,8 +11,11 @@ namespace mrhi {
 /// the joint's inertia within a step, the last two up to their force: what they hold does not creep.
 class JointLaw {
  public:
-  /// `velocity`: at the step's start; `inertia`: of the joint alone, its entry of the mass matrix.
-  void begin(const Joint& joint, const JointState& state, double velocity, double inertia, double step);
+  /// `inertia`: of the joint alone, its entry of the mass matrix; `usual`: step, of which frames leave
+  /// shorter ones over [s].
+  void begin(const Joint& joint, const JointState& state, double inertia, double step, double usual);
+  /// Takes down what a limit has given within this step already, when it was struck [N m s].
+  void note_blow(double impulse) { blow_ += impulse; }
 
   /// Whether it gives anything up to this speed either way.
   bool acts(double speed) const;
@@ -46,6 +49,7 @@ class JointLaw {
   Hold friction_, latch_;
   Stop lower_, upper_;
   double stop_ = 0.0;  // stiffness of what holds
+  double blow_ = 0.0;
   double step_ = 0.0;
 };
 

@@ -78,7 +78,7 @@ const std::vector<const ContactModelEntry*>& contact_models() {
 
 std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
                                                  SimulationState& state, std::vector<Event>& events) {
-  auto joints = std::make_unique<JointedModel>(configuration.contact, scene, state, events);
+  auto joints = std::make_unique<JointedModel>(configuration, scene, state, events);
   if (configuration.contact_model == ContactModelKind::implicit) return joints;
   const ContactModelEntry& model = entry_of(configuration.contact_model);
   return std::make_unique<WithJoints>(model.make(configuration.contact), model.of_objects, std::move(joints));

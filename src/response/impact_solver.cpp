@@ -31,8 +31,6 @@ double slow_in(const ContactStep& step) {
 
 /// Impulses that grow beyond this multiple of what the blows need have no end.
 constexpr double kPressed = 4.0;
-/// A gain of energy up to this part of what is exchanged is rounding.
-constexpr double kNoGain = 1e-7;
 
 Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
   const Body& body = step.scene.bodies[index];
@@ -108,7 +106,7 @@ ImpactSolver::ImpactSolver() {
   blow_.reserve(kUsualStrikes);
   meetings_.reserve(kUsualStrikes);
   impacts_.reserve(2 * kUsualStrikes);
-  newtons_.reserve(kUsualStrikes);
+  both_.reserve(kUsualStrikes);
 }
 
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
@@ -315,19 +313,19 @@ bool ImpactSolver::solve(double most) {
 double ImpactSolver::gain() const {
   double sum = 0.0;
   for (const Strike* strike : blow_)
-    sum -= 0.5 * strike->given().dot(strike->approach + strike->velocity_on_impact());
+    sum += energy_gained(strike->approach, strike->given(), strike->velocity_on_impact());
   return sum;
 }
 
-/// Newton's restitution and Coulomb's friction together may make energy (Kane & Levinson 1985). Where they
-/// do, the blow is what lies between one without restitution, which only takes, and theirs, and keeps energy.
+/// Where restitution together with friction makes energy, the blow is one between theirs and one without
+/// restitution.
 void ImpactSolver::keep_to_energy(double most) {
   double exchanged = 0.0;
   for (const Strike* strike : blow_) exchanged += strike->given().norm() * strike->approach.norm();
   if (gain() <= kNoGain * exchanged) return;
-  newtons_.clear();
-  for (Strike* strike : blow_)
-    newtons_.push_back({strike->given(), strike->velocity_on_impact(), strike->drag, strike->magnitude});
+  both_.clear();
+  for (const Strike* strike : blow_)
+    both_.push_back({strike->approach, strike->given(), strike->velocity_on_impact(), {}, {}});
   for (Strike* strike : blow_) {
     strike->a.push(strike->given());
     strike->b.push(-strike->given());
@@ -337,21 +335,14 @@ void ImpactSolver::keep_to_energy(double most) {
     strike->target += strike->restitution * strike->normal.dot(strike->approach);
   }
   solve(most);
-  double square = 0.0, linear = 0.0;
-  const double least = gain();
+  for (std::size_t i = 0; i < blow_.size(); ++i)
+    both_[i].least = blow_[i]->given(), both_[i].after_least = blow_[i]->velocity_on_impact();
+  keep_from_gaining(both_);
   for (std::size_t i = 0; i < blow_.size(); ++i) {
-    const Vector3 more = newtons_[i].given - blow_[i]->given();
-    const Vector3 faster = newtons_[i].velocity - blow_[i]->velocity_on_impact();
-    square -= 0.5 * more.dot(faster);
-    linear -=
-        0.5 * (more.dot(blow_[i]->approach + blow_[i]->velocity_on_impact()) + blow_[i]->given().dot(faster));
-  }
-  const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * least));
-  const double share = least < 0.0 ? std::clamp((root - linear) / (2.0 * square), 0.0, 1.0) : 0.0;
-  for (std::size_t i = 0; i < blow_.size(); ++i) {
-    const Vector3 more = share * (newtons_[i].given - blow_[i]->given());
-    blow_[i]->magnitude += share * (newtons_[i].magnitude - blow_[i]->magnitude);
-    blow_[i]->drag += share * (newtons_[i].drag - blow_[i]->drag);
+    const Vector3 more = both_[i].newtons - blow_[i]->given();
+    const double pressed = -blow_[i]->normal.dot(more);
+    blow_[i]->magnitude += pressed;
+    blow_[i]->drag += more + pressed * blow_[i]->normal;
     blow_[i]->a.push(-more);
     blow_[i]->b.push(more);
   }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "impact.h"
 #include "islands.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "strike.h"
@@ -54,12 +55,7 @@ class ImpactSolver {
   std::vector<Strike*> blow_;     // those dealt together
   std::vector<BodyImpact> impacts_;
   std::vector<Twist> twists_;  // by body, of a crowd's
-  /// A blow as Newton's law has it.
-  struct Newtons {
-    Vector3 given, velocity, drag;
-    double magnitude;
-  };
-  std::vector<Newtons> newtons_;
+  std::vector<TwoBlows> both_;
   bool by_hand_ = false;  // a hand takes part in this island's strikes
   /// How exactly a blow is solved.
   struct Care {

@@ -39,9 +39,9 @@ bool is_held(const ContactStep& step, const Island& island) {
 
 }  // namespace
 
-JointedModel::JointedModel(const ContactConfiguration& configuration, const Scene& scene,
-                           SimulationState& state, std::vector<Event>& events)
-    : ImplicitModel(configuration),
+JointedModel::JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
+                           std::vector<Event>& events)
+    : ImplicitModel(configuration.contact),
       scene_(scene),
       state_(state),
       events_(events),
@@ -53,7 +53,7 @@ JointedModel::JointedModel(const ContactConfiguration& configuration, const Scen
     for (const LinkageBody& link : linkage.bodies) groups_.back().push_back(link.body);
     motions_.emplace_back(scene, linkage);
     flights_.emplace_back(scene, linkage);
-    problems_.push_back(std::make_unique<LinkageProblem>());
+    problems_.push_back(std::make_unique<LinkageProblem>(configuration.step));
   }
 }
 
@@ -115,13 +115,14 @@ void JointedModel::begin(ContactStep& step) {
 }
 
 void JointedModel::strike(ContactStep& step, const Island& island, LinkageProblem& problem) {
-  if (!blows_.find(step, island, problem)) return;
+  if (!blows_.find(step, island, problem, state_.joints)) return;
   if (is_held(step, island)) {
     Newton<LinkageProblem>(problem).solve();
     blows_.spare_carried(step, problem.velocity());
   }
-  if (blows_.deal(problem, configuration_.impact_friction, struck_velocity_))
-    problem.start_with(struck_velocity_, step, state_.joints);
+  if (!blows_.deal(problem, configuration_.impact_friction, struck_velocity_)) return;
+  problem.start_with(struck_velocity_, step, state_.joints);
+  blows_.tell_limits(problem);
 }
 
 void JointedModel::solve(ContactStep& step) {

@@ -19,7 +19,7 @@ namespace mrhi {
 class JointedModel : public ImplicitModel {
  public:
   /// Keeps references: to the state for what joints remember, to the events for what they do.
-  JointedModel(const ContactConfiguration& configuration, const Scene& scene, SimulationState& state,
+  JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
                std::vector<Event>& events);
   void respond(ContactStep& step) override;
 

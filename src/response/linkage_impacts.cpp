@@ -29,7 +29,8 @@ int place_in(const Island& island, std::size_t body) {
 
 }  // namespace
 
-bool LinkageImpacts::find(ContactStep& step, const Island& island, const LinkageProblem& problem) {
+bool LinkageImpacts::find(ContactStep& step, const Island& island, const LinkageProblem& problem,
+                          const std::vector<JointState>& joints) {
   count_ = 0;
   const auto material = [&](std::size_t body) -> const Material& { return step.scene.bodies[body].material; };
   for (const IslandBody& body : island.bodies) {
@@ -65,13 +66,38 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       add_point_rows(problem, place_in(island, contact.key.a), contact.arm_a, 1.0, strike.rows);
     add(step.step, problem);
   }
+  find_limits(step, problem, joints);
   return count_ > 0;
+}
+
+/// A limit that a joint meets within the step is struck as a surface is: springs and gravity, which push on
+/// through the step, then find it on its way back, and give it no energy that they have not.
+void LinkageImpacts::find_limits(const ContactStep& step, const LinkageProblem& problem,
+                                 const std::vector<JointState>& joints) {
+  for (Eigen::Index unknown = 0; unknown < problem.start().size(); ++unknown) {
+    if (problem.joint_of(unknown) == LinkageBody::kNone) continue;
+    const auto index = static_cast<std::size_t>(problem.joint_of(unknown));
+    const Joint& joint = step.scene.joints[index];
+    const double sign = problem.start()[unknown] > 0.0 ? 1.0 : -1.0, position = joints[index].position;
+    const double room = sign > 0.0 ? joint.upper - position : position - joint.lower;
+    const bool meets = room > 0.0 && sign * problem.start()[unknown] * step.step > room;
+    if (joint.restitution <= 0.0 || !meets) continue;
+    Strike& strike = next();
+    strike.joint = unknown;
+    strike.normal = Vector3::UnitX(), strike.drive.setZero();
+    strike.gap = room;
+    strike.restitution = joint.restitution;
+    strike.friction = 0.0;
+    strike.rows.setZero(3, problem.jacobian().cols());
+    strike.rows(0, unknown) = -sign;
+    add(step.step, problem);
+  }
 }
 
 LinkageImpacts::Strike& LinkageImpacts::next() {
   if (count_ == strikes_.size()) strikes_.emplace_back();
   Strike& strike = strikes_[count_];
-  strike.hand = nullptr, strike.between = nullptr;
+  strike.hand = nullptr, strike.between = nullptr, strike.joint = -1;
   strike.inverse_mass = strike.magnitude = 0.0;
   strike.drag.setZero(), strike.recoil.setZero();
   return strike;
@@ -149,13 +175,39 @@ double LinkageImpacts::Strike::relax_tangential(LinkageProblem::Vector& velocity
 
 bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity) {
   velocity = problem.start();
-  double most = 0.0, scale = 0.0;
   for (Strike& strike : now()) {
     prepare(problem, strike);
-    const double speed = strike.normal.dot(strike.relative_velocity(velocity));
-    strike.target = -strike.restitution * speed;
-    most += -(1.0 + strike.restitution) * speed * strike.normal_mass;
-    scale = std::max(scale, -speed);
+    strike.approach = strike.relative_velocity(velocity);
+    strike.target = -strike.restitution * strike.normal.dot(strike.approach);
+  }
+  if (!solve(friction, velocity)) return false;
+  keep_to_energy(problem, friction, velocity);
+  for (const Strike& strike : now()) {
+    if (strike.hand != nullptr) {
+      strike.hand->impulse += strike.given();
+      strike.hand->struck = true;
+      strike.hand->time_of_impact = strike.time;
+    } else if (strike.between != nullptr) {
+      strike.between->impulse += strike.given();
+      strike.between->struck = true;
+    }
+  }
+  return true;
+}
+
+void LinkageImpacts::tell_limits(LinkageProblem& problem) {
+  for (const Strike& strike : now()) {
+    if (strike.joint >= 0) problem.note_blow(strike.joint, strike.magnitude * strike.rows(0, strike.joint));
+  }
+}
+
+/// Finds impulses that together give every strike its velocity; false if there are none.
+bool LinkageImpacts::solve(bool friction, LinkageProblem::Vector& velocity) {
+  double most = 0.0, scale = 0.0;
+  for (const Strike& strike : now()) {
+    const double speed = -strike.normal.dot(strike.approach);
+    most += (1.0 + strike.restitution) * speed * strike.normal_mass;
+    scale = std::max(scale, speed);
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double error = 0.0, sum = 0.0;
@@ -167,18 +219,41 @@ bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageP
     if (sum > kPressed * most) return false;
     if (error <= kConverged * scale) break;
   }
-  for (Strike& strike : now()) {
-    const Vector3 given = strike.drag - strike.magnitude * strike.normal;
-    if (strike.hand != nullptr) {
-      strike.hand->impulse += given;
-      strike.hand->struck = true;
-      strike.hand->time_of_impact = strike.time;
-    } else {
-      strike.between->impulse += given;
-      strike.between->struck = true;
-    }
-  }
   return true;
+}
+
+/// As ImpactSolver's.
+void LinkageImpacts::keep_to_energy(const LinkageProblem& problem, bool friction,
+                                    LinkageProblem::Vector& velocity) {
+  double gain = 0.0, exchanged = 0.0;
+  both_.clear();
+  for (const Strike& strike : now()) {
+    const Vector3 given = strike.given(), after = strike.relative_velocity(velocity);
+    both_.push_back({strike.approach, given, after, {}, {}});
+    gain += energy_gained(strike.approach, given, after);
+    exchanged += given.norm() * strike.approach.norm();
+  }
+  if (gain <= kNoGain * exchanged) return;
+  velocity = problem.start();
+  for (Strike& strike : now()) {
+    strike.target = strike.magnitude = 0.0;
+    strike.drag.setZero(), strike.recoil.setZero();
+  }
+  solve(friction, velocity);
+  std::size_t i = 0;
+  for (const Strike& strike : now()) {
+    both_[i].least = strike.given();
+    both_[i++].after_least = strike.relative_velocity(velocity);
+  }
+  keep_from_gaining(both_);
+  i = 0;
+  for (Strike& strike : now()) {
+    const Vector3 more = both_[i++].newtons - strike.given();
+    const double pressed = -strike.normal.dot(more);
+    strike.magnitude += pressed;
+    strike.drag += more + pressed * strike.normal;
+    strike.push(-more, velocity);
+  }
 }
 
 }  // namespace mrhi

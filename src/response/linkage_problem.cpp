@@ -126,7 +126,7 @@ void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
     const auto row = static_cast<Eigen::Index>(i);
     if (unknowns_[i].joint == kNoJoint) continue;
     const auto joint = static_cast<std::size_t>(unknowns_[i].joint);
-    laws_[i].begin(scene_->joints[joint], joints[joint], start_[row], mass_(row, row), step_);
+    laws_[i].begin(scene_->joints[joint], joints[joint], mass_(row, row), step_, usual_);
     acts_ = acts_ || laws_[i].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
     velocity_[row] += step_ * joints[joint].pushed;
   }

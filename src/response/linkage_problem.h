@@ -15,6 +15,8 @@ namespace mrhi {
 class LinkageProblem {
  public:
   static constexpr bool kTrustsLastStep = false;
+  explicit LinkageProblem(double usual_step) : usual_(usual_step) {}
+
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
@@ -40,6 +42,11 @@ class LinkageProblem {
   const Vector& start() const { return start_; }
   const Vector& velocity() const { return velocity_; }
   const Matrix& jacobian() const { return jacobian_; }
+  /// Which joint's velocity an unknown is, as an index in Scene::joints; -1 of a body that flies.
+  int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
+  void note_blow(Eigen::Index joint, double impulse) {
+    laws_[static_cast<std::size_t>(joint)].note_blow(impulse);
+  }
   /// Solves the mass matrix for velocities, in place.
   void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }
   const Matrix& mass() const { return mass_; }
@@ -62,6 +69,7 @@ class LinkageProblem {
   void add_free(const ContactStep& step, const Island& island, std::size_t index);
 
   IslandProblem several_;
+  const double usual_;
   double step_ = 0.0, scale_ = 0.0, carried_ = 0.0;
   bool acts_ = false;
   std::vector<Unknown> unknowns_;

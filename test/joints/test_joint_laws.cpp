@@ -78,6 +78,60 @@ TEST(JointLimit, bounces_by_its_restitution) {
   EXPECT_NEAR(after, -0.5 * before, 0.03);
 }
 
+/// At a step in which its spring's force changes much, a bounce all the same gives nothing that was not
+/// there: it is dealt as a blow, whose impulse the spring then finds, and not as a place to be sprung to.
+TEST(JointLimit, gives_no_energy_where_a_spring_pushes_against_the_bounce) {
+  for (const double step : {0.001, 0.0083, 0.02}) {
+    Scene scene = rail(0.0);
+    scene.joints[0].lower = -0.1;
+    scene.joints[0].restitution = 1.0;
+    scene.joints[0].spring = JointSpring{200.0, -0.5};
+    scene.bodies[0].start_twist.linear = {0, 0, -3.0};
+    Simulation simulation = running(scene, step);
+    const auto energy = [](const Simulation& now) {
+      return 0.5 * speed(now) * speed(now) + 100.0 * std::pow(position(now) + 0.5, 2);
+    };
+    const double before = energy(simulation);
+    int bounces = 0;
+    double last = -1.0, most = 0.0;
+    let_go_on(simulation, 0.0, 0.3, 1.0 / step, [&](const Simulation& now) {
+      bounces += speed(now) * last < 0.0;
+      last = speed(now);
+      most = std::max(most, energy(now));
+    });
+    EXPECT_GE(bounces, 2) << step;
+    EXPECT_LE(most, before * (1.0 + 1e-6)) << step;
+  }
+}
+
+/// A block that is whirled about slides out to its limit and, as it swings on within each step, some way
+/// beyond. A step that is far shorter does not throw it back all that way at once.
+TEST(JointLimit, lets_what_has_swung_beyond_it_come_back_no_faster_in_a_short_step) {
+  constexpr double kSpin = 20.0, kArm = 0.2, kStep = 0.0083;  // [rad/s], [m], [s]
+  Scene scene = rail(0.0);
+  scene.joints[0].kind = JointKind::turning;
+  Body sliding = box_body({0.05, 0.05, 0.05}, 0.1);
+  sliding.name = "sliding";
+  sliding.start.position = {kArm, 0, 0};
+  scene.bodies.push_back(sliding);
+  Joint radial = hinge(0, 1, {{kArm, 0, 0}, Quaternion::Identity()}, {});
+  radial.name = "radial";
+  radial.kind = JointKind::sliding;
+  radial.axis = Vector3::UnitX();
+  radial.upper = 0.0;
+  scene.joints.push_back(radial);
+  scene.bodies[0].start_twist.angular = scene.bodies[1].start_twist.angular = {0, 0, kSpin};
+  scene.bodies[1].start_twist.linear = {0, kSpin * kArm, 0};
+  Simulation simulation = running(scene, kStep);
+  let_go_on(simulation, 0.0, 0.2, 1.0 / kStep);
+  const double beyond = simulation.state().joints[1].position;
+  EXPECT_GT(beyond, 1e-4);
+  let_go_on(simulation, 0.2005, 0.2005, 1000.0);
+  const double inwards = -joint_velocity(simulation.scene(), 1, simulation.state().bodies);
+  EXPECT_GT(inwards, 0.0);
+  EXPECT_LT(inwards, 1.5 * beyond / kStep);
+}
+
 /// Ten minutes under three quarters of what it bears.
 TEST(JointFriction, holds_without_creep) {
   Scene scene = rail(9.81);
