@@ -30,8 +30,8 @@ std::vector<Group> load_groups(const std::vector<std::string>& files) {
     Group fast{input, "99 to 116", {}}, slow{input, "38 to 60", {}};
     for (Take& take : load_takes(files, with_noise))
       (take.frame_rate() > kBetweenRates ? fast : slow).takes.push_back(std::move(take));
-    groups.push_back(std::move(fast));
-    groups.push_back(std::move(slow));
+    for (Group* group : {&fast, &slow})
+      if (!group->takes.empty()) groups.push_back(std::move(*group));
   }
   return groups;
 }
@@ -79,11 +79,11 @@ bool write_file(const std::string& path, Write write) {
   return static_cast<bool>(csv);
 }
 
-int run(const std::string& folder) {
-  const std::vector<std::string> files = testing::recordings();
+int run(const std::string& folder, std::vector<std::string> files) {
+  if (files.empty()) files = testing::recordings();
   if (files.empty()) {
     std::cerr << "filters: no recordings in " << testing::recordings_folder()
-              << "; set MR_HAND_RECORDINGS to their folder\n";
+              << "; name CSV files of hands, or set MR_HAND_RECORDINGS to their folder\n";
     return 1;
   }
   const bool written =
@@ -96,12 +96,13 @@ int run(const std::string& folder) {
 }  // namespace mrhi::filter_benchmark
 
 int main(int argc, char** argv) {
-  if (argc != 3 || std::string(argv[1]) != "--output") {
-    std::cerr << "usage: filters --output DIR\n";
+  if (argc < 3 || std::string(argv[1]) != "--output") {
+    std::cerr << "usage: filters --output DIR [RECORDING.csv]...\n"
+                 "Without recordings, those in the folder MR_HAND_RECORDINGS.\n";
     return 2;
   }
   try {
-    return mrhi::filter_benchmark::run(argv[2]);
+    return mrhi::filter_benchmark::run(argv[2], {argv + 3, argv + argc});
   } catch (const mrhi::RecordingError& error) {
     std::cerr << "filters: " << error.what() << '\n';
     return 1;
