@@ -20,7 +20,7 @@ struct Link {
 };
 
 template <typename T>
-struct Range {
+struct Span {
   const T* first;
   const T* last;
   const T* begin() const { return first; }
@@ -30,8 +30,8 @@ struct Range {
 
 /// A group of free bodies that touch each other, with the contacts that act on them.
 struct Island {
-  Range<IslandBody> bodies;  // by their index
-  Range<Link> links;         // likewise
+  Span<IslandBody> bodies;  // by their index
+  Span<Link> links;         // likewise
 };
 
 /// Bodies that touch nothing, and fixtures, belong to none.

@@ -115,6 +115,26 @@ TEST_F(Tracker, filter_starts_afresh_after_a_loss) {
   EXPECT_EQ(hands_[0].filter.history.size, 1);
 }
 
+/// At 0.5 m/s the mean of ten frames is 4.5 of them behind. Minimum jerk: half of the way at half of 0.2 s.
+TEST_F(Tracker, another_filter_takes_over_within_a_fifth_of_a_second) {
+  constexpr double kSpeed = 0.5, kInterval = 0.01, kLag = 4.5 * kInterval * kSpeed;
+  configuration_.filter.type = FilterKind::window;
+  configuration_.filter.window = 10;
+  int n = 0;
+  const auto behind_after = [&](int frames) {
+    for (int i = 0; i < frames; ++i, ++n) frame(n * kInterval, {hand_at(kSpeed * n * kInterval)});
+    return kSpeed * (n - 1) * kInterval - x();
+  };
+  EXPECT_NEAR(behind_after(40), kLag, 1e-12);
+  const FilterConfiguration from = configuration_.filter;
+  configuration_.filter.type = FilterKind::none;
+  change_filter(from, at((n - 1) * kInterval), hands_);
+  EXPECT_NEAR(behind_after(5), (1.0 - 0.103515625) * kLag, 1e-12);
+  EXPECT_NEAR(behind_after(5), 0.5 * kLag, 1e-12);
+  EXPECT_GT(behind_after(9), 1e-6);
+  EXPECT_NEAR(behind_after(1), 0.0, 1e-12);
+}
+
 TEST_F(Tracker, a_joint_faster_than_max_speed_has_jumped) {
   frame(0.000, {hand_at(0.0)});
   frame(0.008, {hand_at(0.3)});  // 37 m/s
