@@ -51,6 +51,7 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
   for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
 }
 
+/// From the root outwards: X_child = X_parent X_joint_in_parent X_joint(q) X_joint_in_child^-1.
 void LinkageMotion::place(const Pose& root, const Vector& positions) {
   for (int i = 0; i < size(); ++i) {
     Placed& placed = placed_[static_cast<std::size_t>(i)];
@@ -75,6 +76,9 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
   }
 }
 
+/// p += J' (impulse, moment): what a joint lets through of an impulse at the body's centre and of a moment,
+/// up the tree to the root. Along an axis a that slides it is a.P; about one that turns, at o, a.(L + (c - o)
+/// x P).
 void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
                          Eigen::Ref<Vector> momenta) const {
   const Vector3& centre = at(body).pose.position;
@@ -90,6 +94,7 @@ void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment
   }
 }
 
+/// J of a body: the velocity of its centre and its angular velocity when one unknown alone moves by one.
 void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   const Vector3& centre = at(body).pose.position;
   for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
@@ -106,7 +111,8 @@ void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   }
 }
 
-/// Column by column: the momenta that go with the motion of each unknown alone.
+/// M = sum J_b' diag(m_b, I_b) J_b, column by column: the momenta that go with the motion of each unknown
+/// alone (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
 void LinkageMotion::weigh() {
   mass_.setZero();
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 + 256> rows(6, mass_.cols());
@@ -127,6 +133,7 @@ void LinkageMotion::weigh() {
   factors_.compute(mass_);
 }
 
+/// From the root outwards: each body moves as a part of the one before it, and by its joint.
 void LinkageMotion::move(const Vector& velocity) {
   for (int i = 0; i < size(); ++i) {
     Placed& placed = placed_[static_cast<std::size_t>(i)];

@@ -70,6 +70,7 @@ void LinkageFlight::find_velocity(const Point& point) {
   motion_.move(velocity_);
 }
 
+/// Hamilton's equations: q' = M(q)^-1 p, p' = -dH/dq.
 void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point& rate) {
   find_velocity(point);
   motion_.find_rates(gravity, rate.momenta);
@@ -98,6 +99,9 @@ double LinkageFlight::distance(const Point& a, const Point& b) {
   return std::max({of(a.positions, b.positions), of(a.momenta, b.momenta), of(a.turn, b.turn)});
 }
 
+/// Gauss's method of two stages, of fourth order and symplectic (Hairer, Lubich & Wanner, Geometric Numerical
+/// Integration, 2006, II.1.3): stages at 1/2 -+ sqrt(3)/6 of the way, by fixed-point rounds. It has no drift
+/// of energy, and keeps the momenta that the motion keeps.
 void LinkageFlight::advance(const Vector3& gravity, double seconds) {
   static const double kThird = std::sqrt(3.0) / 6.0;
   Stage &one = stages_[0], &two = stages_[1];
@@ -168,6 +172,8 @@ void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointSt
   write(Vector3::Zero(), Vector3::Zero(), joints, bodies);
 }
 
+/// What floats: its centre falls, its total angular momentum about it stays, and only shape and orientation
+/// are integrated, in the frame of the centre of mass. Rounding is put right at the root.
 void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
                              std::vector<BodyState>& bodies) {
   const Whole start = whole(bodies);

@@ -29,12 +29,14 @@ constexpr int kLookRound = 4;
 /// What will press if it closes faster by this part of what contacts have made of velocities is taken in.
 constexpr double kIdle = 0.01;
 
+/// W = 1/m - [r]x I^-1 [r]x: change of a point's velocity by an impulse there (Eq. 12 of the paper) [1/kg].
 Matrix3 response_of(double inverse_mass, const Matrix3& inverse_inertia, const Vector3& arm) {
   const Matrix3 cross = cross_matrix(arm);
   return inverse_mass * Matrix3::Identity() - cross * inverse_inertia * cross;
 }
 
-/// The larger eigenvalue of what acts across n.
+/// The larger eigenvalue of W across n. Friction is relaxed by this one number for both directions: by less
+/// of a mobility than there is it would overshoot, and to and fro between contacts it would not end.
 double most_across(const Matrix3& response, const Vector3& n) {
   if (n.isZero(0.0)) return response.trace();
   const Vector3 t = n.unitOrthogonal(), s = n.cross(t);
@@ -174,7 +176,7 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
                                              const Vector3& arm_a) {
   const Spring<double>& spring = contact.spring;
   points_.emplace_back();
-  Point& point = points_.back();
+  Point& point = points_.back();  // with impulses in place of forces: stiffness is times the step
   point.a = a, point.b = b;
   point.normal = vector(spring.normal);
   point.arm_a = arm_a, point.arm_b = vector(contact.arm);
@@ -191,6 +193,10 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
   return point;
 }
 
+/// A spring with the law p = k (d - e u), which looks ahead by e, on bodies that give way by u = u0 + w p,
+/// has p = k / (1 + k e w) * (d - e u0), with u0 the rate without it: `firm`. Along the surface the same with
+/// the stretch, for t = k (s + e u) and u = u0 - w t, in terms of the rate u that there is with the last t:
+/// t' = kept t + pulled + pull u.
 void CrowdProblem::weigh(Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
@@ -228,7 +234,8 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
   b.motion.spin += point.turn_b * impulse;
 }
 
-/// Impulse that the spring gives at a rate, and how fast that falls with it.
+/// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
+/// the surfaces part at u, so that what is let go is not thrown off (docs/contact.md, release).
 double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
   const Point& point = points_[i];
   const double deep = std::max(0.0, point.depth - point.ahead * rate);
@@ -332,8 +339,9 @@ double CrowdProblem::made_by_contacts() const {
   return std::sqrt(most);
 }
 
-/// Carries on in the direction of the turns before, conjugate to this one; `last` is the square of what the
-/// turn before has changed. Returns that of this one.
+/// Carries on in the direction of the turns before, conjugate to this one by Fletcher and Reeves' rule (the
+/// ratio of the squares of what two turns have changed; none where that has grown); `last` is the square of
+/// what the turn before has changed. Returns that of this one.
 double CrowdProblem::keep_going(double last) {
   double square = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -11,7 +11,9 @@ namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// Of a contact point, against its velocity: symmetric.
+/// K = -df/du of a contact's force f against its relative velocity u, symmetric:
+/// k_n n n' + k_t (1 - n n') - s d d' / d'd. The last is there where friction slips: at its limit it turns
+/// with the stretch d and grows no more along it.
 Matrix3 slope_at_point(const IslandContact& contact) {
   const SpringResponse<double>& response = contact.response;
   const Vector3 n = vector(contact.spring.normal);
@@ -31,7 +33,8 @@ Matrix3 crossed(const Vector3& v, const Matrix3& m) {
   return result;
 }
 
-/// Adds J_x' S J_y, for arms x and y, by [x]x S and [y]x S; and the twist's slope.
+/// Adds J_x' S J_y, for arms x and y, by [x]x S and [y]x S; and the twist's slope. A point at the arm x moves
+/// by J_x (v, w) = v - [x]x w, so that J_x' = (1; [x]x).
 void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Vector3& x,
          const Matrix3& twist, BlockSystem::Matrix6& block) {
   block.topLeftCorner<3, 3>() += sign * slope;
@@ -96,6 +99,7 @@ void IslandProblem::begin_body(const Body& body, const BodyState& state, const V
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   masses_.push_back(
       {body.mass, body.inertia.trace() / (3.0 * body.mass), rotation * body.inertia * rotation.transpose()});
+  // Newton's method begins where gravity and what acted in the last step would bring the body.
   const Twist twist = twist_of(body, state);
   start_.segment<6>(row) << twist.linear, twist.angular;
   free_.segment<6>(row) << twist.linear + step_ * gravity, twist.angular;
@@ -103,6 +107,7 @@ void IslandProblem::begin_body(const Body& body, const BodyState& state, const V
       free_.segment<3>(row + 3) + step_ * state.pushed.angular;
 }
 
+/// Which blocks of six by six the Hessian has beside its diagonal: one for each pair that touches.
 void IslandProblem::couple() {
   system_.begin(static_cast<int>(masses_.size()));
   for (const IslandContact& contact : contacts_) {
@@ -154,6 +159,8 @@ bool IslandProblem::stays_apart(IslandContact& contact, const Triple<double>& u,
   return true;
 }
 
+/// Backward Euler: M (u - u*) = h sum J' f(J u), where u* is the motion without contacts. The gradient is the
+/// impulse that the two sides differ by. It is that of energy() too, as long as friction's limits are held.
 void IslandProblem::evaluate(bool renew_limits) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(6 * i);
@@ -184,6 +191,7 @@ void IslandProblem::factorise() {
   system_.factorise();
 }
 
+/// H = M + h sum J' K J: positive definite, as no spring's K has a negative eigenvalue.
 void IslandProblem::assemble() {
   system_.clear();
   for (int i = 0; i < static_cast<int>(masses_.size()); ++i) {
@@ -224,6 +232,7 @@ void IslandProblem::add_slope(const IslandContact& contact) {
   }
 }
 
+/// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
 double IslandProblem::error_squared() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -234,6 +243,8 @@ double IslandProblem::error_squared() const {
   return sum;
 }
 
+/// (u - u*)' M (u - u*) / 2 + h sum V(J u), with V the potential whose slope is -f: convex, least at the
+/// step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000).
 double IslandProblem::energy() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -257,6 +268,7 @@ void IslandProblem::finish(ContactStep& step, const Island& island) {
     BodyState& state = step.bodies[island.bodies.begin()[i].body];
     state.pushed.linear = (velocity_ - free_).segment<3>(row) / step_;
     state.pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
+    // M u less the gradient is M u* + h sum J' f: what one body gains another loses, however far u is solved.
     state.linear_momentum = masses_[i].mass * velocity_.segment<3>(row);
     state.angular_momentum = masses_[i].inertia * velocity_.segment<3>(row + 3);
     state.linear_momentum -= gradient_.segment<3>(row);

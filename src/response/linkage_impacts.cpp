@@ -129,6 +129,8 @@ void LinkageImpacts::spare_carried(const ContactStep& step, const LinkageProblem
   count_ = kept;
 }
 
+/// W = J M^-1 J' + 1/m_hand: change of the relative velocity by an impulse there, with all that joints pass
+/// on. The normal's effective mass is 1 / n'Wn; across n, one number below both, of the trace.
 void LinkageImpacts::prepare(const LinkageProblem& problem, Strike& strike) {
   strike.answer.resize(strike.rows.cols(), 3);
   for (int i = 0; i < 3; ++i) {
@@ -153,6 +155,7 @@ void LinkageImpacts::Strike::push(const Vector3& on_first, LinkageProblem::Vecto
   recoil += inverse_mass * on_first;
 }
 
+/// Gauss and Seidel: as much more as takes the rate to its target with the others as they are, never pulling.
 double LinkageImpacts::Strike::relax_normal(LinkageProblem::Vector& velocity) {
   const double rate = normal.dot(relative_velocity(velocity));
   const double wanted = std::max(0.0, magnitude + normal_mass * (target - rate));
@@ -162,6 +165,7 @@ double LinkageImpacts::Strike::relax_normal(LinkageProblem::Vector& velocity) {
   return normal_mass > 0.0 ? std::abs(change) / normal_mass : 0.0;
 }
 
+/// Likewise to no sliding, back to Coulomb's disc where it would leave it.
 double LinkageImpacts::Strike::relax_tangential(LinkageProblem::Vector& velocity) {
   const Vector3 needed = tangential_mass * relative_velocity(velocity);
   Vector3 wanted = drag + needed;

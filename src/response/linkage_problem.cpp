@@ -141,6 +141,7 @@ void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
   several_.start_from(body_start_, body_free_);
 }
 
+/// M (u - u*) - h J' f(J u) - h t(u), with t what joints give by themselves: the impulses that are missing.
 void LinkageProblem::evaluate(bool renew_limits) {
   body_velocity_.noalias() = jacobian_ * velocity_;
   several_.set_velocity(body_velocity_);
@@ -155,6 +156,7 @@ void LinkageProblem::evaluate(bool renew_limits) {
   }
 }
 
+/// In N s: a torque about a joint counts as the force at the radius of gyration of what it carries.
 double LinkageProblem::error_squared() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -179,6 +181,7 @@ Effort LinkageProblem::effort() const {
   return effort;
 }
 
+/// H = J' (M_b + h K) J - h dt/du, dense: linkages are small, and J couples all of one.
 void LinkageProblem::factorise() {
   several_.hessian(body_hessian_);
   product_.noalias() = body_hessian_.selfadjointView<Eigen::Lower>() * jacobian_;
@@ -221,6 +224,7 @@ void LinkageProblem::finish(bool agree, ContactStep& step, const Island& island,
     pushed.linear = (velocity_ - free_).segment<3>(row) / step_;
     pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
   }
+  // u less M^-1 times what is missing: momenta are then those that the forces told have given.
   const double most = kNearlyAgree * scale();
   if (agree || error_squared() <= most * most) {
     direction_ = gradient_;
