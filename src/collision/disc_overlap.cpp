@@ -64,7 +64,8 @@ std::array<DiscOverlap::Place, 4> DiscOverlap::rim_points() const {
   return points;
 }
 
-/// The part of the face's edge from..to that the disc covers: its start, or a corner where that is covered.
+/// The part of the face's edge from..to that the disc covers, between the zeros of |from + s along|^2 =
+/// radius^2: its start, or a corner where that is covered.
 void DiscOverlap::add_chord(const Place& from, const Place& to, int corner, int edge,
                             ContactRegion& region) const {
   const Place along{{to[0] - from[0], to[1] - from[1]}};
@@ -120,7 +121,8 @@ double DiscOverlap::from_centre(const Disc& other, const Place& place) const {
   return (offset - offset.dot(other.normal) / normal_.dot(other.normal) * normal_).norm();
 }
 
-/// Where the rims cross: exactly if the discs are parallel, then by the secant method.
+/// Where the rims cross: exactly, by the law of cosines, if the discs are parallel, then by the secant
+/// method.
 void DiscOverlap::add_crossings(const Disc& other, ContactRegion& region) const {
   const Place centre = project(other.centre);
   const double away = std::hypot(centre[0], centre[1]), radius = disc_.radius;

@@ -65,6 +65,8 @@ class FaceFinder {
     return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(i % 3)])];
   }
 
+  /// Over the neighbours that are flat beside what is there, as long as they lie on the plane of all: the
+  /// largest triangles begin, whose planes are the surest.
   void grow(int seed) {
     const int face = static_cast<int>(planes_.size());
     planes_.emplace_back();
@@ -233,6 +235,9 @@ class SeamFinder {
   std::vector<Seam> seams_;
 };
 
+/// Of a triangle's corner: normals of the faces round a vertex, weighted by it, do not depend on how the
+/// faces are cut into triangles (Thuermer & Wuethrich 1998), and tell inside from outside (Baerentzen &
+/// Aanaes 2005).
 double corner_angle(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }

@@ -27,6 +27,8 @@ bool MeshNearest::is_all() const {
          surface_.is_support(nearest(), gap());
 }
 
+/// Branch and bound, the nearer child first: a node's ball, about its centre c with its radius r, has nothing
+/// within `limit` of the segment where c is farther from it than r + limit.
 template <typename Limit, typename See>
 void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see) const {
   struct Open {
@@ -62,7 +64,9 @@ void MeshNearest::search(const MeshTree& tree, double range) {
       tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });
 }
 
-/// A face that is nearest at its border says nothing: it comes with the edges there.
+/// All parts that may be the nearest one while the segment's ends have not moved by more than `slack`. A way
+/// of s changes no distance by more than s: what was farther than the nearest by 2 s is then still not
+/// nearer. A face that is nearest at its border says nothing: it comes with the edges there.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   constexpr std::size_t kEdges = 12, kFaces = NearParts::kMost - kEdges;
   constexpr double kMostSlack = 1e-4, kRounding = 1e-9;
@@ -120,7 +124,9 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   return near;
 }
 
-/// Seen along the direction from the nearest so far to the segment, no part of the node is near enough.
+/// Seen along the direction f from the nearest so far to the segment, no part of the node is near enough. The
+/// node lies in its ball, cut by two planes across its normal n: no point of it is higher along f than
+/// f.c + (f.n) top + sin(f, n) r, while the segment's lowest point is at `least`.
 bool MeshNearest::is_below(const MeshTree::Node& node, double limit) const {
   const double along = facing_.dot(node.normal);
   const double slab = along > 0.0 ? along * node.top : -along * node.bottom;
@@ -128,7 +134,8 @@ bool MeshNearest::is_below(const MeshTree::Node& node, double limit) const {
   return below > 0.0 && below * below > (1.0 - along * along) * node.radius * node.radius;
 }
 
-/// A quick look before the part is measured.
+/// A quick look before the part is measured: by the heights of the segment's ends over a face's plane, or of
+/// an edge along f.
 bool MeshNearest::is_too_far(int part, double limit) const {
   if (part < faces_) {
     const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(part)];
