@@ -129,6 +129,35 @@ TEST(GraspAssist, tells_all_of_the_force_on_the_body) {
   EXPECT_GT(borne, 50);
 }
 
+// What is told of a grip's squeeze is what people give: slip's need of it and half of that again.
+TEST(GraspAssist, tells_a_squeeze_of_one_and_a_half_times_what_slip_needs) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.hand = HandStrength::of_a_person();
+  Body heavy = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 3.0);
+  heavy.material.static_friction = heavy.material.dynamic_friction = 0.1;
+  Simulation simulation(testing::scene_of(heavy), configuration);
+  double share = 0.0;  // of such a squeeze, at most, told of the index
+  testing::play(
+      simulation, 0.0, 1.5, 120.0,
+      [&](double t) {
+        return reaching(std::min(t / 0.2, 1.0), 0.012, 0.01,
+                        0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitY());
+      },
+      [&](const Simulation& s) {
+        double index = 0.0;
+        for (const Contact& contact : s.result().contacts)
+          index -= contact.key.capsule == capsule_index(1, 3) ? contact.force.x() : 0.0;
+        for (const Grip& grip : s.state().grips) {
+          if (!grip.bears) continue;
+          const double squeeze = 1.5 * grip.force.norm() / (2.0 * heavy.material.static_friction);
+          // Beside it the finger's own push is told, and half of what the grip gives.
+          EXPECT_LE(index, squeeze + HandStrength::of_a_person().finger + 0.5 * grip.force.norm());
+          if (squeeze > 1.0) share = std::max(share, index / squeeze);
+        }
+      });
+  EXPECT_GT(share, 0.95);
+}
+
 /// Thumb and index in a palm's frame, moved by `way` there.
 Hand pinching(const Pose& palm, const Pose& way) {
   Hand hand;
@@ -254,6 +283,76 @@ TEST(GraspAssist, lets_go_of_what_it_has_left_behind) {
       });
   EXPECT_TRUE(borne) << "as long as the hand was there";
   EXPECT_TRUE(simulation.state().grips.empty());
+}
+
+/// Grips and, of contacts under the cube, how far they gave way at most, while the hand closes as `hand`
+/// says.
+struct Taken {
+  std::size_t grips = 0;
+  double given_below = 0.0, raised = 0.0;
+};
+
+template <typename HandAt>
+Taken taken_from(const Scene& scene, HandAt&& hand) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.hand = HandStrength::of_a_person();
+  Simulation simulation(scene, configuration);
+  Taken taken;
+  testing::play(simulation, 0.0, 0.5, 120.0, hand, [&](const Simulation& s) {
+    taken.grips = std::max(taken.grips, s.state().grips.size());
+    for (const Contact& contact : s.state().contacts) {
+      if (contact.key.body == 0 && contact.normal.z() < -0.9)
+        taken.given_below = std::max(taken.given_below, contact.given);
+    }
+    taken.raised = std::max(taken.raised, s.state().bodies[0].pose.position.z());
+  });
+  return taken;
+}
+
+Body fixture(const Vector3& size, const Vector3& position) {
+  Body block = testing::stiff_box(size, 1.0);
+  block.name = "fixture" + std::to_string(position.y());
+  block.fixed = true;
+  block.start.position = position;
+  return block;
+}
+
+// Another finger of the hand is in a wall: the hand is shown before it, where it does not close on the cube.
+TEST(GraspAssist, takes_nothing_while_the_hand_is_deep_in_a_fixture) {
+  constexpr double kWall = 0.1;  // y of its face [m]
+  Scene scene = testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1));
+  scene.bodies.push_back(fixture(Vector3(0.2, 0.1, 0.2), Vector3(0, kWall + 0.05, 0)));
+  for (const double deep : {0.005, 0.025}) {
+    const Taken taken = taken_from(scene, [&](double t) {
+      Hand hand = reaching(std::min(t / 0.2, 1.0), 0.012, 0.0);
+      const double in = kWall + std::min(t / 0.05, 1.0) * (deep + 0.01) - 0.01;
+      testing::add_fingertip(hand, capsule_index(4, 3), Vector3(0, in, 0), -Vector3::UnitY(), 1.2);
+      return hand;
+    });
+    EXPECT_EQ(taken.grips, deep > 0.015 ? 0u : 1u) << deep;
+  }
+}
+
+// Index below and thumb above close on a cube that lies on two rails. What is below bears it, and lifts it at
+// once; without weight both would go in until they have it between them.
+TEST(GraspAssist, a_finger_under_a_weight_does_not_give_way) {
+  for (const double gravity : {0.0, 9.81}) {
+    Scene scene = testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1));
+    for (const double side : {-1.0, 1.0})
+      scene.bodies.push_back(fixture(Vector3(0.04, 0.004, 0.01), Vector3(0, side * 0.017, -kHalf - 0.0051)));
+    scene.gravity = Vector3(0, 0, -gravity);
+    Pose upright;
+    upright.orientation =
+        Quaternion(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitY()));  // index below, x to -z
+    const Taken taken = taken_from(scene, [&](double t) {
+      return testing::moved(reaching(std::min(t / 0.4, 1.0), 0.012, 0.006), upright);
+    });
+    if (gravity > 0.0) {
+      EXPECT_EQ(taken.given_below, 0.0);
+    } else {
+      EXPECT_GT(taken.given_below, 0.005);
+    }
+  }
 }
 
 TEST(GraspAssist, same_input_same_bits) {

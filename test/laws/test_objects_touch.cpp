@@ -164,6 +164,19 @@ TEST(ObjectsTouch, a_blow_goes_through_a_row_of_balls_that_touch) {
   }
 }
 
+// A ball is met from the left, 0.15 ms later from the right by one twice as heavy, and then finds the first
+// one again. Were blows of one step dealt at once, they would end at -1.5, -0.5 and 0.5 m/s.
+TEST(ObjectsTouch, blows_of_one_step_follow_each_other_in_time) {
+  const Body ball = with(ball_body(0.03, 0.2), 1.0, 0.0), heavy = with(ball_body(0.03, 0.4), 1.0, 0.0);
+  Objects balls(of({placed(ball, "left", Vector3(-0.0602, 0, 0), Vector3(1, 0, 0)),
+                    placed(ball, "middle", Vector3::Zero()),
+                    placed(heavy, "right", Vector3(0.0605, 0, 0), Vector3(-1, 0, 0))}));
+  balls.run(0.001);
+  EXPECT_NEAR(balls.twist(0).linear.x(), -5.0 / 3.0, 1e-12);
+  EXPECT_NEAR(balls.twist(1).linear.x(), 0.0, 1e-12);
+  EXPECT_NEAR(balls.twist(2).linear.x(), 1.0 / 3.0, 1e-12);
+}
+
 TEST(ObjectsTouch, rough_spinning_boxes_keep_linear_and_angular_momentum_and_lose_energy) {
   const Body box = with(box_body(Vector3(0.06, 0.05, 0.04), 0.1), 0.5, 0.6);
   Objects boxes(of({placed(box, "a", Vector3(-0.08, 0.01, 0), Vector3(0.5, 0, 0), Vector3(3, -2, 1)),
