@@ -143,6 +143,10 @@ void try_flats(const OrientedCylinder& a, const OrientedCylinder& b, CylindersAx
   axis.try_direction(b.axis);
 }
 
+/// Of two convex shapes the best direction is the normal of a face of a - b, or where s is smooth a maximum
+/// of it. Of a cylinder and a box: faces and caps (try_flats), a side line across an edge, a side or a rim at
+/// a corner, a rim on an edge (across the edge). Of two cylinders: a side line across the other, a side on a
+/// rim (across the one's axis), and rim on rim, which has no closed form: it is climbed from several starts.
 void try_rest(const OrientedCylinder& a, const OrientedBox& b, double margin, CylinderBoxAxis& axis) {
   for (int i = 0; i < 3; ++i) axis.try_direction(b.axes.col(i).cross(a.axis));
   try_corners(a, b, axis);
