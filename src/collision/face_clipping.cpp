@@ -1,14 +1,50 @@
-#include "box_face.h"
+#include "flat_face.h"
 
 #include <algorithm>
+
+// Two faces are seen along the reference's normal in the coordinates of one of them, the frame: the
+// reference, or the incident face where that has the rim that touches. There the other is a polygon, a line
+// or a circle, and how deep the one is below the other is a linear function of the place. What is common to
+// both has for corners: those of each within the other, and where their borders cross. A rim counts with four
+// of its points.
 
 namespace mrhi {
 namespace {
 
-/// A corner of the polygon that is left, and which line leads on from it: edge 0..3 of the incident face, or
-/// border 4..7 of the reference.
+using Outline = FlatFace::Outline;
+using Place = FlatFace::Place;
+
+constexpr double kQuarter = 1.5707963267948966;
+/// No direction that a scene is likely to have: half-way between two rim points lies off every such.
+constexpr double kFirstRimPoint = 0.25;
+/// Rim points are fixed to the cylinder while the rim is out of level by less than the first, and follow the
+/// lowest from the second on [m]: a can that stands keeps the points that friction holds, one that rolls on
+/// its rim has a point where it is lowest.
+constexpr double kLevel = 1e-6, kTilted = 20e-6;
+/// A disc's rim is crossed by an edge, or another rim, where that comes in (0) and where it goes out (1).
+constexpr int kIn = 0, kOut = 1;
+
+/// Border i of a rectangle: the points with sign * coordinate[dimension] = half[dimension].
+struct Border {
+  std::size_t dimension;
+  double sign;
+};
+constexpr std::array<Border, 4> kBorders{{{1, 1.0}, {0, -1.0}, {1, -1.0}, {0, 1.0}}};
+
+double length(const Place& place) {
+  return std::hypot(place[0], place[1]);
+}
+double cross(const Place& o, const Place& p, const Place& q) {
+  return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+}
+Place between(const Place& from, const Place& to, double part) {
+  return {{from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])}};
+}
+
+/// A corner of the polygon that is left, and which line leads on from it: edge 0..3 of the other face, or
+/// border 4..7 of the frame.
 struct Corner {
-  std::array<double, 2> place;
+  Place place;
   std::uint8_t feature;
   int line;
 };
@@ -22,60 +58,101 @@ struct Polygon {
 
 class Clipping {
  public:
-  Clipping(const BoxFace& reference, const BoxFace& incident, bool reference_is_a)
-      : reference_(reference), incident_(incident), reference_is_a_(reference_is_a) {
-    const Vector3 offset = incident.centre - reference.centre;
-    const double facing = incident.normal.dot(reference.normal);
-    for (std::size_t i = 0; i < 2; ++i) {
-      middle_[i] = reference.along[i].dot(offset);
-      slope_[i] = -incident.normal.dot(reference.along[i]) / facing;
-      for (std::size_t j = 0; j < 2; ++j)
-        side_[j][i] = incident.half[j] * reference.along[i].dot(incident.along[j]);
+  Clipping(const FlatFace& frame, const FlatFace& other, bool frame_is_reference, bool frame_is_a)
+      : frame_(frame),
+        other_(other),
+        normal_(frame_is_reference ? frame.normal : other.normal),
+        frame_is_reference_(frame_is_reference),
+        frame_is_a_(frame_is_a),
+        per_height_(1.0 / normal_.dot(frame.normal)) {
+    const Vector3 offset = other.centre - frame.centre;
+    middle_ = project(offset);
+    for (std::size_t j = 0; j < 2; ++j) side_[j] = project(other.half[j] * other.along[j]);
+    const double inwards = frame_is_reference ? -1.0 : 1.0;
+    if (other.is(Outline::line)) {  // it has a slope along itself only
+      const double run = side_[0][0] * side_[0][0] + side_[0][1] * side_[0][1];
+      const double rise = inwards * height(other.half[0] * other.along[0]);
+      slope_ = {{rise / run * side_[0][0], rise / run * side_[0][1]}};
+    } else {
+      const double facing = inwards / normal_.dot(other.normal);
+      for (std::size_t i = 0; i < 2; ++i) slope_[i] = -facing * other.normal.dot(frame.along[i]);
     }
-    height_ = reference.normal.dot(offset);
-    const double size = std::min(std::min(reference.half[0], reference.half[1]),
-                                 std::min(incident.half[0], incident.half[1]));
-    tolerance_ = border_tolerance(size, std::hypot(slope_[0], slope_[1]));
+    depth_ = inwards * height(offset) - slope_[0] * middle_[0] - slope_[1] * middle_[1];
+    tolerance_ = border_tolerance(std::min(frame.size(), other.size()), length(slope_));
   }
 
   ContactRegion region() {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double x = BoxFace::kCorner[i][0], y = BoxFace::kCorner[i][1];
-      polygon_.add(
-          {{{middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}},
-           corner_feature(incident_.corners[i], !reference_is_a_),
-           static_cast<int>(i)});
+    if (other_.is(Outline::circle)) {
+      rim_on_rim();
+    } else {
+      take_polygon();
+      frame_.is(Outline::circle) ? polygon_on_rim() : polygon_on_rectangle();
     }
-    for (int border = 0; border < 4 && polygon_.count > 0; ++border) clip(border);
-    ContactRegion region;
-    for (int i = 0; i < polygon_.count; ++i) region.add(point(polygon_[i]));
-    return region;
+    return region_;
+  }
+
+  /// Midway between the faces.
+  Vector3 place(const RegionPoint& p) const {
+    return frame_.at({{p.u, p.v}}) + (frame_is_reference_ ? -0.5 : 0.5) * p.depth * normal_;
   }
 
  private:
-  static std::uint8_t corner_feature(int corner, bool of_a) {
-    return static_cast<std::uint8_t>(of_a ? corner : kBoxCorners + corner);
+  /// How far the end of an offset from the frame's plane is above it, along the normal.
+  double height(const Vector3& offset) const { return per_height_ * offset.dot(frame_.normal); }
+  Place project(const Vector3& offset) const {
+    if (frame_is_reference_) return {{frame_.along[0].dot(offset), frame_.along[1].dot(offset)}};
+    const Vector3 in_plane = offset - height(offset) * normal_;
+    return {{frame_.along[0].dot(in_plane), frame_.along[1].dot(in_plane)}};
+  }
+  void add(const Place& place, std::uint8_t feature) {
+    region_.add({place[0], place[1], depth_ + slope_[0] * place[0] + slope_[1] * place[1], feature});
+  }
+  std::uint8_t crossing(int of_frame, int of_other) const {
+    return frame_is_a_ ? crossing_name(of_frame, of_other) : crossing_name(of_other, of_frame);
+  }
+
+  void take_polygon() {
+    const int corners = other_.is(Outline::line) ? 2 : 4;
+    for (int k = 0; k < corners; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double x = kCorner[i][0], y = kCorner[i][1];
+      polygon_.add(
+          {{{middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}},
+           corner_name(other_.corners[i], !frame_is_a_),
+           k});
+    }
+  }
+  /// Of a line only the first corner leads on.
+  bool is_end(int corner) const { return other_.is(Outline::line) && corner == polygon_.count - 1; }
+
+  void polygon_on_rectangle() {
+    for (int border = 0; border < 4 && polygon_.count > 0; ++border) clip(border);
+    for (int i = 0; i < polygon_.count; ++i) {
+      Place place = polygon_[i].place;
+      for (std::size_t d = 0; d < 2; ++d)
+        place[d] = std::max(-frame_.half[d], std::min(place[d], frame_.half[d]));
+      add(place, polygon_[i].feature);
+    }
   }
   /// Where a line of the polygon crosses a border.
   std::uint8_t crossing_feature(int line, int border) const {
     if (line >= 4) {
       const int next = line - 4 == (border + 1) % 4 ? line - 4 : border;
-      return corner_feature(reference_.corners[static_cast<std::size_t>(next)], reference_is_a_);
+      return corner_name(frame_.corners[static_cast<std::size_t>(next)], frame_is_a_);
     }
-    const int edge = incident_.edges[static_cast<std::size_t>(line)];
-    const int other = reference_.edges[static_cast<std::size_t>(border)];
-    return reference_is_a_ ? crossing_name(other, edge) : crossing_name(edge, other);
+    return crossing(frame_.edges[static_cast<std::size_t>(border)],
+                    other_.edges[static_cast<std::size_t>(line)]);
   }
-
-  /// What is out by less than the tolerance stays, and counts as on the border.
+  /// By one border (Sutherland & Hodgman 1974). What is out by less than the tolerance stays, and counts as
+  /// on the border.
   void clip(int border) {
     const Border side = kBorders[static_cast<std::size_t>(border)];
-    const auto d = static_cast<std::size_t>(side.dimension);
-    const auto beyond = [&](const Corner& c) { return side.sign * c.place[d] - reference_.half[d]; };
+    const std::size_t d = side.dimension;
+    const auto beyond = [&](const Corner& c) { return side.sign * c.place[d] - frame_.half[d]; };
     Polygon kept;
     for (int i = 0; i < polygon_.count; ++i) {
       const Corner& from = polygon_[i];
-      const Corner& to = polygon_[(i + 1) % polygon_.count];
+      const Corner& to = polygon_[is_end(i) ? i : (i + 1) % polygon_.count];
       const double from_beyond = beyond(from), to_beyond = beyond(to);
       const bool leaves = from_beyond <= tolerance_ && to_beyond > tolerance_;
       const bool enters = from_beyond > tolerance_ && to_beyond <= tolerance_;
@@ -83,41 +160,151 @@ class Clipping {
       if (leaves && from_beyond >= 0.0)
         kept.corners[static_cast<std::size_t>(kept.count - 1)].line = 4 + border;
       if ((leaves && from_beyond < 0.0) || (enters && to_beyond < 0.0)) {
-        const double part = from_beyond / (from_beyond - to_beyond);
-        Corner crossing{{{from.place[0] + part * (to.place[0] - from.place[0]),
-                          from.place[1] + part * (to.place[1] - from.place[1])}},
-                        crossing_feature(from.line, border),
-                        leaves ? 4 + border : from.line};
-        crossing.place[d] = side.sign * reference_.half[d];
+        Corner crossing{between(from.place, to.place, from_beyond / (from_beyond - to_beyond)),
+                        crossing_feature(from.line, border), leaves ? 4 + border : from.line};
+        crossing.place[d] = side.sign * frame_.half[d];
         kept.add(crossing);
       }
     }
     polygon_ = kept;
   }
 
-  RegionPoint point(const Corner& corner) const {
-    std::array<double, 2> place = corner.place;
-    double height = height_;
-    for (std::size_t i = 0; i < 2; ++i) {
-      place[i] = std::max(-reference_.half[i], std::min(place[i], reference_.half[i]));
-      height += slope_[i] * (place[i] - middle_[i]);
+  Place rim_point(const FlatFace& disc, double angle) const {
+    if (&disc != &frame_) return project(disc.on_circle(angle) - frame_.centre);
+    return {{disc.half[0] * std::cos(angle), disc.half[0] * std::sin(angle)}};
+  }
+  /// Adds those of a disc's four rim points that are within the other face.
+  template <typename Within>
+  void add_rim(const FlatFace& disc, bool is_a, const Place& slope, const Within& within) {
+    const std::array<double, 4> angles = rim_angles(disc.half[0], slope);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Place place = rim_point(disc, angles[i]);
+      if (within(place)) add(place, corner_name(disc.corners[i], is_a));
     }
-    return {place[0], place[1], -height, corner.feature};
   }
 
-  const BoxFace& reference_;
-  const BoxFace& incident_;
-  bool reference_is_a_;
-  std::array<double, 2> middle_, slope_;
-  std::array<std::array<double, 2>, 2> side_;
-  double height_, tolerance_;
+  void polygon_on_rim() {
+    const bool closed = !other_.is(Outline::line);
+    if (closed)
+      add_rim(frame_, frame_is_a_, slope_, [this](const Place& place) { return in_polygon(place); });
+    if (closed && region_.count == 4) return;
+    for (int i = 0; i < polygon_.count; ++i) {
+      if (!is_end(i)) add_chord(polygon_[i], polygon_[(i + 1) % polygon_.count]);
+    }
+    if (closed) region_.sort_around();
+  }
+  bool in_polygon(const Place& place) const {
+    const double turn = cross(polygon_[0].place, polygon_[1].place, polygon_[2].place) < 0.0 ? -1.0 : 1.0;
+    for (int i = 0; i < 4; ++i) {
+      const Place &from = polygon_[i].place, &to = polygon_[(i + 1) % 4].place;
+      const double size = std::hypot(to[0] - from[0], to[1] - from[1]);
+      if (turn * cross(from, to, place) < -tolerance_ * size) return false;
+    }
+    return true;
+  }
+  /// The part of an edge that the disc covers, between the zeros of |from + s along|^2 = radius^2: its start,
+  /// or a corner where that is covered.
+  void add_chord(const Corner& from, const Corner& to) {
+    const Place start = from.place, along{{to.place[0] - start[0], to.place[1] - start[1]}};
+    const int edge = other_.edges[static_cast<std::size_t>(from.line)];
+    const double a = along[0] * along[0] + along[1] * along[1];
+    const double b = start[0] * along[0] + start[1] * along[1];
+    const double c = start[0] * start[0] + start[1] * start[1] - frame_.half[0] * frame_.half[0];
+    const double root = b * b - a * c;
+    if (root <= 0.0) return;
+    const double s0 = (-b - std::sqrt(root)) / a, s1 = (-b + std::sqrt(root)) / a;
+    const double near_end = tolerance_ / std::sqrt(a);
+    if (s1 < 0.0 || s0 >= 1.0 - near_end) return;
+    const bool from_is_in = s0 <= near_end, to_is_in = s1 >= 1.0 - near_end;
+    add(from_is_in ? start : between(start, to.place, s0), from_is_in ? from.feature : crossing(kIn, edge));
+    if (!to_is_in) add(between(start, to.place, s1), crossing(kOut, edge));
+    if (to_is_in && other_.is(Outline::line)) add(to.place, to.feature);
+  }
+
+  /// How far a place, seen on the other disc, is beyond its rim.
+  double beyond_rim(const Place& place) const {
+    const Vector3 offset = frame_.at(place) - other_.centre;
+    return (offset - offset.dot(other_.normal) / normal_.dot(other_.normal) * normal_).norm() -
+           other_.half[0];
+  }
+  void rim_on_rim() {
+    add_rim(frame_, frame_is_a_, slope_,
+            [this](const Place& place) { return beyond_rim(place) <= tolerance_; });
+    if (region_.count == 4) return;
+    Place slope;
+    for (std::size_t i = 0; i < 2; ++i)
+      slope[i] = (slope_[0] * frame_.along[0] + slope_[1] * frame_.along[1]).dot(other_.along[i]);
+    add_rim(other_, !frame_is_a_, slope,
+            [this](const Place& place) { return length(place) <= frame_.half[0] + tolerance_; });
+    add_rim_crossings();
+    region_.sort_around();
+  }
+  /// Exactly, by the law of cosines, if the discs are parallel, then by the secant method.
+  void add_rim_crossings() {
+    const double away = length(middle_), radius = frame_.half[0], beyond_size = other_.half[0];
+    if (away <= 0.0) return;
+    const double cosine = (away * away + radius * radius - beyond_size * beyond_size) / (2.0 * away * radius);
+    if (std::abs(cosine) >= 1.0) return;
+    const double towards = std::atan2(middle_[1], middle_[0]);
+    for (const int side : {kIn, kOut}) {
+      const auto place = [&](double turn) {
+        return rim_point(frame_, towards + (side == kIn ? -turn : turn));
+      };
+      double turn = std::acos(cosine), before = turn - 1e-4, beyond_before = beyond_rim(place(before));
+      for (int i = 0; i < 6; ++i) {
+        const double value = beyond_rim(place(turn)), change = value - beyond_before;
+        if (std::abs(value) < 1e-12 || std::abs(change) < 1e-15) break;
+        const double next = turn - value * (turn - before) / change;
+        before = turn, beyond_before = value, turn = next;
+      }
+      if (std::abs(beyond_rim(place(turn))) < tolerance_) add(place(turn), crossing(0, side));
+    }
+  }
+
+  const FlatFace &frame_, &other_;
+  const Vector3& normal_;  // of the reference
+  const bool frame_is_reference_, frame_is_a_;
+  const double per_height_;
+  Place middle_, slope_;
+  std::array<Place, 2> side_;  // of the other: to its middle, and half its sides
+  double depth_, tolerance_;   // depth at the frame's centre
   Polygon polygon_;
+  ContactRegion region_;
 };
+
+/// The frame is the one that has a rim, of two the one that may lie within the other.
+bool in_frame_of(const FlatFace& reference, const FlatFace& incident) {
+  if (!incident.is(Outline::circle)) return true;
+  if (!reference.is(Outline::circle)) return false;
+  const bool parallel = -incident.normal.dot(reference.normal) >= kSameFace;
+  return parallel && incident.half[0] >= reference.half[0] * (1.0 + kSameSize);
+}
 
 }  // namespace
 
-ContactRegion clip_face(const BoxFace& reference, const BoxFace& incident, bool reference_is_a) {
-  return Clipping(reference, incident, reference_is_a).region();
+std::array<double, 4> rim_angles(double radius, const Place& slope) {
+  double first = kFirstRimPoint;
+  const double rise = 2.0 * radius * length(slope);
+  if (rise > kLevel) {
+    const double lowest = std::atan2(slope[1], slope[0]) - kFirstRimPoint;
+    const double follow = std::min(1.0, (rise - kLevel) / (kTilted - kLevel));
+    first += follow * (lowest - kQuarter * std::round(lowest / kQuarter));
+  }
+  return {{first, first + kQuarter, first + 2 * kQuarter, first + 3 * kQuarter}};
+}
+
+Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin) {
+  const bool by_reference = in_frame_of(reference, incident);
+  Clipping clipping(by_reference ? reference : incident, by_reference ? incident : reference, by_reference,
+                    by_reference == reference_is_a);
+  ContactRegion region = clipping.region();
+  region.remove_gaps(margin);
+  region.reduce();
+  Manifold manifold;
+  manifold.normal = reference_is_a ? Vector3(-reference.normal) : reference.normal;
+  for (int i = 0; i < region.count; ++i)
+    add_point(manifold, clipping.place(region[i]), region[i].depth, region[i].feature);
+  return manifold;
 }
 
 }  // namespace mrhi

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "box_face.h"
 #include "contact_region.h"
-#include "flat_contact.h"
+#include "flat_face.h"
 #include "mesh_shape.h"
 
 namespace mrhi {
@@ -83,18 +82,17 @@ struct Probes {
     const OrientedBox box(shape, probing.pose);
     for (int i = 0; i < kBoxCorners; ++i) see(Probe::corner(box.corner(i), i));
     for (int i = 0; i < kBoxEdges; ++i) {
-      const int direction = i / 4, first = (direction + 1) % 3, second = (direction + 2) % 3;
-      const int low = (i & 1) << first | (i >> 1 & 1) << second;
-      see(Probe::edge(box.corner(low), box.corner(low | 1 << direction), i));
+      const auto [low, high] = edge_ends(i);
+      see(Probe::edge(box.corner(low), box.corner(high), i));
     }
   }
   void operator()(const Cylinder& shape) const {
     const OrientedCylinder cylinder(shape, probing.pose);
     for (const double side : {-1.0, 1.0}) {
-      const Disc cap(cylinder, side * cylinder.axis);
-      int number = 4 * cap.cap;
-      for (const double angle : rim_angles(cap.radius, {{0.0, 0.0}}))
-        see(Probe::corner(cap.at(angle), number++));
+      const FlatFace cap = face_towards(cylinder, side * cylinder.axis);
+      int number = cap.corners[0];
+      for (const double angle : rim_angles(cylinder.radius, {{0.0, 0.0}}))
+        see(Probe::corner(cap.on_circle(angle), number++));
     }
     side_line_of(cylinder);
   }

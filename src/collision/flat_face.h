@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "contact_region.h"
+#include "oriented_shapes.h"
+
+namespace mrhi {
+
+/// A box has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 * direction + two
+/// bits for the sides of the axes that follow), a cylinder corners 4 * cap + rim point. Touches of a and b
+/// are named: corner of a, 8 + corner of b, 16 + 12 * edge of a + edge of b.
+constexpr int kBoxCorners = 8, kBoxEdges = 12;
+
+inline int edge_name(int direction, int corner) {
+  return 4 * direction + (corner >> ((direction + 1) % 3) & 1) + 2 * (corner >> ((direction + 2) % 3) & 1);
+}
+inline std::uint8_t corner_name(int corner, bool of_a) {
+  return static_cast<std::uint8_t>(of_a ? corner : kBoxCorners + corner);
+}
+inline std::uint8_t crossing_name(int edge_of_a, int edge_of_b) {
+  return static_cast<std::uint8_t>(2 * kBoxCorners + kBoxEdges * edge_of_a + edge_of_b);
+}
+
+/// A straight piece of surface: an edge of a box, a line of a cylinder's side, or (half = 0) a point.
+struct Line {
+  Vector3 middle, along;  ///< along is unit
+  double half;
+
+  Vector3 at(double t) const { return middle + t * along; }
+};
+
+/// What a shape has straight across a direction: a flat piece with its outline, or a line on it. Corners of a
+/// rectangle go round; edge i leads from corner i to the next, and stands on the side kBorders[i].
+struct FlatFace {
+  enum class Outline { rectangle, circle, line };
+  using Place = std::array<double, 2>;
+
+  static FlatFace of(const Line& line);
+
+  bool is(Outline other) const { return outline == other; }
+  Vector3 at(const Place& place) const { return centre + place[0] * along[0] + place[1] * along[1]; }
+  Vector3 on_circle(double angle) const {
+    return at({{half[0] * std::cos(angle), half[0] * std::sin(angle)}});
+  }
+  double size() const { return is(Outline::line) ? half[0] : std::min(half[0], half[1]); }
+  double area() const { return (is(Outline::circle) ? 3.141592653589793 : 4.0) * half[0] * half[1]; }
+  double to_border(const Vector3& point) const;  ///< from a place over it, across its normal; < 0: outside
+
+  Vector3 centre, normal;  ///< a line has no normal
+  std::array<Vector3, 2> along;
+  std::array<double, 2> half;  ///< of a circle the radius, twice
+  Outline outline;
+  std::array<int, 4> corners, edges;
+};
+constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+
+/// Ends of a box's edge: corners.
+inline std::array<int, 2> edge_ends(int edge) {
+  const int direction = edge / 4;
+  const int low = (edge & 1) << (direction + 1) % 3 | (edge >> 1 & 1) << (direction + 2) % 3;
+  return {{low, low | 1 << direction}};
+}
+
+/// The flat face whose outward normal is nearest to `outward`.
+FlatFace face_towards(const OrientedBox& box, const Vector3& outward);
+FlatFace face_towards(const OrientedCylinder& cylinder, const Vector3& outward);
+
+/// What of the shape lies on a plane that it is pressed to along `outward`: a face, or the line of a round
+/// side.
+FlatFace lying_towards(const OrientedBox& box, const Vector3& outward);
+FlatFace lying_towards(const OrientedCylinder& cylinder, const Vector3& outward);
+
+/// The line of the cylinder's side that is farthest along `facing`.
+Line side_line(const OrientedCylinder& cylinder, const Vector3& facing);
+
+/// What of the shape is straight across a direction to within `tolerance` (the cosine), farthest along it;
+/// the edge along `beside`, if there are two. A point if nothing is.
+Line line_facing(const OrientedBox& box, const Vector3& n, double tolerance, const Vector3& beside);
+Line line_facing(const OrientedCylinder& cylinder, const Vector3& n, double tolerance, const Vector3& beside);
+
+/// Four places round a rim [rad]; one of them at the lowest, where `slope` (of the depth, by the face's
+/// coordinates) tilts it noticeably.
+std::array<double, 4> rim_angles(double radius, const std::array<double, 2>& slope);
+
+/// How two faces touch, by the normal of `reference`: the corners of what of one stands over the other, at
+/// most four of them.
+Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin);
+
+/// Two lines that face each other along `normal` (out of b towards a): at two points (names `feature`, + 1)
+/// where they are parallel, which draw together while they turn across each other; at one where they cross.
+Manifold line_on_line(const Line& a, const Line& b, const Vector3& normal, int feature);
+
+}  // namespace mrhi
