@@ -46,16 +46,15 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, Marker
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state));
 }
 
-void add_arrow(const Contact& contact, int id, ContactLayers layers) {
+void add_force(const Contact& contact, int id, ContactLayers layers) {
   const double newtons = contact.force.norm();
   const double length = kLongest * newtons / (newtons + kHalfOfLongest);
   if (length < kShortest) return;
   const Vector3 direction = contact.force / newtons;
   const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
   const Vector3 begin = end - length * direction;
-  Marker& arrow = layers.forces.add(id, Marker::ARROW, Pose{}, {0.0035, 0.009, std::min(0.014, 0.5 * length)},
-                                    color(0.97, 0.97, 0.97));
-  arrow.points = {to_message(begin), to_message(end)};
+  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, color(0.97, 0.97, 0.97), id,
+            layers.forces);
   char text[32];
   std::snprintf(text, sizeof text, "%.1f N", newtons);
   layers.newtons
@@ -94,7 +93,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers l
     add_rings(result.contacts, static_cast<FrictionState>(state), layers.friction);
   add_shares(scene, result, layers.share);
   int id = 0;
-  for (const Contact& contact : result.contacts) add_arrow(contact, id++, layers);
+  for (const Contact& contact : result.contacts) add_force(contact, id++, layers);
 }
 
 }  // namespace mrhi

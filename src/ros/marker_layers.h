@@ -49,6 +49,17 @@ void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& s
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, MarkerLayer& layer);
 
+/// From `begin` to `tip`, in world [m].
+struct Arrow {
+  Vector3 begin, tip;
+  double shaft_radius, head_radius, head_length;  ///< [m]; the head at most as long as the arrow
+};
+
+/// In the light that hands are in: rviz's arrows are black on the sides that its light does not reach, and
+/// seen from behind a hand all of them are. Valid until the layer's next call.
+visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id,
+                                      MarkerLayer& layer);
+
 /// Where a body is touched, and by what force.
 struct ContactLayers {
   MarkerLayer& points;    ///< a dot at each contact

@@ -60,9 +60,8 @@ double ring_radius(const Body& body) {
 
 void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer& layer) {
   const int id = add_form(body, pose, to_take(0.45), kShell, first_id, layer);
-  Marker& arrow = layer.add(id, Marker::ARROW, Pose{}, {0.006, 0.016, 0.018}, to_take(1.0));
   const Vector3 tip = pose.position + (body.bounding_radius + kGap) * Vector3::UnitZ();
-  arrow.points = {to_message(Vector3(tip + kShaft * Vector3::UnitZ())), to_message(tip)};
+  add_arrow({tip + kShaft * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, to_take(1.0), id, layer);
 }
 
 }  // namespace mrhi
