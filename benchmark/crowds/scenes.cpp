@@ -122,6 +122,23 @@ Crowd far_spinning(int count) {
   return crowd;
 }
 
+Crowd far_from_a_grasp(int count) {
+  constexpr double kEdge = 0.04;
+  const Vector3 place(-1, -1, 0);
+  Crowd crowd = far_spinning(count);
+  crowd.name = "a cube is held, " + crowd.name;
+  crowd.frame = 1.0 / 120.0;
+  add_cube(crowd.scene, kEdge, place);
+  crowd.hands = [place](double t) -> std::vector<Hand> {
+    const Vector3 side = (0.5 * kEdge + testing::closing_gap(t - 0.1, 0.002)) * Vector3::UnitX();
+    Hand hand = testing::empty_hand(1);
+    testing::add_flat_finger(hand, capsule_index(1, 3), place + side, Vector3::UnitX(), Vector3::UnitY());
+    testing::add_flat_finger(hand, capsule_index(0, 3), place - side, -Vector3::UnitX(), Vector3::UnitY());
+    return {hand};
+  };
+  return crowd;
+}
+
 Crowd pushed(int count) {
   constexpr double kEdge = 0.03, kFrom = -0.25, kSpeed = 0.15;
   Crowd crowd{"a hand pushes " + std::to_string(count) + " blocks", on_floor(), 3.0};
@@ -182,6 +199,7 @@ std::vector<Crowd> all_crowds() {
           overlapping(14),
           overlapping(30),
           far_spinning(1000),
+          far_from_a_grasp(1000),
           lifted(50)};
 }
 

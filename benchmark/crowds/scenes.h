@@ -26,6 +26,8 @@ Crowd block(int count, double gap = 2e-5);
 /// Equal boxes, each half inside the next.
 Crowd overlapping(int count);
 Crowd far_spinning(int count);
+/// The same in frames of 1/120 s while a hand holds a cube, so that these are divided into steps.
+Crowd far_from_a_grasp(int count);
 /// A hand sweeps blocks along a table.
 Crowd pushed(int count);
 /// Boxes half a millimetre apart on a table: one hand lifts one, the other rests beside them.

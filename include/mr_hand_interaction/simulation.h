@@ -83,6 +83,7 @@ class Simulation {
 
   const Scene& scene() const;
   const Configuration& configuration() const;
+  /// Between the steps of a frame, bodies that nothing may reach within it are still where it began.
   const SimulationState& state() const;
   /// Stamp up to which bodies have been advanced, between the steps of a frame too.
   Nanoseconds time() const;

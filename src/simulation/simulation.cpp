@@ -16,8 +16,8 @@
 namespace mrhi {
 namespace {
 
-/// A frame of at most this in which nothing comes near anything is one step, as flight needs no more. Joints
-/// take the steps that they are given.
+/// In frames of at most this, what nothing comes near flies in one step (flying_alone.h), and where nothing
+/// comes near anything the frame is one. Joints take the steps that they are given.
 constexpr Nanoseconds kQuietFrame = 20'000'000;
 
 Scene completed(Scene scene) {
@@ -58,6 +58,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
+      alone(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, gravity, refinements(configuration)),
       renderer(scene, finder) {
@@ -120,8 +121,7 @@ Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseco
 bool Simulation::step() {
   Impl& s = *impl_;
   if (s.steps_done >= s.steps) return false;
-  const double seconds = to_seconds(s.frame_to - s.frame_from);
-  s.advance_step(static_cast<double>(s.steps_done) / s.steps, seconds / s.steps);
+  s.advance_step(static_cast<double>(s.steps_done) / s.steps, s.frame_seconds() / s.steps);
   ++s.steps_done;
   return true;
 }

@@ -47,10 +47,11 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
 }
 
 int Simulation::Impl::steps_needed(Nanoseconds frame) {
+  alone.nobody();
   if (frame <= 0) return 0;
   if (frame <= quiet_frame) {
     neighbours.begin_step(state.bodies, to_seconds(frame));
-    if (quiet(to_seconds(frame))) return 1;
+    if (alone.begin_frame(neighbours, to_seconds(frame), state)) return 1;
   }
   return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
 }
@@ -73,6 +74,7 @@ void Simulation::Impl::pass_without_frames(Nanoseconds until) {
     track.previous = track.current;
     track.appeared = track.emerged = false;
   }
+  alone.nobody();
   while (state.time + step_length <= until) {
     lose_hands(state.time);
     begin_hands(0.0);

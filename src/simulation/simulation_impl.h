@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../collision/body_contact_finder.h"
+#include "flying_alone.h"
 #include "grasp_assist.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
 #include "mr_hand_interaction/collision/neighbours.h"
@@ -39,7 +40,6 @@ struct Simulation::Impl {
   void report_what_is_finite();
 
   // A step.
-  bool quiet(double seconds) const;
   double driven(double step) const;
   void advance_step(double fraction, double step);
   void keep_in_bounds();
@@ -54,6 +54,7 @@ struct Simulation::Impl {
   Neighbours neighbours;
   ContactFinder finder;
   BodyContactFinder body_finder;
+  FlyingAlone alone;
   Sleeping sleeping;
   GraspAssist assist;
   HandRenderer renderer;
@@ -64,6 +65,7 @@ struct Simulation::Impl {
   // The way from the last frame to this one.
   Nanoseconds frame_from = 0, frame_to = 0;
   int steps = 0, steps_done = 0;
+  double frame_seconds() const { return to_seconds(frame_to - frame_from); }
 
   std::vector<HandMotion> hands;  // those that can touch
   std::vector<Contact> strikes;

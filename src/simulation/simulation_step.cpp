@@ -7,22 +7,6 @@
 
 namespace mrhi {
 
-/// True if nothing that is awake may come near a hand or a body within `seconds`.
-bool Simulation::Impl::quiet(double seconds) const {
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
-      const auto b = static_cast<std::size_t>(near.body);
-      if (neighbours.may_meet_hand(b, state.bodies[b], seconds)) return false;
-    }
-  }
-  for (const auto& [first, second] : neighbours.pairs()) {
-    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-    const bool asleep = state.asleep[b] && (state.asleep[a] || scene.bodies[a].fixed);
-    if (!asleep && neighbours.may_meet(a, b, state.bodies, seconds)) return false;
-  }
-  return true;
-}
-
 /// By how much hands may change a body's velocity within the step, at most [m/s]: to their own, and by the
 /// springs that hold it, should they let go.
 double Simulation::Impl::driven(double step) const {
@@ -47,6 +31,7 @@ double Simulation::Impl::driven(double step) const {
 void Simulation::Impl::advance_step(double fraction, double step) {
   for (HandMotion& hand : hands) hand.move_to(fraction);
   neighbours.begin_step(state.bodies, step);
+  alone.join(neighbours, fraction * frame_seconds(), step, gravity, state);
   sleeping.wake(neighbours, step, state);
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
@@ -61,10 +46,12 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   end_stage(Stage::response);
   assist.share_force(state);
   note_strikes(state.contacts, strikes);
+  const bool last = steps_done + 1 >= steps;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
-    if (state.asleep[b]) continue;
-    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity, step, state.bodies[b]);
+    if (state.asleep[b] || (alone[b] && !last)) continue;
+    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity,
+                alone[b] ? frame_seconds() : step, state.bodies[b]);
   }
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   sleeping.settle(neighbours, step, state);

@@ -63,6 +63,17 @@ TEST(JointLimit, holds_without_a_bounce_and_is_told_once) {
   }
 }
 
+TEST(JointLimit, is_not_reached_by_what_was_at_it_from_the_start) {
+  Scene scene = rail(9.81);
+  scene.joints[0].lower = -5e-6;  // a model whose start is its limit but for rounding in its file
+  Simulation simulation = running(scene);
+  int told = 0;
+  let_go_on(simulation, 0.0, 0.5, 120.0,
+            [&](const Simulation& now) { told += count(now, EventKind::joint_limit); });
+  EXPECT_EQ(told, 0);
+  EXPECT_NEAR(position(simulation), -5e-6, 1e-6);
+}
+
 /// The fall's speed at the limit is known; within a step of 1 ms gravity adds 0.01 m/s.
 TEST(JointLimit, bounces_by_its_restitution) {
   Scene scene = rail(9.81);

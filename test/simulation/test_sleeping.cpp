@@ -147,6 +147,20 @@ TEST(Sleeping, slow_drift_is_never_put_to_rest) {
   EXPECT_EQ(played.simulation.state().bodies[1].linear_momentum, Vector3(1e-8, 0, 0));
 }
 
+TEST(Sleeping, a_ball_that_rolls_a_millimetre_a_second_is_not_put_to_rest) {
+  constexpr double kRadius = 0.03, kSpeed = 0.001;
+  Scene scene = standing_cubes();
+  scene.bodies.resize(1);
+  Body ball = testing::ball_body(kRadius, 0.1);
+  ball.start.position = {0, 0, kRadius};
+  ball.start_twist = {{kSpeed, 0, 0}, {0, kSpeed / kRadius, 0}};
+  scene.bodies.push_back(ball);
+  Played played(scene, true);
+  played.run(5.0);
+  EXPECT_FALSE(played.asleep(1));
+  EXPECT_NEAR(played.place(1).x(), 5.0 * kSpeed, 0.02 * 5.0 * kSpeed);
+}
+
 TEST(Sleeping, a_copied_sleeper_wakes_with_the_same_bits) {
   Played first(standing_cubes(), true), second(standing_cubes(), true);
   first.run(2.5, pushing);

@@ -151,6 +151,14 @@ TEST(Time, a_stream_of_a_frame_a_minute_is_taken_from_its_third_frame) {
   EXPECT_EQ(taken, 9);
 }
 
+TEST(Time, a_slow_stream_may_miss_three_frames_and_what_is_farther_ahead_is_left_out) {
+  Simulation simulation(drifting_cube(), unfiltered());
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(simulation.advance({at(i), {}}), i == 1 ? Rejection::stamp_ahead : Rejection::none) << i;
+  EXPECT_EQ(simulation.advance({at(14.1), {}}), Rejection::stamp_ahead);
+  EXPECT_EQ(simulation.advance({at(13.0), {}}), Rejection::none) << "four intervals after the last";
+}
+
 TEST(Time, a_stamp_that_is_none_is_refused_and_the_next_frame_is_taken) {
   const Nanoseconds second = 1'000'000'000, longest = std::numeric_limits<Nanoseconds>::max();
   for (const Nanoseconds stamp : {4'294'967'295 * second, 4'000'000'000 * second, longest, -longest - 1}) {

@@ -118,6 +118,11 @@ TEST(ConstantVelocityFilter, does_not_lag_behind_a_steady_motion) {
   EXPECT_NEAR(x_after(way, kConstantVelocity), way.back(), 1e-9);
 }
 
+TEST(ConstantVelocityFilter, takes_the_second_sample_of_a_hand_that_has_just_appeared_nearly_as_it_is) {
+  const double way = 0.5 * kFrame;  // at half a metre a second
+  EXPECT_GT(x_after({0.0, way}, kConstantVelocity), 0.95 * way);
+}
+
 // Two samples fix a line, so the second is taken nearly as it is; from there on the gain falls to what it is
 // in the long run, which for white acceleration is Kalata's (1984) with the tracking index a T^2 / noise.
 TEST(ConstantVelocityFilter, gain_settles_at_that_of_the_tracking_index) {

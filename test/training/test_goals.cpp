@@ -135,7 +135,9 @@ TEST(NudgeInto, asks_for_rest_in_the_box_without_a_grasp) {
   feeder.seen.twist.linear.x() = 0.01;
   feeder.held(true).stay(1.0);
   EXPECT_FALSE(feeder.trial.inside()) << "held";
-  feeder.held(false).stay(0.5);
+  feeder.held(false).at({0.045, 0, 0});
+  EXPECT_FALSE(feeder.trial.inside()) << "5 mm outside: half of the size is to each side";
+  feeder.at({0.06, 0, 0}).stay(0.5);
   EXPECT_EQ(TrialResult::completed, feeder.trial.result());
   EXPECT_EQ(1, feeder.trial.measures().attempts) << "touched once";
   EXPECT_EQ(0, feeder.trial.measures().drops) << "letting go is what is asked for";
