@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "../rendering/light.h"
+
 namespace mrhi {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr double kUnseen = 0.003;  // a ghost nearer to the hand than this is no
 constexpr double kFull = 0.012;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
 constexpr std::uint32_t kMiddle = std::numeric_limits<std::uint32_t>::max();
-constexpr double kLidDepth = 0.01;     // [m]
+constexpr double kLidDepth = 0.01;     // from the rim on [m]
 constexpr int kSpare = 8 * kMaxHands;  // skin, wrist's sides and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
@@ -150,7 +152,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
                     drawn.touching != rendered.touching;
   if (drawn.new_paint) {
     drawn.hand = hand.id, drawn.side = hand.side, drawn.touching = rendered.touching;
-    paint_.paint(rendered, drawn.surface, drawn.colours);
+    paint(rendered, drawn);
   }
   add_part(drawn, skin_corners_, Vector3::Zero(), id, layer);
   for (const Corners& side : wrist_corners_) {
@@ -161,17 +163,23 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
   }
 }
 
-/// A little below the rim, within the wrist: level with it, flat stretches of skin would be above the lid.
-std::pair<Vector3, Rgb> HandMarkers::middle_of_lid(const Drawn& drawn) const {
+std::pair<Vector3, Vector3> HandMarkers::middle_of_rim(const SkinSurface& surface) const {
   Vector3 rim = Vector3::Zero(), all = Vector3::Zero();
-  Rgb colour = Rgb::Zero();
+  for (const std::uint32_t vertex : rim_) rim += surface.vertices[vertex] / static_cast<double>(rim_.size());
+  for (const Vector3& vertex : surface.vertices) all += vertex;
+  return {rim, (rim - all / static_cast<double>(surface.vertices.size())).normalized()};
+}
+
+/// The lid's middle is in the light that its side of the hand is in: the end of a wrist looks round.
+void HandMarkers::paint(const RenderedHand& rendered, Drawn& drawn) const {
+  paint_.paint(rendered, drawn.surface, drawn.colours);
+  Rgb colour = Rgb::Zero(), light = Rgb::Zero();
   for (const std::uint32_t vertex : rim_) {
-    rim += drawn.surface.vertices[vertex] / static_cast<double>(rim_.size());
-    colour += drawn.colours[vertex] / static_cast<float>(rim_.size());
+    colour += drawn.colours[vertex];
+    light += light_on(drawn.surface.normals[vertex].cast<float>());
   }
-  for (const Vector3& vertex : drawn.surface.vertices) all += vertex;
-  all /= static_cast<double>(drawn.surface.vertices.size());
-  return {rim - kLidDepth * (all - rim).normalized(), colour};
+  const Vector3 outward = middle_of_rim(drawn.surface).second;
+  drawn.lid = (colour / light * light_on(outward.cast<float>())).min(1.0f);
 }
 
 void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, const Vector3& origin, int id,
@@ -181,11 +189,13 @@ void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, co
   const auto& corners = of_either_side[static_cast<std::size_t>(drawn.side)];
   marker.points.resize(corners.size());
   marker.colors.resize(corners.size());
-  const auto [middle, colour] = middle_of_lid(drawn);
+  // Within the wrist: level with the rim, flat stretches of skin would be above the lid.
+  const auto [rim, outward] = middle_of_rim(drawn.surface);
+  const Vector3 lid = rim + kLidDepth * outward;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const bool is_middle = corners[i] == kMiddle;
-    marker.points[i] = mrhi::to_message((is_middle ? middle : drawn.surface.vertices[corners[i]]) - origin);
-    marker.colors[i] = is_middle ? to_message(colour, 1.0f)
+    marker.points[i] = mrhi::to_message((is_middle ? lid : drawn.surface.vertices[corners[i]]) - origin);
+    marker.colors[i] = is_middle ? to_message(drawn.lid, 1.0f)
                                  : to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
   }
 }
@@ -194,7 +204,7 @@ void HandMarkers::repaint(const std::vector<RenderedHand>& rendered) {
   for (std::size_t i = 0; i < rendered.size() && i < drawn_.size(); ++i) {
     const bool is_drawn = drawn_[i].hand == rendered[i].hand.id && !drawn_[i].colours.empty();
     if (is_drawn && !std::exchange(drawn_[i].new_paint, false))
-      paint_.paint(rendered[i], drawn_[i].surface, drawn_[i].colours);
+      paint(rendered[i], drawn_[i]);
   }
 }
 

@@ -47,10 +47,13 @@ class HandMarkers {
     bool new_paint = false;
     SkinSurface surface;
     std::vector<Rgb> colours;
+    Rgb lid = Rgb::Zero();  // the colour of its middle
   };
   visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
   void add_skin(const RenderedHand& rendered, Drawn& drawn, int id, MarkerLayer& layer);
-  std::pair<Vector3, Rgb> middle_of_lid(const Drawn& drawn) const;
+  void paint(const RenderedHand& rendered, Drawn& drawn) const;
+  /// Of the rim: its middle, and which way the wrist goes on from there.
+  std::pair<Vector3, Vector3> middle_of_rim(const SkinSurface& surface) const;
   void add_part(const Drawn& drawn, const Corners& corners, const Vector3& origin, int id,
                 MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
