@@ -7,6 +7,14 @@
 #include <tuple>
 
 namespace mrhi {
+
+int Island::place_of(int body) const {
+  const auto index = static_cast<std::size_t>(body);
+  const auto found = std::lower_bound(bodies.begin(), bodies.end(), index,
+                                      [](const IslandBody& x, std::size_t y) { return x.body < y; });
+  return found != bodies.end() && found->body == index ? static_cast<int>(found - bodies.begin()) : -1;
+}
+
 int Islands::root_of(int body) {
   auto b = static_cast<std::size_t>(body);
   while (parent_[b] != static_cast<int>(b)) {

@@ -32,6 +32,9 @@ struct Span {
 struct Island {
   Span<IslandBody> bodies;  // by their index
   Span<Link> links;         // likewise
+
+  /// Of a body, as an index in Scene::bodies, among the island's; -1 if it is not one of them.
+  int place_of(int body) const;
 };
 
 /// Bodies that touch nothing, and fixtures, belong to none.

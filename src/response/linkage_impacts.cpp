@@ -21,12 +21,6 @@ void add_point_rows(const LinkageProblem& problem, int place, const Vector3& arm
   rows += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
 }
 
-int place_in(const Island& island, std::size_t body) {
-  const auto found = std::lower_bound(island.bodies.begin(), island.bodies.end(), body,
-                                      [](const IslandBody& x, std::size_t y) { return x.body < y; });
-  return static_cast<int>(found - island.bodies.begin());
-}
-
 }  // namespace
 
 bool LinkageImpacts::find(ContactStep& step, const Island& island, const LinkageProblem& problem,
@@ -34,7 +28,7 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
   count_ = 0;
   const auto material = [&](std::size_t body) -> const Material& { return step.scene.bodies[body].material; };
   for (const IslandBody& body : island.bodies) {
-    const int place = place_in(island, body.body);
+    const int place = island.place_of(static_cast<int>(body.body));
     for (std::size_t i = body.first; i < body.last; ++i) {
       Contact& contact = step.contacts[i];
       if (contact.ignored || contact.struck) continue;
@@ -61,9 +55,9 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
     strike.restitution = contact.material.restitution;
     strike.friction = contact.material.static_friction;
     strike.rows.setZero(3, problem.jacobian().cols());
-    add_point_rows(problem, place_in(island, contact.key.b), contact.arm_b, -1.0, strike.rows);
+    add_point_rows(problem, island.place_of(contact.key.b), contact.arm_b, -1.0, strike.rows);
     if (!step.scene.bodies[contact.key.a].fixed)
-      add_point_rows(problem, place_in(island, contact.key.a), contact.arm_a, 1.0, strike.rows);
+      add_point_rows(problem, island.place_of(contact.key.a), contact.arm_a, 1.0, strike.rows);
     add(step.step, problem);
   }
   find_limits(step, problem, joints);

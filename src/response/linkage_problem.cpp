@@ -16,15 +16,6 @@ constexpr int kFewBodies = 4;
 
 constexpr int kNoJoint = -1;
 
-/// Of a body in the island, or -1.
-int place_in(const Island& island, int body) {
-  const auto found =
-      std::lower_bound(island.bodies.begin(), island.bodies.end(), static_cast<std::size_t>(body),
-                       [](const IslandBody& x, std::size_t y) { return x.body < y; });
-  const bool there = found != island.bodies.end() && found->body == static_cast<std::size_t>(body);
-  return there ? static_cast<int>(found - island.bodies.begin()) : -1;
-}
-
 bool touched(const ContactStep& step, const Island& island) {
   const auto is_touched = [&](const IslandBody& body) {
     for (std::size_t i = body.first; i < body.last; ++i) {
@@ -58,7 +49,7 @@ void LinkageProblem::number(const ContactStep& step, const Island& island,
                             const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions) {
   int count = 0;
   for (const Linkage& linkage : linkages) {
-    if (place_in(island, linkage.bodies.front().body) >= 0) count += linkage.unknowns();
+    if (island.place_of(linkage.bodies.front().body) >= 0) count += linkage.unknowns();
   }
   for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
   const auto rows = static_cast<Eigen::Index>(6 * island.bodies.size());
@@ -67,7 +58,7 @@ void LinkageProblem::number(const ContactStep& step, const Island& island,
   for (Vector* vector : {&gradient_, &fall_}) vector->setZero(count);
   unknowns_.clear();
   for (std::size_t i = 0; i < linkages.size(); ++i) {
-    if (place_in(island, linkages[i].bodies.front().body) >= 0)
+    if (island.place_of(linkages[i].bodies.front().body) >= 0)
       add_linkage(step, island, linkages[i], motions[i]);
   }
   for (const IslandBody& body : island.bodies) {
@@ -88,7 +79,7 @@ void LinkageProblem::add_linkage(const ContactStep& step, const Island& island, 
     const BodyState& state = step.bodies[static_cast<std::size_t>(link.body)];
     motion.push(i, state.linear_momentum, state.angular_momentum, momenta);
     motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
-    motion.add_jacobian(i, jacobian_.block(6 * place_in(island, link.body), first, 6, count));
+    motion.add_jacobian(i, jacobian_.block(6 * island.place_of(link.body), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
       for (int k = 0; k < 6; ++k)
         unknowns_.push_back({kNoJoint, link.body, k < 3 ? 1.0 : body.inertia.trace() / (3.0 * body.mass)});
@@ -104,7 +95,7 @@ void LinkageProblem::add_free(const ContactStep& step, const Island& island, std
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  jacobian_.block<6, 6>(6 * place_in(island, static_cast<int>(index)), first).setIdentity();
+  jacobian_.block<6, 6>(6 * island.place_of(static_cast<int>(index)), first).setIdentity();
   mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
   mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
   gradient_.segment<6>(first) << state.linear_momentum, state.angular_momentum;

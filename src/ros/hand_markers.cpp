@@ -203,8 +203,7 @@ void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, co
 void HandMarkers::repaint(const std::vector<RenderedHand>& rendered) {
   for (std::size_t i = 0; i < rendered.size() && i < drawn_.size(); ++i) {
     const bool is_drawn = drawn_[i].hand == rendered[i].hand.id && !drawn_[i].colours.empty();
-    if (is_drawn && !std::exchange(drawn_[i].new_paint, false))
-      paint(rendered[i], drawn_[i]);
+    if (is_drawn && !std::exchange(drawn_[i].new_paint, false)) paint(rendered[i], drawn_[i]);
   }
 }
 

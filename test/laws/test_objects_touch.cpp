@@ -229,9 +229,10 @@ TEST(ObjectsTouch, a_cube_slides_on_a_fixture_as_far_as_coulomb_lets_it) {
 TEST(ObjectsTouch, two_unlike_bodies_rub_by_the_geometric_mean_of_their_frictions) {
   const double step = 0.00025;
   const Body cube = with(box_body(Vector3::Constant(0.05), 0.1), 0.0, 0.2);
-  Objects slide(of({floor_block(0.8), placed(cube, "cube", Vector3(-0.5, 0, 0.025 - 9.81e-6), Vector3(1, 0, 0))},
-                   kGravity),
-                step);
+  Objects slide(
+      of({floor_block(0.8), placed(cube, "cube", Vector3(-0.5, 0, 0.025 - 9.81e-6), Vector3(1, 0, 0))},
+         kGravity),
+      step);
   slide.run(1.0);
   const double way = slide.state(1).pose.position.x() + 0.5;
   EXPECT_NEAR(way, 1.0 / (2.0 * 0.4 * kGravity) - 0.5 * step, 0.001) << "of 0.2 and 0.8 it is 0.4";

@@ -32,8 +32,7 @@ Scene scene_of_two(const Body& first, const Body& second) {
 
 TEST(FlyingAlone, beside_a_hand_that_is_busy_a_body_ends_where_it_would_by_itself_to_the_bit) {
   const Hand near = testing::finger({-0.03, 0, 0.032}, {0.03, 0, 0.032}, 0.001);
-  Simulation busy(scene_of_two(testing::ball_body(0.03, 0.1), tumbling({1, 0, 0})),
-                  testing::unfiltered());
+  Simulation busy(scene_of_two(testing::ball_body(0.03, 0.1), tumbling({1, 0, 0})), testing::unfiltered());
   Simulation by_itself(testing::scene_of(tumbling({1, 0, 0})), testing::unfiltered());
   for (int i = 0; i < 100; ++i) {
     int steps = 0;
