@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -50,7 +51,18 @@ constexpr bool kHasHinges = false;
 template <typename EngineType>
 constexpr bool kHasHinges<EngineType, std::void_t<decltype(EngineType::kHinges)>> = true;
 
-/// Makes engines that can do every world, but for hinges, by a table of their settings.
+/// Whether an engine says that bodies may be meshes: kMeshes.
+template <typename EngineType, typename = void>
+constexpr bool kHasMeshes = false;
+template <typename EngineType>
+constexpr bool kHasMeshes<EngineType, std::void_t<decltype(EngineType::kMeshes)>> = true;
+
+inline bool has_meshes(const World& world) {
+  return std::any_of(world.bodies.begin(), world.bodies.end(),
+                     [](const BodySpec& body) { return std::holds_alternative<Mesh>(body.shape); });
+}
+
+/// Makes engines that can do every world, but for hinges and meshes, by a table of their settings.
 template <typename EngineType, const auto& kTable>
 class TableMaker final : public EngineMaker {
  public:
@@ -61,6 +73,7 @@ class TableMaker final : public EngineMaker {
   }
   std::unique_ptr<Engine> make(const std::string& name, const World& world, double step) const override {
     if (!world.hinges.empty() && !kHasHinges<EngineType>) return nullptr;
+    if (has_meshes(world) && !kHasMeshes<EngineType>) return nullptr;
     for (const auto& setting : kTable)
       if (name == setting.name) return std::make_unique<EngineType>(setting, world, step);
     return nullptr;

@@ -11,7 +11,8 @@ namespace mrhi::benchmark {
 
 /// A free body or a fixture, centre of mass at its origin. SI units, world axes.
 struct BodySpec {
-  std::variant<Sphere, Box> shape;
+  std::variant<Sphere, Box, Mesh>
+      shape;                          ///< engines without meshes that move are left out of worlds with any
   double mass = 0.1;                  ///< [kg]
   Vector3 inertia = Vector3::Ones();  ///< principal moments, body axes [kg m^2]
   Pose pose;

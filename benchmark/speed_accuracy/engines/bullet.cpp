@@ -1,4 +1,6 @@
 // Built twice, against Bullet in single and in double precision; the two must never meet in one process.
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -44,12 +46,13 @@ Vector3 from_bullet(const btVector3& v) {
 
 class BulletEngine final : public Engine {
  public:
-  static constexpr bool kHinges = true;
+  static constexpr bool kHinges = true, kMeshes = true;
   BulletEngine(const Setting& setting, const World& world, double step)
       : awake_(setting.awake || !world.sleep), setting_(setting), step_(static_cast<btScalar>(step)) {
     // Bullet multiplies the coefficients of the two surfaces.
     friction_ = static_cast<btScalar>(std::sqrt(world.friction));
     restitution_ = static_cast<btScalar>(std::sqrt(world.restitution));
+    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     world_.setGravity(to_bullet(world.gravity));
     world_.getSolverInfo().m_numIterations = setting.iterations;
     if (setting.split) {
@@ -94,8 +97,24 @@ class BulletEngine final : public Engine {
   }
 
  private:
+  /// Bullet keeps a reference to the triangles.
+  std::unique_ptr<btCollisionShape> mesh_of(const TriangleMesh& mesh) {
+    meshes_.push_back(std::make_unique<btTriangleMesh>());
+    for (const auto& triangle : mesh.triangles) {
+      const auto corner = [&](int i) {
+        return to_bullet(mesh.vertices[static_cast<std::size_t>(triangle[static_cast<std::size_t>(i)])]);
+      };
+      meshes_.back()->addTriangle(corner(0), corner(1), corner(2));
+    }
+    auto shape = std::make_unique<btGImpactMeshShape>(meshes_.back().get());
+    shape->updateBound();
+    return shape;
+  }
+
   btRigidBody& add(const BodySpec& spec) {
-    if (const Box* box = std::get_if<Box>(&spec.shape)) {
+    if (const Mesh* mesh = std::get_if<Mesh>(&spec.shape)) {
+      shapes_.push_back(mesh_of(*mesh->triangles));
+    } else if (const Box* box = std::get_if<Box>(&spec.shape)) {
       shapes_.push_back(std::make_unique<btBoxShape>(to_bullet(box->half_extents)));
     } else {
       shapes_.push_back(
@@ -162,6 +181,7 @@ class BulletEngine final : public Engine {
   btDbvtBroadphase broad_phase_;
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broad_phase_, &solver_, &configuration_};
+  std::vector<std::unique_ptr<btTriangleMesh>> meshes_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btMotionState>> states_;
   std::vector<std::unique_ptr<btRigidBody>> all_;

@@ -48,7 +48,25 @@ std::string place(const Pose& pose) {
   return " pos=\"" + text(pose.position) + "\" quat=\"" + text(pose.orientation) + "\"";
 }
 
-std::string geometry(const BodySpec& spec) {
+std::string mesh_name(std::size_t body) {
+  return "mesh_" + std::to_string(body);
+}
+
+/// MuJoCo takes a mesh as its convex hull.
+std::string meshes(const World& world) {
+  std::string text_of_all;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Mesh* mesh = std::get_if<Mesh>(&world.bodies[i].shape);
+    if (mesh == nullptr) continue;
+    text_of_all += "<mesh name=\"" + mesh_name(i) + "\" vertex=\"";
+    for (const Vector3& vertex : mesh->triangles->vertices) text_of_all += text(vertex) + " ";
+    text_of_all += "\"/>";
+  }
+  return text_of_all.empty() ? "" : "<asset>" + text_of_all + "</asset>";
+}
+
+std::string geometry(const BodySpec& spec, std::size_t body) {
+  if (std::holds_alternative<Mesh>(spec.shape)) return "<geom type=\"mesh\" mesh=\"" + mesh_name(body) + "\"";
   if (const Box* box = std::get_if<Box>(&spec.shape))
     return "<geom type=\"box\" size=\"" + text(box->half_extents) + "\"";
   return "<geom type=\"sphere\" size=\"" + std::to_string(std::get<Sphere>(spec.shape).radius) + "\"";
@@ -105,14 +123,14 @@ std::string xml(const Setting& setting, const World& world, double step) {
       << setting.option << "/><size njmax=\"" << 1000 + rows * world.bodies.size() << "\" nconmax=\""
       << 200 + 10 * world.bodies.size() << "\" nstack=\"" << stack_size(world)
       << "\"/><default><geom friction=\"" << world.friction << " 0.005 0.0001\""
-      << solref(setting, world, step) << "/></default><worldbody>";
+      << solref(setting, world, step) << "/></default>" << meshes(world) << "<worldbody>";
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const BodySpec& spec = world.bodies[i];
     if (spec.fixed) {
-      out << geometry(spec) << place(spec.pose) << " contype=\"1\" conaffinity=\"1\"/>";
+      out << geometry(spec, i) << place(spec.pose) << " contype=\"1\" conaffinity=\"1\"/>";
     } else {
       out << "<body" << place(spec.pose) << ">" << freedom(world, i) << inertial(spec.mass, spec.inertia)
-          << geometry(spec) << " contype=\"1\" conaffinity=\"3\"/></body>";
+          << geometry(spec, i) << " contype=\"1\" conaffinity=\"3\"/></body>";
     }
   }
   for (const KinematicSpec& spec : world.kinematics) {
@@ -144,7 +162,7 @@ mjModel* load(const std::string& text) {
 
 class MujocoEngine final : public Engine {
  public:
-  static constexpr bool kHinges = true;
+  static constexpr bool kHinges = true, kMeshes = true;
   MujocoEngine(const Setting& setting, const World& world, double step)
       : setting_(setting),
         step_(step),

@@ -44,7 +44,7 @@ struct Library {
 
 class OdeEngine final : public Engine {
  public:
-  static constexpr bool kHinges = true;
+  static constexpr bool kHinges = true, kMeshes = true;
   OdeEngine(const Setting& setting, const World& world, double step)
       : setting_(setting), step_(step), friction_(world.friction), restitution_(world.restitution) {
     static const Library library;
@@ -61,6 +61,7 @@ class OdeEngine final : public Engine {
     dJointGroupDestroy(contacts_);
     dSpaceDestroy(space_);
     dWorldDestroy(world_);
+    for (const MeshData& data : meshes_) dGeomTriMeshDataDestroy(data.id);
   }
 
   void move(std::size_t kinematic, const Pose& now, const Pose& next) override {
@@ -101,6 +102,11 @@ class OdeEngine final : public Engine {
   }
 
  private:
+  struct MeshData {
+    std::vector<double> vertices;
+    std::vector<dTriIndex> indices;
+    dTriMeshDataID id = nullptr;
+  };
   struct Feedback {
     dBodyID first, second;
     dJointFeedback force;
@@ -113,9 +119,26 @@ class OdeEngine final : public Engine {
     dBodySetQuaternion(body, turn);
   }
 
+  /// ODE keeps the arrays.
+  dGeomID mesh_of(const TriangleMesh& mesh) {
+    meshes_.emplace_back();
+    MeshData& data = meshes_.back();
+    for (const Vector3& v : mesh.vertices) data.vertices.insert(data.vertices.end(), {v.x(), v.y(), v.z()});
+    for (const auto& triangle : mesh.triangles) {
+      for (const int corner : triangle) data.indices.push_back(static_cast<dTriIndex>(corner));
+    }
+    data.id = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildDouble(data.id, data.vertices.data(), 3 * sizeof(double),
+                                static_cast<int>(mesh.vertices.size()), data.indices.data(),
+                                static_cast<int>(data.indices.size()), 3 * sizeof(dTriIndex));
+    return dCreateTriMesh(space_, data.id, nullptr, nullptr, nullptr);
+  }
+
   void add(const BodySpec& spec) {
     dGeomID geometry;
-    if (const Box* box = std::get_if<Box>(&spec.shape)) {
+    if (const Mesh* mesh = std::get_if<Mesh>(&spec.shape)) {
+      geometry = mesh_of(*mesh->triangles);
+    } else if (const Box* box = std::get_if<Box>(&spec.shape)) {
       const Vector3 size = 2.0 * box->half_extents;
       geometry = dCreateBox(space_, size.x(), size.y(), size.z());
     } else {
@@ -221,8 +244,9 @@ class OdeEngine final : public Engine {
   dSpaceID space_;
   dJointGroupID contacts_;
   std::vector<dBodyID> bodies_, hand_;
+  std::deque<MeshData> meshes_;  // whose places stay, as of these:
   bool watched_ = false;
-  std::deque<Feedback> feedback_;  // whose places stay
+  std::deque<Feedback> feedback_;
 };
 
 using OdeMaker = TableMaker<OdeEngine, kSettings>;

@@ -86,7 +86,7 @@ Configuration configuration_of(const Setting& setting, const World& world, doubl
 
 class OurEngine final : public Engine {
  public:
-  static constexpr bool kHinges = true;
+  static constexpr bool kHinges = true, kMeshes = true;
   OurEngine(const Setting& setting, const World& world, double step)
       : measured_(setting.measured),
         step_(std::llround(step * 1e9)),

@@ -1,10 +1,12 @@
 // Scene (a): a cube held in a pinch while the hand swings, shakes, or is tracked with noise. A rigid cube
 // held by dry friction would not move in the hand at all.
+#include <memory>
 #include <random>
 
 #include "../experiment.h"
 #include "displacement.h"
 #include "pinch_hand.h"
+#include "support/tessellated.h"
 
 namespace mrhi::benchmark {
 namespace {
@@ -19,7 +21,15 @@ struct Motion3 {
   double amplitude, frequency;  // [m], [Hz]
   bool noisy;
   int further_cubes;
+  int squares = 0;  // along an edge of the cube's faces, each of two triangles; 0: no mesh, a box
 };
+
+/// The same body by its surface's triangles, 12 squares^2 of them.
+BodySpec meshed(BodySpec body, int squares) {
+  const Vector3 half = std::get<Box>(body.shape).half_extents;
+  body.shape = Mesh{std::make_shared<TriangleMesh>(testing::tessellated_box(half, squares)), ""};
+  return body;
+}
 
 class Noise {
  public:
@@ -55,6 +65,7 @@ class Pinch final : public Experiment {
   World world(int) const override {
     World world;
     world.bodies.push_back(box(Vector3::Constant(2.0 * hand_.half), 0.1));
+    if (motion_.squares > 0) world.bodies[0] = meshed(world.bodies[0], motion_.squares);
     for (int i = 0; i < motion_.further_cubes; ++i) {
       const Pose pose{Vector3(0.2 * (i % 5), 0.2 * (i / 5), 1.0), Quaternion::Identity()};
       world.bodies.push_back(box(Vector3::Constant(0.05), 0.1, pose));
@@ -165,6 +176,8 @@ void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   add("pinch_shake", {0.05, 3.0, false, 0});
   add("pinch_noisy", {0.1, 0.5, true, 0});
   add("pinch_swing_19_more", {0.1, 0.5, false, 19});
+  add("pinch_swing_mesh_972", {0.1, 0.5, false, 0, 9});
+  add("pinch_swing_mesh_10092", {0.1, 0.5, false, 0, 29});
   const auto creep = [&scenes](const char* name, double gravity) {
     scenes.push_back({name, "creep", {}, [gravity](bool quick) {
                         return std::make_unique<Creep>(gravity, quick ? 2.0 : 6.0);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "../arguments.h"
@@ -95,6 +96,23 @@ TEST(SpeedAccuracy, a_door_goes_with_the_hand_and_an_engine_without_hinges_is_le
     return;
   }
   FAIL() << "no scene door";
+}
+
+TEST(SpeedAccuracy, a_cube_of_triangles_is_held_as_a_box_is_and_an_engine_without_such_bodies_is_left_out) {
+  std::map<std::string, ScenePlan> scenes;
+  for (const ScenePlan& scene : all_scenes()) scenes[scene.name] = scene;
+  const ScenePlan& mesh = scenes.at("pinch_swing_mesh_972");
+  const auto of_mesh = run(ours(), "implicit", mesh),
+             of_box = run(ours(), "implicit", scenes.at("pinch_swing"));
+  ASSERT_FALSE(of_mesh->result().measures.empty());
+  EXPECT_FALSE(of_mesh->result().measures[0].failed);
+  // The manifold's points are the mesh's corners: where they are counts as little as 1 um.
+  EXPECT_NEAR(of_mesh->result().measures[0].error, of_box->result().measures[0].error, 0.001) << "mm";
+  for (const EngineModule& module : engine_modules()) {
+    if (module.name != "dart" && module.name != "simbody" && module.name != "jolt" && module.name != "box3d")
+      continue;
+    EXPECT_FALSE(run(module, settings_of(module).front(), mesh)->result().supported) << module.name;
+  }
 }
 
 TEST(SpeedAccuracy, settings_hold_no_comma_that_would_split_a_csv_cell) {
