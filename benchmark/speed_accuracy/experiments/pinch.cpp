@@ -176,8 +176,11 @@ void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   add("pinch_shake", {0.05, 3.0, false, 0});
   add("pinch_noisy", {0.1, 0.5, true, 0});
   add("pinch_swing_19_more", {0.1, 0.5, false, 19});
-  add("pinch_swing_mesh_972", {0.1, 0.5, false, 0, 9});
-  add("pinch_swing_mesh_10092", {0.1, 0.5, false, 0, 29});
+  for (const auto& [name, squares] : {std::pair{"pinch_swing_mesh_972", 9}, {"pinch_swing_mesh_10092", 29}}) {
+    add(name, {0.1, 0.5, false, 0, squares});
+    scenes.back().steps = {0.001, 1.0 / 120.0};
+    scenes.back().budget = 3.0;  // some take milliseconds a step
+  }
   const auto creep = [&scenes](const char* name, double gravity) {
     scenes.push_back({name, "creep", {}, [gravity](bool quick) {
                         return std::make_unique<Creep>(gravity, quick ? 2.0 : 6.0);
