@@ -32,7 +32,7 @@ void ContactRegion::remove_gaps(double margin) {
 void ContactRegion::sort_around() {
   double u = 0.0, v = 0.0;
   for (int i = 0; i < count; ++i) u += (*this)[i].place[0] / count, v += (*this)[i].place[1] / count;
-  std::array<double, 16> angles{};
+  std::array<double, 12> angles{};
   for (int i = 0; i < count; ++i) {
     const RegionPoint point = (*this)[i];
     const double angle = std::atan2(point.place[1] - v, point.place[0] - u);

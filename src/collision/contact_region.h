@@ -35,7 +35,7 @@ struct RegionPoint {
 
 /// The corners of such a region, a convex polygon, in their order.
 struct ContactRegion {
-  std::array<RegionPoint, 16> points;
+  std::array<RegionPoint, 12> points;  ///< two rims have ten, a rim and a rectangle twelve
   int count = 0;
 
   void add(const RegionPoint& point) { points[static_cast<std::size_t>(count++)] = point; }

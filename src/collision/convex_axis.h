@@ -17,15 +17,22 @@ class ConvexAxis {
   const Vector3& normal() const { return normal_; }
   const Vector3& offset() const { return offset_; }
 
-  /// Any length; zero is no direction.
-  void try_direction(const Vector3& n) {
-    const double length = n.norm();
-    if (length >= kParallel) try_unit(n / length);
+  /// The normals of flat faces of both.
+  void try_flats() {
+    const Matrix3 turn = a_.axes.transpose() * b_.axes;
+    const Vector3 in_a = a_.axes.transpose() * offset_, in_b = b_.axes.transpose() * offset_;
+    for (int i = a_.first_flat(); i < 3; ++i)
+      take(std::abs(in_a[i]) - a_.half[i] - b_.reach_along(turn.row(i)), a_.axes.col(i));
+    for (int i = b_.first_flat(); i < 3; ++i)
+      take(std::abs(in_b[i]) - b_.half[i] - a_.reach_along(turn.col(i)), b_.axes.col(i));
+    if (normal_.dot(offset_) < 0.0) normal_ = -normal_;
   }
-  void try_unit(Vector3 n) {
-    if (n.dot(offset_) < 0.0) n = -n;
-    const double value = at(n);
-    if (value > separation_ + kBetter) separation_ = value, normal_ = n;
+  /// Any length; zero is no direction.
+  void try_direction(Vector3 n) {
+    const double length = n.norm();
+    if (length < kParallel) return;
+    n *= (n.dot(offset_) < 0.0 ? -1.0 : 1.0) / length;
+    take(at(n), n);
   }
 
   /// Tries the local maxima among the directions across a unit axis: an edge or a side there, a rim on the
@@ -78,6 +85,9 @@ class ConvexAxis {
     double value, slope;
   };
 
+  void take(double separation, const Vector3& n) {
+    if (separation > separation_ + kBetter) separation_ = separation, normal_ = n;
+  }
   double at(const Vector3& n) const { return n.dot(offset_) - a_.reach(n) - b_.reach(n); }
   /// From b's farthest point to a's.
   Vector3 between(const Vector3& n) const { return offset_ - a_.farthest(n) - b_.farthest(n); }

@@ -131,6 +131,9 @@ class Clipping {
     const Border side = kBorders[static_cast<std::size_t>(border)];
     const std::size_t d = side.dimension;
     const auto beyond = [&](const RegionPoint& c) { return side.sign * c.place[d] - frame_.half[d]; };
+    bool within = true;
+    for (int i = 0; i < polygon_.count; ++i) within = within && beyond(polygon_[i]) <= tolerance_;
+    if (within) return;
     ContactRegion kept;
     for (int i = 0; i < polygon_.count; ++i) {
       const RegionPoint& from = polygon_[i];

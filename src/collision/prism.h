@@ -21,8 +21,9 @@ struct Prism {
   Vector3 axis() const { return axes.col(2); }
   Vector3 across(const Vector3& n) const { return n - axes.col(2).dot(n) * axes.col(2); }
 
-  double reach(const Vector3& n) const {
-    const Vector3 local = axes.transpose() * n;
+  double reach(const Vector3& n) const { return reach_along(axes.transpose() * n); }
+  /// The same for a direction in its own axes.
+  double reach_along(const Vector3& local) const {
     if (!round) return local.cwiseAbs().dot(half);
     return half.x() * local.head<2>().norm() + half.z() * std::abs(local.z());
   }

@@ -105,8 +105,7 @@ class Search {
  public:
   Search(const ManifoldShape& shape_a, const Prism& a, const Prism& b, double margin)
       : shape_a_(shape_a), a_(a), b_(b), margin_(margin), axis_(a, b) {
-    for (const Prism* prism : {&a_, &b_})
-      for (int i = prism->first_flat(); i < 3; ++i) axis_.try_unit(prism->axes.col(i));
+    axis_.try_flats();
   }
 
   double separation() const { return axis_.separation(); }

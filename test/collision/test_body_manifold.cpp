@@ -173,6 +173,24 @@ TEST(BodyManifold, gaps_are_reported_up_to_the_margin) {
   EXPECT_EQ(body_manifold(kCube, at(0.0503, 0.0504, 0.0512), kCube, {}, 0.0012).count, 0);
 }
 
+/// Forms to come, that give no more than their farthest point: a can that does not say that it is a prism.
+TEST(BodyManifold, any_convex_form_touches_with_the_place_that_faces_the_other) {
+  Random random(4);
+  ManifoldShape form(kCan);
+  form.prism.reset();
+  const Shape floor = plate();
+  for (int i = 0; i < 200; ++i) {
+    const double tilt = random.between(0.05, 1.5);
+    const Quaternion orientation = turn(random.between(0, 6.283), Vector3::UnitZ()) * turn(tilt, {1, 0, 0});
+    const double lowest = 0.03 * std::cos(tilt) + 0.02 * std::sin(tilt);
+    const Manifold m =
+        body_manifold(form, {{0.1, 0.2, lowest - 0.0001}, orientation}, floor, plate_pose(), 0.001);
+    ASSERT_EQ(m.count, 1);
+    EXPECT_LT((m.normal - Vector3::UnitZ()).norm(), kRounding);
+    EXPECT_NEAR(m.points[0].depth, 0.0001, kRounding);
+  }
+}
+
 TEST(BodyManifold, mesh_needs_its_collider) {
   const auto triangles = std::make_shared<TriangleMesh>(box_mesh({0.02, 0.03, 0.01}));
   const Shape shape = Mesh{triangles, "", Vector3::Ones()};
