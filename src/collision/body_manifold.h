@@ -30,8 +30,9 @@ struct ManifoldShape {
 
   const Shape& shape;
   const MeshCollider* mesh;
-  std::optional<Capsule> core;  ///< if it is a ball or a capsule
-  double bounding_radius;       ///< about the shape frame's origin [m]
+  std::optional<Capsule> core;     ///< if it is a ball or a capsule
+  std::optional<PrismForm> prism;  ///< if it is a box or a cylinder
+  double bounding_radius;          ///< about the shape frame's origin [m]
 };
 
 /// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
@@ -42,7 +43,7 @@ struct ManifoldShape {
 /// larger face's, if two meet), so that what lies on a face keeps its normal and its points: right to 0.1 % +
 /// 3 um. A ball or a capsule with any shape: to rounding, at two points where it lies along a face or a
 /// straight side. A rim cut deeper than it is curved there may be taken 1 % too deep. Mesh: corners and edges
-/// of each are measured in the other; mesh_manifold.h says how well.
+/// of each are measured in the other; pair_manifolds.h says how well.
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin);
 

@@ -21,13 +21,12 @@ struct ClosestFeatures {
 /// several directions are equally short, always the same one.
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere);
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box);
-ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinder);
 
 /// Part s0..s1 of a capsule's axis that stands over the flat (or straight) piece of surface at `features`, so
 /// that a finger lying along a face touches with two points. s0 == s1 where it touches at a point.
 struct AxisSpan {
   double s0, s1;
-  bool at_edge = false;  ///< of a box or cylinder
+  bool at_edge = false;  ///< of a box or a cylinder
 };
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
 

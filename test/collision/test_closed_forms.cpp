@@ -183,7 +183,7 @@ TEST(ClosedForms, cylinder_agrees_with_search) {
                                        : facing_cylinder(random, cylinder, (i / 2) % 3);
     SCOPED_TRACE(i);
     compare(capsule, CylinderShape{cylinder.radius, cylinder.half_length}, 0.0,
-            capsule_cylinder(capsule, cylinder), tally);
+            cylinder.closest(capsule, 1.0), tally);
   }
   EXPECT_EQ(tally.unfinished, 0);
   EXPECT_GT(tally.inside, 0.2 * kPoses);
