@@ -2,7 +2,6 @@
 
 #include "math/registration.h"
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/math/capsule.h"
 #include "mr_hand_interaction/synthetic/random.h"
 
 namespace mrhi {
