@@ -4,7 +4,7 @@
 
 #include "convex_axis.h"
 #include "flat_face.h"
-#include "mr_hand_interaction/collision/placed_collider.h"
+#include "placed_collider.h"
 
 namespace mrhi {
 namespace {

@@ -22,7 +22,8 @@ struct SolidMoments {
   Matrix3 second = Matrix3::Zero();  ///< that of x x^T [m^5]
 };
 
-/// A solid between two flat ends that are half.z from its middle: on a rectangle, or on a disc of radius half.x.
+/// A solid between two flat ends that are half.z from its middle: on a rectangle, or on a disc of radius
+/// half.x.
 struct PrismForm {
   Vector3 half;  ///< [m]
   bool round;
