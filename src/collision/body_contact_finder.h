@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "moving_body.h"
 #include "mr_hand_interaction/collision/body_contact.h"
-#include "mr_hand_interaction/collision/moving_body.h"
-#include "mr_hand_interaction/collision/neighbours.h"
-#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "neighbours.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mr_hand_interaction/collision/body_manifold.h"
+#include "body_manifold.h"
 
 namespace mrhi {
 

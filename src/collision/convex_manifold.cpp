@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "closest_features.h"
 #include "convex_axis.h"
 #include "flat_face.h"
-#include "mr_hand_interaction/collision/closest_features.h"
 
 namespace mrhi {
 namespace {

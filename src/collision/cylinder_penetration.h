@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "closest_features.h"
 #include "segment.h"
 
 namespace mrhi {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "mr_hand_interaction/collision/body_manifold.h"
+#include "body_manifold.h"
 #include "oriented_shapes.h"
 
 namespace mrhi {

@@ -24,6 +24,8 @@ void turn_on(const Quaternion& by, Quaternion& orientation) {
   orientation.coeffs() += (orientation * change).coeffs();
 }
 
+/// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
+/// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
 void turn(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const Vector3& moments = body.inverse_moments;
   const double spread = moments.maxCoeff() - moments.minCoeff();

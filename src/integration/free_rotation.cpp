@@ -10,6 +10,8 @@ namespace {
 /// Within this, S is its series to the ninth order, to rounding [rad].
 constexpr double kSeries = 1.0 / 32.0;
 
+/// Which axis has the intermediate moment: it is the second of the addition theorem, for which A and B are
+/// then not negative, and the functions real.
 int intermediate(const Vector3& j) {
   for (int i = 0; i < 2; ++i) {
     if ((j[(i + 1) % 3] - j[i]) * (j[i] - j[(i + 2) % 3]) >= 0.0) return i;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "../integration/free_flight.h"
-#include "../joints/put_back.h"
+#include "../joints/linkage.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "brute_force.h"
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "collision/closest_features.h"
 #include "random_capsules.h"
 
 namespace mrhi {

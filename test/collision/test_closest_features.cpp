@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "collision/closest_features.h"
 #include "random_capsules.h"
 
 namespace mrhi {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/math/duration_histogram.h"
+#include "math/duration_histogram.h"
 
 namespace mrhi {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "math/capsule.h"
 #include "math/registration.h"
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/math/capsule.h"
 #include "mr_hand_interaction/synthetic/random.h"
 
 namespace mrhi {

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/standard_outputs.h"
-#include "mr_hand_interaction/stamp_judge.h"
+#include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "ros/object_request_message.h"
 #include "ros/result_conversion.h"
+#include "ros/standard_outputs.h"
 #include "support/joints.h"
 #include "support/pinched_cube.h"
 
@@ -258,8 +258,8 @@ TEST(Conversion, of_stamps_keeps_nanoseconds_and_stays_within_what_ros_has) {
   for (const Nanoseconds stamp : {Nanoseconds(0), Nanoseconds(1), Nanoseconds(1'234'567'890'123'456'789)})
     EXPECT_EQ(from_ros_time(to_ros_time(stamp)), stamp);
   EXPECT_EQ(from_ros_time(to_ros_time(-5)), 0);
-  EXPECT_EQ(from_ros_time(to_ros_time(StampJudge::kLatest)), StampJudge::kLatest);
-  EXPECT_EQ(from_ros_time(to_ros_time(std::numeric_limits<Nanoseconds>::max())), StampJudge::kLatest);
+  EXPECT_EQ(from_ros_time(to_ros_time(StampCheck::kLatest)), StampCheck::kLatest);
+  EXPECT_EQ(from_ros_time(to_ros_time(std::numeric_limits<Nanoseconds>::max())), StampCheck::kLatest);
 }
 
 TEST(Requests, to_spawn_are_taken_word_for_word) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/math/capsule.h"
+#include "math/capsule.h"
 #include "mr_hand_interaction/scene/shape.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "scene/mesh_loader.h"
