@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../collision/body_contact_finder.h"
+#include "../integration/free_flights.h"
 #include "flying_alone.h"
 #include "grasp_assist.h"
 #include "mr_hand_interaction/collision/contact_finder.h"
@@ -55,6 +56,7 @@ struct Simulation::Impl {
   ContactFinder finder;
   BodyContactFinder body_finder;
   FlyingAlone alone;
+  FreeFlights flights;
   Sleeping sleeping;
   GraspAssist assist;
   HandRenderer renderer;
