@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "collision/closest_features.h"
 #include "modelling/skin_model.h"
-#include "mr_hand_interaction/collision/closest_features.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
 #include "rendering/skin.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "rendering/gradient.h"
+#include "rendering/skin_shape.h"
 
 namespace mrhi {
 namespace {

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "collision/body_contact_finder.h"
+#include "collision/neighbours.h"
+#include "collision/scene_geometry.h"
 #include "integration/free_flight.h"
-#include "mr_hand_interaction/collision/neighbours.h"
-#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "response/contact_step.h"
 #include "response/crowd_problem.h"
 #include "response/impact_solver.h"
 #include "response/islands.h"

@@ -68,7 +68,7 @@ Body body_of(const Row& row, const Pose& place, const Material& material) {
   return body;
 }
 
-Outcome judge(const Story& story, const Track& track, const Closing& closing, const Row& row) {
+Outcome outcome_of(const Story& story, const Track& track, const Closing& closing, const Row& row) {
   Outcome outcome;
   outcome.early = (nearest(story.moments, closing.closed).place - closing.place.position).norm();
   outcome.away = (nearest(story.moments, closing.opens).place - closing.grip_at_end).norm();
@@ -94,7 +94,7 @@ Outcome play(const Recording& recording, const Closing& closing, const Row& row,
   try {
     const Story story =
         player(disturbed(recording.frames, closing.begin, closing.last, disturbance), closing, row);
-    if (!story.moments.empty()) return judge(story, recording.tracks[closing.track], closing, row);
+    if (!story.moments.empty()) return outcome_of(story, recording.tracks[closing.track], closing, row);
     outcome.note = "no usable frame";
   } catch (const std::exception& error) {
     outcome.note = error.what();

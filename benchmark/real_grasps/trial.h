@@ -55,7 +55,7 @@ constexpr double kFair = 0.010;
 /// A homogeneous body at rest.
 Body body_of(const Row& row, const Pose& place, const Material& material);
 
-Outcome judge(const Story& story, const Track& track, const Closing& closing, const Row& row);
+Outcome outcome_of(const Story& story, const Track& track, const Closing& closing, const Row& row);
 
 /// Plays the recorded frames, as the default device mount has them, with the body at its place.
 using Player = std::function<Story(const std::vector<JointsFrame>&, const Closing&, const Row&)>;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/math/capsule.h"
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi::benchmark {

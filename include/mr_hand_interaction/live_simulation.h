@@ -18,8 +18,8 @@ class LiveSimulation {
   LiveSimulation(Scene scene, const Configuration& configuration);
 
   /// Until the next change.
-  Simulation& now() { return *simulation_; }
-  const Simulation& now() const { return *simulation_; }
+  Simulation& simulation() { return *simulation_; }
+  const Simulation& simulation() const { return *simulation_; }
 
   /// Names of parameters.h and their values in YAML: all or none. Throws ParameterError.
   void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);

@@ -15,7 +15,7 @@
 
 namespace mrhi {
 
-/// What a frame of input led to. `none` means that it was taken. See StampJudge.
+/// What a frame of input led to. `none` means that it was taken. See StampCheck.
 enum class Rejection : std::uint8_t {
   none,
   stamp_not_increasing,  ///< repeats or goes back; a stream that has really restarted is taken from its third

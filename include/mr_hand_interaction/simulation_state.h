@@ -11,7 +11,7 @@
 #include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "mr_hand_interaction/stamp_judge.h"
+#include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -21,7 +21,7 @@ struct SimulationState {
   bool started = false;                        ///< a frame has been taken
   Nanoseconds time = 0;                        ///< stamp up to which bodies have been advanced
   Nanoseconds last_frame = 0;                  ///< stamp of the last frame taken
-  StampJudge stamps;                           ///< of the frames taken, and of those that were refused
+  StampCheck stamps;                           ///< of the frames taken, and of those that were refused
   std::vector<BodyState> bodies;               ///< one per Scene::bodies, fixtures too
   std::vector<JointState> joints;              ///< one per Scene::joints
   std::vector<char> asleep;                    ///< likewise: lies still, and is not looked at until disturbed

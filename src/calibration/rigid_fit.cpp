@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/calibration/rigid_fit.h"
+#include "rigid_fit.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/calibration/touch_recorder.h"
+#include "touch_recorder.h"
 
 #include <algorithm>
 #include <numeric>

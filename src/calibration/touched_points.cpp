@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/calibration/touched_points.h"
+#include "touched_points.h"
 
 #include <algorithm>
 #include <fstream>

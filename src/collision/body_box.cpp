@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/body_box.h"
+#include "body_box.h"
 
 namespace mrhi {
 

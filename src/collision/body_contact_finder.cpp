@@ -30,11 +30,11 @@ double fastest_point(const MovingBody& moving) {
 }
 
 /// Distance of a point from a shape is at least this [m].
-double at_least_away(const Vector3& point, const PlacedShape& placed, const Pose& body_pose) {
-  const Box* box = std::get_if<Box>(&placed.shape);
-  if (box == nullptr) return 0.0;
-  const Vector3 local = placed.pose.to_local(body_pose.to_local(point));
-  return (local.cwiseAbs() - box->half_extents).cwiseMax(0.0).norm();
+double at_least_away(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
+                     const Pose& body) {
+  if (!shape.prism) return 0.0;
+  const Vector3 local = in_body.to_local(body.to_local(point));
+  return (local.cwiseAbs() - shape.prism->half).cwiseMax(0.0).norm();
 }
 
 struct ShapePair {
@@ -147,7 +147,7 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   reaches_.resize(bodies.size());
   for (const int body : neighbours.paired()) {
     const auto b = static_cast<std::size_t>(body);
-    reaches_[b] = reach_of(scene_.bodies[b], bodies[b], step);
+    reaches_[b] = reach_of(b, bodies[b], step);
   }
   for (const auto& [a, b] : neighbours.pairs()) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
@@ -175,8 +175,10 @@ double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::
 }
 
 /// The axis-aligned box that a body may touch another from within in this step.
-BodyContactFinder::Reach BodyContactFinder::reach_of(const Body& body, const BodyState& state,
+BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const BodyState& state,
                                                      double step) const {
+  const Body& body = scene_.bodies[index];
+  const std::vector<ManifoldShape>& shapes = geometry_.shapes[index];
   Reach reach;
   reach.centre = state.pose.position;
   reach.half = Vector3::Constant(body.bounding_radius);
@@ -185,11 +187,10 @@ BodyContactFinder::Reach BodyContactFinder::reach_of(const Body& body, const Bod
     reach.travel += step * (state.linear_momentum.norm() / body.mass + 0.5 * step * gravity_.norm());
   }
   double turned = 0.0;
-  const Box* box = body.shapes.size() == 1 ? std::get_if<Box>(&body.shapes[0].shape) : nullptr;
-  if (box != nullptr) {
+  if (shapes.size() == 1 && shapes[0].prism) {
     const Pose pose = state.pose * body.shapes[0].pose;
     reach.centre = pose.position;
-    reach.half = pose.orientation.toRotationMatrix().cwiseAbs() * box->half_extents;
+    reach.half = pose.orientation.toRotationMatrix().cwiseAbs() * shapes[0].prism->half;
     // No faster than the momentum about the axis of least inertia.
     turned = step * body.bounding_radius * state.angular_momentum.norm() * body.inverse_inertia.trace();
   }
@@ -211,7 +212,9 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
   const MovingBody a(body_a, bodies[ia], gravity_), b(body_b, bodies[ib], gravity_);
   const double margin = travel + (fastest_point(a) + fastest_point(b)) * step;
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
-    if (at_least_away(b.pose.position, a.body.shapes[i], a.pose) > body_b.bounding_radius + travel) continue;
+    const double away =
+        at_least_away(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
+    if (away > body_b.bounding_radius + travel) continue;
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "moving_body.h"
 #include "mr_hand_interaction/collision/body_contact.h"
-#include "mr_hand_interaction/collision/moving_body.h"
-#include "mr_hand_interaction/collision/neighbours.h"
-#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "neighbours.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 
@@ -28,7 +28,7 @@ class BodyContactFinder {
   };
   double followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                       const std::vector<char>& asleep, double step, double driven) const;
-  Reach reach_of(const Body& body, const BodyState& state, double step) const;
+  Reach reach_of(std::size_t index, const BodyState& state, double step) const;
   const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
   void find_pair(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double step,
                  const std::vector<BodyContact>& before);

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/contact_finder.h"
+#include "contact_finder.h"
 
 #include <algorithm>
 

@@ -13,10 +13,6 @@ constexpr double kSameArea = 1e-3, kNoArea = 1e-12;
 /// Three points whose triangle is smaller than this part of the region's size squared are in line.
 constexpr double kStraight = 1e-4;
 
-double cross(const RegionPoint& o, const RegionPoint& a, const RegionPoint& b) {
-  return (a.u - o.u) * (b.v - o.v) - (a.v - o.v) * (b.u - o.u);
-}
-
 }  // namespace
 
 double ContactRegion::deepest() const {
@@ -35,11 +31,11 @@ void ContactRegion::remove_gaps(double margin) {
 
 void ContactRegion::sort_around() {
   double u = 0.0, v = 0.0;
-  for (int i = 0; i < count; ++i) u += (*this)[i].u / count, v += (*this)[i].v / count;
+  for (int i = 0; i < count; ++i) u += (*this)[i].place[0] / count, v += (*this)[i].place[1] / count;
   std::array<double, 16> angles{};
   for (int i = 0; i < count; ++i) {
     const RegionPoint point = (*this)[i];
-    const double angle = std::atan2(point.v - v, point.u - u);
+    const double angle = std::atan2(point.place[1] - v, point.place[0] - u);
     int place = i;
     for (; place > 0 && angles[static_cast<std::size_t>(place - 1)] > angle; --place) {
       (*this)[place] = (*this)[place - 1];
@@ -56,7 +52,8 @@ void ContactRegion::erase(int i) {
 }
 
 double ContactRegion::triangle(int i) const {
-  return std::abs(cross((*this)[(i + count - 1) % count], (*this)[i], (*this)[(i + 1) % count]));
+  return std::abs(
+      cross((*this)[(i + count - 1) % count].place, (*this)[i].place, (*this)[(i + 1) % count].place));
 }
 
 std::uint8_t ContactRegion::first_deepest() const {
@@ -70,9 +67,9 @@ void ContactRegion::straighten() {
   if (count <= 2) return;
   const std::uint8_t kept = first_deepest();
   double longest = 0.0;
-  for (int i = 1; i < count; ++i) {
-    longest = std::max(longest, std::hypot((*this)[i].u - (*this)[0].u, (*this)[i].v - (*this)[0].v));
-  }
+  const Place& first = (*this)[0].place;
+  for (int i = 1; i < count; ++i)
+    longest = std::max(longest, std::hypot((*this)[i].place[0] - first[0], (*this)[i].place[1] - first[1]));
   for (int i = count - 1; i >= 0 && count > 2; --i) {
     if ((*this)[i].feature != kept && triangle(i) < kStraight * longest * longest) erase(i);
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mr_hand_interaction/collision/body_manifold.h"
+#include "body_manifold.h"
 
 namespace mrhi {
 
@@ -18,10 +18,19 @@ inline bool as_deep(double deepest, double separation) {
   return deepest >= -separation - 1e-3 * std::abs(separation) - 3e-6;
 }
 
+using Place = std::array<double, 2>;
+
+inline double cross(const Place& o, const Place& p, const Place& q) {
+  return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+}
+
 /// A corner of the region in which two faces overlap, seen along the normal: across the face, and how deep.
+/// While a face is clipped, `line` leads on from it: edge 0..3 of that face, or border 4..7 of the other.
 struct RegionPoint {
-  double u, v, depth;
+  Place place;
+  double depth;
   std::uint8_t feature;
+  int line;
 };
 
 /// The corners of such a region, a convex polygon, in their order.

@@ -1,28 +1,29 @@
 #pragma once
 
-#include "oriented_shapes.h"
+#include "prism.h"
 #include "segment.h"
 
 namespace mrhi {
 
-/// The direction, out of b towards a, along which two convex shapes are farthest apart or overlap least: the
+/// The direction, out of b towards a, along which two prisms are farthest apart or overlap least: the
 /// greatest s(n) = n.(centre a - centre b) - reach a(n) - reach b(n). Every direction tried bounds it from
-/// below, so that a translation by -s always separates; it is exact if the best direction was tried. Shapes
+/// below, so that a translation by -s always separates; it is exact if the best direction was tried. Prisms
 /// are symmetric about their centres: n and -n are one try.
-template <typename ShapeA, typename ShapeB>
 class ConvexAxis {
  public:
-  ConvexAxis(const ShapeA& a, const ShapeB& b) : a_(a), b_(b), offset_(a.centre - b.centre) {}
+  ConvexAxis(const Prism& a, const Prism& b) : a_(a), b_(b), offset_(a.centre - b.centre) {}
 
   double separation() const { return separation_; }
   const Vector3& normal() const { return normal_; }
   const Vector3& offset() const { return offset_; }
 
   /// Any length; zero is no direction.
-  void try_direction(Vector3 n) {
+  void try_direction(const Vector3& n) {
     const double length = n.norm();
-    if (length < kParallel) return;
-    n *= (n.dot(offset_) < 0.0 ? -1.0 : 1.0) / length;
+    if (length >= kParallel) try_unit(n / length);
+  }
+  void try_unit(Vector3 n) {
+    if (n.dot(offset_) < 0.0) n = -n;
     const double value = at(n);
     if (value > separation_ + kBetter) separation_ = value, normal_ = n;
   }
@@ -109,7 +110,7 @@ class ConvexAxis {
       (now.slope > 0.0 ? low : high) = now;
       (now.slope > 0.0 ? lo : hi) = angle;
       if (bound(low, high, hi - lo) < separation_ + kBetter) return;
-      const double curvature = now.value + now.turn.dot((bend(a_, now.n) + bend(b_, now.n)) * now.turn);
+      const double curvature = now.value + now.turn.dot((a_.bend(now.n) + b_.bend(now.n)) * now.turn);
       double next = angle + now.slope / curvature;
       if (!(curvature > 0.0 && next > lo && next < hi)) next = 0.5 * (lo + hi);
       if (std::abs(next - angle) < 1e-14) break;
@@ -121,7 +122,7 @@ class ConvexAxis {
   /// Newton's step, or up the gradient where s is not concave.
   Vector3 ascent(const Vector3& n, const Vector3& gradient) const {
     const Vector3 u = any_normal(n), v = n.cross(u);
-    const Matrix3 curve = at(n) * Matrix3::Identity() + bend(a_, n) + bend(b_, n);
+    const Matrix3 curve = at(n) * Matrix3::Identity() + a_.bend(n) + b_.bend(n);
     const double uu = u.dot(curve * u), uv = u.dot(curve * v), vv = v.dot(curve * v);
     const double gu = u.dot(gradient), gv = v.dot(gradient), det = uu * vv - uv * uv;
     if (det > 1e-12 * (uu * uu + vv * vv) && uu + vv > 0.0) {
@@ -130,8 +131,8 @@ class ConvexAxis {
     return kLongest / gradient.norm() * gradient;
   }
 
-  const ShapeA& a_;
-  const ShapeB& b_;
+  const Prism& a_;
+  const Prism& b_;
   Vector3 offset_, normal_ = Vector3::UnitZ();
   double separation_ = -1e300;
 };

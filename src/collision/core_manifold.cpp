@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "contact_region.h"
-#include "mr_hand_interaction/collision/placed_collider.h"
+#include "placed_collider.h"
 
 namespace mrhi {
 namespace {

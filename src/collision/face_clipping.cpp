@@ -12,7 +12,6 @@ namespace mrhi {
 namespace {
 
 using Outline = FlatFace::Outline;
-using Place = FlatFace::Place;
 
 constexpr double kQuarter = 1.5707963267948966;
 /// No direction that a scene is likely to have: half-way between two rim points lies off every such.
@@ -34,27 +33,9 @@ constexpr std::array<Border, 4> kBorders{{{1, 1.0}, {0, -1.0}, {1, -1.0}, {0, 1.
 double length(const Place& place) {
   return std::hypot(place[0], place[1]);
 }
-double cross(const Place& o, const Place& p, const Place& q) {
-  return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
-}
 Place between(const Place& from, const Place& to, double part) {
   return {{from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])}};
 }
-
-/// A corner of the polygon that is left, and which line leads on from it: edge 0..3 of the other face, or
-/// border 4..7 of the frame.
-struct Corner {
-  Place place;
-  std::uint8_t feature;
-  int line;
-};
-struct Polygon {
-  std::array<Corner, 12> corners;
-  int count = 0;
-
-  void add(const Corner& corner) { corners[static_cast<std::size_t>(count++)] = corner; }
-  const Corner& operator[](int i) const { return corners[static_cast<std::size_t>(i)]; }
-};
 
 class Clipping {
  public:
@@ -93,7 +74,7 @@ class Clipping {
 
   /// Midway between the faces.
   Vector3 place(const RegionPoint& p) const {
-    return frame_.at({{p.u, p.v}}) + (frame_is_reference_ ? -0.5 : 0.5) * p.depth * normal_;
+    return frame_.at(p.place) + (frame_is_reference_ ? -0.5 : 0.5) * p.depth * normal_;
   }
 
  private:
@@ -104,9 +85,8 @@ class Clipping {
     const Vector3 in_plane = offset - height(offset) * normal_;
     return {{frame_.along[0].dot(in_plane), frame_.along[1].dot(in_plane)}};
   }
-  void add(const Place& place, std::uint8_t feature) {
-    region_.add({place[0], place[1], depth_ + slope_[0] * place[0] + slope_[1] * place[1], feature});
-  }
+  double depth(const Place& place) const { return depth_ + slope_[0] * place[0] + slope_[1] * place[1]; }
+  void add(const Place& place, std::uint8_t feature) { region_.add({place, depth(place), feature, 0}); }
   std::uint8_t crossing(int of_frame, int of_other) const {
     return frame_is_a_ ? crossing_name(of_frame, of_other) : crossing_name(of_other, of_frame);
   }
@@ -118,6 +98,7 @@ class Clipping {
       const double x = kCorner[i][0], y = kCorner[i][1];
       polygon_.add(
           {{{middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}},
+           0.0,
            corner_name(other_.corners[i], !frame_is_a_),
            k});
     }
@@ -127,11 +108,12 @@ class Clipping {
 
   void polygon_on_rectangle() {
     for (int border = 0; border < 4 && polygon_.count > 0; ++border) clip(border);
-    for (int i = 0; i < polygon_.count; ++i) {
-      Place place = polygon_[i].place;
+    region_ = polygon_;
+    for (int i = 0; i < region_.count; ++i) {
+      Place& place = region_[i].place;
       for (std::size_t d = 0; d < 2; ++d)
         place[d] = std::max(-frame_.half[d], std::min(place[d], frame_.half[d]));
-      add(place, polygon_[i].feature);
+      region_[i].depth = depth(place);
     }
   }
   /// Where a line of the polygon crosses a border.
@@ -148,20 +130,19 @@ class Clipping {
   void clip(int border) {
     const Border side = kBorders[static_cast<std::size_t>(border)];
     const std::size_t d = side.dimension;
-    const auto beyond = [&](const Corner& c) { return side.sign * c.place[d] - frame_.half[d]; };
-    Polygon kept;
+    const auto beyond = [&](const RegionPoint& c) { return side.sign * c.place[d] - frame_.half[d]; };
+    ContactRegion kept;
     for (int i = 0; i < polygon_.count; ++i) {
-      const Corner& from = polygon_[i];
-      const Corner& to = polygon_[is_end(i) ? i : (i + 1) % polygon_.count];
+      const RegionPoint& from = polygon_[i];
+      const RegionPoint& to = polygon_[is_end(i) ? i : (i + 1) % polygon_.count];
       const double from_beyond = beyond(from), to_beyond = beyond(to);
       const bool leaves = from_beyond <= tolerance_ && to_beyond > tolerance_;
       const bool enters = from_beyond > tolerance_ && to_beyond <= tolerance_;
       if (from_beyond <= tolerance_) kept.add(from);
-      if (leaves && from_beyond >= 0.0)
-        kept.corners[static_cast<std::size_t>(kept.count - 1)].line = 4 + border;
+      if (leaves && from_beyond >= 0.0) kept[kept.count - 1].line = 4 + border;
       if ((leaves && from_beyond < 0.0) || (enters && to_beyond < 0.0)) {
-        Corner crossing{between(from.place, to.place, from_beyond / (from_beyond - to_beyond)),
-                        crossing_feature(from.line, border), leaves ? 4 + border : from.line};
+        RegionPoint crossing{between(from.place, to.place, from_beyond / (from_beyond - to_beyond)), 0.0,
+                             crossing_feature(from.line, border), leaves ? 4 + border : from.line};
         crossing.place[d] = side.sign * frame_.half[d];
         kept.add(crossing);
       }
@@ -204,7 +185,7 @@ class Clipping {
   }
   /// The part of an edge that the disc covers, between the zeros of |from + s along|^2 = radius^2: its start,
   /// or a corner where that is covered.
-  void add_chord(const Corner& from, const Corner& to) {
+  void add_chord(const RegionPoint& from, const RegionPoint& to) {
     const Place start = from.place, along{{to.place[0] - start[0], to.place[1] - start[1]}};
     const int edge = other_.edges[static_cast<std::size_t>(from.line)];
     const double a = along[0] * along[0] + along[1] * along[1];
@@ -268,8 +249,7 @@ class Clipping {
   Place middle_, slope_;
   std::array<Place, 2> side_;  // of the other: to its middle, and half its sides
   double depth_, tolerance_;   // depth at the frame's centre
-  Polygon polygon_;
-  ContactRegion region_;
+  ContactRegion polygon_, region_;
 };
 
 /// The frame is the one that has a rim, of two the one that may lie within the other.

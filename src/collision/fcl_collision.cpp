@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/collision/broad_phase.h"
+#include "broad_phase.h"
 
 namespace mrhi {
 namespace {

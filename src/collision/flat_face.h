@@ -5,29 +5,31 @@
 #include <cstdint>
 
 #include "contact_region.h"
-#include "oriented_shapes.h"
+#include "prism.h"
 
 namespace mrhi {
 
-/// A box has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 * direction + two
-/// bits for the sides of the axes that follow), a cylinder corners 4 * cap + rim point. Touches of a and b
-/// are named: corner of a, 8 + corner of b, 16 + 12 * edge of a + edge of b.
-constexpr int kBoxCorners = 8, kBoxEdges = 12;
+/// A prism on a rectangle has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 *
+/// direction + two bits for the sides of the axes that follow), one on a disc corners 4 * cap + rim point,
+/// and what is round there is edge 0. Touches of a and b are named: corner of a, 8 + corner of b, 16 + 12 *
+/// edge of a + edge of b.
+constexpr int kCorners = 8, kEdges = 12;
 
 inline int edge_name(int direction, int corner) {
   return 4 * direction + (corner >> ((direction + 1) % 3) & 1) + 2 * (corner >> ((direction + 2) % 3) & 1);
 }
 inline std::uint8_t corner_name(int corner, bool of_a) {
-  return static_cast<std::uint8_t>(of_a ? corner : kBoxCorners + corner);
+  return static_cast<std::uint8_t>(of_a ? corner : kCorners + corner);
 }
 inline std::uint8_t crossing_name(int edge_of_a, int edge_of_b) {
-  return static_cast<std::uint8_t>(2 * kBoxCorners + kBoxEdges * edge_of_a + edge_of_b);
+  return static_cast<std::uint8_t>(2 * kCorners + kEdges * edge_of_a + edge_of_b);
 }
 
-/// A straight piece of surface: an edge of a box, a line of a cylinder's side, or (half = 0) a point.
+/// A straight piece of surface: an edge, a line of a round side, or (half = 0) a point.
 struct Line {
   Vector3 middle, along;  ///< along is unit
   double half;
+  int name;  ///< of the edge; kEdges + the corner's
 
   Vector3 at(double t) const { return middle + t * along; }
 };
@@ -36,7 +38,6 @@ struct Line {
 /// rectangle go round; edge i leads from corner i to the next, and stands on the side kBorders[i].
 struct FlatFace {
   enum class Outline { rectangle, circle, line };
-  using Place = std::array<double, 2>;
 
   static FlatFace of(const Line& line);
 
@@ -57,7 +58,7 @@ struct FlatFace {
 };
 constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
-/// Ends of a box's edge: corners.
+/// Ends of an edge of a rectangle's prism: corners.
 inline std::array<int, 2> edge_ends(int edge) {
   const int direction = edge / 4;
   const int low = (edge & 1) << (direction + 1) % 3 | (edge >> 1 & 1) << (direction + 2) % 3;
@@ -65,25 +66,24 @@ inline std::array<int, 2> edge_ends(int edge) {
 }
 
 /// The flat face whose outward normal is nearest to `outward`.
-FlatFace face_towards(const OrientedBox& box, const Vector3& outward);
-FlatFace face_towards(const OrientedCylinder& cylinder, const Vector3& outward);
+FlatFace face_towards(const Prism& prism, const Vector3& outward);
 
-/// What of the shape lies on a plane that it is pressed to along `outward`: a face, or the line of a round
-/// side.
-FlatFace lying_towards(const OrientedBox& box, const Vector3& outward);
-FlatFace lying_towards(const OrientedCylinder& cylinder, const Vector3& outward);
+/// What of it lies on a plane that it is pressed to along `outward`: a face, or the line of a round side.
+FlatFace lying_towards(const Prism& prism, const Vector3& outward);
 
-/// The line of the cylinder's side that is farthest along `facing`.
-Line side_line(const OrientedCylinder& cylinder, const Vector3& facing);
+/// What of it is straight across a direction to within `tolerance` (the cosine), farthest along it; the edge
+/// along `beside`, if there are two. A point if nothing is.
+Line line_facing(const Prism& prism, const Vector3& n, double tolerance, const Vector3& beside);
 
-/// What of the shape is straight across a direction to within `tolerance` (the cosine), farthest along it;
-/// the edge along `beside`, if there are two. A point if nothing is.
-Line line_facing(const OrientedBox& box, const Vector3& n, double tolerance, const Vector3& beside);
-Line line_facing(const OrientedCylinder& cylinder, const Vector3& n, double tolerance, const Vector3& beside);
+/// The line of a round side that is farthest along `facing`.
+inline Line side_line(const Prism& prism, const Vector3& facing) {
+  constexpr double kAny = 2.0;
+  return line_facing(prism, facing, kAny, prism.axis());
+}
 
 /// Four places round a rim [rad]; one of them at the lowest, where `slope` (of the depth, by the face's
 /// coordinates) tilts it noticeably.
-std::array<double, 4> rim_angles(double radius, const std::array<double, 2>& slope);
+std::array<double, 4> rim_angles(double radius, const Place& slope);
 
 /// How two faces touch, by the normal of `reference`: the corners of what of one stands over the other, at
 /// most four of them.

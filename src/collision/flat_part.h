@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "closest_features.h"
 #include "segment.h"
 
 namespace mrhi {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/god_object.h"
+#include "god_object.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include <atomic>
 
+#include "mesh_collision.h"
 #include "mesh_nearest.h"
 #include "mesh_shape.h"
-#include "mr_hand_interaction/collision/mesh_collision.h"
 
 namespace mrhi {
 namespace {

@@ -76,29 +76,60 @@ struct Probes {
   const Wanted& wanted;
   const See& see;
 
-  template <typename Round>
-  void operator()(const Round&) const {}
-  void operator()(const Box& shape) const {
-    const OrientedBox box(shape, probing.pose);
-    for (int i = 0; i < kBoxCorners; ++i) see(Probe::corner(box.corner(i), i));
-    for (int i = 0; i < kBoxEdges; ++i) {
-      const auto [low, high] = edge_ends(i);
-      see(Probe::edge(box.corner(low), box.corner(high), i));
+  void each() const {
+    if (probing.of.mesh != nullptr) {
+      const MeshShape& mesh = probing.of.mesh->shape();
+      mesh.tree.visit(wanted, [&](int part) { of_mesh(mesh.surface, part); });
+    } else if (probing.of.prism) {
+      const Prism prism(*probing.of.prism, probing.pose);
+      prism.round ? of_round(prism) : of_straight(prism);
+    } else {
+      of_other();
     }
   }
-  void operator()(const Cylinder& shape) const {
-    const OrientedCylinder cylinder(shape, probing.pose);
+
+ private:
+  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach.
+  Vector3 facing_from(const Capsule& inside, double reach) const {
+    const Pose& other = probing.other_pose;
+    const auto features = closest_on(
+        probing.other, {other.to_local(inside.start), other.to_local(inside.end), inside.radius}, reach);
+    return features ? Vector3(-(other.orientation * features->normal)) : Vector3::Zero();
+  }
+  /// Of a form without corners or edges that are known: the place that faces the other.
+  void of_other() const {
+    const Pose& pose = probing.pose;
+    const Vector3 facing =
+        facing_from({pose.position, pose.position, 0.0}, probing.of.bounding_radius + probing.margin);
+    if (facing.isZero(0.0)) return;
+    const Vector3 local = pose.orientation.conjugate() * facing;
+    see(Probe::corner(
+        pose * std::visit([&](const auto& shape) { return shape.farthest(local); }, probing.of.shape), 0));
+  }
+  void of_straight(const Prism& prism) const {
+    for (int i = 0; i < kCorners; ++i) see(Probe::corner(prism.corner(i), i));
+    for (int i = 0; i < kEdges; ++i) {
+      const auto [low, high] = edge_ends(i);
+      see(Probe::edge(prism.corner(low), prism.corner(high), i));
+    }
+  }
+  /// Rims, and the side line that faces the other, and with it the lowest point of a rim.
+  void of_round(const Prism& prism) const {
     for (const double side : {-1.0, 1.0}) {
-      const FlatFace cap = face_towards(cylinder, side * cylinder.axis);
+      const FlatFace cap = face_towards(prism, side * prism.axis());
       int number = cap.corners[0];
-      for (const double angle : rim_angles(cylinder.radius, {{0.0, 0.0}}))
+      for (const double angle : rim_angles(cap.half[0], {{0.0, 0.0}}))
         see(Probe::corner(cap.on_circle(angle), number++));
     }
-    side_line_of(cylinder);
-  }
-  void operator()(const Mesh&) const {
-    const MeshShape& mesh = probing.of.mesh->shape();
-    mesh.tree.visit(wanted, [&](int part) { of_mesh(mesh.surface, part); });
+    const double radius = prism.half.x(), length = prism.half.z();
+    const Vector3 inner = std::max(0.0, length - radius) * prism.axis();
+    const Vector3 facing = facing_from({prism.centre - inner, prism.centre + inner, std::min(radius, length)},
+                                       probing.margin + radius + length);
+    if (prism.across(facing).norm() < 0.01) return;
+    const Line line = side_line(prism, facing);
+    see(Probe::corner(line.at(-line.half), 8));
+    see(Probe::corner(line.at(line.half), 9));
+    see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
   void of_mesh(const MeshSurface& surface, int part) const {
     const int index = part - static_cast<int>(surface.faces().size());
@@ -108,25 +139,6 @@ struct Probes {
     if (surface.is_first_edge(index, edge.corners[0])) see(Probe::corner(start, edge.corners[0]));
     if (surface.is_first_edge(index, edge.corners[1])) see(Probe::corner(end, edge.corners[1]));
     see(Probe::edge(start, end, index));
-  }
-
- private:
-  /// The side line that faces the mesh, and with it the lowest point of a rim.
-  void side_line_of(const OrientedCylinder& cylinder) const {
-    const Pose& mesh_pose = probing.other_pose;
-    const double inner = std::max(0.0, cylinder.half_length - cylinder.radius);
-    const double radius = std::min(cylinder.radius, cylinder.half_length);
-    const Capsule inside{mesh_pose.to_local(cylinder.centre - inner * cylinder.axis),
-                         mesh_pose.to_local(cylinder.centre + inner * cylinder.axis), radius};
-    const auto features =
-        closest_on(probing.other, inside, probing.margin + cylinder.radius + cylinder.half_length);
-    if (!features) return;
-    const Vector3 facing = -(mesh_pose.orientation * features->normal);
-    if (cylinder.across(facing).norm() < 0.01) return;
-    const Line line = side_line(cylinder, facing);
-    see(Probe::corner(line.at(-line.half), 8));
-    see(Probe::corner(line.at(line.half), 9));
-    see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
 };
 
@@ -178,8 +190,7 @@ class Touches {
       const auto try_out = [&](const Probe& probe) {
         if (const auto touch = probing.touch(probe)) see(*touch);
       };
-      std::visit(Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out},
-                 probing.of.shape);
+      Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out}.each();
     }
   }
 
@@ -244,7 +255,7 @@ Manifold chosen(const Touches& touches) {
         return;
     taken[static_cast<std::size_t>(region.count)] = &touch;
     const Vector3 offset = touch.point - deepest->point;
-    region.add({u.dot(offset), v.dot(offset), touch.depth, static_cast<std::uint8_t>(region.count)});
+    region.add({{{u.dot(offset), v.dot(offset)}}, touch.depth, static_cast<std::uint8_t>(region.count), 0});
   };
   take(*deepest);
   for (const Touch& touch : spread.outermost()) take(touch);

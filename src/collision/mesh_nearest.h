@@ -1,8 +1,8 @@
 #pragma once
 
+#include "closest_features.h"
 #include "mesh_surface.h"
 #include "mesh_tree.h"
-#include "mr_hand_interaction/collision/closest_features.h"
 
 namespace mrhi {
 

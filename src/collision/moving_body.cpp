@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/moving_body.h"
+#include "moving_body.h"
 
 namespace mrhi {
 

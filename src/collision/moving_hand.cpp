@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/moving_hand.h"
+#include "moving_hand.h"
 
 #include <algorithm>
 #include <cmath>

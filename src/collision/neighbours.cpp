@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/neighbours.h"
+#include "neighbours.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/collision/scene_geometry.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 

@@ -2,8 +2,7 @@
 
 #include <optional>
 
-#include "mr_hand_interaction/collision/body_manifold.h"
-#include "oriented_shapes.h"
+#include "body_manifold.h"
 
 namespace mrhi {
 
@@ -16,14 +15,11 @@ std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Caps
 Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin);
 
-/// Two boxes by the separating axis theorem (Gottschalk, Lin & Manocha 1996), the faces that meet clipped by
-/// Sutherland & Hodgman 1974; where edges cross, a single point.
-Manifold box_box(const OrientedBox& a, const OrientedBox& b, double margin);
-
-/// A cylinder on a box or a cylinder: cap on face (four points of the rim), side on face (two), otherwise
-/// one.
-Manifold cylinder_box(const OrientedCylinder& a, const OrientedBox& b, double margin);
-Manifold cylinder_cylinder(const OrientedCylinder& a, const OrientedCylinder& b, double margin);
+/// Two prisms (a box and a box, a cylinder and a box, ...), by the direction of least overlap: where that is
+/// near a face's normal, by that face, what is over it clipped by Sutherland & Hodgman 1974; otherwise by the
+/// lines or the point that face each other.
+Manifold prism_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b,
+                        const Pose& pose_b, double margin);
 
 /// A mesh against a box, a cylinder or a mesh: corners and edges of each are measured in the other, the
 /// deepest gives the normal, and of those that agree with it the farthest out in eight directions are the

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/placed_collider.h"
+#include "placed_collider.h"
 
 #include <limits>
 

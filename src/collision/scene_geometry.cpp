@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/scene_geometry.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 

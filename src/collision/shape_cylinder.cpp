@@ -1,5 +1,5 @@
 #include "chord.h"
-#include "cylinder_penetration.h"
+#include "convex_axis.h"
 #include "flat_part.h"
 
 namespace mrhi {
@@ -87,23 +87,83 @@ Vector3 clamp(const Vector3& place, const Cylinder& cylinder) {
   return point;
 }
 
+ClosestFeatures leave_by_cap(const Segment& axis, const Cylinder& cylinder) {
+  const double middle = axis.middle().z(), side = middle < 0.0 ? -1.0 : 1.0;
+  double s = side * axis.along.z() > 0.0 ? 0.0 : 1.0;
+  if (axis.along.z() == 0.0) {
+    Stretch over;
+    over.clip_to_disc(axis, cylinder.radius);
+    s = over.middle();
+  }
+  Vector3 point = axis.at(s);
+  point.z() = side * cylinder.half_length;
+  const double reach = 0.5 * std::abs(axis.along.z());
+  return {std::abs(middle) - reach - cylinder.half_length, side * Vector3::UnitZ(), point, s};
+}
+
+/// Seen along z: a segment in a disc.
+ClosestFeatures leave_by_side(const Segment& axis, const Cylinder& cylinder) {
+  const Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();
+  const double along_squared = along.squaredNorm();
+  double s;
+  if (along_squared > 0.0) {
+    s = std::max(0.0, std::min(-start.dot(along) / along_squared, 1.0));
+  } else {
+    Stretch beside;
+    beside.clip_to_slab(axis.start.z(), axis.along.z(), cylinder.half_length);
+    s = beside.middle();
+  }
+  const Eigen::Vector2d place = start + s * along;
+  const double from_axis = place.norm();
+  Vector3 normal = Vector3::UnitX();
+  if (from_axis > kOnSurface) {
+    normal << place / from_axis, 0.0;
+  } else if (along_squared > 0.0) {
+    normal << Eigen::Vector2d(-along.y(), along.x()).normalized(), 0.0;
+  }
+  Vector3 point = cylinder.radius * normal;
+  point.z() = std::max(-cylinder.half_length, std::min(axis.at(s).z(), cylinder.half_length));
+  return {from_axis - cylinder.radius, normal, point, s};
+}
+
+/// Across the segment, which is a point then.
+ClosestFeatures leave_by_rim(const Segment& axis, const Cylinder& cylinder) {
+  const Prism place({Vector3::Zero(), false}, {axis.middle(), Quaternion::Identity()});
+  const Prism solid(*cylinder.prism(), {Vector3::Zero(), Quaternion::Identity()});
+  ConvexAxis search(place, solid);
+  search.try_around(axis.along.normalized());
+  const Vector3 point = solid.farthest(search.normal());
+  const double s = (point - axis.start).dot(axis.along) / axis.along.squaredNorm();
+  return {search.separation(), search.normal(), point, std::max(0.0, std::min(s, 1.0))};
+}
+
+/// The shortest translation that takes a segment, which overlaps the cylinder, out of it: distance <= 0. The
+/// cylinder swept along the segment is convex; the segment leaves by the nearest piece of its surface: a cap,
+/// the side at an end of the segment, or what a rim or a line of the side sweeps.
+ClosestFeatures leave(const Segment& axis, const Cylinder& cylinder) {
+  ClosestFeatures best = leave_by_cap(axis, cylinder);
+  const auto take = [&](const ClosestFeatures& way, double better) {
+    if (way.distance > best.distance + better) best = way;
+  };
+  take(leave_by_side(axis, cylinder), 0.0);
+  const bool slanted = axis.along.z() != 0.0 && axis.along.head<2>().norm() > 0.0;
+  if (slanted) take(leave_by_rim(axis, cylinder), 1e-15);
+  return best;
+}
+
 }  // namespace
 
-ClosestFeatures capsule_cylinder(const Capsule& capsule, const Cylinder& cylinder) {
+ClosestFeatures Cylinder::closest(const Capsule& capsule, double) const {
   const Segment axis(capsule);
-  const double s = nearest(axis, cylinder);
+  const double s = nearest(axis, *this);
   const Vector3 axis_point = axis.at(s);
-  const Vector3 point = clamp(axis_point, cylinder);
+  const Vector3 point = clamp(axis_point, *this);
   const Vector3 gap = axis_point - point;
   const double distance = gap.norm();
   if (distance > kOnSurface) return {distance - capsule.radius, gap / distance, point, s};
-  ClosestFeatures features = leave_cylinder(axis, cylinder);
+  ClosestFeatures features = leave(axis, *this);
   features.distance -= capsule.radius;
   return features;
-}
-
-ClosestFeatures Cylinder::closest(const Capsule& capsule, double) const {
-  return capsule_cylinder(capsule, *this);
 }
 
 AxisSpan Cylinder::span(const Capsule& capsule, const ClosestFeatures& features) const {

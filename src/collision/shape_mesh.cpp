@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/math/capsule.h"
+#include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {

@@ -26,6 +26,7 @@ BodyState start_state(const Body& body) {
   return state;
 }
 
+// T = (p.v + L.w) / 2.
 double kinetic_energy(const Body& body, const BodyState& state) {
   if (body.fixed) return 0.0;
   const Twist twist = twist_of(body, state);

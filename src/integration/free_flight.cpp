@@ -77,6 +77,8 @@ Turning<double> turning_of(const BodyState& state, double step) {
   return {q.w(), q.x(), q.y(), q.z(), triple(state.angular_momentum), step};
 }
 
+// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
+// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double way = spread(body) * angular_momentum.norm() * step;
   const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none

@@ -103,6 +103,14 @@ double JointLaw::Stop::over(double way) const {
   return std::max(0.0, sign * way - room);
 }
 
+// With x the place, v the velocity at the step's end and x+ = x + h v:
+//
+//     t(v) = k (rest - x+) + k_d (detent - x+) - b v + clamp(K (anchor - x+), -+friction)
+//            + clamp(K (latch - x+), -+force) + K (how far x+ is below the lower limit, or above the upper
+//            one)
+//
+// each term at the step's end, as contacts are: k and K add h k and h K to the slope, so that no stiffness
+// asks for a shorter step. K = kStopOverInertia * inertia / h^2.
 void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
   blow_ = 0.0;
@@ -128,6 +136,7 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   upper_ = {room(joint.upper - state.position), 1.0};
 }
 
+// Who says no is left to its flight, which knows no forces. A limit counts from twice a step's way on.
 bool JointLaw::acts(double speed) const {
   constexpr double kNear = 1e-6;
   const double near = 2.0 * step_ * speed + kNear;
@@ -154,6 +163,7 @@ double JointLaw::energy(double velocity) const {
   return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
 }
 
+// Not of the sum: a spring and a stop that bear against each other both act, and errors are measured by them.
 double JointLaw::size(double velocity) const {
   const double way = step_ * velocity;
   return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(way)) +

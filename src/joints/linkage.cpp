@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "joint_law.h"
+
 namespace mrhi {
 namespace {
 
@@ -204,6 +206,22 @@ Vector3 LinkageMotion::centre_of_mass() const {
   Vector3 sum = Vector3::Zero();
   for (int i = 0; i < size(); ++i) sum += body(i).mass * at(i).pose.position;
   return sum / total_mass_;
+}
+
+void put_back(std::size_t body, const Scene& scene, SimulationState& state) {
+  place(body, start_state(scene.bodies[body]), state);
+  if (scene.bodies[body].flies) return;
+  for (const Linkage& linkage : linkages_of(scene)) {
+    const auto is_it = [body](const LinkageBody& link) { return link.body == static_cast<int>(body); };
+    if (std::none_of(linkage.bodies.begin(), linkage.bodies.end(), is_it)) continue;
+    for (const LinkageBody& link : linkage.bodies) {
+      const auto b = static_cast<std::size_t>(link.body);
+      if (b != body) place(b, start_state(scene.bodies[b]), state);
+      if (link.joint == LinkageBody::kNone) continue;
+      const auto j = static_cast<std::size_t>(link.joint);
+      state.joints[j] = start_state(scene.joints[j]);
+    }
+  }
 }
 
 }  // namespace mrhi

@@ -5,6 +5,7 @@
 
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
 
@@ -87,5 +88,8 @@ class LinkageMotion {
   };
   std::vector<Carried> carried_;
 };
+
+/// Puts a body where it started, with all that hangs together with it by joints.
+void put_back(std::size_t body, const Scene& scene, SimulationState& state);
 
 }  // namespace mrhi

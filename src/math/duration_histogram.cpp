@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/math/duration_histogram.h"
+#include "duration_histogram.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "../ros/mount_calibration.h"
 #include "../text/command_line.h"
 #include "exit_status.h"
-#include "mr_hand_interaction/ros/mount_calibration.h"
 
 namespace {
 

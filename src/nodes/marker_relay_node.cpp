@@ -2,8 +2,8 @@
 
 #include <exception>
 
+#include "../ros/marker_relay.h"
 #include "../ros/node.h"
-#include "mr_hand_interaction/ros/marker_relay.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "../ros/node.h"
-#include "mr_hand_interaction/ros/operator_publisher.h"
+#include "../ros/operator_publisher.h"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "../ros/node.h"
+#include "../ros/synthetic_hand_publisher.h"
+#include "../synthetic/recording_writer.h"
 #include "../text/command_line.h"
 #include "exit_status.h"
-#include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
-#include "mr_hand_interaction/synthetic/recording_writer.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "../ros/node.h"
-#include "mr_hand_interaction/ros/training_server.h"
+#include "../ros/training_server.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 namespace mrhi {
 namespace {
 
-// How readily joints give way beside the whole hand (kShiftCompliance): a fingertip yields a hundred times as
-// far by bending as by shifting the hand, and sideways less readily than by bending.
+// How readily joints give way beside the whole hand (kShiftCompliance): a fingertip yields some thirty times
+// as far by bending as by shifting the hand, and sideways less readily than by bending.
 constexpr double kBending = 1.0 / (0.03 * 0.03);   // [rad^2/m^2]
 constexpr double kSideways = 1.0 / (0.05 * 0.05);  // [rad^2/m^2]
 constexpr double kLoose = 1.0;                     // of a finger that nothing ties to the palm
@@ -200,6 +200,32 @@ FingerOffset FingerChain::swing(double way) const {
 FingerOffset FingerChain::compliance() const {
   if (!tied_) return FingerOffset(kLoose, kLoose, kLoose, 0.0);
   return {kBending, kSideways, kBending, kBending};
+}
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+ThumbRest make_thumb_rest() {
+  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
+                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
+  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
+}
+
+}  // namespace
+
+JointLimits joint_limits(int finger) {
+  if (finger == 0) {
+    return {kDegree * FingerOffset(-35.0, -40.0, -15.0, -20.0),
+            kDegree * FingerOffset(50.0, 55.0, 60.0, 85.0)};
+  }
+  return {kDegree * FingerOffset(-40.0, -25.0, -5.0, -20.0), kDegree * FingerOffset(95.0, 25.0, 115.0, 85.0)};
+}
+
+const ThumbRest& thumb_rest() {
+  static const ThumbRest rest = make_thumb_rest();
+  return rest;
 }
 
 }  // namespace mrhi

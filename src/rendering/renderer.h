@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "clearance_finder.h"
-#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "hand_renderer.h"
 #include "pace.h"
 
 namespace mrhi {

@@ -5,7 +5,6 @@
 #include "rest_skin.h"
 #include "skin_rig.h"
 #include "skin_shape.h"
-#include "skin_weights.h"
 
 namespace mrhi {
 namespace {

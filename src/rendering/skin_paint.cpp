@@ -5,7 +5,6 @@
 
 #include "light.h"
 #include "skin_rig.h"
-#include "smooth_step.h"
 
 namespace mrhi {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "gradient.h"
 #include "skin_rig.h"
 
 namespace mrhi {

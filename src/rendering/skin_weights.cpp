@@ -1,10 +1,9 @@
-#include "skin_weights.h"
+#include "skin_rig.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/math/capsule.h"
-#include "smooth_step.h"
+#include "mr_hand_interaction/math.h"
 
 namespace mrhi {
 namespace {

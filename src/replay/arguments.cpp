@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/arguments.h"
+#include "mr_hand_interaction/replay/replay.h"
 
 #include <cmath>
 

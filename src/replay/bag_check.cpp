@@ -1,4 +1,3 @@
-#include "bag_check.h"
 
 #include <ros/exception.h>
 #include <rosbag/exceptions.h>

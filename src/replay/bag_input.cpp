@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "../ros/tracker_messages.h"
-#include "bag_check.h"
 #include "device_frames.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <vector>
 
-#include "bag_check.h"
 #include "bag_input.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "open_bag.h"

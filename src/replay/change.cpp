@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/change.h"
+#include "change.h"
 
 #include <stdexcept>
 
@@ -13,7 +13,7 @@ struct Making {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const {
-    simulation.add(requested_scene(spawn.request, scene_options(simulation.now().configuration())));
+    simulation.add(requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
   }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }

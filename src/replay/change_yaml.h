@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/replay/change.h"
+#include "change.h"
 
 namespace mrhi {
 

@@ -6,7 +6,7 @@
 
 #include "../simulation/contact_phase.h"
 #include "../text/csv.h"
-#include "mr_hand_interaction/replay/result_writer.h"
+#include "result_writer.h"
 
 namespace mrhi {
 namespace {

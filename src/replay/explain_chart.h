@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "explain.h"
+
 namespace mrhi {
 
 // Charts of a page, as SVG.
@@ -57,5 +59,10 @@ struct Strip {
   std::vector<Stretch> stretches;
 };
 std::string drawn(const std::string& title, const std::vector<Strip>& strips, const TimeAxis& axis);
+
+const char* finger_color(int finger);  ///< thumb to palm; Okabe & Ito's
+
+/// Hand and object by lines, from two sides, shortly before a loss and at it.
+std::string drawings_of(const Explanation& story, const Loss& loss);
 
 }  // namespace mrhi

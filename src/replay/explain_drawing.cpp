@@ -1,4 +1,3 @@
-#include "explain_drawing.h"
 
 #include <algorithm>
 #include <cstdio>

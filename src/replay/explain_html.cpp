@@ -5,8 +5,7 @@
 
 #include "explain.h"
 #include "explain_chart.h"
-#include "explain_drawing.h"
-#include "mr_hand_interaction/replay/result_writer.h"
+#include "result_writer.h"
 
 namespace mrhi {
 namespace {

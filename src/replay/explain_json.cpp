@@ -2,7 +2,7 @@
 
 #include "explain.h"
 #include "json_text.h"
-#include "mr_hand_interaction/replay/result_writer.h"
+#include "result_writer.h"
 
 namespace mrhi {
 namespace {

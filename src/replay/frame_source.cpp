@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/frame_source.h"
+#include "frame_source.h"
 
 #include "mr_hand_interaction/replay/recording_csv.h"
 

@@ -5,19 +5,19 @@
 #include <optional>
 #include <string>
 
-#include "mr_hand_interaction/replay/change.h"
+#include "change.h"
 #include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
 
 /// One thing that a live simulation was given; SimulationInput.msg without ROS.
 struct LogEntry {
-  enum class Kind : std::uint8_t { begin, frame, silence, change };
+  enum class Kind : std::uint8_t { begin, frame, without_hands, change };
 
   Kind kind = Kind::begin;
   std::uint64_t run = 0, sequence = 0;
   Nanoseconds stamp = 0;           ///< of the hands' stream
-  Nanoseconds time = 0;            ///< of a silence: up to when, of the simulation
+  Nanoseconds time = 0;            ///< without hands: up to when, of the simulation
   Nanoseconds expected = 0;        ///< of a frame: see Simulation::begin
   std::string text;                ///< of a begin: a World; of a change: a Change
   RecordedFiles files;             ///< that belong to the text

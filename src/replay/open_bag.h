@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
+#include "frame_source.h"
 #include "log_source.h"
-#include "mr_hand_interaction/replay/arguments.h"
-#include "mr_hand_interaction/replay/frame_source.h"
+#include "mr_hand_interaction/replay/replay.h"
 
 namespace mrhi {
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/progress_bar.h"
+#include "progress_bar.h"
 
 #include <unistd.h>
 

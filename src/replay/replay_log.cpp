@@ -9,10 +9,10 @@
 #include "../text/text.h"
 #include "dictionary.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/replay/world.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "run.h"
 #include "urdf_meshes.h"
+#include "world.h"
 
 namespace mrhi {
 namespace {
@@ -136,7 +136,7 @@ class LogRun {
   void end(const std::string& error) {
     summary_.error = error;
     if (!simulation_) return;
-    tell_end(now(), summary_);
+    tell_end(simulation(), summary_);
     write_summary(arguments_.output, summary_);
     explaining_.write(summary_);
     const LiveRun& live = *summary_.live;
@@ -149,7 +149,7 @@ class LogRun {
   }
 
  private:
-  Simulation& now() { return simulation_->now(); }
+  Simulation& simulation() { return simulation_->simulation(); }
 
   void take(const LogEntry& entry) {
     if (entry.kind == LogEntry::Kind::begin) return begin(entry);
@@ -167,7 +167,7 @@ class LogRun {
     summary_.live->lost_by_queue = entry.lost - lost_before_;
     ++summary_.live->entries;
     if (entry.kind == LogEntry::Kind::frame) frame(entry);
-    if (entry.kind == LogEntry::Kind::silence) silence(entry);
+    if (entry.kind == LogEntry::Kind::without_hands) without_hands(entry);
     if (entry.kind == LogEntry::Kind::change) change(entry);
     compare(entry);
   }
@@ -186,28 +186,28 @@ class LogRun {
     simulation_ =
         std::make_unique<LiveSimulation>(scene_of(world, configuration, scratch_.path()), configuration);
     if (!overrides_.other_scene()) take_state(entry);
-    overrides_.place(now());
+    overrides_.place(simulation());
     tell_begin(world);
     compare(entry);
   }
 
   void take_state(const LogEntry& entry) {
     try {
-      now().set_state(state_from_bytes(entry.state, now().scene()));
+      simulation().set_state(state_from_bytes(entry.state, simulation().scene()));
     } catch (const std::invalid_argument& error) {
       summary_.not_known.push_back(std::string("where things were as the recording began: ") + error.what());
     }
   }
 
   void tell_begin(const World& world) {
-    if (!writer_) writer_ = std::make_unique<ResultWriter>(arguments_.output, now().scene());
+    if (!writer_) writer_ = std::make_unique<ResultWriter>(arguments_.output, simulation().scene());
     if (!hashes_)
       hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", table_of("hashes.csv").header());
-    writer_->follow(now().scene());
+    writer_->follow(simulation().scene());
     summary_.scene = world.scene;
     summary_.live->version = world.version;
     summary_.live->overridden = overrides_.differing();
-    tell_setting(now(), summary_);
+    tell_setting(simulation(), summary_);
     if (world.version != summary_.version)
       summary_.not_known.push_back("what version " + world.version + " did otherwise than this one, " +
                                    summary_.version);
@@ -215,27 +215,27 @@ class LogRun {
 
   void frame(const LogEntry& entry) {
     if (!entry.hands) return reject("unusable hand", entry.text, progress_, summary_);
-    const Rejection rejection = now().begin(*entry.hands, entry.expected);
+    const Rejection rejection = simulation().begin(*entry.hands, entry.expected);
     if (rejection != Rejection::none) {
       return reject(to_string(rejection), "entry " + std::to_string(entry.sequence), progress_, summary_);
     }
-    while (timed_step(now(), summary_)) {
+    while (timed_step(simulation(), summary_)) {
     }
-    const FrameResult& result = now().end();
+    const FrameResult& result = simulation().end();
     for (const std::string& what : result.not_finite) reject("not finite", what, progress_, summary_);
     ++summary_.frames;
     note_result();
   }
 
-  void silence(const LogEntry& entry) {
-    if (now().advance_without_hands(entry.time)) note_result();
+  void without_hands(const LogEntry& entry) {
+    if (simulation().advance_without_hands(entry.time)) note_result();
   }
 
   void note_result() {
-    writer_->write(now().result(), now().state());
-    if (watcher_) watcher_(now());
-    add_result(now(), last_stamp_, summary_);
-    last_stamp_ = now().result().stamp;
+    writer_->write(simulation().result(), simulation().state());
+    if (watcher_) watcher_(simulation());
+    add_result(simulation(), last_stamp_, summary_);
+    last_stamp_ = simulation().result().stamp;
     if (!first_stamp_) first_stamp_ = last_stamp_;
   }
 
@@ -252,7 +252,7 @@ class LogRun {
     } catch (const std::exception& error) {
       reject("change", error.what(), progress_, summary_);
     }
-    writer_->follow(now().scene());
+    writer_->follow(simulation().scene());
   }
 
   void drop_overridden(SetParameters& set) const {
@@ -264,7 +264,7 @@ class LogRun {
   double seconds() const { return last_stamp_ ? to_seconds(*last_stamp_ - *first_stamp_) : 0.0; }
 
   void compare(const LogEntry& entry) {
-    const std::uint64_t here = hash(now().state());
+    const std::uint64_t here = hash(simulation().state());
     char text[20];
     std::snprintf(text, sizeof text, "%016" PRIx64, here);
     *hashes_ << std::to_string(entry.sequence) << std::to_string(entry.stamp) << std::string(text);

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/result_writer.h"
+#include "result_writer.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "demonstration.h"
 #include "explain.h"
+#include "frame_source.h"
 #include "log_source.h"
 #include "moment_markers.h"
 #include "mr_hand_interaction/replay/replay.h"
+#include "progress_bar.h"
+#include "result_writer.h"
+#include "summary.h"
 
 namespace mrhi {
 
@@ -15,7 +20,7 @@ namespace mrhi {
 
 /// One step, its time noted; false if there is none to make.
 bool timed_step(Simulation& simulation, ReplaySummary& summary);
-/// A frame that has been run, or what came of a silence. `since`: the stamp of the one before.
+/// A frame that has been run, or what came of time without any. `since`: the stamp of the one before.
 void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
                 ReplaySummary& summary);
 /// Counts; the first of each kind is told.
@@ -27,6 +32,14 @@ void tell_setting(const Simulation& simulation, ReplaySummary& summary);
 void tell_end(const Simulation& simulation, ReplaySummary& summary);
 /// Throws std::runtime_error naming the file if it cannot be written.
 void write_summary(const std::string& folder, const ReplaySummary& summary);
+
+/// Who looks at each result.
+using FrameWatcher = std::function<void(const Simulation&)>;
+
+/// Runs all frames through the simulation; each result is written. The summary grows as it goes on, so that
+/// it holds if this throws.
+void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
+                ReplaySummary& summary, const FrameWatcher& watcher = {});
 
 /// Explains and exports a run, as far as that is asked for.
 class Explaining {

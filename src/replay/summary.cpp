@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/summary.h"
+#include "summary.h"
 
 #include <cinttypes>
 #include <cstdio>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "mr_hand_interaction/replay/change.h"
+#include "change.h"
 
 namespace mrhi {
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/world.h"
+#include "world.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -59,7 +59,7 @@ struct Following {
     add_files(files_of(spawn), world);
   }
   void operator()(const Delete& remove) const {
-    const SceneOptions options = scene_options(simulation.now().configuration());
+    const SceneOptions options = scene_options(simulation.simulation().configuration());
     const auto added =
         std::find_if(world.added.begin(), world.added.end(),
                      [&](const ObjectRequest& request) { return goes_with(remove.name, request, options); });
@@ -69,7 +69,9 @@ struct Following {
       world.added.erase(added);
     }
   }
-  void operator()(const SetParameters&) const { set_parameters(simulation.now().configuration(), world); }
+  void operator()(const SetParameters&) const {
+    set_parameters(simulation.simulation().configuration(), world);
+  }
   void operator()(const PlaceObject&) const {}
   void operator()(const Reset&) const {}
   void operator()(const Pause&) const {}

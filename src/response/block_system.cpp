@@ -39,6 +39,7 @@ void BlockSystem::clear() {
   for (Coupling& coupling : couplings_) coupling.value.setZero();
 }
 
+// Only the lower triangle is set: LLT reads no other.
 void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
   result.setZero(6 * bodies(), 6 * bodies());
   for (int i = 0; i < bodies(); ++i)
@@ -46,6 +47,7 @@ void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
   for (const Coupling& c : couplings_) result.block<6, 6>(6 * c.row, 6 * c.column) = c.value;
 }
 
+// A = L L' (Cholesky), dense: of the few bodies of an island, most are coupled with most.
 void BlockSystem::factorise() {
   to_dense(dense_);
   factors_.compute(dense_);

@@ -1,6 +1,5 @@
 #include "body_problem.h"
 
-#include "grip_springs.h"
 #include "spring_contact.h"
 
 namespace mrhi {

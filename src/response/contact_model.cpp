@@ -2,6 +2,7 @@
 
 #include "../text/registry.h"
 #include "contact_model_list.h"
+#include "contact_step.h"
 #include "implicit_model.h"
 #include "joint_response.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grip_springs.h"
+#include "spring_contact.h"
 
 namespace mrhi {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "contact_step.h"
 #include "mr_hand_interaction/configuration.h"
-#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 

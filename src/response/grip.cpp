@@ -86,6 +86,9 @@ DistalEnds distal_ends(const Hand& hand) {
   return result;
 }
 
+// Kabsch (1976): of rigid motions x -> R x + t the one with the least sum w_i |y_i - R x_i - t|^2 has R the
+// rotation nearest to H = sum w_i (y_i - y)(x_i - x)', and t = y - R x, with x, y the weighted means. The
+// palm adds r^2 1 to H, as if it had pads all round at a distance r that have not moved in its frame.
 Pose moved_in_palm(const Grip& grip, const Hand& hand) {
   const DistalEnds pads = distal_ends(hand);
   const std::array<double, kFingers> weights = weights_of(grip);
@@ -97,6 +100,7 @@ Pose moved_in_palm(const Grip& grip, const Hand& hand) {
   Matrix3 spread = kPalmTurns * kPalmTurns * Matrix3::Identity();
   for (std::size_t i = 0; i < pads.size(); ++i)
     spread += weights[i / 2] * (pads[i] - to) * (grip.pads[i] - from).transpose();
+  // The palm's middle is one side of the grip, of weight 1/2: it is the origin, x_i = y_i = 0.
   if (grip.by_palm) spread += 0.5 * to * from.transpose();
   const Quaternion turn = nearest_turn(spread);
   return {to - turn * from, turn};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mr_hand_interaction/collision/god_object.h"
+#include "../collision/god_object.h"
 
 namespace mrhi {
 

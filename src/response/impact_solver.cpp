@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../collision/god_object.h"
 #include "impact.h"
-#include "mr_hand_interaction/collision/god_object.h"
 
 namespace mrhi {
 namespace {

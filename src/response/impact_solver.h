@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "contact_step.h"
 #include "impact.h"
 #include "islands.h"
-#include "mr_hand_interaction/response/contact_model.h"
 #include "strike.h"
 
 namespace mrhi {

@@ -11,6 +11,8 @@ constexpr std::size_t kMostExact = 4;
 
 }  // namespace
 
+// Eqs. 9 to 15 and then Eqs. 16 to 20, both at the step's end. The order matters: blows are dealt by the
+// velocities of the step's start, and the springs find what the blows have left.
 void ImplicitModel::respond(ContactStep& step) {
   begin_touches(step);
   islands_.build(step);
@@ -24,6 +26,7 @@ void ImplicitModel::begin_touches(ContactStep& step) const {
 }
 
 void ImplicitModel::strike(ContactStep& step) {
+  // What springs alone would make of the island: the solver spares strikes that they carry away first.
   const auto springs = [&](const Island& island) {
     one_.begin(step, island, configuration_);
     Newton<BodyProblem>(one_).solve();
@@ -45,6 +48,7 @@ void ImplicitModel::press(ContactStep& step) {
     contact.force.setZero();
     contact.struck = contact.struck || contact.depth > 0.0;
   }
+  // M (u - u*) = h J' f(u): six unknowns with four contacts at a time, a few bodies to rounding, or a crowd.
   for (const Island& island : islands_.all()) {
     if (island.bodies.size() == 1) {
       solve_one(step, island);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grip_springs.h"
 #include "spring_contact.h"
 
 namespace mrhi {

@@ -15,6 +15,8 @@ int Island::place_of(int body) const {
   return found != bodies.end() && found->body == index ? static_cast<int>(found - bodies.begin()) : -1;
 }
 
+// Disjoint sets, each a tree of parents, halved on the way (Tarjan & van Leeuwen 1984). The smaller index
+// becomes the root: so islands come in the order of their first bodies, whatever the order of the contacts.
 int Islands::root_of(int body) {
   auto b = static_cast<std::size_t>(body);
   while (parent_[b] != static_cast<int>(b)) {
@@ -53,6 +55,7 @@ void Islands::add_gripped(const ContactStep& step) {
   }
 }
 
+// Fixtures unite nothing: they do not move, and what stands on the same table is not one island.
 void Islands::link_bodies(const ContactStep& step) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
@@ -111,6 +114,7 @@ void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>&
   islands_.erase(std::remove_if(islands_.begin(), islands_.end(), std::not_fn(flies)), islands_.end());
 }
 
+// Bodies and links are sorted by root, so an island is a run of each.
 void Islands::divide() {
   islands_.clear();
   const Link *link = links_.data(), *const links_end = link + links_.size();

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mr_hand_interaction/response/contact_model.h"
+#include "contact_step.h"
 
 namespace mrhi {
 

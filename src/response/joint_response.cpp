@@ -57,6 +57,9 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
   }
 }
 
+// As ImplicitModel's, for what hangs on joints in their coordinates: blows of what flies, blows of linkages,
+// springs of what flies, springs of linkages. Then the linkages' flight, which is theirs alone: free_flight()
+// moves none of their bodies.
 void JointedModel::respond(ContactStep& step) {
   begin_touches(step);
   islands_.build(step);
@@ -120,6 +123,7 @@ void JointedModel::strike(ContactStep& step, const Island& island, LinkageProble
     Newton<LinkageProblem>(problem).solve();
     blows_.spare_carried(step, problem.velocity());
   }
+  // Fingers from both sides have no solution under Newton's law: nothing is dealt, and they press.
   if (!blows_.deal(problem, configuration_.impact_friction, struck_velocity_)) return;
   problem.start_with(struck_velocity_, step, state_.joints);
   blows_.tell_limits(problem);
@@ -147,6 +151,7 @@ void JointedModel::fly(const ContactStep& step) {
   }
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!at_work_[i]) continue;
+    // Where the island was solved gravity is in the momenta already; given again it would count twice.
     flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
                     step.bodies);
     rest(step, i);

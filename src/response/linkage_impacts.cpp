@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "../collision/god_object.h"
 #include "impact.h"
-#include "mr_hand_interaction/collision/god_object.h"
 
 namespace mrhi {
 namespace {
@@ -23,6 +23,8 @@ void add_point_rows(const LinkageProblem& problem, int place, const Vector3& arm
 
 }  // namespace
 
+// Every strike is a row w of relative velocity, w = drive + J_1 u - J_2 u: of a hand, whose point moves by
+// itself, body 2 alone has unknowns; of two bodies both. n points from 2 to 1, so w.n < 0 approaches (Eq. 8).
 bool LinkageImpacts::find(ContactStep& step, const Island& island, const LinkageProblem& problem,
                           const std::vector<JointState>& joints) {
   count_ = 0;
@@ -171,16 +173,17 @@ double LinkageImpacts::Strike::relax_tangential(LinkageProblem::Vector& velocity
   return normal_mass > 0.0 ? change.norm() / normal_mass : 0.0;
 }
 
+// Eqs. 9 to 11 for all strikes at once: n.w after = -epsilon n.w before, by impulses that only push.
 bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity) {
   velocity = problem.start();
-  for (Strike& strike : now()) {
+  for (Strike& strike : strikes()) {
     prepare(problem, strike);
     strike.approach = strike.relative_velocity(velocity);
     strike.target = -strike.restitution * strike.normal.dot(strike.approach);
   }
   if (!solve(friction, velocity)) return false;
   keep_to_energy(problem, friction, velocity);
-  for (const Strike& strike : now()) {
+  for (const Strike& strike : strikes()) {
     if (strike.hand != nullptr) {
       strike.hand->impulse += strike.given();
       strike.hand->struck = true;
@@ -194,7 +197,7 @@ bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageP
 }
 
 void LinkageImpacts::tell_limits(LinkageProblem& problem) {
-  for (const Strike& strike : now()) {
+  for (const Strike& strike : strikes()) {
     if (strike.joint >= 0) problem.note_blow(strike.joint, strike.magnitude * strike.rows(0, strike.joint));
   }
 }
@@ -202,14 +205,14 @@ void LinkageImpacts::tell_limits(LinkageProblem& problem) {
 /// Finds impulses that together give every strike its velocity; false if there are none.
 bool LinkageImpacts::solve(bool friction, LinkageProblem::Vector& velocity) {
   double most = 0.0, scale = 0.0;
-  for (const Strike& strike : now()) {
+  for (const Strike& strike : strikes()) {
     const double speed = -strike.normal.dot(strike.approach);
     most += (1.0 + strike.restitution) * speed * strike.normal_mass;
     scale = std::max(scale, speed);
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double error = 0.0, sum = 0.0;
-    for (Strike& strike : now()) {
+    for (Strike& strike : strikes()) {
       error = std::max(error, strike.relax_normal(velocity));
       if (friction) error = std::max(error, strike.relax_tangential(velocity));
       sum += strike.magnitude;
@@ -225,7 +228,7 @@ void LinkageImpacts::keep_to_energy(const LinkageProblem& problem, bool friction
                                     LinkageProblem::Vector& velocity) {
   double gain = 0.0, exchanged = 0.0;
   both_.clear();
-  for (const Strike& strike : now()) {
+  for (const Strike& strike : strikes()) {
     const Vector3 given = strike.given(), after = strike.relative_velocity(velocity);
     both_.push_back({strike.approach, given, after, {}, {}});
     gain += energy_gained(strike.approach, given, after);
@@ -233,19 +236,19 @@ void LinkageImpacts::keep_to_energy(const LinkageProblem& problem, bool friction
   }
   if (gain <= kNoGain * exchanged) return;
   velocity = problem.start();
-  for (Strike& strike : now()) {
+  for (Strike& strike : strikes()) {
     strike.target = strike.magnitude = 0.0;
     strike.drag.setZero(), strike.recoil.setZero();
   }
   solve(friction, velocity);
   std::size_t i = 0;
-  for (const Strike& strike : now()) {
+  for (const Strike& strike : strikes()) {
     both_[i].least = strike.given();
     both_[i++].after_least = strike.relative_velocity(velocity);
   }
   keep_from_gaining(both_);
   i = 0;
-  for (Strike& strike : now()) {
+  for (Strike& strike : strikes()) {
     const Vector3 more = both_[i++].newtons - strike.given();
     const double pressed = -strike.normal.dot(more);
     strike.magnitude += pressed;

@@ -48,12 +48,12 @@ class LinkageImpacts {
   };
   /// One to be filled in, whose room is that of strikes of earlier steps; add() keeps it if it strikes.
   Strike& next();
-  struct Now {
+  struct Strikes {
     Strike *first, *last;
     Strike* begin() const { return first; }
     Strike* end() const { return last; }
   };
-  Now now() { return {strikes_.data(), strikes_.data() + count_}; }
+  Strikes strikes() { return {strikes_.data(), strikes_.data() + count_}; }
   void find_limits(const ContactStep& step, const LinkageProblem& problem,
                    const std::vector<JointState>& joints);
   void add(double step, const LinkageProblem& problem);

@@ -29,6 +29,8 @@ bool touched(const ContactStep& step, const Island& island) {
 
 }  // namespace
 
+// u0 = M^-1 sum J_b' p_b: momenta of the bodies as the joints see them. What of them joints do not let
+// through is no error of this step: joints hold it back. u* = u0 + h M^-1 J' m g.
 void LinkageProblem::begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration,
                            const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
                            const std::vector<JointState>& joints) {
@@ -189,6 +191,8 @@ void LinkageProblem::find_direction() {
   factors_.solveInPlace(direction_);
 }
 
+/// That of IslandProblem::energy(), in the joints' coordinates, and what their own forces store: convex too,
+/// as J is constant within the step and each joint's force falls as its velocity grows.
 double LinkageProblem::energy() const {
   double sum = several_.energy();
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {

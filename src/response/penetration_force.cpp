@@ -31,6 +31,9 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
   return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
 }
 
+// Eq. 16, f = gamma (p - c), and its parts: along n gamma times the depth (Eq. 17), across it the stretch
+// (Eq. 18). On the object: n points out of it, so the push is -N n, and friction is along the stretch, the
+// way in which the phalanx draws it.
 Vector3 penetration_force(const Body& body, const BodyState& state, double damping, double fade,
                           Contact& contact) {
   contact.force.setZero();
@@ -55,6 +58,9 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
   return contact.force;
 }
 
+// Explicit: momenta change by h f, with the forces of the step's start, one contact after the other, each at
+// the velocity that those before it have left. Undamped it asks for steps below 2 sqrt(m / sum gamma);
+// docs/stability.md has where it fails.
 void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
   const double fade = release_fade(law.release_fade);
   auto first = step.contacts.begin();

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "contact_step.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
-#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/response/contact_model.h"
+#include "contact_step.h"
 #include "penetration_force.h"
 
 namespace mrhi {

@@ -1,5 +1,5 @@
+#include "contact_step.h"
 #include "impact_solver.h"
-#include "mr_hand_interaction/response/contact_model.h"
 #include "penetration_force.h"
 
 namespace mrhi {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "../collision/way_out.h"
+#include "contact_step.h"
 #include "impact.h"
-#include "mr_hand_interaction/response/contact_model.h"
 #include "penetration_force.h"
 
 namespace mrhi {

@@ -70,6 +70,9 @@ struct SpringContact {
 /// What a finger that gives way still gains in push with depth, of its stiffness.
 constexpr double kGivingWay = 0.02;
 
+// With d the depth and D the pad: p = d^2 / 2D within the pad, d - D/2 beyond it, without a kink; above
+// `yields` only kGivingWay of what is more. So the slope is nowhere zero: two fingers that both give way
+// still centre what they hold.
 template <typename Real>
 inline void Spring<Real>::press(const Real& deep, Real& pressed, Real& steepness) const {
   const Real one = constant<Real>(1.0), part = constant<Real>(kGivingWay);
@@ -80,6 +83,15 @@ inline void Spring<Real>::press(const Real& deep, Real& pressed, Real& steepness
   pressed = where_at_most(pressed, yields, pressed, yields + part * (pressed - yields));
 }
 
+// With k the stiffness, tau = `ahead`, v = n.u > 0 as the two part, s the stretch, P = 1 - n n':
+//
+//     d+ = max(0, d - tau v)              q+ = s + tau P u               at the step's end
+//     N  = k p(d+) (1 - r^2)              r  = min(1, max(0, v) fade)    Eqs. 16, 17; the fade is ours
+//     F  = -N n + k q+ min(1, L / k|q+|)  L  = mu N + bond               Eqs. 18 to 20, Coulomb's disc
+//     T  = clamp(k_t (theta + tau spin), -L_t, L_t)                      soft finger: L_t = 2/3 mu a N
+//
+// on body 2. While L and L_t are held these are the gradient by u and spin of a convex function, potential();
+// with L a function of N they are of none, which is why the limits are those of the last iterate.
 template <typename Real>
 inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
                                   SpringResponse<Real>& response) {

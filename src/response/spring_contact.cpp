@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "penetration_force.h"
+#include "side_by_side.h"
 
 namespace mrhi {
 namespace {
@@ -41,6 +42,7 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   const Triple<Real> reach = each(&Contact::hand_point) - point + each(&Contact::lever);
   Spring<Real>& spring = result.spring;
   spring.normal = n;
+  // Eqs. 16 to 18: of p - c, with p brought back to the surface the way it came, what is along the surface.
   spring.stretch = reach - n.dot(reach) * n;
   spring.depth = each(&Contact::pressed);
   spring.twist = each(&Contact::twist);
@@ -52,6 +54,8 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   spring.pad = constant<Real>(hand.pad);
   spring.half_over_pad = constant<Real>(hand.pad > 0.0 ? 0.5 / hand.pad : 0.0);
   spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
+  // In metres of a spring at full stiffness; divided by no stiffness it would be no number in a lane that is
+  // filled up.
   spring.yields = each(&Contact::strength) / greater(spring.stiffness, constant<Real>(1e-300));
   spring.bond = constant<Real>(0.0);
   // Springs k at a lever l: a turn by 1 rad stretches them by l, and they give k l at that lever.
@@ -65,7 +69,9 @@ void make_from(const ContactStep& step, const ContactConfiguration& configuratio
   result.drive_spin = each(&Contact::hand_spin);
 }
 
-/// Of bodies.
+/// Of bodies: the stretch is that of the anchors, along n is nothing to remember. No pad, no torsion: points
+/// of a manifold share the load, and twist is what they bear together. Body a moves too: its velocity is the
+/// solver's, not `drive`.
 template <typename Each, typename Real>
 void make_from(const ContactStep& step, const ContactConfiguration& configuration, const BodyContact&,
                const Each& each, SpringContact<Real>& result) {
@@ -148,6 +154,7 @@ template <typename Stored, typename Touch>
 void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
   const auto of = [lane](const auto& value) { return lane_of(lane, value); };
   touch.force = vector(of(solved.response.force));
+  // Eqs. 19, 20 with mu while it sticks and phi while it slides, by the push of the step's end.
   // What slips sticks again well within the limit only: at the limit it would change over in every step.
   const double limit =
       (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * of(solved.spring.slip_limit);
@@ -266,6 +273,8 @@ double push_energy(const Spring<double>& spring, double rate) {
 
 }  // namespace
 
+// V(u) = E_N(v) + (E_F(|q+|) + E_T(|theta+|)) / tau, E_N the integral of N from v on, E_F and E_T those of a
+// spring that yields at L and L_t (Huber's function). d/du of E_F / tau is F, since q+ grows by tau P u.
 // Minus its gradient is the force. With Coulomb's limits held it is convex, since each force falls as its own
 // rate grows; so the step has one solution, and a line search along Newton's direction finds it.
 double potential(const Spring<double>& spring, const Triple<double>& u, double spin) {
@@ -276,6 +285,43 @@ double potential(const Spring<double>& spring, const Triple<double>& u, double s
          (yielding_energy(spring.stiffness, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
           yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
              spring.ahead;
+}
+
+// With no normal and no depth the spring acts in all directions, and what it bears is the bond alone: a
+// Coulomb contact whose limit does not hang on a push.
+void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
+                      int point, SpringContact<double>& result) {
+  const auto i = static_cast<std::size_t>(point);
+  const Pose& pose = step.bodies[grip.body].pose;
+  const Vector3 on_body = pose * grip.in_body[i];
+  result = SpringContact<double>();
+  result.spring.stretch = triple(grip.point[i] - on_body);
+  result.spring.ahead = look_ahead(step.step, configuration.damping);
+  result.spring.stiffness = grip.stiffness;
+  result.spring.yields = HandStrength::kUnlimited;
+  result.spring.bond = grip.bond;
+  result.arm = triple(on_body - pose.position);
+  result.drive = triple(grip.velocity[i]);
+}
+
+void settle_grip(const ContactStep& step, const SpringContact<double>& solved, int point, Grip& grip) {
+  const Spring<double>& spring = solved.spring;
+  const SpringResponse<double>& response = solved.response;
+  const Vector3 force = vector(response.force);
+  if (point == 0) {
+    grip.force.setZero();
+    grip.slips = false;
+  }
+  grip.force += force;
+  if (response.wanted_squared <= spring.slip_limit * spring.slip_limit) return;
+  grip.slips = true;
+  // Ideal plasticity: the end on the body goes after by what the force at the limit does not stretch, as far
+  // as the step goes of the time that the spring looks ahead.
+  const double followed = step.step / spring.ahead;
+  const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
+  const Pose& pose = step.bodies[grip.body].pose;
+  Vector3& end = grip.in_body[static_cast<std::size_t>(point)];
+  end = pose.to_local(pose * end + yielded);
 }
 
 }  // namespace mrhi

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "../collision/god_object.h"
 #include "impact.h"
-#include "mr_hand_interaction/collision/god_object.h"
 
 namespace mrhi {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_step.h"
 #include "impact.h"
-#include "mr_hand_interaction/response/contact_model.h"
 #include "penetration_force.h"
 
 namespace mrhi {

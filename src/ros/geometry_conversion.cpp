@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/stamp_judge.h"
+#include "mr_hand_interaction/stamp_check.h"
 
 namespace mrhi {
 
@@ -52,7 +52,7 @@ Pose from_message(const geometry_msgs::Transform& transform) {
 
 ros::Time to_ros_time(Nanoseconds stamp) {
   constexpr Nanoseconds kEarliest = 0;
-  return ros::Time().fromNSec(static_cast<std::uint64_t>(std::clamp(stamp, kEarliest, StampJudge::kLatest)));
+  return ros::Time().fromNSec(static_cast<std::uint64_t>(std::clamp(stamp, kEarliest, StampCheck::kLatest)));
 }
 
 Nanoseconds from_ros_time(const ros::Time& stamp) {

@@ -1,12 +1,24 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
-#include <mr_hand_interaction/HandFrame.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+#include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "input_statistics.h"
+#include "leap_reader.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/stamp_check.h"
+#include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "mr_hand_interaction/tracking/joint_gaps.h"
 #include "tracker_messages.h"
 
 namespace mrhi {
@@ -35,7 +47,51 @@ Side parse_side(const std::string& name) {
 
 }  // namespace
 
-HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
+struct HandTracking::Impl {
+  Impl(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
+
+  using LeapEvent = ros::MessageEvent<const topic_tools::ShapeShifter>;
+
+  void subscribe_leap();
+  /// roscpp keeps a topic to the version that it met first, so a driver of another version needs a new
+  /// subscription.
+  void accept_other_versions();
+  void take_leap(const LeapEvent& event);
+  template <class Tracker>
+  void subscribe_points(const std::string& topic);
+  void take_points(const TrackedPoints& tracked, const std::optional<Side>& of_topic,
+                   const ros::Time& receipt);
+  /// Nothing if it cannot be used.
+  std::optional<HandFrame> place(JointsFrame frame, const std::string& frame_id, const ros::Time& receipt);
+  void take(const std::optional<HandFrame>& frame, const ros::Time& receipt);
+
+  bool accept_stamp(Nanoseconds stamp);
+  /// Pose of a tracker's frame in the fixed frame: at the stamp, else the latest. Throws
+  /// tf2::TransformException.
+  Pose device_pose(const std::string& frame_id, Nanoseconds stamp) const;
+
+  Sink sink_;
+  std::string fixed_frame_;
+  Side side_ = Side::right;
+  StampCheck stamps_;
+  JointGaps gaps_;
+  HandPairs pairs_;
+  bool leap_seen_ = false;  ///< a driver, by the present subscription
+  LeapReader leap_reader_;
+  InputStatistics statistics_;
+  SequenceWatch sequences_;
+
+  ros::NodeHandle node_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_;
+  ros::Publisher publisher_;
+  ros::Subscriber leap_subscriber_;
+  std::vector<ros::Subscriber> point_subscribers_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer timer_;
+};
+
+HandTracking::Impl::Impl(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
     : fixed_frame_(parameters.param<std::string>("fixed_frame", "world")),
       side_(parse_side(parameters.param<std::string>("side", "right"))),
       statistics_(known_reasons()),
@@ -55,7 +111,7 @@ HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& p
   });
 }
 
-void HandTracking::subscribe_leap() {
+void HandTracking::Impl::subscribe_leap() {
   leap_seen_ = false;
   leap_subscriber_ = node_.subscribe<topic_tools::ShapeShifter>(
       "/leap_motion/leap_device", kQueue,
@@ -64,7 +120,7 @@ void HandTracking::subscribe_leap() {
 }
 
 template <class Tracker>
-void HandTracking::subscribe_points(const std::string& topic) {
+void HandTracking::Impl::subscribe_points(const std::string& topic) {
   using Message = typename Tracker::Message;
   using Event = ros::MessageEvent<const Message>;
   const std::optional<Side> of_topic = side_of_topic(topic);
@@ -77,7 +133,7 @@ void HandTracking::subscribe_points(const std::string& topic) {
       nullptr, ros::TransportHints().tcpNoDelay()));
 }
 
-void HandTracking::accept_other_versions() {
+void HandTracking::Impl::accept_other_versions() {
   const bool connected = leap_subscriber_.getNumPublishers() > 0;
   leap_seen_ = leap_seen_ || connected;
   if (!leap_seen_ || connected) return;
@@ -85,7 +141,7 @@ void HandTracking::accept_other_versions() {
   subscribe_leap();
 }
 
-void HandTracking::take_leap(const LeapEvent& event) {
+void HandTracking::Impl::take_leap(const LeapEvent& event) {
   const topic_tools::ShapeShifter& message = *event.getConstMessage();
   leap_seen_ = true;
   try {
@@ -97,8 +153,8 @@ void HandTracking::take_leap(const LeapEvent& event) {
   }
 }
 
-void HandTracking::take_points(const TrackedPoints& tracked, const std::optional<Side>& of_topic,
-                               const ros::Time& receipt) {
+void HandTracking::Impl::take_points(const TrackedPoints& tracked, const std::optional<Side>& of_topic,
+                                     const ros::Time& receipt) {
   const std::string& frame_id = tracked.header.frame_id;
   const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
   try {
@@ -112,10 +168,10 @@ void HandTracking::take_points(const TrackedPoints& tracked, const std::optional
   }
 }
 
-std::optional<HandFrame> HandTracking::place(JointsFrame joints, const std::string& frame_id,
-                                             const ros::Time& receipt) {
+std::optional<HandFrame> HandTracking::Impl::place(JointsFrame joints, const std::string& frame_id,
+                                                   const ros::Time& receipt) {
   if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
-  if (joints.stamp > StampJudge::kLatest) {
+  if (joints.stamp > StampCheck::kLatest) {
     statistics_.rejected(kNoStamp, std::to_string(joints.stamp / 1'000'000'000) + " s");
     return std::nullopt;
   }
@@ -131,7 +187,7 @@ std::optional<HandFrame> HandTracking::place(JointsFrame joints, const std::stri
   }
 }
 
-void HandTracking::take(const std::optional<HandFrame>& frame, const ros::Time& receipt) {
+void HandTracking::Impl::take(const std::optional<HandFrame>& frame, const ros::Time& receipt) {
   if (!frame || !accept_stamp(frame->stamp)) return;
   const auto message =
       boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(*frame, fixed_frame_));
@@ -142,9 +198,9 @@ void HandTracking::take(const std::optional<HandFrame>& frame, const ros::Time& 
 
 /// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not
 /// for those who listen to hand_frame.
-bool HandTracking::accept_stamp(Nanoseconds stamp) {
+bool HandTracking::Impl::accept_stamp(Nanoseconds stamp) {
   const Nanoseconds last = stamps_.last;
-  const StampVerdict verdict = stamps_.judge(stamp);
+  const StampVerdict verdict = stamps_.check(stamp);
   if (verdict == StampVerdict::late) {
     statistics_.rejected(kStampNotIncreasing, std::to_string(to_seconds(stamp)) + " s after " +
                                                   std::to_string(to_seconds(last)) + " s");
@@ -155,13 +211,26 @@ bool HandTracking::accept_stamp(Nanoseconds stamp) {
   return true;
 }
 
-Pose HandTracking::device_pose(const std::string& frame_id, Nanoseconds stamp) const {
+Pose HandTracking::Impl::device_pose(const std::string& frame_id, Nanoseconds stamp) const {
   const std::string source = frame_id.substr(frame_id.compare(0, 1, "/") == 0 ? 1 : 0);
   try {
     return from_message(transforms_.lookupTransform(fixed_frame_, source, to_ros_time(stamp)).transform);
   } catch (const tf2::ExtrapolationException&) {
     return from_message(transforms_.lookupTransform(fixed_frame_, source, ros::Time(0)).transform);
   }
+}
+
+HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
+    : impl_(std::make_unique<Impl>(node, parameters)) {}
+
+HandTracking::~HandTracking() = default;
+
+void HandTracking::pass_to(Sink sink) {
+  impl_->sink_ = std::move(sink);
+}
+
+std::uint64_t HandTracking::lost() const {
+  return impl_->statistics_.lost();
 }
 
 }  // namespace mrhi

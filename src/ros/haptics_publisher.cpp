@@ -1,12 +1,93 @@
-#include "mr_hand_interaction/ros/haptics_publisher.h"
+#include "haptics_publisher.h"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 
-#include "haptics.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "result_conversion.h"
 
 namespace mrhi {
+namespace {
+
+/// The contacts of one phalanx with one body.
+class Feeling {
+ public:
+  void add(const Contact& contact) {
+    force_ += contact.force;
+    impulse_ += contact.impulse;
+    normals_ += contact.normal;
+    depth_ = std::max(depth_, contact.depth);
+    slips_ = slips_ || (contact.touching() && contact.friction == Friction::slipping);
+  }
+
+  void fill(mr_hand_interaction::PhalanxHaptics& phalanx) const {
+    const Vector3 normal = normals_.normalized();
+    phalanx.slip = slips_ ? phalanx.SLIPPING : phalanx.STICKING;
+    phalanx.force = vector_message(force_);
+    phalanx.impulse = vector_message(impulse_);
+    phalanx.normal = vector_message(normal);
+    phalanx.pressure = std::max(0.0, -normal.dot(force_));
+    phalanx.depth = depth_;
+  }
+
+ private:
+  Vector3 force_ = Vector3::Zero(), impulse_ = Vector3::Zero(), normals_ = Vector3::Zero();
+  double depth_ = 0.0;
+  bool slips_ = false;
+};
+
+bool is_felt(const Contact& contact) {
+  return contact.touching() || contact.impulse != Vector3::Zero();
+}
+
+bool same_phalanx(const Contact& a, const Contact& b) {
+  return a.key.body == b.key.body && a.key.hand == b.key.hand && a.key.capsule == b.key.capsule;
+}
+
+mr_hand_interaction::PhalanxHaptics named(const Contact& contact, const Scene& scene) {
+  mr_hand_interaction::PhalanxHaptics phalanx;
+  phalanx.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
+  phalanx.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+  phalanx.object = scene.bodies[contact.key.body].name;
+  return phalanx;
+}
+
+/// One after the other, as contacts come body by body, each in the order of hands and phalanges.
+void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& contacts,
+                   std::vector<mr_hand_interaction::PhalanxHaptics>& phalanges) {
+  for (auto contact = contacts.begin(); contact != contacts.end();) {
+    const auto first = contact;
+    Feeling feeling;
+    bool felt = false;
+    for (; contact != contacts.end() && same_phalanx(*first, *contact); ++contact) {
+      if (first->key.hand != slot || !is_felt(*contact)) continue;
+      feeling.add(*contact);
+      felt = true;
+    }
+    if (!felt) continue;
+    phalanges.push_back(named(*first, scene));
+    feeling.fill(phalanges.back());
+  }
+}
+
+}  // namespace
+
+mr_hand_interaction::HapticsArray haptics_message(const Scene& scene, const SimulationState& state,
+                                                  const std::vector<Contact>& contacts,
+                                                  const std_msgs::Header& header) {
+  mr_hand_interaction::HapticsArray message;
+  message.header = header;
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    message.hands.emplace_back();
+    message.hands.back().id = track.current.id;
+    message.hands.back().side = static_cast<std::uint8_t>(track.current.side);
+    add_phalanges(static_cast<int>(slot), scene, contacts, message.hands.back().phalanges);
+  }
+  return message;
+}
+
 namespace {
 
 constexpr int kQueue = 100;  // the steps of a few frames come at once

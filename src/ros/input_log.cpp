@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/input_log.h"
+#include "input_log.h"
 
 #include <boost/make_shared.hpp>
 #include <utility>
@@ -35,7 +35,7 @@ InputLog::InputLog(ros::NodeHandle& node, World world, const LiveSimulation& sim
       run_(ros::WallTime::now().toNSec()),
       publisher_(node.advertise<SimulationInput>(
           "simulation_input", kQueue,
-          [this](const ros::SingleSubscriberPublisher& subscriber) { welcome(subscriber); })) {}
+          [this](const ros::SingleSubscriberPublisher& subscriber) { send_begin(subscriber); })) {}
 
 void InputLog::frame(const mr_hand_interaction::HandFrame& hands, Nanoseconds time, Nanoseconds expected) {
   ++sequence_;
@@ -48,7 +48,7 @@ void InputLog::frame(const mr_hand_interaction::HandFrame& hands, Nanoseconds ti
   publisher_.publish(input);
 }
 
-void InputLog::silence(Nanoseconds time) {
+void InputLog::without_hands(Nanoseconds time) {
   ++sequence_;
   if (!heard()) return;
   SimulationInput input = message(SimulationInput::SILENCE);
@@ -66,16 +66,16 @@ void InputLog::change(const Change& change) {
   publisher_.publish(input);
 }
 
-void InputLog::welcome(const ros::SingleSubscriberPublisher& subscriber) {
+void InputLog::send_begin(const ros::SingleSubscriberPublisher& subscriber) {
   SimulationInput input = message(SimulationInput::BEGIN);
   input.text = to_yaml(world_);
   add(world_.files, input);
-  input.state = bytes_of(to_bytes(simulation_.now().state()));
+  input.state = bytes_of(to_bytes(simulation_.simulation().state()));
   subscriber.publish(input);
 }
 
 SimulationInput InputLog::message(std::uint8_t kind) const {
-  const SimulationState& state = simulation_.now().state();
+  const SimulationState& state = simulation_.simulation().state();
   SimulationInput input;
   input.kind = kind;
   input.run = run_;

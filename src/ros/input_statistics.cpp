@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/input_statistics.h"
+#include "input_statistics.h"
 
 #include <ros/console.h>
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/interaction_diagnostics.h"
+#include "interaction_diagnostics.h"
 
 namespace mrhi {
 

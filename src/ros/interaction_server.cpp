@@ -1,16 +1,35 @@
 #include "mr_hand_interaction/ros/interaction_server.h"
 
+#include <mr_hand_interaction/DeleteObject.h>
+#include <mr_hand_interaction/SaveWorld.h>
+#include <mr_hand_interaction/SetParameter.h>
+#include <mr_hand_interaction/SpawnObject.h>
+#include <mr_hand_interaction/SpawnUrdf.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
 #include <chrono>
 #include <cinttypes>
 #include <cstdio>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "../text/text.h"
+#include "input_log.h"
+#include "input_statistics.h"
+#include "interaction_diagnostics.h"
+#include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/save_scene.h"
 #include "object_request_message.h"
+#include "placing.h"
+#include "result_publisher.h"
+#include "stamp_clock.h"
+#include "tuning.h"
 
 namespace mrhi {
 namespace {
@@ -66,27 +85,74 @@ bool answer(Response& response, const Change& change) {
 
 }  // namespace
 
-InteractionServer::InteractionServer(ros::NodeHandle node, ros::NodeHandle private_node,
-                                     const ServerParameters& parameters)
+struct InteractionServer::Impl {
+  Impl(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters);
+
+  void subscribe(ros::NodeHandle& node);
+  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival);
+  void note_lost(std::uint64_t frames);
+  void advertise_services(ros::NodeHandle& private_node);
+  bool begin(const mr_hand_interaction::HandFrame& message);
+  bool timed_step();
+  void tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void idle();
+
+  bool reset(std_srvs::Trigger::Response& response);
+  bool pause(bool paused, std_srvs::SetBool::Response& response);
+  bool spawn(const mr_hand_interaction::SpawnObject::Request& request,
+             mr_hand_interaction::SpawnObject::Response& response);
+  bool spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
+                  mr_hand_interaction::SpawnUrdf::Response& response);
+  bool save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response);
+  bool remove(const std::string& name, mr_hand_interaction::DeleteObject::Response& response);
+  bool set(const mr_hand_interaction::SetParameter::Request& request,
+           mr_hand_interaction::SetParameter::Response& response);
+
+  /// Every change of the simulation goes this way, and into the log.
+  void make(const Change& change);
+  void change_parameters(const Tuning::Values& values);
+  /// There is another simulation, perhaps with other bodies.
+  void show_change();
+  void place_dragged();
+
+  std::string fixed_frame_;
+  LiveSimulation live_;
+  StampClock clock_;
+  InputLog log_;
+  Nanoseconds frame_stamp_ = 0, frame_expected_ = 0;  ///< of the frame that has begun
+  StampCheck arrivals_;                               ///< of all frames, those too that come while paused
+  ResultPublisher results_;
+  InteractionDiagnostics diagnostics_;
+  Placing placing_;
+  Tuning tuning_;
+
+  SequenceWatch sequences_;
+  ros::Subscriber hands_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer idle_timer_;
+};
+
+InteractionServer::Impl::Impl(ros::NodeHandle node, ros::NodeHandle private_node,
+                              const ServerParameters& parameters)
     : fixed_frame_(parameters.fixed_frame),
       live_(scene_of(parameters), parameters.configuration),
       log_(node, world_of(parameters), live_, clock_),
       results_(node, fixed_frame_, parameters.haptics_rate, clock_),
-      diagnostics_(node, private_node, live_.now().scene().name),
+      diagnostics_(node, private_node, live_.simulation().scene().name),
       placing_(private_node, fixed_frame_),
       tuning_(private_node, parameters.place_by_mouse,
               {[this](const Tuning::Values& values) { change_parameters(values); },
-               [this](bool on) { placing_.turn(on, live_.now()); },
-               [this]() -> const Simulation& { return live_.now(); }}) {
+               [this](bool on) { placing_.turn(on, live_.simulation()); },
+               [this]() -> const Simulation& { return live_.simulation(); }}) {
   diagnostics_.watch([this](auto& status) { tell_state(status); });
   if (parameters.standard_outputs) results_.add_standard_outputs(node);
-  results_.show(live_.now());
-  placing_.turn(parameters.place_by_mouse, live_.now());
+  results_.show(live_.simulation());
+  placing_.turn(parameters.place_by_mouse, live_.simulation());
   advertise_services(private_node);
   idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
 }
 
-void InteractionServer::subscribe(ros::NodeHandle& node) {
+void InteractionServer::Impl::subscribe(ros::NodeHandle& node) {
   using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
   const auto handler = [this](const Arrival& arrival) {
     const auto& message = *arrival.getConstMessage();
@@ -98,15 +164,15 @@ void InteractionServer::subscribe(ros::NodeHandle& node) {
                                                           nullptr, ros::TransportHints().tcpNoDelay());
 }
 
-void InteractionServer::tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void InteractionServer::Impl::tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   char text[20];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.now().state()));
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.simulation().state()));
   status.add("state hash", text);
-  status.add("state stamp [ns]", clock_.to_stamp(live_.now().state().time));
+  status.add("state stamp [ns]", clock_.to_stamp(live_.simulation().state().time));
   status.add("simulation input", log_.sequence());
 }
 
-void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
+void InteractionServer::Impl::advertise_services(ros::NodeHandle& private_node) {
   using namespace mr_hand_interaction;
   services_ = {
       advertise<std_srvs::Trigger>(private_node, "reset",
@@ -127,14 +193,14 @@ void InteractionServer::advertise_services(ros::NodeHandle& private_node) {
                               [this](auto& request, auto& response) { return set(request, response); })};
 }
 
-void InteractionServer::note_lost(std::uint64_t frames) {
+void InteractionServer::Impl::note_lost(std::uint64_t frames) {
   diagnostics_.lost(frames);
   log_.lost(diagnostics_.lost());
 }
 
-void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
+void InteractionServer::Impl::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
   const Nanoseconds stamp = from_ros_time(message.header.stamp);
-  const StampVerdict verdict = arrivals_.judge(stamp);
+  const StampVerdict verdict = arrivals_.check(stamp);
   if (clock_.paused()) {
     if (verdict == StampVerdict::follows || verdict == StampVerdict::restart)
       clock_.take(stamp, ros::Time::now());
@@ -143,7 +209,7 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message, cons
   }
   if (!begin(message)) return;
   while (timed_step()) results_.note_step();
-  const FrameResult& result = live_.now().end();
+  const FrameResult& result = live_.simulation().end();
   log_.frame(message, frame_stamp_, frame_expected_);
   place_dragged();
   for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
@@ -155,7 +221,7 @@ void InteractionServer::take(const mr_hand_interaction::HandFrame& message, cons
   clock_.take(stamp, now);
 }
 
-bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
+bool InteractionServer::Impl::begin(const mr_hand_interaction::HandFrame& message) {
   if (without_slash(message.header.frame_id) != without_slash(fixed_frame_)) {
     diagnostics_.rejected("wrong frame", "'" + message.header.frame_id + "'; allowed: " + fixed_frame_);
     return false;
@@ -165,7 +231,7 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
     frame.stamp = clock_.to_simulation(frame.stamp);
     frame_stamp_ = frame.stamp;
     frame_expected_ = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-    const Rejection rejection = live_.now().begin(frame, frame_expected_);
+    const Rejection rejection = live_.simulation().begin(frame, frame_expected_);
     if (rejection == Rejection::none) return true;
     log_.frame(message, frame_stamp_, frame_expected_);
     diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
@@ -175,41 +241,41 @@ bool InteractionServer::begin(const mr_hand_interaction::HandFrame& message) {
   return false;
 }
 
-bool InteractionServer::timed_step() {
+bool InteractionServer::Impl::timed_step() {
   const auto begin = std::chrono::steady_clock::now();
-  if (!live_.now().step()) return false;
+  if (!live_.simulation().step()) return false;
   const auto time = std::chrono::steady_clock::now() - begin;
   diagnostics_.step(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
   return true;
 }
 
-void InteractionServer::idle() {
+void InteractionServer::Impl::idle() {
   const Nanoseconds stamp = clock_.stamp(ros::Time::now());
-  const bool running = !clock_.paused() && live_.now().state().started;
+  const bool running = !clock_.paused() && live_.simulation().state().started;
   const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
-  if (running && live_.now().advance_without_hands(until)) {
-    log_.silence(until);
+  if (running && live_.simulation().advance_without_hands(until)) {
+    log_.without_hands(until);
     place_dragged();
-    results_.publish(live_.now().result());
+    results_.publish(live_.simulation().result());
   } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
     place_dragged();
-    results_.publish_scene(live_.now().result(), to_ros_time(stamp));
+    results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
   }
-  placing_.follow(live_.now());
+  placing_.follow(live_.simulation());
 }
 
-bool InteractionServer::reset(std_srvs::Trigger::Response& response) {
+bool InteractionServer::Impl::reset(std_srvs::Trigger::Response& response) {
   make(Reset{});
-  results_.show(live_.now());
+  results_.show(live_.simulation());
   FrameResult start;
   start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
   results_.publish(start);
   response.success = true;
-  response.message = "scene " + live_.now().scene().name + " is at its start";
+  response.message = "scene " + live_.simulation().scene().name + " is at its start";
   return true;
 }
 
-bool InteractionServer::pause(bool paused, std_srvs::SetBool::Response& response) {
+bool InteractionServer::Impl::pause(bool paused, std_srvs::SetBool::Response& response) {
   paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
   make(Pause{paused});
   response.success = true;
@@ -217,23 +283,23 @@ bool InteractionServer::pause(bool paused, std_srvs::SetBool::Response& response
   return true;
 }
 
-bool InteractionServer::spawn(const mr_hand_interaction::SpawnObject::Request& request,
-                              mr_hand_interaction::SpawnObject::Response& response) {
+bool InteractionServer::Impl::spawn(const mr_hand_interaction::SpawnObject::Request& request,
+                                    mr_hand_interaction::SpawnObject::Response& response) {
   return answer(response, [&] {
     Spawn spawn{from_message(request)};
     if (spawn.request.name.empty())
-      spawn.request.name = requested_body(spawn.request, options_of(live_.now().configuration())).name;
+      spawn.request.name = requested_body(spawn.request, options_of(live_.simulation().configuration())).name;
     make(spawn);
     show_change();
     return "'" + spawn.request.name + "' is there";
   });
 }
 
-bool InteractionServer::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
-                                   mr_hand_interaction::SpawnUrdf::Response& response) {
+bool InteractionServer::Impl::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
+                                         mr_hand_interaction::SpawnUrdf::Response& response) {
   return answer(response, [&] {
     const Spawn spawn{from_message(request)};
-    const Scene part = requested_scene(spawn.request, options_of(live_.now().configuration()));
+    const Scene part = requested_scene(spawn.request, options_of(live_.simulation().configuration()));
     make(spawn);
     show_change();
     std::vector<std::string> names;
@@ -243,21 +309,22 @@ bool InteractionServer::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request
 }
 
 /// What is recorded of a replay needs no world that was saved: it is no change.
-bool InteractionServer::save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response) {
+bool InteractionServer::Impl::save(const std::string& file,
+                                   mr_hand_interaction::SaveWorld::Response& response) {
   return answer(response, [&] {
     if (file.empty() || file.front() != '/')
       throw std::invalid_argument("file '" + text::one_line(file, 200) +
                                   "' is not allowed; allowed: an absolute path");
-    const SimulationState& state = live_.now().state();
-    Scene now = scene_as_it_is(live_.now().scene(), state.bodies, state.joints);
-    if (const auto& gravity = live_.now().configuration().gravity) now.gravity = *gravity;
+    const SimulationState& state = live_.simulation().state();
+    Scene now = scene_as_it_is(live_.simulation().scene(), state.bodies, state.joints);
+    if (const auto& gravity = live_.simulation().configuration().gravity) now.gravity = *gravity;
     save_scene(now, file);
     return "'" + file + "' is written";
   });
 }
 
-bool InteractionServer::remove(const std::string& name,
-                               mr_hand_interaction::DeleteObject::Response& response) {
+bool InteractionServer::Impl::remove(const std::string& name,
+                                     mr_hand_interaction::DeleteObject::Response& response) {
   return answer(response, [&] {
     results_.publish_events(live_.events_if_removed(name));
     make(Delete{name});
@@ -266,35 +333,35 @@ bool InteractionServer::remove(const std::string& name,
   });
 }
 
-bool InteractionServer::set(const mr_hand_interaction::SetParameter::Request& request,
-                            mr_hand_interaction::SetParameter::Response& response) {
+bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Request& request,
+                                  mr_hand_interaction::SetParameter::Response& response) {
   return answer(response, [&] {
     change_parameters({{request.name, request.value}});
     tuning_.show();
-    return request.name + " is " + parameter_text(live_.now().configuration(), request.name);
+    return request.name + " is " + parameter_text(live_.simulation().configuration(), request.name);
   });
 }
 
-void InteractionServer::make(const Change& change) {
+void InteractionServer::Impl::make(const Change& change) {
   mrhi::make(change, live_);
   log_.change(change);
 }
 
-void InteractionServer::change_parameters(const Tuning::Values& values) {
+void InteractionServer::Impl::change_parameters(const Tuning::Values& values) {
   make(SetParameters{values});
   show_change();
 }
 
 /// Changes that come faster than they could be seen are shown together, by the next frame or idle(): a scene
 /// of many objects costs more to show than to change.
-void InteractionServer::show_change() {
-  results_.show(live_.now());
+void InteractionServer::Impl::show_change() {
+  results_.show(live_.simulation());
   if (ros::WallTime::now() - results_.shown() > kIdlePeriod)
-    results_.publish_scene(live_.now().result(), to_ros_time(clock_.stamp(ros::Time::now())));
-  placing_.renew(live_.now());
+    results_.publish_scene(live_.simulation().result(), to_ros_time(clock_.stamp(ros::Time::now())));
+  placing_.renew(live_.simulation());
 }
 
-void InteractionServer::place_dragged() {
+void InteractionServer::Impl::place_dragged() {
   for (const auto& [name, pose] : placing_.dragged()) {
     try {
       make(PlaceObject{name, pose});
@@ -302,6 +369,24 @@ void InteractionServer::place_dragged() {
       // The mouse is out of bounds, or its object is gone: what was good stays.
     }
   }
+}
+
+InteractionServer::InteractionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                     const ServerParameters& parameters)
+    : impl_(std::make_unique<Impl>(node, private_node, parameters)) {}
+
+InteractionServer::~InteractionServer() = default;
+
+void InteractionServer::subscribe(ros::NodeHandle& node) {
+  impl_->subscribe(node);
+}
+
+void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
+  impl_->take(message, arrival);
+}
+
+void InteractionServer::note_lost(std::uint64_t frames) {
+  impl_->note_lost(frames);
 }
 
 }  // namespace mrhi

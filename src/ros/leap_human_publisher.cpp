@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/leap_human_publisher.h"
+#include "leap_human_publisher.h"
 
 #include <ros/serialization.h>
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/leap_reader.h"
+#include "leap_reader.h"
 
 namespace mrhi {
 

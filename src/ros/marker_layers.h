@@ -97,4 +97,13 @@ double ring_radius(const Body& body);  ///< inner, of a target's ring [m]
 /// `first_id`, one more than the body has shapes to be seen.
 void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer& layer);
 
+/// Height of what shadows fall on: the highest level top of a wide fixture under all that is free; else
+/// z = 0.1 m, where rviz has its grid, or lower where something is free there.
+double ground_height(const Scene& scene);
+
+/// The shadows of hands and of the first free bodies, straight below them on the ground: the higher a thing
+/// is, the softer and fainter.
+void add_shadows(const Scene& scene, const SimulationState& state, const FrameResult& result, double ground,
+                 MarkerLayer& layer);
+
 }  // namespace mrhi

@@ -1,10 +1,10 @@
-#include "mr_hand_interaction/ros/marker_relay.h"
+#include "marker_relay.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "../text/text.h"
-#include "private_parameters.h"
+#include "node.h"
 
 namespace mrhi {
 namespace {

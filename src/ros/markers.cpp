@@ -7,9 +7,9 @@
 
 #include "body_markers.h"
 #include "hand_markers.h"
+#include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "result_conversion.h"
-#include "shadow_markers.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/mount_calibration.h"
+#include "mount_calibration.h"
 
 #include <ros/callback_queue.h>
 
@@ -35,8 +35,8 @@ MountCalibration::MountCalibration(const ros::NodeHandle& node, const std::strin
 }
 
 void MountCalibration::run() {
-  const ros::WallTimer silence = node_.createWallTimer(
-      ros::WallDuration(5.0), [this](const ros::WallTimerEvent&) { warn_of_silence(); });
+  const ros::WallTimer watch = node_.createWallTimer(
+      ros::WallDuration(5.0), [this](const ros::WallTimerEvent&) { warn_of_no_frames(); });
   ask();
   while (node_.ok() && !recorder_.done())
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
@@ -65,7 +65,7 @@ void MountCalibration::ask() const {
   out_.flush();
 }
 
-void MountCalibration::warn_of_silence() const {
+void MountCalibration::warn_of_no_frames() const {
   if (device_frame_.empty()) ROS_WARN("nothing has come on %s", node_.resolveName(topic_).c_str());
 }
 

@@ -1,11 +1,11 @@
-#include "mr_hand_interaction/ros/operator_publisher.h"
+#include "operator_publisher.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "private_parameters.h"
+#include "node.h"
 
 namespace mrhi {
 namespace {

@@ -1,7 +1,7 @@
-#include "mr_hand_interaction/ros/parameter_watch.h"
+#include "parameter_watch.h"
 
+#include "../replay/world.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/replay/world.h"
 
 namespace mrhi {
 namespace {

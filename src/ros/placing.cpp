@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/placing.h"
+#include "placing.h"
 
 #include <visualization_msgs/InteractiveMarker.h>
 

@@ -1,9 +1,12 @@
-#include "mr_hand_interaction/ros/result_publisher.h"
+#include "result_publisher.h"
 
+#include <geometry_msgs/Point.h>
 #include <mr_hand_interaction/ContactArray.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <ros/message_traits.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <boost/make_shared.hpp>
@@ -11,8 +14,21 @@
 #include <thread>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "plain_messages.h"
 #include "result_conversion.h"
+
+// In memory these are what goes over the wire: roscpp copies a vector of them in one go.
+static_assert(sizeof(geometry_msgs::Point) == 3 * sizeof(double), "a point has padding");
+static_assert(sizeof(std_msgs::ColorRGBA) == 4 * sizeof(float), "a colour has padding");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "messages are little-endian");
+
+namespace ros {
+namespace message_traits {
+template <>
+struct IsSimple<geometry_msgs::Point> : TrueType {};
+template <>
+struct IsSimple<std_msgs::ColorRGBA> : TrueType {};
+}  // namespace message_traits
+}  // namespace ros
 
 namespace mrhi {
 namespace {

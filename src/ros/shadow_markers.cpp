@@ -1,4 +1,4 @@
-#include "shadow_markers.h"
+#include "marker_layers.h"
 
 #include <visualization_msgs/Marker.h>
 

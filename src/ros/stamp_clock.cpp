@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/stamp_clock.h"
+#include "stamp_clock.h"
 
 #include <algorithm>
 

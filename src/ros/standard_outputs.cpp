@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/standard_outputs.h"
+#include "standard_outputs.h"
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>

@@ -1,8 +1,8 @@
-#include "mr_hand_interaction/ros/synthetic_hand_publisher.h"
+#include "synthetic_hand_publisher.h"
 
 #include <std_srvs/Trigger.h>
 
-#include "private_parameters.h"
+#include "node.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/training_parameters.h"
+#include "training_server.h"
 
 #include <cstdlib>
 #include <functional>

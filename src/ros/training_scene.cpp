@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/training_scene.h"
+#include "training_scene.h"
 
 #include <mr_hand_interaction/DeleteObject.h>
 #include <mr_hand_interaction/SetParameter.h>

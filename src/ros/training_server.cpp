@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/training_server.h"
+#include "training_server.h"
 
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>

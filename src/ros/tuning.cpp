@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/tuning.h"
+#include "tuning.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -102,7 +102,7 @@ Tuning::Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions
     : actions_(std::move(actions)),
       place_by_mouse_(place_by_mouse),
       server_(mutex_, ros::NodeHandle(private_node, "tune")) {
-  Config least = now(), most = least;
+  Config least = current(), most = least;
   slider_ends(least, most);
   server_.setConfigMin(least);
   server_.setConfigMax(most);
@@ -111,7 +111,7 @@ Tuning::Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions
 }
 
 void Tuning::show() {
-  shown_ = now();
+  shown_ = current();
   server_.updateConfig(shown_);
 }
 
@@ -124,7 +124,7 @@ void Tuning::take(Config& wanted) {
   } catch (const std::exception& error) {
     ROS_WARN("not changed: %s", error.what());
   }
-  wanted = shown_ = now();
+  wanted = shown_ = current();
 }
 
 Tuning::Values Tuning::changes(const Config& wanted) const {
@@ -139,7 +139,7 @@ Tuning::Values Tuning::changes(const Config& wanted) const {
   return values;
 }
 
-Config Tuning::now() const {
+Config Tuning::current() const {
   const Simulation& simulation = actions_.simulation();
   const Configuration& configuration = simulation.configuration();
   dynamic_reconfigure::Config message = message_of(Config::__getDefault__());

@@ -56,7 +56,8 @@ bool is_diagonal(const Matrix3& matrix) {
   return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
 }
 
-/// The axis whose moment is between the others'.
+/// Which axis has the intermediate moment: it is the second of the addition theorem (free_rotation.h), for
+/// which A and B are then not negative, and the functions real.
 int intermediate(const Vector3& moments) {
   for (int i = 0; i < 2; ++i) {
     if ((moments[(i + 1) % 3] - moments[i]) * (moments[i] - moments[(i + 2) % 3]) >= 0.0) return i;

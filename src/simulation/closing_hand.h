@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "mr_hand_interaction/collision/contact_finder.h"
+#include "../collision/contact_finder.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mr_hand_interaction/collision/neighbours.h"
+#include "../collision/neighbours.h"
 #include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "mr_hand_interaction/collision/contact_finder.h"
+#include "../collision/contact_finder.h"
+#include "../rendering/hand_renderer.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/collision/contact_finder.h"
+#include "../collision/contact_finder.h"
 #include "mr_hand_interaction/interaction.h"
 
 namespace mrhi {

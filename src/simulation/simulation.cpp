@@ -163,7 +163,7 @@ double Simulation::deepest_rendered() const {
 bool Simulation::advance_without_hands(Nanoseconds time) {
   Impl& s = *impl_;
   const SimulationState& state = s.state;
-  if (!state.started || time < state.time + s.step_length || time > StampJudge::kLatest) return false;
+  if (!state.started || time < state.time + s.step_length || time > StampCheck::kLatest) return false;
   if (to_seconds(time - state.last_frame) <= s.configuration.tracking.hold_time) return false;
   s.result.restarted = false;
   s.clear_result();

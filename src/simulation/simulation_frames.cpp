@@ -16,7 +16,7 @@ constexpr Nanoseconds kLongestSilence = 60'000'000'000;
 }  // namespace
 
 Rejection Simulation::Impl::check_stamp(Nanoseconds stamp, const std::optional<Nanoseconds>& expected) {
-  switch (state.stamps.judge(stamp, state.time, expected)) {
+  switch (state.stamps.check(stamp, state.time, expected)) {
     case StampVerdict::late:
     case StampVerdict::behind:
       return Rejection::stamp_not_increasing;
@@ -25,7 +25,7 @@ Rejection Simulation::Impl::check_stamp(Nanoseconds stamp, const std::optional<N
     case StampVerdict::no_time:
       return Rejection::no_stamp;
     case StampVerdict::restart: {
-      const StampJudge stamps = state.stamps;
+      const StampCheck stamps = state.stamps;
       reset();
       state.stamps = stamps;
       result.restarted = true;

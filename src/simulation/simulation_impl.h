@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "../collision/body_contact_finder.h"
+#include "../collision/contact_finder.h"
+#include "../collision/neighbours.h"
+#include "../collision/scene_geometry.h"
 #include "../integration/free_flights.h"
+#include "../rendering/hand_renderer.h"
+#include "../response/contact_step.h"
 #include "flying_alone.h"
 #include "grasp_assist.h"
-#include "mr_hand_interaction/collision/contact_finder.h"
-#include "mr_hand_interaction/collision/neighbours.h"
-#include "mr_hand_interaction/collision/scene_geometry.h"
-#include "mr_hand_interaction/rendering/rendered_hand.h"
-#include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"
 #include "sleeping.h"
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "../joints/put_back.h"
+#include "../joints/linkage.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
 

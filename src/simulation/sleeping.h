@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mr_hand_interaction/collision/neighbours.h"
+#include "../collision/neighbours.h"
 #include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {

@@ -65,7 +65,7 @@ struct In {
   }
   /// The difference of any two of them can be taken.
   void check(Nanoseconds stamp) {
-    if (stamp < -StampJudge::kLatest || stamp > StampJudge::kLatest) refuse("has a stamp that is none");
+    if (stamp < -StampCheck::kLatest || stamp > StampCheck::kLatest) refuse("has a stamp that is none");
   }
   /// So many that are `item` bytes each in memory, and a quarter of that here, at least.
   std::size_t count(std::size_t, std::size_t item) {
@@ -142,7 +142,7 @@ class Parts {
     auto& [restitution, static_friction, dynamic_friction, stiffness] = part;
     all(restitution, static_friction, dynamic_friction, stiffness);
   }
-  void one(StampJudge& part) {
+  void one(StampCheck& part) {
     auto& [started, last, interval, stray, strays] = part;
     all(started, last, interval, stray, strays);
   }

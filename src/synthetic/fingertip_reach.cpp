@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/fingertip_reach.h"
+#include "fingertip_reach.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "motions.h"
-#include "mr_hand_interaction/synthetic/scripted_grasp.h"
 #include "script.h"
+#include "scripted_grasp.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/grip_postures.h"
+#include "scripted_grasp.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/synthetic/fingertip_reach.h"
+#include "fingertip_reach.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 
 namespace mrhi {

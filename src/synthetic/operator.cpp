@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/operator.h"
+#include "operator.h"
 
 #include <algorithm>
 #include <cmath>

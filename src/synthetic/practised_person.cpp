@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/practised_person.h"
+#include "practised_person.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/recording_writer.h"
+#include "recording_writer.h"
 
 #include <string>
 

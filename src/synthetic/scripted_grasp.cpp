@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/scripted_grasp.h"
+#include "scripted_grasp.h"
 
 #include <cmath>
 #include <stdexcept>

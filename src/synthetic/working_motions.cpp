@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "mr_hand_interaction/synthetic/scripted_grasp.h"
 #include "script.h"
+#include "scripted_grasp.h"
 
 namespace mrhi {
 namespace {

@@ -22,7 +22,8 @@ std::vector<std::string> known_names(const std::string& extension,
   for (const std::string& directory : directories) {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored)) {
-      if (entry.path().extension() == extension) names.push_back(entry.path().stem().string());
+      if (entry.path().extension() == extension && is_file(entry.path()))
+        names.push_back(entry.path().stem().string());
     }
   }
   std::sort(names.begin(), names.end());

@@ -19,14 +19,6 @@ std::string with_digits(double value, int digits) {
   return stream.str();
 }
 
-double read_back(const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0.0;
-  stream >> value;
-  return value;
-}
-
 }  // namespace
 
 std::string number(double value) {
@@ -36,7 +28,7 @@ std::string number(double value) {
 std::string exact(double value) {
   constexpr int kEnough = 17;
   int digits = 6;
-  while (digits < kEnough && read_back(with_digits(value, digits)) != value) ++digits;
+  while (digits < kEnough && to_number(with_digits(value, digits)) != value) ++digits;
   return with_digits(value, digits);
 }
 
@@ -44,7 +36,7 @@ std::optional<double> to_number(const std::string& text) {
   static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
   char* end = nullptr;
   const double value = strtod_l(text.c_str(), &end, c_locale);
-  if (text.empty() || *end != '\0') return std::nullopt;
+  if (text.empty() || end != text.c_str() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -86,3 +78,15 @@ std::string with_spaces(std::string name) {
 }
 
 }  // namespace mrhi::text
+
+namespace mrhi {
+
+const char* const kNameIs = "1 to 64 letters, digits, '_' and '-', not first '-'";
+
+bool is_name(const std::string& text) {
+  const char* const known = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  return !text.empty() && text.size() <= 64 && text.front() != '-' &&
+         text.find_first_not_of(known) == std::string::npos;
+}
+
+}  // namespace mrhi

@@ -38,16 +38,19 @@ class Tags {
   void follow() {
     while ((at_ = xml_.find('<', at_)) != std::string::npos) {
       if (begins("<!--")) {
-        skip_to("-->");
+        skip_to("-->", 4);
       } else if (begins("<![CDATA[")) {
-        skip_to("]]>");
-      } else if (begins("<?")) {
-        skip_to("?>");
+        skip_to("]]>", 9);
+      } else if (begins("<?xml")) {
+        instruction();
       } else if (begins("<!")) {
         declares_ = true;
-        skip_to(">");
-      } else {
+        skip_to(">", 2);
+      } else if (at_ + 1 < xml_.size() && begins_name(xml_[at_ + 1])) {
         tag();
+      } else {
+        strange_ = true;
+        ++at_;
       }
     }
   }
@@ -55,13 +58,27 @@ class Tags {
   int deepest() const { return deepest_; }
   std::size_t elements() const { return elements_; }
   bool declares() const { return declares_; }
+  bool strange() const { return strange_; }
 
  private:
   bool begins(const char* text) const { return xml_.compare(at_, std::string(text).size(), text) == 0; }
 
-  void skip_to(const char* end) {
-    const std::size_t found = xml_.find(end, at_);
+  /// Of an element's tag, or of one that closes it.
+  static bool begins_name(char c) {
+    return c == '/' || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           static_cast<unsigned char>(c) >= 0x80;
+  }
+
+  /// The end is looked for behind the opening: "<!-->" does not close itself.
+  void skip_to(const char* end, std::size_t opening) {
+    const std::size_t found = xml_.find(end, at_ + opening);
     at_ = found == std::string::npos ? xml_.size() : found + 1;
+  }
+
+  /// TinyXML ends one at its first '>', other libraries at the first "?>": allowed is what both end there.
+  void instruction() {
+    skip_to(">", 5);
+    if (at_ < 2 || xml_[at_ - 2] != '?') strange_ = true;
   }
 
   /// A '>' in quotes does not end a tag.
@@ -83,7 +100,7 @@ class Tags {
   const std::string& xml_;
   std::size_t at_ = 0, elements_ = 0;
   int depth_ = 0, deepest_ = 0;
-  bool declares_ = false;
+  bool declares_ = false, strange_ = false;
 };
 
 }  // namespace
@@ -95,6 +112,8 @@ std::optional<std::string> xml_danger(const std::string& xml) {
   Tags tags(xml);
   tags.follow();
   if (tags.declares()) return "has a document type; allowed: none";
+  if (tags.strange())
+    return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
   if (tags.deepest() > kDeepest)
     return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
   if (tags.elements() > kMostElements)

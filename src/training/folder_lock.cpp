@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/training/folder_lock.h"
+#include "folder_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mr_hand_interaction/training/observation.h"
 #include "mr_hand_interaction/training/task.h"
+#include "mr_hand_interaction/training/trial.h"
 
 namespace mrhi {
 

@@ -1,4 +1,3 @@
-#include "goal_yaml.h"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/training/object_model.h"
+#include "object_model.h"
 
 #include <yaml-cpp/yaml.h>
 

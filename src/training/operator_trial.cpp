@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/training/operator_trial.h"
+#include "operator_trial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "../scene/scene_edit.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
-#include "mr_hand_interaction/training/object_model.h"
+#include "object_model.h"
 
 namespace mrhi {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "../text/csv.h"
 #include "../text/text.h"
+#include "folder_lock.h"
 #include "session_header.h"
 
 namespace mrhi {
@@ -101,6 +102,8 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
     last_trial_ = std::max(last_trial_, whole_number(row[1]));
   }
 }
+
+SessionFolder::~SessionFolder() = default;
 
 void SessionFolder::open_header(const SessionHeader& header, const SessionSetup& setup) {
   const fs::path file = fs::path(path_) / "session.yaml";

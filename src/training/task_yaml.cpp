@@ -7,7 +7,6 @@
 #include "../text/file_text.h"
 #include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "goal_yaml.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/task.h"
 #include "task_values.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../scene/scene_edit.h"
 #include "goal.h"
 
 namespace mrhi {
@@ -45,9 +46,9 @@ void Trial::update(const Observation& seen) {
   measure(seen, passed);
   note_grasp(seen);
   note_touch(seen, passed);
-  if (now().kind == GoalKind::release) {
+  if (current_goal().kind == GoalKind::release) {
     release(seen);
-  } else if (now().kind == GoalKind::strike) {
+  } else if (current_goal().kind == GoalKind::strike) {
     strike(seen);
   } else {
     hold(seen, passed);
@@ -72,14 +73,14 @@ void Trial::measure(const Observation& seen, Nanoseconds passed) {
 /// A grasp that breaks off and is there again at once has lost nothing.
 void Trial::note_grasp(const Observation& seen) {
   const bool held_before = last_ && last_->held;
-  if (!asks_to_hold(now().kind)) loose_.reset();
+  if (!asks_to_hold(current_goal().kind)) loose_.reset();
   if (seen.held) {
     if (!held_before && !loose_) {
       add(TrialEventKind::grasped);
-      measures_.attempts += !asks_to_touch(now().kind);
+      measures_.attempts += !asks_to_touch(current_goal().kind);
     }
     loose_.reset();
-  } else if (held_before && asks_to_hold(now().kind)) {
+  } else if (held_before && asks_to_hold(current_goal().kind)) {
     loose_ = elapsed_;
   }
   if (!loose_ || (elapsed_ - *loose_ < kDropped && !seen.put_back)) return;
@@ -90,7 +91,7 @@ void Trial::note_grasp(const Observation& seen) {
 
 void Trial::note_touch(const Observation& seen, Nanoseconds passed) {
   untouched_ = seen.touched ? 0 : untouched_ + passed;
-  if (seen.touched && !touching_ && asks_to_touch(now().kind)) {
+  if (seen.touched && !touching_ && asks_to_touch(current_goal().kind)) {
     add(TrialEventKind::touched);
     ++measures_.attempts;
   }
@@ -98,7 +99,7 @@ void Trial::note_touch(const Observation& seen, Nanoseconds passed) {
 }
 
 void Trial::hold(const Observation& seen, Nanoseconds passed) {
-  const Goal& goal = now();
+  const Goal& goal = current_goal();
   const bool met = is_met(goal, seen, start_);
   if (met && inside_) timer_ += passed;
   if (met && !inside_) add(TrialEventKind::reached, static_cast<double>(goal_ + 1));
@@ -116,7 +117,7 @@ void Trial::hold(const Observation& seen, Nanoseconds passed) {
 }
 
 bool Trial::too_late() const {
-  const Goal& goal = now();
+  const Goal& goal = current_goal();
   if (!goal.within) return false;
   const Nanoseconds within = nanoseconds(*goal.within);
   if (goal.kind == GoalKind::joint) return !inside_ && elapsed_ - goal_begun_ > within;
@@ -127,7 +128,7 @@ void Trial::strike(const Observation& seen) {
   if (!touching_ || untouched_ < kTouchOver) return;
   touching_ = false;
   const double speed = seen.twist.linear.norm();
-  if (speed >= now().min_speed && speed <= now().max_speed) {
+  if (speed >= current_goal().min_speed && speed <= current_goal().max_speed) {
     achieve();
   } else {
     add(TrialEventKind::missed, speed);
@@ -146,7 +147,7 @@ void Trial::release(const Observation& seen) {
     let_go_.reset();  // taken again: it was not let go after all
     return;
   }
-  const Nanoseconds drift_time = nanoseconds(now().drift_time);
+  const Nanoseconds drift_time = nanoseconds(current_goal().drift_time);
   if (!let_go_) {
     add(TrialEventKind::released);
     let_go_ = LettingGo{elapsed_, seen.pose.position};
@@ -201,7 +202,7 @@ double Trial::progress() const {
 }
 
 double Trial::timed() const {
-  return now().kind == GoalKind::release ? now().drift_time : now().hold;
+  return current_goal().kind == GoalKind::release ? current_goal().drift_time : current_goal().hold;
 }
 
 double Trial::remaining() const {
@@ -211,6 +212,38 @@ double Trial::remaining() const {
 
 void Trial::add(TrialEventKind kind, double detail) {
   events_.push_back({stamp_, stage(), kind, detail});
+}
+
+Observation observe(const Simulation& simulation, std::size_t body) {
+  const FrameResult& result = simulation.result();
+  const BodyState& state = simulation.state().bodies[body];
+  Observation seen;
+  seen.stamp = result.stamp;
+  seen.pose = state.pose;
+  seen.twist = twist_of(simulation.scene().bodies[body], state);
+  const std::vector<std::size_t> parts = hanging_on(body, simulation.scene());
+  const auto is_part = [&](int b) {
+    return std::find(parts.begin(), parts.end(), static_cast<std::size_t>(b)) != parts.end();
+  };
+  seen.held = std::any_of(parts.begin(), parts.end(),
+                          [&](std::size_t part) { return is_held(part, simulation.state()); });
+  double pressing = 0.0;
+  for (const Contact& contact : result.contacts) {
+    if (!is_part(contact.key.body)) continue;
+    seen.touched = true;
+    pressing += std::max(0.0, -contact.normal.dot(contact.force));
+  }
+  seen.grip_force = 0.5 * pressing;
+  for (const Event& event : result.events) {
+    seen.tracking_losses += event.kind == EventKind::hand_lost;
+    seen.put_back |= event.kind == EventKind::out_of_bounds && is_part(event.body);
+  }
+  const std::vector<Joint>& joints = simulation.scene().joints;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (is_part(joints[j].child))
+      seen.joints.emplace_back(joints[j].name, simulation.state().joints[j].position);
+  }
+  return seen;
 }
 
 }  // namespace mrhi

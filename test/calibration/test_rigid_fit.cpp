@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "mr_hand_interaction/calibration/rigid_fit.h"
+#include "calibration/rigid_fit.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "mr_hand_interaction/calibration/touch_recorder.h"
+#include "calibration/touch_recorder.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "mr_hand_interaction/calibration/touched_points.h"
+#include "calibration/touched_points.h"
 
 namespace {
 

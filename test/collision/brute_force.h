@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "mr_hand_interaction/math/capsule.h"
+#include "mr_hand_interaction/math.h"
 
 namespace mrhi {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/collision/body_manifold.h"
+#include "collision/body_manifold.h"
 #include "random_capsules.h"
 
 namespace mrhi {

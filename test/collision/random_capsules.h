@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "mr_hand_interaction/math/capsule.h"
+#include "mr_hand_interaction/math.h"
 
 namespace mrhi {
 

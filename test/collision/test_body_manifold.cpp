@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/collision/body_manifold.h"
+#include "collision/body_manifold.h"
 
 #include <gtest/gtest.h>
 

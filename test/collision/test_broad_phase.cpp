@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/collision/broad_phase.h"
+#include "collision/broad_phase.h"
 #include "random_capsules.h"
 
 namespace mrhi {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "collision/closest_features.h"
 #include "collision/way_out.h"
 #include "mesh_shapes.h"
-#include "mr_hand_interaction/collision/closest_features.h"
 #include "placed_shapes.h"
 
 namespace mrhi {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "brute_force.h"
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "collision/closest_features.h"
 #include "random_capsules.h"
 
 namespace mrhi {
@@ -183,7 +183,7 @@ TEST(ClosedForms, cylinder_agrees_with_search) {
                                        : facing_cylinder(random, cylinder, (i / 2) % 3);
     SCOPED_TRACE(i);
     compare(capsule, CylinderShape{cylinder.radius, cylinder.half_length}, 0.0,
-            capsule_cylinder(capsule, cylinder), tally);
+            cylinder.closest(capsule, 1.0), tally);
   }
   EXPECT_EQ(tally.unfinished, 0);
   EXPECT_GT(tally.inside, 0.2 * kPoses);

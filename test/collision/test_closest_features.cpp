@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "collision/closest_features.h"
 #include "random_capsules.h"
 
 namespace mrhi {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of lengths of some centimetres [m]
+constexpr double kRounding = 1e-12;   // of lengths of some centimetres [m]
+constexpr double kAnyDistance = 1.0;  // [m]
 const Sphere kSphere{0.03};
 const Box kBox{{0.03, 0.02, 0.01}};
 const Cylinder kCylinder{0.02, 0.03};
@@ -14,7 +15,7 @@ const Cylinder kCylinder{0.02, 0.03};
 ClosestFeatures closest(const Capsule& capsule, const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return capsule_sphere(capsule, *sphere);
   if (const auto* box = std::get_if<Box>(&shape)) return capsule_box(capsule, *box);
-  return capsule_cylinder(capsule, std::get<Cylinder>(shape));
+  return std::get<Cylinder>(shape).closest(capsule, kAnyDistance);
 }
 const Shape kShapes[] = {kSphere, kBox, kCylinder};
 
@@ -32,11 +33,11 @@ TEST(ClosestFeatures, finger_along_a_face_touches_in_the_middle_of_the_stretch) 
     EXPECT_NEAR(features.distance, z - 0.01 - 0.008, kRounding);
   }
   const Capsule on_cap{{-0.05, 0.012, 0.037}, {0, 0.012, 0.037}, 0.008};
-  expect_near(capsule_cylinder(on_cap, kCylinder).point, {-0.008, 0.012, 0.03});
+  expect_near(kCylinder.closest(on_cap, kAnyDistance).point, {-0.008, 0.012, 0.03});
   const Capsule beside{{0.027, 0, 0.01}, {0.027, 0, 0.09}, 0.008};
-  expect_near(capsule_cylinder(beside, kCylinder).point, {0.02, 0, 0.02});
+  expect_near(kCylinder.closest(beside, kAnyDistance).point, {0.02, 0, 0.02});
   const Capsule inside{{0.017, 0, 0.01}, {0.017, 0, 0.09}, 0.008};
-  expect_near(capsule_cylinder(inside, kCylinder).point, {0.02, 0, 0.02});
+  expect_near(kCylinder.closest(inside, kAnyDistance).point, {0.02, 0, 0.02});
 }
 
 TEST(ClosestFeatures, rounding_of_a_parallel_finger_does_not_move_its_middle) {
@@ -60,7 +61,7 @@ TEST(ClosestFeatures, axis_through_the_middle_leaves_by_a_fixed_side) {
   const ClosestFeatures through = capsule_sphere({{-0.01, 0, 0}, {0.02, 0, 0}, 0.008}, kSphere);
   EXPECT_NEAR(through.normal.x(), 0.0, kRounding);
   EXPECT_NEAR(through.distance, -0.038, kRounding);
-  const ClosestFeatures pierced = capsule_cylinder({{0, 0, -0.1}, {0, 0, 0.1}, 0.008}, kCylinder);
+  const ClosestFeatures pierced = kCylinder.closest({{0, 0, -0.1}, {0, 0, 0.1}, 0.008}, kAnyDistance);
   EXPECT_NEAR(pierced.normal.z(), 0.0, kRounding);
   EXPECT_NEAR(pierced.distance, -0.028, kRounding);
 }
@@ -136,7 +137,7 @@ TEST(ContactSpan, is_the_part_over_the_face) {
   EXPECT_NEAR(span.s0, 0.0, kRounding);
   EXPECT_NEAR(span.s1, 0.5, kRounding);
   const Capsule on_cap{{-0.05, 0.012, 0.037}, {0, 0.012, 0.037}, 0.008};
-  const AxisSpan disc = contact_span(on_cap, kCylinder, capsule_cylinder(on_cap, kCylinder));
+  const AxisSpan disc = contact_span(on_cap, kCylinder, kCylinder.closest(on_cap, kAnyDistance));
   EXPECT_NEAR(disc.s0, (0.05 - 0.016) / 0.05, kRounding);
   EXPECT_NEAR(disc.s1, 1.0, kRounding);
 }
@@ -146,7 +147,7 @@ TEST(ContactSpan, along_a_cylinder_shrinks_to_a_point_while_the_finger_turns_acr
   for (const double angle : {0.0, 0.03, 0.07, 0.12, 1.5}) {
     const Vector3 along = 0.04 * Vector3(0, std::sin(angle), std::cos(angle));
     const Capsule capsule = capsule_about({0.027, 0, 0}, along, 0.008);
-    const AxisSpan span = contact_span(capsule, kCylinder, capsule_cylinder(capsule, kCylinder));
+    const AxisSpan span = contact_span(capsule, kCylinder, kCylinder.closest(capsule, kAnyDistance));
     const double length = span.s1 - span.s0;
     EXPECT_NEAR(length, std::max(0.0, 1.0 - std::sin(angle) / 0.1), 1e-9);
     EXPECT_LE(length, before);

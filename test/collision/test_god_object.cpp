@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/collision/contact_finder.h"
-#include "mr_hand_interaction/collision/god_object.h"
+#include "collision/contact_finder.h"
+#include "collision/god_object.h"
 #include "response/impact.h"
 #include "support/fixtures.h"
 

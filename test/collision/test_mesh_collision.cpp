@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "collision/mesh_collision.h"
 #include "mesh_shapes.h"
-#include "mr_hand_interaction/collision/mesh_collision.h"
 #include "random_capsules.h"
 
 namespace mrhi {

@@ -2,8 +2,8 @@
 
 #include <thread>
 
+#include "collision/mesh_collision.h"
 #include "mesh_shapes.h"
-#include "mr_hand_interaction/collision/mesh_collision.h"
 #include "random_capsules.h"
 #include "support/tessellated.h"
 

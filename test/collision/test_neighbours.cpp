@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/collision/closest_features.h"
-#include "mr_hand_interaction/collision/neighbours.h"
+#include "collision/closest_features.h"
+#include "collision/neighbours.h"
 #include "random_capsules.h"
 #include "support/fixtures.h"
 

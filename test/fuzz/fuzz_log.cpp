@@ -1,7 +1,7 @@
 // What a recording of a live run says of its world, and a change: the world's YAML, its URDF, the YAML beside
 // that, the change's YAML, a URDF that it may name. What is taken is simulated.
 #include "fuzz/target.h"
-#include "mr_hand_interaction/replay/world.h"
+#include "replay/world.h"
 #include "support/fixtures.h"
 
 namespace {
@@ -11,9 +11,9 @@ using namespace mrhi;
 void advance(LiveSimulation& simulation, int from) {
   for (int i = from; i < from + 4; ++i) {
     const Vector3 tip(0.01 * i, 0.0, 0.0);
-    simulation.now().advance(
+    simulation.simulation().advance(
         {testing::at(0.005 * i), {testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
-    fuzzing::require(simulation.now().result().not_finite.empty(), "what comes out is finite");
+    fuzzing::require(simulation.simulation().result().not_finite.empty(), "what comes out is finite");
   }
 }
 

@@ -65,7 +65,10 @@ inline double stored(const Joint& joint, double position) {
 class Ledger {
  public:
   explicit Ledger(const Simulation& simulation)
-      : simulation_(simulation), before_(now()), largest_(before_.size), begun_(simulation.state().bodies) {
+      : simulation_(simulation),
+        before_(present()),
+        largest_(before_.size),
+        begun_(simulation.state().bodies) {
     for (std::size_t j = 0; j < simulation.scene().joints.size(); ++j) note_held(j);
   }
 
@@ -87,12 +90,12 @@ class Ledger {
     for (const Grip& grip : grips_) note_grip(grip, seconds);
     for (const BodyContact& contact : simulation_.state().body_contacts)
       struck = struck || !contact.impulse.isZero(0.0);
-    if (struck) work_ += kTurning * seconds * now().size;
+    if (struck) work_ += kTurning * seconds * present().size;
     for (const Body& body : simulation_.scene().bodies)
       if (!body.fixed) impulse_ += body.mass * seconds * simulation_.scene().gravity;
     for (std::size_t j = 0; j < simulation_.state().joints.size(); ++j) note_joint(j, seconds);
     if (!simulation_.scene().joints.empty()) note_weight(seconds);
-    largest_ = std::max(largest_, now().size);
+    largest_ = std::max(largest_, present().size);
     begun_ = simulation_.state().bodies;
   }
 
@@ -101,15 +104,15 @@ class Ledger {
   double surplus() const {
     const double size = largest_ + flow_;
     const double known = held_ + weighed_ + kSwing * swing_ * largest_;
-    return size > 0.0 ? (now().energy - before_.energy - work_ - known) / size : 0.0;
+    return size > 0.0 ? (present().energy - before_.energy - work_ - known) / size : 0.0;
   }
   void check_energy() const {
-    require(surplus() <= rounding(), "energy " + text::number(now().energy) + " J is at most " +
+    require(surplus() <= rounding(), "energy " + text::number(present().energy) + " J is at most " +
                                          text::number(before_.energy) + " J and the hands' work, " +
                                          text::number(work_) + " J");
   }
   void check_momentum() const {
-    const double off = (now().momentum - before_.momentum - impulse_).norm();
+    const double off = (present().momentum - before_.momentum - impulse_).norm();
     require(off <= rounding() * (largest_ + flow_) + kTold * gripped_,
             "momentum is what the hands gave, but for " + text::number(off) + " of " +
                 text::number(largest_ + flow_) + " N s");
@@ -211,7 +214,7 @@ class Ledger {
     held_ = std::max(held_, force * force * longest * longest / (kHolds * least_inertia(joint.kind)));
   }
   bool has_springs() const { return simulation_.configuration().contact_model != ContactModelKind::impulse; }
-  Sum now() const {
+  Sum present() const {
     const Scene& scene = simulation_.scene();
     Sum sum;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

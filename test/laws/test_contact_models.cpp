@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/response/contact_model.h"
+#include "response/contact_step.h"
 
 #include <gtest/gtest.h>
 

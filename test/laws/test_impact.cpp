@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "response/contact_step.h"
 #include "response/impact.h"
 #include "response/impact_solver.h"
 #include "support/fixtures.h"

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "response/contact_step.h"
 #include "response/penetration_force.h"
 #include "response/spring_contact.h"
 #include "support/fixtures.h"

@@ -7,9 +7,9 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/synthetic/operator.h"
-#include "mr_hand_interaction/training/operator_trial.h"
 #include "synthetic/box_symmetries.h"
+#include "synthetic/operator.h"
+#include "training/operator_trial.h"
 
 namespace mrhi::testing {
 

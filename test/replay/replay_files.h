@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mr_hand_interaction/replay/recording_csv.h"
-#include "mr_hand_interaction/synthetic/recording_writer.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "synthetic/recording_writer.h"
 
 namespace mrhi::test {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/replay/arguments.h"
+#include "mr_hand_interaction/replay/replay.h"
 
 namespace mrhi {
 namespace {

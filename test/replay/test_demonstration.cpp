@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "mr_hand_interaction/replay/frame_source.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "replay/frame_source.h"
 #include "replay/replay_files.h"
 #include "text/text.h"
 

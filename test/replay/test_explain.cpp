@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <functional>
 
-#include "mr_hand_interaction/replay/frame_source.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "replay/frame_source.h"
 #include "replay/replay_files.h"
 #include "support/grips.h"
 

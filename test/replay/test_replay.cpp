@@ -5,6 +5,7 @@
 
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "replay/replay_files.h"
+#include "replay/run.h"
 
 namespace mrhi {
 namespace {

@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/replay/world.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
+#include "replay/world.h"
 #include "simulation/state_bytes.h"
 #include "text/file_text.h"
 #include "text/text.h"
@@ -46,7 +46,7 @@ class Live {
     LogEntry& entry = add(LogEntry::Kind::begin);
     entry.text = to_yaml(world_);
     entry.files = world_.files;
-    entry.state = to_bytes(live_.now().state());
+    entry.state = to_bytes(live_.simulation().state());
   }
 
   /// The frames of a motion from one time to another.
@@ -56,10 +56,11 @@ class Live {
       if (time < from || time >= to) continue;
       HandFrame hands = *placed(joints, default_device_mount()).frame;
       hands.stamp = joints.stamp + 1'000'000'000;
-      if (live_.now().begin(hands, hands.stamp) != Rejection::none) throw std::runtime_error("frame refused");
-      while (live_.now().step()) {
+      if (live_.simulation().begin(hands, hands.stamp) != Rejection::none)
+        throw std::runtime_error("frame refused");
+      while (live_.simulation().step()) {
       }
-      live_.now().end();
+      live_.simulation().end();
       ++sequence_;
       LogEntry& entry = add(LogEntry::Kind::frame);
       entry.hands = hands;
@@ -67,11 +68,11 @@ class Live {
     }
   }
 
-  void silence(double seconds) {
-    const Nanoseconds until = live_.now().state().last_frame + static_cast<Nanoseconds>(1e9 * seconds);
-    if (!live_.now().advance_without_hands(until)) throw std::runtime_error("no silence");
+  void without_hands(double seconds) {
+    const Nanoseconds until = live_.simulation().state().last_frame + static_cast<Nanoseconds>(1e9 * seconds);
+    if (!live_.simulation().advance_without_hands(until)) throw std::runtime_error("hands again");
     ++sequence_;
-    add(LogEntry::Kind::silence).time = until;
+    add(LogEntry::Kind::without_hands).time = until;
   }
 
   void change(const Change& change) {
@@ -91,8 +92,8 @@ class Live {
     entry.kind = kind;
     entry.run = 7;
     entry.sequence = sequence_;
-    entry.stamp = live_.now().state().time;
-    entry.state_hash = hash(live_.now().state());
+    entry.stamp = live_.simulation().state().time;
+    entry.state_hash = hash(live_.simulation().state());
     entries.push_back(entry);
     return entries.back();
   }
@@ -146,7 +147,7 @@ Live eventful() {
   live.change(spanner("late", {-0.5, 0.5, 0.3}));
   live.change(Delete{"mesh"});
   live.play(frames, 4.0, 4.5);
-  live.silence(0.6);
+  live.without_hands(0.6);
   live.change(Reset{});
   live.play(frames, 6.0, 6.5);
   return live;

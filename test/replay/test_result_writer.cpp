@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/replay/result_writer.h"
+#include "replay/result_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "mr_hand_interaction/replay/summary.h"
+#include "replay/summary.h"
 
 namespace mrhi {
 namespace {

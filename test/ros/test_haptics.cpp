@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "ros/haptics.h"
+#include "ros/haptics_publisher.h"
 #include "ros/result_conversion.h"
 #include "support/pinched_cube.h"
 

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/ros/input_statistics.h"
-#include "mr_hand_interaction/ros/sequence_watch.h"
+#include "ros/input_statistics.h"
 
 namespace mrhi {
 namespace {

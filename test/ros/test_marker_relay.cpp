@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/ros/marker_relay.h"
+#include "ros/marker_relay.h"
 
 namespace mrhi {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "ros/shadow_markers.h"
+#include "ros/marker_layers.h"
 #include "support/fixtures.h"
 #include "tracking/adult_hand.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/ros/stamp_clock.h"
+#include "ros/stamp_clock.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/ros/tuning.h"
+#include "ros/tuning.h"
 
 #include <gtest/gtest.h>
 

@@ -105,6 +105,13 @@ TEST(HostileUrdf, that_is_deep_is_refused_before_it_is_parsed) {
                      {"32 levels"});
 }
 
+// The library would call itself 200 000 times.
+TEST(HostileUrdf, that_is_deep_behind_a_comment_that_only_seems_to_close_is_refused) {
+  for (const char* before : {"<!--><a x=\"-->", "<?xml >", "<1 x=\">"})
+    test::expect_words(urdf_error("<robot name=\"x\">" + std::string(before) + repeated("<a>", 200'000)),
+                       {"bad URDF"});
+}
+
 TEST(HostileUrdf, that_is_large_is_refused) {
   test::expect_words(urdf_error("<robot name=\"r\">" + repeated("          ", 500'000)),
                      {"longer than 4194304 bytes"});

@@ -24,7 +24,7 @@ Body ball() {
 class Appearing {
  public:
   Appearing() : live_(testing::scene_of(ball()), testing::unfiltered(ContactModelKind::implicit)) {
-    live_.now().advance({at(0.0), {}});
+    live_.simulation().advance({at(0.0), {}});
     live_.place("object", {kAway, Quaternion::Identity()});
     play(0.5, Vector3::Zero());
   }
@@ -35,8 +35,8 @@ class Appearing {
     const Vector3 from = offset_;
     for (int i = 1; i <= frames; ++i) {
       offset_ = from + (offset - from) * i / frames;
-      live_.now().advance({at(++frame_ / kRate), {hand()}});
-      const FrameResult& result = live_.now().result();
+      live_.simulation().advance({at(++frame_ / kRate), {hand()}});
+      const FrameResult& result = live_.simulation().result();
       jump = std::max(jump, farthest_joint(shown_, result.rendered[0].hand) -
                                 farthest_joint(tracked_, result.tracked[0]));
       aside = std::max(aside, farthest_joint(result.tracked[0], result.rendered[0].hand));
@@ -48,8 +48,8 @@ class Appearing {
 
   Hand hand() const { return testing::posed_hand(flat_posture(), {offset_, Quaternion::Identity()}); }
   LiveSimulation& live() { return live_; }
-  const BodyState& object() const { return live_.now().state().bodies.at(0); }
-  double depth() const { return live_.now().deepest_rendered(); }
+  const BodyState& object() const { return live_.simulation().state().bodies.at(0); }
+  double depth() const { return live_.simulation().deepest_rendered(); }
 
   double jump = 0.0;
   double aside = 0.0;  // from where it is tracked [m]
@@ -72,16 +72,16 @@ std::ostream& operator<<(std::ostream& out, const Way& way) {
 }
 
 void put_back(Appearing& scene) {
-  SimulationState state = scene.live().now().state();
+  SimulationState state = scene.live().simulation().state();
   state.bodies[0].pose.position = Vector3(0, 0, 2.0);
   state.bodies[0].linear_momentum = Vector3(0, 0, 1.0);
-  scene.live().now().set_state(state);
+  scene.live().simulation().set_state(state);
 }
 void put_back_in_a_step_near_the_hand(Appearing& scene) {
   put_back(scene);
-  SimulationState state = scene.live().now().state();
-  state.bodies[0].pose.position = Vector3(0, 0, scene.live().now().scene().bounds.max.z());
-  scene.live().now().set_state(state);
+  SimulationState state = scene.live().simulation().state();
+  state.bodies[0].pose.position = Vector3(0, 0, scene.live().simulation().scene().bounds.max.z());
+  scene.live().simulation().set_state(state);
 }
 void place(Appearing& scene) {
   scene.live().place("object", {kInTheHand, Quaternion::Identity()});
@@ -154,13 +154,13 @@ double fastest_apart(bool fixture, const Vector3& gravity) {
   scene.bodies[0].fixed = fixture;
   scene.bodies[1].start.position = kAway;
   LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
-  live.now().advance({at(0.0), {}});
+  live.simulation().advance({at(0.0), {}});
   live.place("second", {{0.004, 0.002, 0.01}, Quaternion::Identity()});
   double fastest = 0.0;
   for (int i = 1; i <= 240; ++i) {
-    live.now().advance({at(i / kRate), {}});
+    live.simulation().advance({at(i / kRate), {}});
     for (std::size_t b = 0; b < 2; ++b) {
-      const Twist twist = testing::object_twist(live.now(), b);
+      const Twist twist = testing::object_twist(live.simulation(), b);
       fastest = std::max(fastest, twist.linear.norm() + 0.035 * twist.angular.norm());
     }
   }

@@ -166,15 +166,15 @@ TEST(Faults, an_object_that_is_removed_while_it_is_pushed_leaves_nothing_behind)
   other.start.position.y() = 0.3;
   live.add(other);
   int first = 0;
-  while (first < 100 && live.now().result().contacts.empty()) {
-    live.now().advance({at(0.01 * first), {pushing(0.01 * first)}});
+  while (first < 100 && live.simulation().result().contacts.empty()) {
+    live.simulation().advance({at(0.01 * first), {pushing(0.01 * first)}});
     ++first;
   }
   ASSERT_LT(first, 100) << "it is never touched";
   live.remove("object");
   for (int i = first; i < first + 20; ++i) {
-    ASSERT_EQ(live.now().advance({at(0.01 * i), {pushing(0.01 * i)}}), Rejection::none);
-    EXPECT_TRUE(live.now().result().contacts.empty());
+    ASSERT_EQ(live.simulation().advance({at(0.01 * i), {pushing(0.01 * i)}}), Rejection::none);
+    EXPECT_TRUE(live.simulation().result().contacts.empty());
   }
 }
 
@@ -212,9 +212,9 @@ TEST(Faults, a_thousand_objects_that_are_added_cost_each_no_more_than_in_proport
     const double time = time_to_add(live, i);
     if (i == 100) at_hundred = time;
     at_thousand = time;
-    ASSERT_EQ(live.now().advance({at(0.001 * i), {pushing(0.0)}}), Rejection::none);
+    ASSERT_EQ(live.simulation().advance({at(0.001 * i), {pushing(0.0)}}), Rejection::none);
   }
-  EXPECT_EQ(live.now().scene().bodies.size(), 1001u);
+  EXPECT_EQ(live.simulation().scene().bodies.size(), 1001u);
   EXPECT_LT(at_thousand, 20.0 * at_hundred) << "proportion would be 9.3";
   RecordProperty("microseconds_at_100", static_cast<int>(1e6 * at_hundred));
   RecordProperty("microseconds_at_1000", static_cast<int>(1e6 * at_thousand));

@@ -34,34 +34,36 @@ class Held {
     for (; frame_ <= std::lround(until * kRate); ++frame_) {
       const double t = static_cast<double>(frame_) / kRate;
       const Vector3 sway = t < 0.5 ? Vector3::Zero() : testing::swing(t - 0.5, 0.05, 1.0);
-      live_.now().advance({at(t), {pinch_.hand(t, sway)}});
-      for (const Event& event : live_.now().result().events) kinds.push_back(event.kind);
+      live_.simulation().advance({at(t), {pinch_.hand(t, sway)}});
+      for (const Event& event : live_.simulation().result().events) kinds.push_back(event.kind);
     }
   }
 
   LiveSimulation& live() { return live_; }
-  Simulation& now() { return live_.now(); }
+  Simulation& simulation() { return live_.simulation(); }
   std::size_t index(const std::string& name) const {
-    return static_cast<std::size_t>(*find_body(live_.now().scene(), name));
+    return static_cast<std::size_t>(*find_body(live_.simulation().scene(), name));
   }
-  const BodyState& state(const std::string& name) const { return live_.now().state().bodies[index(name)]; }
+  const BodyState& state(const std::string& name) const {
+    return live_.simulation().state().bodies[index(name)];
+  }
   Twist twist(const std::string& name) const {
-    return twist_of(live_.now().scene().bodies[index(name)], state(name));
+    return twist_of(live_.simulation().scene().bodies[index(name)], state(name));
   }
   std::vector<Contact> contacts_with(const std::string& name) const {
     std::vector<Contact> found;
-    for (const Contact& contact : live_.now().state().contacts) {
+    for (const Contact& contact : live_.simulation().state().contacts) {
       if (contact.key.body == index(name) && contact.touching()) found.push_back(contact);
     }
     return found;
   }
   bool holds() const {
-    const SimulationState& state = live_.now().state();
+    const SimulationState& state = live_.simulation().state();
     return state.interactions[index("object")].level == InteractionLevel::grasp;
   }
   /// Of the cube against the hand.
   double speed_in_hand() const {
-    const HandTrack& track = live_.now().state().hands[0];
+    const HandTrack& track = live_.simulation().state().hands[0];
     const Vector3 hand = (track.current.palm.position - track.previous.palm.position) * kRate;
     return (twist("object").linear - hand).norm();
   }
@@ -131,14 +133,14 @@ TEST(LiveSimulation, an_object_that_comes_into_the_hand_is_not_pushed_until_the_
   Scene scene;
   LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
   const auto tip = [](double x) { return testing::finger({x, -0.1, 0}, {x, 0, 0}, 0.008); };
-  for (int i = 0; i < 5; ++i) live.now().advance({at(i / kRate), {tip(0.0)}});
+  for (int i = 0; i < 5; ++i) live.simulation().advance({at(i / kRate), {tip(0.0)}});
   live.add(ball_at({0.005, 0, 0}, "ball"));
-  for (int i = 5; i < 60; ++i) live.now().advance({at(i / kRate), {tip(0.0)}});
-  EXPECT_EQ(live.now().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
-  for (int i = 60; i < 80; ++i) live.now().advance({at(i / kRate), {tip(-0.002 * (i - 59))}});
-  EXPECT_EQ(live.now().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
-  for (int i = 80; i < 120; ++i) live.now().advance({at(i / kRate), {tip(-0.042 + 0.002 * (i - 79))}});
-  EXPECT_GT(live.now().state().bodies[0].linear_momentum.x(), 0.0);
+  for (int i = 5; i < 60; ++i) live.simulation().advance({at(i / kRate), {tip(0.0)}});
+  EXPECT_EQ(live.simulation().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
+  for (int i = 60; i < 80; ++i) live.simulation().advance({at(i / kRate), {tip(-0.002 * (i - 59))}});
+  EXPECT_EQ(live.simulation().state().bodies[0].linear_momentum, Vector3(0, 0, 0));
+  for (int i = 80; i < 120; ++i) live.simulation().advance({at(i / kRate), {tip(-0.042 + 0.002 * (i - 79))}});
+  EXPECT_GT(live.simulation().state().bodies[0].linear_momentum.x(), 0.0);
 }
 
 TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) {
@@ -155,38 +157,39 @@ TEST(LiveSimulation, what_is_held_and_deleted_is_let_go_in_the_order_of_events) 
   EXPECT_EQ(events[2].kind, EventKind::hover_end);
   EXPECT_EQ(events[0].body, static_cast<int>(cube));
   EXPECT_EQ(events[0].hand_id, 1u);
-  EXPECT_TRUE(held.now().state().contacts.empty());
-  for (const Contact& contact : held.now().result().contacts) EXPECT_LT(contact.key.body, 2);
+  EXPECT_TRUE(held.simulation().state().contacts.empty());
+  for (const Contact& contact : held.simulation().result().contacts) EXPECT_LT(contact.key.body, 2);
   held.play(0.8);
   held.live().remove("first");
   held.live().remove("last");
   held.play(0.9);
-  EXPECT_TRUE(held.now().state().bodies.empty());
+  EXPECT_TRUE(held.simulation().state().bodies.empty());
 }
 
 /// Of the joint of that name.
 double place_of(const char* joint, const LiveSimulation& live) {
-  const std::optional<int> found = find_joint(live.now().scene(), joint);
-  return live.now().state().joints.at(static_cast<std::size_t>(found.value())).position;
+  const std::optional<int> found = find_joint(live.simulation().scene(), joint);
+  return live.simulation().state().joints.at(static_cast<std::size_t>(found.value())).position;
 }
 
 TEST(LiveSimulation, what_is_deleted_takes_along_what_hangs_on_it_and_nothing_else) {
   LiveSimulation live(load_scene("config/scenes/hatch.urdf", {}),
                       testing::unfiltered(ContactModelKind::implicit));
-  live.now().advance_without_hands(200'000'000);
+  live.simulation().advance_without_hands(200'000'000);
   const double pressed = place_of("button_2_slide", live);
   live.remove("latch_top");
-  EXPECT_FALSE(find_body(live.now().scene(), "latch_top"));
-  EXPECT_FALSE(find_joint(live.now().scene(), "latch_top_axle"));
-  EXPECT_EQ(live.now().scene().joints.size(), 5u);
+  EXPECT_FALSE(find_body(live.simulation().scene(), "latch_top"));
+  EXPECT_FALSE(find_joint(live.simulation().scene(), "latch_top_axle"));
+  EXPECT_EQ(live.simulation().scene().joints.size(), 5u);
   EXPECT_EQ(place_of("button_2_slide", live), pressed);
-  for (const Joint& joint : live.now().scene().joints)
-    EXPECT_EQ(live.now().scene().bodies[static_cast<std::size_t>(joint.parent)].name, "wall") << joint.name;
-  live.now().advance_without_hands(400'000'000);
+  for (const Joint& joint : live.simulation().scene().joints)
+    EXPECT_EQ(live.simulation().scene().bodies[static_cast<std::size_t>(joint.parent)].name, "wall")
+        << joint.name;
+  live.simulation().advance_without_hands(400'000'000);
   live.remove("wall");
-  EXPECT_TRUE(live.now().scene().bodies.empty());
-  EXPECT_TRUE(live.now().scene().joints.empty());
-  live.now().advance_without_hands(600'000'000);
+  EXPECT_TRUE(live.simulation().scene().bodies.empty());
+  EXPECT_TRUE(live.simulation().scene().joints.empty());
+  live.simulation().advance_without_hands(600'000'000);
 }
 
 TEST(LiveSimulation, no_change_by_eye_drops_what_is_held_or_jolts_it) {
@@ -265,8 +268,8 @@ TEST(LiveSimulation, another_filter_takes_over_without_a_jolt) {
 TEST(LiveSimulation, a_bad_value_is_refused_and_nothing_changes_nor_does_what_was_set_with_it) {
   Held held;
   held.play(0.7);
-  const std::uint64_t before = hash(held.now().state());
-  const Simulation* simulation = &held.now();
+  const std::uint64_t before = hash(held.simulation().state());
+  const Simulation* simulation = &held.simulation();
   EXPECT_THROW(held.live().set_parameters({{"step", "0.002"}, {"step", "-1"}}), ParameterError);
   EXPECT_THROW(held.live().set_parameters({{"step", "0.002"}, {"speed", "1"}}), ParameterError);
   EXPECT_THROW(held.live().set_parameters({{"material/dynamic_friction", "0.9"}}), ParameterError);
@@ -275,9 +278,9 @@ TEST(LiveSimulation, a_bad_value_is_refused_and_nothing_changes_nor_does_what_wa
   EXPECT_THROW(held.live().add(ball_at({0, 9, 0}, "new")), std::invalid_argument);
   EXPECT_THROW(held.live().add(ball_at({0, 0, 0.03}, "new")), std::invalid_argument);
   EXPECT_THROW(held.live().place("last", {{9, 0, 0}, Quaternion::Identity()}), std::invalid_argument);
-  EXPECT_EQ(hash(held.now().state()), before);
-  EXPECT_EQ(&held.now(), simulation);
-  EXPECT_EQ(held.now().configuration().step, Configuration().step);
+  EXPECT_EQ(hash(held.simulation().state()), before);
+  EXPECT_EQ(&held.simulation(), simulation);
+  EXPECT_EQ(held.simulation().configuration().step, Configuration().step);
 }
 
 TEST(LiveSimulation, only_bodies_without_a_material_of_their_own_follow_the_parameters) {
@@ -287,11 +290,11 @@ TEST(LiveSimulation, only_bodies_without_a_material_of_their_own_follow_the_para
   scene.bodies.back().own_material.static_friction = true;
   LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
   live.set_parameters({{"material/static_friction", "0.7"}, {"material/restitution", "0.1"}});
-  EXPECT_EQ(live.now().scene().bodies[0].material.static_friction, 0.7);
-  EXPECT_EQ(live.now().scene().bodies[1].material.static_friction, 0.9);
-  EXPECT_EQ(live.now().scene().bodies[1].material.restitution, 0.1);
+  EXPECT_EQ(live.simulation().scene().bodies[0].material.static_friction, 0.7);
+  EXPECT_EQ(live.simulation().scene().bodies[1].material.static_friction, 0.9);
+  EXPECT_EQ(live.simulation().scene().bodies[1].material.restitution, 0.1);
   live.set_parameters({{"contact_model", "seed"}});
-  EXPECT_EQ(live.now().scene().bodies[0].material.stiffness, 100.0);
+  EXPECT_EQ(live.simulation().scene().bodies[0].material.stiffness, 100.0);
 }
 
 TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_there_are_to_their_start) {
@@ -304,10 +307,10 @@ TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_
   held.live().add(ball_at({0, 0.4, 0}, "new", {0.2, 0, 0}));
   held.live().remove("first");
   held.play(1.2);
-  held.now().reset();
+  held.simulation().reset();
   EXPECT_EQ(held.state("last").pose.position, Vector3(-0.3, 0, 0));
   EXPECT_EQ(held.state("new").pose.position, Vector3(0, 0.4, 0));
-  EXPECT_FALSE(find_body(held.now().scene(), "first"));
+  EXPECT_FALSE(find_body(held.simulation().scene(), "first"));
 }
 
 /// As a recording of a stranger may ask for it.
@@ -320,7 +323,7 @@ TEST(LiveSimulation, a_pose_that_is_none_is_refused) {
   EXPECT_THROW(place(std::nan(""), 0.0), std::invalid_argument);
   EXPECT_THROW(place(3.0, 0.0), std::invalid_argument);
   place(0.999, 0.0);
-  EXPECT_NEAR(held.now().state().bodies.back().pose.orientation.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(held.simulation().state().bodies.back().pose.orientation.norm(), 1.0, 1e-15);
 }
 
 /// A stack that stands goes on standing: contacts between bodies come along.
@@ -340,11 +343,11 @@ TEST(LiveSimulation, a_stack_keeps_standing_when_something_else_goes) {
   LiveSimulation changed(scene, configuration), unchanged(scene, configuration);
   for (int i = 0; i < 120; ++i) {
     if (i == 60) changed.remove("away");
-    changed.now().advance({at(i / kRate), {}}), unchanged.now().advance({at(i / kRate), {}});
+    changed.simulation().advance({at(i / kRate), {}}), unchanged.simulation().advance({at(i / kRate), {}});
   }
-  expect_same(changed.now().state().bodies[1], unchanged.now().state().bodies[2]);
-  expect_same(changed.now().state().bodies[2], unchanged.now().state().bodies[3]);
-  EXPECT_NEAR(changed.now().state().bodies[2].pose.position.z(), 0.075, 1e-3);
+  expect_same(changed.simulation().state().bodies[1], unchanged.simulation().state().bodies[2]);
+  expect_same(changed.simulation().state().bodies[2], unchanged.simulation().state().bodies[3]);
+  EXPECT_NEAR(changed.simulation().state().bodies[2].pose.position.z(), 0.075, 1e-3);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ TEST(Time, a_stamp_that_is_none_is_refused_and_the_next_frame_is_taken) {
 
 /// Under UndefinedBehaviorSanitizer this tells an overflow.
 TEST(Time, stamps_of_both_ends_of_what_a_stamp_can_be_are_told_apart) {
-  const Nanoseconds late = StampJudge::kLatest - 1'000'000'000, step = 10'000'000;
+  const Nanoseconds late = StampCheck::kLatest - 1'000'000'000, step = 10'000'000;
   Simulation simulation(drifting_cube(), unfiltered());
   EXPECT_EQ(simulation.advance({-late, {}}), Rejection::none);
   EXPECT_EQ(simulation.advance({-late + step, {}}), Rejection::none);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mr_hand_interaction/rendering/hand_offset.h"
-#include "rendering/joint_limits.h"
+#include "rendering/finger_chain.h"
 
 namespace mrhi::testing {
 

@@ -9,8 +9,8 @@
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
-#include "mr_hand_interaction/training/operator_trial.h"
 #include "support/white_noise.h"
+#include "training/operator_trial.h"
 
 namespace mrhi::testing {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/synthetic/fingertip_reach.h"
+#include "synthetic/fingertip_reach.h"
 
 namespace mrhi {
 namespace {

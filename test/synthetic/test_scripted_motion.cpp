@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mr_hand_interaction/collision/closest_features.h"
+#include "collision/closest_features.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {

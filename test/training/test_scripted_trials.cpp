@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/training/observation.h"
+#include "mr_hand_interaction/training/trial.h"
 #include "synthetic/performance.h"
 #include "training/trials.h"
 

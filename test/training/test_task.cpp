@@ -1,8 +1,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "mr_hand_interaction/training/object_model.h"
 #include "scene/scene_files.h"
+#include "training/object_model.h"
 
 namespace mrhi {
 namespace {

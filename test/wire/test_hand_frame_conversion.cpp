@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "mr_hand_interaction/ros/standard_outputs.h"
+#include "ros/standard_outputs.h"
 #include "ros/tracker_messages.h"
 #include "sample_hands.h"
 

@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/recording_writer.h"
+#include "synthetic/recording_writer.h"
 
 #include <gtest/gtest.h>
 

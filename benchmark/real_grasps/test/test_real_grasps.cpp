@@ -102,7 +102,7 @@ struct Told {
     story.grasp_began = 1.0;
     story.grasp_ended = 2.1;
   }
-  Outcome outcome() const { return judge(story, recording.tracks[0], closing, kCube); }
+  Outcome outcome() const { return outcome_of(story, recording.tracks[0], closing, kCube); }
 };
 
 TEST(Held, IsWhatIsGraspedAndInTheHandUntilItOpens) {

@@ -1,27 +1,47 @@
 #pragma once
 
-#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "mr_hand_interaction/replay/arguments.h"
-#include "mr_hand_interaction/replay/frame_source.h"
-#include "mr_hand_interaction/replay/progress_bar.h"
-#include "mr_hand_interaction/replay/result_writer.h"
-#include "mr_hand_interaction/replay/summary.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/replay/compare.h"
 #include "mr_hand_interaction/simulation.h"
+#include "mr_hand_interaction/usage_error.h"
 
 namespace mrhi {
+
+/// The command line of `replay`.
+struct ReplayArguments {
+  bool help = false;
+  std::optional<double>
+      demonstration;     ///< demonstration.csv and .bag too, at this rate [Hz]; 0: the frames' own
+  bool explain = false;  ///< explain.json and explain.html too
+  std::optional<std::pair<std::string, std::string>>
+      compare;          ///< folders of two runs; nothing is played then
+  Tolerance tolerance;  ///< of --compare
+  std::string scene;    ///< name or URDF file
+  std::string input;    ///< .bag or .csv
+  std::string output;   ///< folder
+  std::optional<std::string> topic;
+  std::optional<std::string> parameter_file;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< name, YAML value
+  std::vector<std::pair<std::string, Pose>> object_poses;     ///< of the centre of mass, in world
+  std::vector<std::pair<std::string, Twist>> object_twists;   ///< world axes
+  std::optional<Pose> hand_transform;                         ///< of the device frame in world
+};
+
+/// Arguments without the program's name. Throws UsageError. Whether scene, objects and parameters exist is
+/// not checked here.
+ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments);
+
+/// What --help says.
+const char* replay_help();
 
 /// Scene and parameters as the arguments say, objects placed. Throws UsageError for a name or value on the
 /// command line that is not allowed, SceneError and ParameterError for files.
 Simulation prepare_simulation(const ReplayArguments& arguments);
-
-/// Who looks at each result.
-using FrameWatcher = std::function<void(const Simulation&)>;
-
-/// Runs all frames through the simulation; each result is written. The summary grows as it goes on, so that
-/// it holds if this throws.
-void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
-                ReplaySummary& summary, const FrameWatcher& watcher = {});
 
 /// The whole program after its arguments are known. Throws UsageError, else std::exception with one line for
 /// bad data; what had been written stays.

@@ -2,14 +2,16 @@
 
 #include <ros/node_handle.h>
 
+#include <cstdint>
 #include <map>
 #include <string>
 
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/ros/haptics_publisher.h"
 
 namespace mrhi {
+
+enum class HapticsRate : std::uint8_t { frame, step };
 
 /// What the interaction node is told on the parameter server.
 struct ServerParameters {

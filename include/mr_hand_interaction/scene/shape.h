@@ -22,6 +22,13 @@ struct SolidMoments {
   Matrix3 second = Matrix3::Zero();  ///< that of x x^T [m^5]
 };
 
+/// A solid between two flat ends that are half.z from its middle: on a rectangle, or on a disc of radius
+/// half.x.
+struct PrismForm {
+  Vector3 half;  ///< [m]
+  bool round;
+};
+
 /// Triangles with outward normals (counter-clockwise seen from outside) [m].
 struct TriangleMesh {
   std::vector<Vector3> vertices;
@@ -35,6 +42,7 @@ struct TriangleMesh {
 //   farthest         its point farthest along n
 //   way_out          from `point` along the unit vector `direction` to where that line leaves the shape
 //   core             the capsule that it is, if it is one or a ball
+//   prism            the prism that it is, if it is one
 //   closest          features of a capsule of the hand; anything of a distance beyond `margin` may stand for
 //                    what is farther than that
 //   span             what of the capsule's axis stands over the flat or straight piece at `features`
@@ -48,6 +56,7 @@ struct Sphere {
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
+  std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
@@ -60,6 +69,7 @@ struct Box {
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
+  std::optional<PrismForm> prism() const { return PrismForm{half_extents, false}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
@@ -74,6 +84,7 @@ struct Cylinder {
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
+  std::optional<PrismForm> prism() const { return PrismForm{{radius, radius, half_length}, true}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
@@ -88,6 +99,7 @@ struct Pill {
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
+  std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
@@ -102,6 +114,7 @@ struct Mesh {
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
+  std::optional<PrismForm> prism() const { return std::nullopt; }
 };
 
 using Shape = std::variant<Sphere, Box, Cylinder, Pill, Mesh>;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/math/capsule.h"
 
 namespace mrhi {
 

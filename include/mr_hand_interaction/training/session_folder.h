@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/training/folder_lock.h"
 #include "mr_hand_interaction/training/session_setup.h"
 #include "mr_hand_interaction/training/trial.h"
 
 namespace mrhi {
+
+class FolderLock;
 
 /// A session that cannot be opened or written. what() is one line.
 class SessionError : public std::runtime_error {
@@ -64,14 +65,14 @@ struct HandRow {
 };
 
 /// A session's folder: session.yaml, setup/, trials.csv, events.csv, and once there are hands hands.csv and
-/// hands_raw.csv. What is logged is in the file when the call
-/// returns, whatever becomes of this program.
+/// hands_raw.csv. What is logged is in the file when the call returns, whatever becomes of this program.
 class SessionFolder {
  public:
   /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
   /// Throws SessionError if it is that of another session or of another setup, in use by another program, or
   /// cannot be read or written.
   SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
+  ~SessionFolder();
 
   const std::string& path() const { return path_; }
   bool resumed() const { return resumed_; }

@@ -62,9 +62,10 @@ struct TaskObject {
   Twist twist;       ///< world axes
 };
 
+/// A body that never moves.
 struct Fixture {
-  std::string name, file;
-  Pose pose;
+  std::string name, file;  ///< as a TaskObject's
+  Pose pose;               ///< of the link in world
 };
 
 /// What a lab writes in YAML. Immutable once loaded.

@@ -2,12 +2,31 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "mr_hand_interaction/training/observation.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/training/task.h"
 
 namespace mrhi {
+
+/// What a trial sees of its object at one time.
+struct Observation {
+  Nanoseconds stamp = 0;
+  Pose pose;                         ///< of the object's body frame in world
+  Twist twist;                       ///< world axes
+  bool held = false;                 ///< grasped by a hand
+  bool touched = false;              ///< by a hand
+  std::optional<double> grip_force;  ///< half the sum of the forces that press on the object [N]
+  int tracking_losses = 0;           ///< hands lost since the observation before
+  bool put_back = false;             ///< left the bounds since then, and was put back where it started
+  std::vector<std::pair<std::string, double>> joints;  ///< by name: where it is [rad], [m]
+};
+
+/// Of a body of a simulation and what hangs on it, after a frame.
+Observation observe(const Simulation& simulation, std::size_t body);
 
 /// Numbers are those of TrainingStatus.msg.
 enum class TrialResult : std::uint8_t { none, completed, skipped, timed_out, aborted };
@@ -83,7 +102,7 @@ class Trial {
     Vector3 position;
   };
 
-  const Goal& now() const { return task_->goals[goal_]; }
+  const Goal& current_goal() const { return task_->goals[goal_]; }
   double timed() const;
   void measure(const Observation& seen, Nanoseconds passed);
   void note_grasp(const Observation& seen);

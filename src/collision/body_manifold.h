@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "mesh_collision.h"
+#include "mr_hand_interaction/scene/shape.h"
+
+namespace mrhi {
+
+/// One place where two bodies touch.
+struct ManifoldPoint {
+  Vector3 point;         ///< world, midway between the two surfaces
+  double depth;          ///< along the manifold's normal: > 0 overlap, < 0 gap [m]
+  std::uint8_t feature;  ///< names the corners, edges or rims that meet; the same from step to step
+};
+
+/// How two shapes touch. Empty if they are farther apart than the margin.
+struct Manifold {
+  Vector3 normal = Vector3::UnitZ();  ///< unit, world, out of b towards a: moving a along it separates
+  std::array<ManifoldPoint, 8> points{};
+  int count = 0;
+};
+
+/// A shape as the manifold needs it: made once at loading. Refers to what it is made of; throws
+/// std::invalid_argument for a mesh without its collider.
+struct ManifoldShape {
+  ManifoldShape(const Shape& placed, const MeshCollider* collider = nullptr);
+
+  const Shape& shape;
+  const MeshCollider* mesh;
+  std::optional<Capsule> core;     ///< if it is a ball or a capsule
+  std::optional<PrismForm> prism;  ///< if it is a box or a cylinder
+  double bounding_radius;          ///< about the shape frame's origin [m]
+};
+
+/// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
+/// deepest among them. Deterministic; no memory, no allocation.
+///
+/// Sphere, box and cylinder with each other: the deepest point is as deep as the shortest translation that
+/// separates them, to rounding. Where that is within 2.5 degrees of a face's normal, the face's is taken (the
+/// larger face's, if two meet), so that what lies on a face keeps its normal and its points: right to 0.1 % +
+/// 3 um. A ball or a capsule with any shape: to rounding, at two points where it lies along a face or a
+/// straight side. A rim cut deeper than it is curved there may be taken 1 % too deep. Mesh: corners and edges
+/// of each are measured in the other; pair_manifolds.h says how well.
+Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
+                       double margin);
+
+}  // namespace mrhi

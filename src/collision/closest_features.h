@@ -1,0 +1,33 @@
+#pragma once
+
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/scene/shape.h"
+
+namespace mrhi {
+
+/// Where a capsule of the hand (body 1) and a shape (body 2) are closest, or overlap least. All in the frame
+/// of the arguments.
+struct ClosestFeatures {
+  /// Signed: > 0 gap; < 0 overlap, -distance is the shortest translation that separates the two [m].
+  double distance;
+  Vector3 normal;         ///< unit, out of the shape towards the hand: moving the capsule along it separates
+  Vector3 point;          ///< on the shape's surface
+  double axis_parameter;  ///< s in 0..1 of the capsule's axis point that faces `point`
+  int face = -1;          ///< of a mesh: its flat face that has the normal
+};
+
+/// Closed forms; shape frame at its centre. Exact also when the capsule's axis is inside the shape.
+/// Where a segment lies along a face (to 1e-12 m), the middle of the stretch that touches is given. Where
+/// several directions are equally short, always the same one.
+ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere);
+ClosestFeatures capsule_box(const Capsule& capsule, const Box& box);
+
+/// Part s0..s1 of a capsule's axis that stands over the flat (or straight) piece of surface at `features`, so
+/// that a finger lying along a face touches with two points. s0 == s1 where it touches at a point.
+struct AxisSpan {
+  double s0, s1;
+  bool at_edge = false;  ///< of a box or a cylinder
+};
+AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
+
+}  // namespace mrhi

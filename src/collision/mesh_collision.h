@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "closest_features.h"
+
+namespace mrhi {
+
+struct MeshShape;
+
+/// A triangle mesh prepared for contact: a tree of bounding volumes finds the faces and edges near a capsule,
+/// closed forms measure them. Triangles that lie in one plane (within 5e-7 of the mesh's extent) are one
+/// face, so that nothing depends on how a file cuts a surface into triangles, nor on their order. A closed
+/// mesh is solid, also where it is not convex; an open one is a sheet that touches from both sides.
+/// Neighbouring triangles share places of vertices. May be shared between threads and simulations: it
+/// remembers where a search ended, so that the next one is short, but no result depends on that.
+class MeshCollider {
+ public:
+  /// Throws std::invalid_argument if no triangle has an area.
+  explicit MeshCollider(const TriangleMesh& mesh);
+  ~MeshCollider();
+
+  /// Closest features, if the capsule's surface is nearer than `margin` [m] to the mesh's, else nothing.
+  /// Capsule in the mesh's frame. Exact outside a solid, and inside a convex one; with the axis inside a
+  /// solid that is not convex, the shortest way out through what is nearest.
+  std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
+
+  /// What of the capsule's axis stands over the flat face that `closest` found; a point if that is not a
+  /// face, or one of a curved surface's.
+  AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
+
+  const MeshShape& shape() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "body_box.h"
+#include "broad_phase.h"
+#include "mr_hand_interaction/integration/body_state.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
+
+namespace mrhi {
+
+/// A body and the capsules of a hand that may come near it in this frame, ascending.
+struct NearBody {
+  int body;
+  int count = 0;
+  Pose pose;  ///< of the body as they were listed
+  std::array<std::uint8_t, kCapsules> capsules;
+  /// By which each stays off the body in this frame, were it to stay at that pose; < 0 may touch it [m].
+  std::array<double, kCapsules> clearances;
+
+  void add(int capsule, double clearance) {
+    capsules[static_cast<std::size_t>(count)] = static_cast<std::uint8_t>(capsule);
+    clearances[static_cast<std::size_t>(count++)] = clearance;
+  }
+  /// At most how far a point of the body, within `radius` of its frame's origin, is from where it was [m].
+  double moved(const Pose& now, double radius) const {
+    return (now.position - pose.position).norm() +
+           2.0 * radius * (now.orientation.coeffs() - pose.orientation.coeffs()).norm();
+  }
+  const std::uint8_t* begin() const { return capsules.data(); }
+  const std::uint8_t* end() const { return capsules.data() + count; }
+};
+
+/// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
+/// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
+/// not part of it: what it lists may be more than needed, never less.
+class Neighbours {
+ public:
+  explicit Neighbours(const Scene& scene);  ///< keeps a reference
+
+  /// Once a frame: the hands' way in it.
+  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies);
+  /// Every step, of `step` seconds.
+  void begin_step(const std::vector<BodyState>& bodies, double step);
+
+  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`. By
+  /// what is where alone, not by what is listed.
+  bool may_meet_hand(std::size_t body, const BodyState& state, double seconds) const;
+  bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
+
+  /// Bodies near the hand in `slot`, ascending.
+  const std::vector<NearBody>& near_hand(int slot) const {
+    return near_hand_[static_cast<std::size_t>(slot)];
+  }
+  /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
+  /// free.
+  const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+  /// Bodies that are in any of the pairs.
+  const std::vector<int>& paired() const { return paired_; }
+
+ private:
+  struct Room {
+    Vector3 centre = Vector3::Zero();
+    double slack_squared = -1.0;  // of the way that the body may go from there [m^2]
+    double radius = 0.0;          // of the sphere that holds the body and the gap that is followed [m]
+  };
+  /// A capsule's axis half-way through the frame, and how far from it the capsule reaches in the frame.
+  struct Way {
+    bool comes_near(const Vector3& centre, double radius) const;
+    double clearance(const BodyBox& box, const Pose& pose, const Matrix3& rotation) const;
+
+    int capsule;
+    Vector3 start, along;
+    double reach;
+  };
+  struct Reach {
+    Vector3 min, max;  // of a hand in this frame; min > max without a hand
+    std::vector<Way> ways;
+  };
+  static void measure(const HandTrack& hand, Reach& reach);
+  /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
+  /// followed.
+  double reach_of(std::size_t body, const BodyState& state, double seconds) const;
+  bool place_those_leaving(const std::vector<BodyState>& bodies, double step);
+  void list_near_hands(const std::vector<BodyState>& bodies);
+  void list_pairs();
+
+  const Scene& scene_;
+  BroadPhase broad_phase_;
+  std::vector<BodyBox> boxes_;
+  std::vector<Room> rooms_;
+  std::vector<Reach> reaches_;
+  std::vector<std::vector<NearBody>> near_hand_;
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<int> paired_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "closest_features.h"
+#include "mesh_collision.h"
+
+namespace mrhi {
+
+/// Closest features, in whose place anything of a distance beyond `margin` may stand where nothing is nearer
+/// than that [m]. Capsule and features in the shape's frame; `mesh` is null unless the shape is one.
+ClosestFeatures closest_on(const Shape& shape, const MeshCollider* mesh, const Capsule& capsule,
+                           double margin);
+
+/// A shape of a body as the hand's capsules meet it.
+class PlacedCollider {
+ public:
+  /// Keeps references; `mesh` is null unless the shape is one.
+  PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh);
+
+  ClosestFeatures closest(const Capsule& capsule, double margin) const {
+    return closest_on(shape_, mesh_, capsule, margin);
+  }
+  bool has_bodys_frame() const { return has_bodys_frame_; }
+  AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
+    return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
+  }
+
+  /// Between the body's frame and the shape's.
+  Capsule to_shape(const Capsule& in_body) const {
+    if (has_bodys_frame_) return in_body;
+    return {rotation_.transpose() * (in_body.start - position_),
+            rotation_.transpose() * (in_body.end - position_), in_body.radius};
+  }
+  ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
+    if (has_bodys_frame_) return in_shape;
+    return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,
+            in_shape.axis_parameter};
+  }
+
+ private:
+  const Shape& shape_;
+  const MeshCollider* mesh_;
+  const bool has_bodys_frame_;
+  const Matrix3 rotation_;
+  const Vector3 position_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "body_manifold.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "placed_collider.h"
+
+namespace mrhi {
+
+/// What collision makes of a scene's shapes, once, at loading. Refers to the scene.
+struct SceneGeometry {
+  explicit SceneGeometry(const Scene& scene);
+
+  std::vector<std::vector<std::unique_ptr<MeshCollider>>> meshes;  ///< [body][shape], null unless a mesh
+  std::vector<std::vector<ManifoldShape>> shapes;                  ///< [body][shape]
+  std::vector<std::vector<PlacedCollider>> colliders;              ///< [body][shape], for hands
+};
+
+}  // namespace mrhi

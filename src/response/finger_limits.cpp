@@ -1,0 +1,121 @@
+#include "finger_limits.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mr_hand_interaction/tracking/hand_track.h"
+
+namespace mrhi {
+namespace {
+
+/// The pad that laps over a face bears at most this multiple of what it bears when pushed along the normal:
+/// where hardly anything laps over, that face adds hardly anything.
+constexpr double kMostOnAFace = 2.5;
+/// More than any edge gives with these: tangential force over the push.
+constexpr double kMostFriction = 4.0;
+
+/// The faces that meet at an edge or corner, as their normals: at right angles to each other.
+struct MeetingFaces {
+  std::array<Vector3, 3> normals;
+  std::size_t count = 0;
+
+  void add(const Vector3& normal) { normals[count++] = normal; }
+
+  /// Whether friction on these faces can bear the force F = normal + drag, which the object gives the finger:
+  /// what points out of a face presses, N_i = max(0, n_i.F), and all else is friction, |F - sum N_i n_i| <=
+  /// mu sum N_i.
+  bool bear(const Vector3& normal, const Vector3& drag, double friction) const {
+    const Vector3 force = normal + drag;
+    Vector3 rest = force;
+    double push = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double out = std::max(0.0, normals[i].dot(force));
+      if (out > kMostOnAFace * normals[i].dot(normal)) return false;
+      rest -= out * normals[i];
+      push += out;
+    }
+    return rest.squaredNorm() <= friction * friction * push * push;
+  }
+};
+
+MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
+  constexpr double kSameNormal = 1e-6;
+  MeetingFaces faces;
+  const auto add = [&](const Vector3& along) {
+    const double part = along.dot(normal);
+    if (std::abs(part) > kSameNormal) faces.add(part < 0.0 ? Vector3(-along) : along);
+  };
+  if (std::holds_alternative<Box>(shape)) {
+    for (int i = 0; i < 3; ++i) add(Vector3::Unit(i));
+  } else {
+    add(Vector3::UnitZ());
+    add(Vector3(normal.x(), normal.y(), 0.0).normalized());
+  }
+  return faces;
+}
+
+}  // namespace
+
+// The largest f for which the faces bear normal + f along, by halving; 20 times leave 4e-6 of the push.
+double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction) {
+  const MeetingFaces faces = faces_at(shape, normal);
+  double lowest = friction, highest = std::max(friction, kMostFriction);
+  if (faces.bear(normal, highest * along, friction)) return highest;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (lowest + highest);
+    (faces.bear(normal, middle * along, friction) ? lowest : highest) = middle;
+  }
+  return lowest;
+}
+
+void grip_edges(ContactStep& step) {
+  for (Contact& contact : step.contacts) {
+    if (!contact.at_edge || !contact.touching()) continue;
+    const Body& body = step.scene.bodies[contact.key.body];
+    const Vector3 reach = contact.hand_point - contact.point + contact.lever;
+    const Vector3 stretch = reach - contact.normal.dot(reach) * contact.normal;
+    const double length = stretch.norm();
+    if (length == 0.0 || body.material.dynamic_friction <= 0.0) continue;
+    const PlacedShape& placed = body.shapes[contact.key.shape];
+    const Quaternion to_shape =
+        (step.bodies[contact.key.body].pose.orientation * placed.pose.orientation).conjugate();
+    // The object holds the finger back against the way in which it is drawn: the trap is the sign, as
+    // stretch is p - c, and friction on the object is along it.
+    const Vector3 normal = to_shape * contact.normal, along = to_shape * (stretch / -length);
+    const double friction = contact.friction == Friction::sticking ? body.material.static_friction
+                                                                   : body.material.dynamic_friction;
+    contact.grip = friction_at_edge(placed.shape, normal, along, friction) / friction;
+  }
+}
+
+namespace {
+
+constexpr int kParts = kFingers + 1;  // of a hand: its fingers and the palm
+
+bool is_palm(const ContactKey& key) {
+  return key.capsule == kPalm;
+}
+double pressed_by(const Contact& contact) {
+  return contact.ignored ? 0.0 : contact.share * std::max(contact.pressed(), 0.0);
+}
+
+}  // namespace
+
+// A finger gives way once its contacts together push with its strength: each has the part of it that it has
+// of the depths, as equal springs side by side.
+void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
+  std::array<std::array<double, kParts>, kMaxHands> depths{};
+  const auto of = [&depths](const ContactKey& key) -> double& {
+    return depths[key.hand][static_cast<std::size_t>(finger_of(key.capsule))];
+  };
+  for (const Contact& contact : contacts) of(contact.key) += pressed_by(contact);
+  for (Contact& contact : contacts) {
+    const double together = of(contact.key), strength = is_palm(contact.key) ? hand.palm : hand.finger;
+    const double part = together > 0.0 ? pressed_by(contact) / together : 1.0;
+    contact.strength = part > 0.0 ? part * strength : strength;
+    contact.inverse_mass = 1.0 / (is_palm(contact.key) ? hand.palm_mass : hand.finger_mass);
+  }
+}
+
+}  // namespace mrhi

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mrhi {
+
+/// Counts what a node takes and refuses, for /diagnostics, and logs each kind of refusal at most every five
+/// seconds.
+class InputStatistics {
+ public:
+  /// Reasons that are listed from the start; others are added as they occur.
+  explicit InputStatistics(const std::vector<std::string>& reasons);
+
+  /// Latency: from the frame's stamp until now.
+  void taken(double latency);
+  void rejected(const std::string& reason, const std::string& detail);
+  /// Frames that were sent and have not arrived.
+  void lost(std::uint64_t frames) { lost_ += frames; }
+  std::uint64_t lost() const { return lost_; }
+  /// A frame was here for so long before it was done with [s].
+  void waited(double seconds);
+  /// Counts since the start; rate and latency since the last report.
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+ private:
+  struct Refusals {
+    std::uint64_t count = 0;
+    std::uint64_t reported = 0;
+    std::string last;
+    ros::WallTime logged;
+  };
+
+  std::uint64_t taken_ = 0;
+  std::uint64_t lost_ = 0, late_ = 0;
+  std::uint64_t lost_reported_ = 0, late_reported_ = 0;
+  std::map<std::string, Refusals> rejected_;
+  std::uint64_t taken_in_period_ = 0;
+  double latency_sum_ = 0.0, latency_max_ = 0.0;
+  ros::WallTime period_start_;
+};
+
+/// Counts messages that have not arrived (a queue was full, or the way was), by the numbers that ROS gives
+/// those of a publisher.
+class SequenceWatch {
+ public:
+  /// How many are missing before this one. A number that goes back, or far ahead, begins anew.
+  std::uint64_t missing(const std::string& publisher, std::uint32_t sequence) {
+    constexpr std::uint32_t kFar = 1'000'000;
+    const auto [known, is_new] = last_.emplace(publisher, sequence);
+    const std::uint32_t step = sequence - known->second;
+    known->second = sequence;
+    return is_new || step == 0 || step > kFar ? 0 : step - 1;
+  }
+
+ private:
+  std::map<std::string, std::uint32_t> last_;
+};
+
+}  // namespace mrhi

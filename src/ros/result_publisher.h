@@ -1,0 +1,64 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <std_msgs/Header.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptics_publisher.h"
+#include "mr_hand_interaction/ros/markers.h"
+#include "mr_hand_interaction/simulation.h"
+#include "stamp_clock.h"
+#include "standard_outputs.h"
+
+namespace mrhi {
+
+/// Publishes what comes of a simulation: the picture first, then the rest, and only where somebody listens.
+class ResultPublisher {
+ public:
+  ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
+                  const StampClock& clock);
+  /// From now on those of standard_outputs.h too.
+  void add_standard_outputs(const ros::NodeHandle& node);
+
+  /// From now on this one. rviz begins with an empty picture, so that what is no longer there goes.
+  void show(const Simulation& simulation);
+  /// After each step of a frame.
+  void note_step();
+  /// All that a result holds, under its own stamp.
+  void publish(const FrameResult& result);
+  /// What may be shown again at any time: markers, objects, transforms.
+  void publish_scene(const FrameResult& result, const ros::Time& stamp);
+  void publish_events(const std::vector<Event>& events);
+
+  /// When something was last shown.
+  ros::WallTime shown() const { return shown_; }
+
+ private:
+  std_msgs::Header header(const ros::Time& stamp) const;
+  void publish_markers(const FrameResult& result, const std_msgs::Header& header);
+  void let_picture_go() const;
+  void publish_rest(const FrameResult& result, const std_msgs::Header& header);
+  void publish_contacts(const FrameResult& result, const std_msgs::Header& header);
+  void publish_objects(const std_msgs::Header& header);
+  void publish_transforms(const std_msgs::Header& header);
+
+  std::string fixed_frame_;
+  const StampClock& clock_;
+  const Simulation* simulation_ = nullptr;
+  std::unique_ptr<Markers> markers_;
+  HapticsPublisher haptics_;
+  std::optional<StandardOutputs> standard_;
+  ros::Publisher rendered_hands_, tracked_hands_, objects_, joint_states_, contacts_, events_,
+      marker_publisher_;
+  visualization_msgs::MarkerArray::Ptr picture_;  // the last one
+  tf2_ros::TransformBroadcaster transforms_;
+  ros::Time transforms_stamp_;
+  ros::WallTime shown_;
+};
+
+}  // namespace mrhi

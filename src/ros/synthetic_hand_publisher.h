@@ -1,0 +1,35 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <string>
+
+#include "leap_human_publisher.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace mrhi {
+
+/// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on a schedule of its own.
+/// Parameters: ~motion (grasp_cube), ~side (right), ~rate (115) [Hz], ~noise (0), ~seed (1), ~loop (true),
+/// ~reset: name of a std_srvs/Trigger service to call before each run but the first (none).
+class SyntheticHandPublisher {
+ public:
+  /// Throws std::invalid_argument naming the parameter and what is allowed.
+  SyntheticHandPublisher(ros::NodeHandle node, const ros::NodeHandle& parameters);
+
+  /// Returns at shutdown, or after the first run if not looping. Begins once somebody listens, or after five
+  /// seconds.
+  void run();
+
+ private:
+  void wait_for_listener() const;
+  void reset_scene();
+
+  ros::NodeHandle node_;
+  SyntheticHand hand_;
+  bool loop_;
+  std::string reset_service_;
+  LeapHumanPublisher publisher_;
+};
+
+}  // namespace mrhi

@@ -1,0 +1,53 @@
+#include "mr_hand_interaction/stamp_check.h"
+
+#include <algorithm>
+
+namespace mrhi {
+namespace {
+
+constexpr int kRestartFrames = 3, kGapFrames = 2;
+/// Frames of a slow stream may be this many times as far apart as the last two were.
+constexpr Nanoseconds kIntervals = 4;
+
+/// Stamps may be of both signs: so much of what is between two of them is as good as all.
+Nanoseconds some_of(Nanoseconds interval) {
+  return kIntervals * std::min(interval, StampCheck::kLatest / kIntervals);
+}
+
+}  // namespace
+
+StampVerdict StampCheck::check(Nanoseconds stamp, Nanoseconds reached,
+                               const std::optional<Nanoseconds>& expected) {
+  if (stamp < -kLatest || stamp > kLatest) return StampVerdict::no_time;
+  if (!started) return take(stamp, 0, StampVerdict::follows);
+  const Nanoseconds before = stray;
+  if (stamp > reached) {
+    const Nanoseconds usual = interval > 0 ? kAhead : kBack;
+    const bool seen_to_go_by = expected && stamp - kAhead <= *expected;
+    if (seen_to_go_by || stamp - last <= std::max(usual, some_of(interval)))
+      return take(stamp, stamp - last, StampVerdict::follows);
+    if (note_stray(stamp, std::max(kBack, some_of(stray - last))) < kGapFrames) return StampVerdict::ahead;
+    return take(stamp, stamp - before, StampVerdict::follows);
+  }
+  if (reached - stamp <= kBack) return StampVerdict::late;
+  if (note_stray(stamp, kBack) < kRestartFrames) return StampVerdict::behind;
+  return take(stamp, stamp - before, StampVerdict::restart);
+}
+
+StampVerdict StampCheck::take(Nanoseconds stamp, Nanoseconds since, StampVerdict verdict) {
+  started = true;
+  last = stamp;
+  interval = since;
+  strays = 0;
+  return verdict;
+}
+
+int StampCheck::note_stray(Nanoseconds stamp, Nanoseconds longest) {
+  const bool same_side = (stray > last) == (stamp > last);
+  const bool goes_on = strays > 0 && same_side && stamp > stray && stamp - stray <= longest;
+  strays = goes_on ? strays + 1 : 1;
+  stray = stamp;
+  return strays;
+}
+
+}  // namespace mrhi

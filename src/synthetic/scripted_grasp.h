@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fingertip_reach.h"
+
+namespace mrhi {
+
+/// How a right hand holds an object: everything in the object's frame.
+struct Grasp {
+  Pose wrist;  ///< while the object is held
+  std::vector<FingertipContact> contacts;
+  HandPosture preferred;  ///< that the fingers are near to
+  double opening;         ///< of each fingertip before closing and after [m]
+  Vector3 retreat;        ///< unit: the way by which the open hand leaves the object
+
+  Grasp turned(const Quaternion& by) const;
+};
+
+/// Postures of a hand round an object: open, nearly touching, just touching with all tips, pressing. From one
+/// to the next but the first each tip moves in proportion to its depth, so that the springs of tips whose
+/// depths balance stay in balance all the way: closing and opening do not push the object.
+struct GraspPostures {
+  HandPosture open, near, touching, pressing;
+  double touching_share;  ///< of the way from near to pressing
+
+  explicit GraspPostures(const Grasp& grasp);
+};
+
+/// Of the shipped objects cube, ball, long_cuboid and flat_cuboid. Throws std::invalid_argument that lists
+/// them.
+Grasp shipped_grasp(const std::string& object);
+
+/// Postures of a hand round an object from open to pressed deep into it. `depth` is what thumb and fingers
+/// together close beyond its surface; each tip has its share of it. Below 0 the tips are off the surface.
+class GripPostures {
+ public:
+  /// `grasp`'s depths are shares: those of its first two contacts make up one. `deepest` > 0 [m].
+  GripPostures(const Grasp& grasp, double deepest);
+
+  HandPosture open, near;  ///< near: just off the surface
+  double near_depth;       ///< of `near`, below 0 [m]
+  /// Between near_depth and the deepest; beyond, at that end.
+  HandPosture at(double depth) const;
+  double deepest() const { return deepest_; }
+
+ private:
+  double deepest_;
+  std::vector<HandPosture> pressed_;  ///< evenly spaced from depth 0 to the deepest
+};
+
+}  // namespace mrhi

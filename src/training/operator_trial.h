@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../synthetic/operator.h"
+#include "../synthetic/practised_person.h"
+#include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/training/session.h"
+
+namespace mrhi {
+
+/// What simulated operators work with: the system, and the tracker before it.
+struct OperatorStage {
+  Configuration configuration;
+  std::vector<std::string> scene_folders;
+  SceneOptions scene_options;
+  double frame_rate = 115.0;  ///< of the tracker [Hz]
+  double noise = 1.0;         ///< amplitude of TrackingNoise
+};
+
+/// The scene of a task's trial with one object. With gravity the object stands on a table (a flat body on two
+/// rails, so that it can be taken from below), and what falls off is put back at once, as is what leaves the
+/// reach of the arm. Throws SceneError.
+Scene operator_scene(const Task& task, const TaskObject& object, const OperatorStage& stage);
+
+/// What there is to see of an object and of the task's goals from `goal` on. Into a hole it is wanted first
+/// outside of it on its axis, then inside.
+Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held);
+
+/// Who can do the task with the object, a SimulatedOperator or a PractisedPerson. Throws
+/// std::invalid_argument that names the goal, or the object, and what is allowed.
+std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
+                                    std::uint64_t seed);
+
+/// A simulated operator does the session's next trial: it sees the object, and through the noisy tracker its
+/// hand moves in a simulation. Stamps count on from `begin`; the result is the stamp of the last frame. No
+/// clock is read: the same arguments give the same bits.
+Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64_t seed,
+                       const OperatorStage& stage, Nanoseconds begin);
+
+/// A table under the body, or where a hand takes it from below (a flat body) two rails under its ends.
+Body stand_under(const Body& body);
+
+}  // namespace mrhi

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include "math/registration.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/synthetic/random.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of lengths about 1
+
+Quaternion any_turn(Random& random) {
+  return Quaternion(random.gaussian(), random.gaussian(), random.gaussian(), random.gaussian()).normalized();
+}
+Pose any_pose(Random& random) {
+  return {random.gaussian_vector(1.0), any_turn(random)};
+}
+
+TEST(Pose, products_are_taken_one_after_the_other) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Pose a = any_pose(random), b = any_pose(random);
+    const Vector3 point = random.gaussian_vector(1.0);
+    EXPECT_LT(((a * b) * point - a * (b * point)).norm(), kRounding);
+    EXPECT_NEAR((a * b).orientation.norm(), 1.0, kRounding);
+  }
+}
+
+TEST(Pose, an_inverse_takes_back_what_it_is_the_inverse_of) {
+  Random random(2);
+  for (int i = 0; i < 100; ++i) {
+    const Pose pose = any_pose(random);
+    const Vector3 point = random.gaussian_vector(1.0);
+    EXPECT_LT((pose.to_local(pose * point) - point).norm(), kRounding);
+    EXPECT_LT((pose.inverse() * (pose * point) - point).norm(), kRounding);
+    EXPECT_LT((pose * (pose.inverse() * point) - point).norm(), kRounding);
+  }
+}
+
+TEST(CrossMatrix, is_skew_and_multiplies_as_the_cross_product_does) {
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Vector3 v = random.gaussian_vector(1.0), w = random.gaussian_vector(1.0);
+    EXPECT_LT((cross_matrix(v) * w - v.cross(w)).norm(), kRounding);
+    EXPECT_EQ(cross_matrix(v).transpose(), -cross_matrix(v));
+  }
+}
+
+TEST(Capsule, its_axis_goes_from_start_to_end) {
+  const Capsule capsule{{1, 2, 3}, {3, 2, -1}, 0.1};
+  EXPECT_EQ(capsule.axis_point(0.0), capsule.start);
+  EXPECT_EQ(capsule.axis_point(1.0), capsule.end);
+  EXPECT_EQ(capsule.axis_point(0.5), capsule.centre());
+  EXPECT_EQ(capsule.axis_point(0.25), Vector3(1.5, 2, 2));
+}
+
+TEST(Seconds, are_a_billion_nanoseconds) {
+  EXPECT_DOUBLE_EQ(to_seconds(1'500'000'000), 1.5);
+  EXPECT_DOUBLE_EQ(to_seconds(-1), -1e-9);
+}
+
+using Points = std::vector<Vector3>;
+
+Points some_points(Random& random, int count, double size) {
+  Points points;
+  for (int i = 0; i < count; ++i) points.push_back(random.gaussian_vector(size));
+  return points;
+}
+Points transformed(const Points& points, const Pose& pose, double scale) {
+  Points result;
+  for (const Vector3& point : points) result.push_back(pose * (scale * point));
+  return result;
+}
+std::optional<Registration> registered(const Points& from, const Points& to) {
+  return mrhi::registered(from.data(), to.data(), from.size());
+}
+Vector3 apply(const Registration& found, const Vector3& point) {
+  return found.to + found.scale * (found.rotation * (point - found.from));
+}
+double squares(const Registration& found, const Points& from, const Points& to) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) sum += (apply(found, from[i]) - to[i]).squaredNorm();
+  return sum;
+}
+
+TEST(Registration, finds_the_turn_scale_and_shift_that_there_is) {
+  Random random(4);
+  for (int i = 0; i < 50; ++i) {
+    const Points from = some_points(random, 3 + i % 5, 0.05);
+    const Pose pose = any_pose(random);
+    const double scale = 0.5 + random.uniform();
+    const auto found = registered(from, transformed(from, pose, scale));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->scale, scale, 1e-9);
+    EXPECT_LT((found->rotation - pose.orientation.toRotationMatrix()).norm(), 1e-9);
+    EXPECT_LT((apply(*found, Vector3::Zero()) - pose.position).norm(), 1e-9);
+  }
+}
+
+TEST(Registration, is_the_least_of_all_near_it) {
+  Random random(5);
+  Points from = some_points(random, 12, 0.05), to = transformed(from, any_pose(random), 1.1);
+  for (Vector3& point : to) point += random.gaussian_vector(0.005);
+  const auto found = registered(from, to);
+  ASSERT_TRUE(found);
+  const double least = squares(*found, from, to);
+  for (int i = 0; i < 200; ++i) {
+    Registration other = *found;
+    const Vector3 turn = random.gaussian_vector(1e-3);
+    other.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * other.rotation;
+    other.scale *= 1.0 + 1e-3 * random.gaussian();
+    other.to += random.gaussian_vector(1e-4);
+    EXPECT_GE(squares(other, from, to), least);
+  }
+}
+
+// Points that only a mirror would bring upon each other, as of a left and a right hand.
+TEST(Registration, never_mirrors) {
+  Random random(6);
+  for (int i = 0; i < 50; ++i) {
+    const Points from = some_points(random, 8, 0.05);
+    Points to;
+    for (const Vector3& point : from) to.push_back({-point.x(), point.y(), point.z()});
+    const auto found = registered(from, to);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->rotation.determinant(), 1.0, 1e-9);
+    EXPECT_LT((found->rotation.transpose() * found->rotation - Matrix3::Identity()).norm(), 1e-9);
+    EXPECT_GE(squares(*found, from, to), 0.0);
+    EXPECT_LT(found->scale, 1.0);
+  }
+}
+
+TEST(Registration, in_one_plane_is_fixed_and_in_one_line_or_of_two_is_not) {
+  const Pose pose{{0.1, 0.2, 0.3}, Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 1, 0).normalized()))};
+  const Points plane{{0, 0, 0}, {0.05, 0, 0}, {0, 0.03, 0}, {0.04, 0.04, 0}};
+  const auto found = registered(plane, transformed(plane, pose, 1.0));
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->rotation - pose.orientation.toRotationMatrix()).norm(), 1e-9);
+  const Points line{{0, 0, 0}, {0.05, 0, 0}, {0.02, 0, 0}, {0.08, 0, 0}};
+  EXPECT_FALSE(registered(line, transformed(line, pose, 1.0)));
+  const Points two{{0, 0, 0}, {0.05, 0.01, 0}};
+  EXPECT_FALSE(registered(two, two));
+  EXPECT_FALSE(registered(Points{}, Points{}));
+  const Points one_place(5, Vector3(0.1, 0, 0));
+  EXPECT_FALSE(registered(one_place, one_place));
+}
+
+// A spread of sqrt(1e-6 m^2) = 1 mm across the line is where a hand's points begin to fix it.
+TEST(Registration, needs_a_millimetre_across_its_line) {
+  const auto strip = [](double width) {
+    return Points{{0, 0, -width},  {0.05, 0, width},  {0.1, 0, -width}, {0.15, 0, width},
+                  {0.1, 0, width}, {0.05, 0, -width}, {0, 0, width},    {0.15, 0, -width}};
+  };
+  EXPECT_FALSE(registered(strip(0.0009), strip(0.0009)));
+  EXPECT_TRUE(registered(strip(0.0011), strip(0.0011)));
+}
+
+}  // namespace
+}  // namespace mrhi
