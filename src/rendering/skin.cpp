@@ -10,6 +10,7 @@ namespace mrhi {
 namespace {
 
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
+constexpr double kFacets = 60.0;       // of the triangles' normals, about as much as the bones'
 
 /// Columns that map an influence's place on its bone to world.
 struct Carrier {
@@ -21,29 +22,33 @@ Carrier carrier(const SkinBone& bone) {
   return {bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
 }
 
-/// Adds the triangles' normals to those that the bones carry, which alone would be smooth also where skin
-/// folds.
-void add_facets(const std::vector<std::array<int, 3>>& triangles, double per_area, SkinSurface& surface) {
-  constexpr double kWeight = 60.0;  // about as much as the bones' normals
+/// Adds to each vertex the area of the triangles at it, outward, as a share of the palm's width squared.
+void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& hand,
+                const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
+  const double per_area =
+      (hand.side == Side::left ? -kFacets : kFacets) / (hand.palm_width * hand.palm_width);
   for (const auto& triangle : triangles) {
     const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
                c = static_cast<std::size_t>(triangle[2]);
-    const Vector3& corner = surface.vertices[a];
-    const Vector3 area =
-        kWeight * per_area * (surface.vertices[b] - corner).cross(surface.vertices[c] - corner);
-    surface.normals[a] += area;
-    surface.normals[b] += area;
-    surface.normals[c] += area;
+    const Vector3& corner = vertices[a];
+    const Vector3 area = per_area * (vertices[b] - corner).cross(vertices[c] - corner);
+    normals[a] += area;
+    normals[b] += area;
+    normals[c] += area;
   }
-  for (Vector3& normal : surface.normals) normal.normalize();
 }
 
 }  // namespace
 
 Skin::Skin(TriangleMesh rest) : rest_(std::move(rest.vertices)), triangles_(std::move(rest.triangles)) {
-  for (const Vector3& vertex : rest_) {
+  // What the triangles' normals are off the shape's as they are made is nothing to be seen; what skin that
+  // folds adds to it is. So the bones carry the difference.
+  std::vector<Vector3> facets(size(), Vector3::Zero());
+  add_facets(triangles_, rest_hand().hand, rest_, facets);
+  for (std::size_t v = 0; v < size(); ++v) {
+    const Vector3& vertex = rest_[v];
     shares_.push_back(capsule_shares(vertex));
-    const Vector3 normal = skin_normal(vertex);
+    const Vector3 normal = (1.0 + facets[v].norm()) * skin_normal(vertex) - facets[v];
     auto weights = skin_weights(vertex);
     double sum = 0.0;
     for (double& weight : weights) sum += weight = weight < kLeastWeight ? 0.0 : weight;
@@ -98,8 +103,8 @@ bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
     surface.vertices[v] = place;
     surface.normals[v] = normal;
   }
-  add_facets(triangles_, (hand.side == Side::left ? -1.0 : 1.0) / (hand.palm_width * hand.palm_width),
-             surface);
+  add_facets(triangles_, hand, surface.vertices, surface.normals);
+  for (Vector3& normal : surface.normals) normal.normalize();
   return true;
 }
 
