@@ -5,6 +5,7 @@
 
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "rendering/skin.h"
+#include "rendering/skin_nails.h"
 #include "rendering/skin_rig.h"
 #include "rendering/skin_shape.h"
 #include "simplified_mesh.h"
@@ -13,9 +14,33 @@
 namespace mrhi {
 namespace {
 
-constexpr double kCell = 0.0038;  // length of the finest triangles' sides [m]
-constexpr double kTipWorth = 4.0, kWebWorth = 20.0;
+constexpr double kCell = 0.0026;  // length of the finest triangles' sides [m]
+constexpr double kTipWorth = 4.0, kSleeveWorth = 8.0, kWebWorth = 20.0;
 constexpr double kSleeveEdge = 0.005;  // [m]
+
+Hand hand_in(const HandPosture& posture) {
+  return complete_hand(hand_joints(human_hand(), Side::right, Pose{}, posture), Pose{});
+}
+
+/// With the thumb against the fingers: skin folds between them.
+HandPosture bar_grip() {
+  HandPosture degrees;
+  degrees << 20, -20, -20, 0, -4,  //
+      38, 49, 49, 80, 80,          //
+      7, 37, 46, 95, 95,           //
+      13, 24, 30, 60, 60,          //
+      33, 0, 0, 0, 0;
+  return M_PI / 180.0 * degrees;
+}
+HandPosture cube_grip() {
+  HandPosture degrees;
+  degrees << 44, -11, 1, 12, -4,  //
+      23, 42, 38, 46, 55,         //
+      26, 38, 50, 31, 45,         //
+      36, 28, 34, 21, 30,         //
+      18, 0, 0, 0, 0;
+  return M_PI / 180.0 * degrees;
+}
 
 /// The rest hand with its fingers bent by these shares of the most that they can be, each second one by
 /// `odd`.
@@ -26,7 +51,7 @@ Hand bent(double even, double odd) {
     for (const int joint : {kBaseFlexion, kMiddleFlexion, kEndFlexion})
       posture(joint, finger) = (finger % 2 == 0 ? even : odd) * most[joint];
   }
-  return complete_hand(hand_joints(human_hand(), Side::right, Pose{}, posture), Pose{});
+  return hand_in(posture);
 }
 
 /// Vertices go along the surface's normal until the triangles about each lie as much outside as inside, but
@@ -69,8 +94,19 @@ double worth_of(const Skin& skin, std::size_t vertex) {
     all += of_finger;
     most = std::max(most, of_finger);
   }
-  if (std::abs(skin.rest()[vertex].x() - kSleeveBegins) < kSleeveEdge) worth += kTipWorth;
+  if (std::abs(skin.rest()[vertex].x() - kSleeveBegins) < kSleeveEdge) worth += kSleeveWorth;
   return worth + kWebWorth * (all - most);
+}
+
+/// Nails raised and their edges sunk: no posture, but what keeps triangles' sides along them.
+Places with_relief(const Skin& skin) {
+  constexpr double kRelief = 0.0025;  // [m]
+  Places places;
+  for (const Vector3& vertex : skin.rest()) {
+    const SkinNail here = skin_nail(vertex);
+    places.push_back(vertex + kRelief * (here.nail - here.edge) * skin_normal(vertex));
+  }
+  return places;
 }
 
 }  // namespace
@@ -84,13 +120,13 @@ TriangleMesh modelled_skin(std::size_t triangles) {
   static const Skin finest(finest_skin());
   std::vector<Places> poses{finest.rest()};
   for (const Hand& hand :
-       {complete_hand(hand_joints(human_hand(), Side::right, Pose{}, relaxed_posture()), Pose{}),
-        complete_hand(hand_joints(human_hand(), Side::right, Pose{}, pointing_posture()), Pose{}),
+       {hand_in(relaxed_posture()), hand_in(pointing_posture()), hand_in(bar_grip()), hand_in(cube_grip()),
         bent(0.5, 0.5), bent(0.95, 0.95), bent(0.0, 0.95), bent(0.95, 0.0), bent(0.3, 0.6), bent(0.6, 0.3)}) {
     SkinSurface surface;
     finest.pose(hand, surface);
     poses.push_back(surface.vertices);
   }
+  if (triangles > kOutlineTriangles) poses.push_back(with_relief(finest));  // the ghost has no nails
   std::vector<double> worth;
   for (std::size_t v = 0; v < finest.size(); ++v) worth.push_back(worth_of(finest, v));
   TriangleMesh mesh = simplified({finest.rest(), finest.triangles()}, poses, worth, triangles);

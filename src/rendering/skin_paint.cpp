@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "light.h"
+#include "skin_nails.h"
 #include "skin_rig.h"
 
 namespace mrhi {
 namespace {
 
 const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
-    kNail(0.96f, 0.82f, 0.75f);
+    kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
 constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
 // A touch is seen around its middle as far as this, in radii of what presses.
 constexpr double kSpot = 2.0, kSpotCore = 1.1;
@@ -71,17 +72,20 @@ std::array<Floats, kCapsules> make_counts() {
   return counts;
 }
 
-/// In the frame of the bone, in its radii: where fingers are redder, and the nail.
+/// In the frame of the bone, in its radii: where fingers are redder.
 Rgb finger_colour(int finger, const Vector3& vertex, const Rgb& skin) {
   const SkinBone& tip = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 3))];
   const Vector3 q = tip.axes.transpose() * (vertex - tip.start) / tip.radius;
   const double length = tip.length / tip.radius;
   const double red = smooth_step(-0.3, length + 0.5, q.x()) * smooth_step(0.9, -0.6, q.z());
-  Rgb colour = skin + static_cast<float>(0.7 * red) * (kBlush - skin);
-  const double along =
-      smooth_step(0.25 * length, 0.5 * length, q.x()) * smooth_step(length + 0.75, length + 0.35, q.x());
-  const double nail = along * smooth_step(0.15, 0.45, q.z()) * smooth_step(0.85, 0.55, std::abs(q.y()));
-  return colour + static_cast<float>(nail) * (kNail - colour);
+  return skin + static_cast<float>(0.7 * red) * (kBlush - skin);
+}
+
+/// Nails are lighter, and skin is darker along their edges.
+Rgb with_nail(const Vector3& vertex, const Rgb& skin) {
+  const SkinNail here = skin_nail(vertex);
+  const Rgb colour = skin + static_cast<float>(here.nail) * (kNail - skin);
+  return colour + static_cast<float>(0.5 * here.edge) * (kNailFold - colour);
 }
 
 }  // namespace
@@ -98,6 +102,7 @@ SkinPaint::SkinPaint(const Skin& skin) {
     const auto palmar = static_cast<float>(smooth_step(0.004, -0.008, vertex.z()));
     Rgb colour = kBack + palmar * (kPalmar - kBack);
     if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex, colour);
+    colour = with_nail(vertex, colour);
     const auto wrist = static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x()));
     tints_.push_back({colour, most, wrist});
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "rendering/skin_nails.h"
 #include "rendering/skin_paint.h"
+#include "rendering/skin_rig.h"
 #include "support/postures.h"
 
 namespace mrhi {
@@ -85,6 +87,30 @@ TEST(SkinPaint, colours_are_in_range_and_no_side_of_the_hand_is_dark) {
       EXPECT_GT(sum / static_cast<float>(colours.size()),
                 0.4f);  // of 1, sleeve and all
     }
+  }
+}
+
+// Of few triangles: had they none of their corners in a nail, it would not be seen.
+TEST(SkinPaint, every_finger_has_a_nail_on_its_back_lighter_than_the_skin_along_it) {
+  const auto colours = colours_of(pressing(testing::hand_in(testing::open_posture()), {}, 0.0));
+  const Skin& skin = Skin::human();
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const int tip = capsule_index(finger, 3);
+    const SkinBone& bone = rest_hand().rig[static_cast<std::size_t>(tip)];
+    float nail = 0.0f, edge = 0.0f;
+    int nails = 0, edges = 0;
+    for (std::size_t v = 0; v < skin.size(); ++v) {
+      if (skin.share(v, tip) < 0.5) continue;
+      const SkinNail here = skin_nail(skin.rest()[v]);
+      if (here.nail > 0.7) {
+        EXPECT_GT((skin.rest()[v] - bone.start).dot(bone.axes.col(2)), 0.0) << finger;
+        nail += brightness(colours[v]), ++nails;
+      }
+      if (here.edge > 0.5) edge += brightness(colours[v]), ++edges;
+    }
+    ASSERT_GE(nails, 2) << finger;
+    ASSERT_GE(edges, 2) << finger;
+    EXPECT_GT(nail / static_cast<float>(nails), 1.1f * edge / static_cast<float>(edges)) << finger;
   }
 }
 
