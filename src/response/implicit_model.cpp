@@ -1,13 +1,25 @@
 #include "implicit_model.h"
 
+#include <algorithm>
+
 #include "finger_limits.h"
 #include "newton.h"
 
 namespace mrhi {
 namespace {
 
-/// Islands of more bodies are crowds.
+/// Islands of more bodies are crowds,
 constexpr std::size_t kMostExact = 4;
+/// unless they hardly move, as those of a pile that stands: Newton's method begins at its end there.
+constexpr std::size_t kMostAtRest = 10;
+
+/// True if no body is faster than what falls for a step, so that nothing is about to strike.
+bool nearly_rests(const ContactStep& step, const Island& island) {
+  const double slow = step.step * step.gravity.norm();
+  return std::all_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
+    return step.bodies[body.body].linear_momentum.norm() < slow * step.scene.bodies[body.body].mass;
+  });
+}
 
 }  // namespace
 
@@ -52,10 +64,11 @@ void ImplicitModel::press(ContactStep& step) {
   for (const Island& island : islands_.all()) {
     if (island.bodies.size() == 1) {
       solve_one(step, island);
-    } else if (island.bodies.size() > kMostExact) {
-      solve_crowd(step, island);
-    } else {
+    } else if (island.bodies.size() <= kMostExact ||
+               (island.bodies.size() <= kMostAtRest && nearly_rests(step, island))) {
       solve_few(step, island);
+    } else {
+      solve_crowd(step, island);
     }
   }
 }

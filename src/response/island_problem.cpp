@@ -127,7 +127,7 @@ void IslandProblem::couple() {
 
 Effort IslandProblem::effort() {
   Effort effort;
-  effort.iterations = 12;
+  effort.iterations = 6;  // what settles does so in one or two
   effort.limits = 0;
   effort.anew = false;
   return effort;
