@@ -126,6 +126,10 @@ Scene block_of_50() {
   return crowds::block(50).scene;
 }
 
+Scene far_spinning_200() {
+  return crowds::far_spinning(200).scene;
+}
+
 std::vector<Hand> pushing(double t) {
   return crowds::pushed(kPushed).hands(t);
 }
@@ -140,6 +144,7 @@ const Plan kPlans[] = {
     {"heap_of_12", heap_of_12, none, 0.001, 0.0, false, true, 0.5},
     {"push_of_20", pushed_blocks, pushing, 0.001, 0.6, false, true, 0.1},
     {"block_of_50_awake", block_of_50, none, 0.001, 0.1, false, false, 0.1},
+    {"far_spinning_200", far_spinning_200, none, 0.001, 0.0, false, true, 0.1},
     {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true, true},
     {"two_hands_six_objects_120_hz_frame", two_pinches, two_swinging, kTrackerFrame, 0.6, true, true},
 };

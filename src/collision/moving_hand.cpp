@@ -1,6 +1,7 @@
 #include "moving_hand.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mrhi {
 
@@ -20,7 +21,7 @@ HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)
     hand_.from[c].radius = to.radius;
     start = rate * (to.start - hand_.from[c].start);
     end = rate * (to.end - hand_.from[c].end);
-    hand_.speed[c] = std::max(start.norm(), end.norm());
+    hand_.speed[c] = std::sqrt(std::max(start.squaredNorm(), end.squaredNorm()));
   }
   move_to(0.0);
 }

@@ -1,6 +1,7 @@
 #include "neighbours.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace mrhi {
@@ -45,7 +46,8 @@ void Neighbours::measure(const HandTrack& hand, Reach& reach) {
     const Capsule& from = hand.previous.capsules[ci].radius > 0.0 ? hand.previous.capsules[ci] : to;
     if (to.radius <= 0.0) continue;
     const Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
-    const double longer_way = std::max((to.start - from.start).norm(), (to.end - from.end).norm());
+    const double longer_way =
+        std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
     const Way way{c, start, end - start, to.radius + 0.5 * longer_way};
     reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
     reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));

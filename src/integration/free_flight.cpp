@@ -10,6 +10,8 @@ namespace {
 
 /// More parts than this no step is divided into: spins that need it are beyond what can be seen.
 constexpr double kMostParts = 1000.0;
+/// Square of an angular momentum that turns nothing in a year [kg^2 m^4/s^2].
+constexpr double kNoSpin = 1e-200;
 
 /// Turns `orientation` on by `by`, which need not be unit. What is added is rounded but once: were the
 /// product divided by its norm, slow turns would be rounded the same way in every step and drift.
@@ -24,20 +26,12 @@ void turn_on(const Quaternion& by, Quaternion& orientation) {
   orientation.coeffs() += (orientation * change).coeffs();
 }
 
-/// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
-/// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
-void turn(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
-  const Vector3& moments = body.inverse_moments;
-  const double spread = moments.maxCoeff() - moments.minCoeff();
-  const double way = spread * angular_momentum.norm() * step;
-  const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none
-  const int parts = 1 + static_cast<int>(enough);
-  for (int i = 0; i < parts; ++i) {
-    const Vector3 momentum = orientation.conjugate() * angular_momentum;
-    Quaternion by = free_rotation(moments, body.principal_axes.transpose() * momentum, step / parts);
-    by.vec() = body.principal_axes * by.vec();
-    turn_on(by, orientation);
-  }
+double spread(const Body& body) {
+  return body.inverse_moments.maxCoeff() - body.inverse_moments.minCoeff();
+}
+
+Triple<double> triple(const Vector3& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
 }  // namespace
@@ -46,12 +40,56 @@ void turn(const Body& body, const Vector3& angular_momentum, double step, Quater
 // axes stays as it is to the bit; only the axes turn under it.
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
-  const Vector3 velocity = state.linear_momentum / body.mass;
-  state.pose.position += step * velocity + (0.5 * step * step) * gravity;
-  state.linear_momentum += (body.mass * step) * gravity;
+  fly_on(body.mass, gravity, step, state);
+  const Turn turn = turn_of(quickness(body), state.angular_momentum, step);
+  if (turn == Turn::long_one) turn_far(body, state.angular_momentum, step, state.pose.orientation);
+  if (turn != Turn::short_one) return;
+  Turning<double> turning = turning_of(state, step);
+  turn_shortly(spinner_of(body), turning);
+  state.pose.orientation = Quaternion(turning.w, turning.x, turning.y, turning.z);
+}
 
-  if (state.angular_momentum == Vector3::Zero()) return;
-  turn(body, state.angular_momentum, step, state.pose.orientation);
+void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
+  const Vector3 velocity = state.linear_momentum / mass;
+  state.pose.position += step * velocity + (0.5 * step * step) * gravity;
+  state.linear_momentum += (mass * step) * gravity;
+}
+
+Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
+  const double squared = angular_momentum.squaredNorm();
+  if (!(squared > kNoSpin)) return Turn::none;
+  return quickness * squared * (step * step) <= 1.0 ? Turn::short_one : Turn::long_one;
+}
+
+double quickness(const Body& body) {
+  const double most = std::max(spread(body) / kShortWay, body.inverse_moments.maxCoeff() / kShortAngle);
+  return most * most;
+}
+
+Spinner<double> spinner_of(const Body& body) {
+  const auto axis = [&body](int i) { return triple(body.principal_axes.col(i)); };
+  const Vector3& moments = body.inverse_moments;
+  return {{axis(0), axis(1), axis(2)}, {moments[0], moments[1], moments[2]}};
+}
+
+Turning<double> turning_of(const BodyState& state, double step) {
+  const Quaternion& q = state.pose.orientation;
+  return {q.w(), q.x(), q.y(), q.z(), triple(state.angular_momentum), step};
+}
+
+// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
+// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
+void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
+  const double way = spread(body) * angular_momentum.norm() * step;
+  const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none
+  const int parts = 1 + static_cast<int>(enough);
+  for (int i = 0; i < parts; ++i) {
+    const Vector3 momentum = orientation.conjugate() * angular_momentum;
+    Quaternion by =
+        free_rotation(body.inverse_moments, body.principal_axes.transpose() * momentum, step / parts);
+    by.vec() = body.principal_axes * by.vec();
+    turn_on(by, orientation);
+  }
 }
 
 }  // namespace mrhi

@@ -10,46 +10,32 @@ namespace {
 /// Within this, S is its series to the ninth order, to rounding [rad].
 constexpr double kSeries = 1.0 / 32.0;
 
-/// Which axis has the intermediate moment: it is the second of the addition theorem, for which A and B are
-/// then not negative, and the functions real.
-int intermediate(const Vector3& j) {
-  for (int i = 0; i < 2; ++i) {
-    if ((j[(i + 1) % 3] - j[i]) * (j[i] - j[(i + 2) % 3]) >= 0.0) return i;
-  }
-  return 2;
-}
+using Array = Eigen::Array4d;
 
 /// S at times of which none is beyond a quarter of a period.
-template <typename Times>
-Times elliptic(double a, double b, Times times, double longest) {
+Array elliptic(double a, double b, Array times, double longest) {
   double part = 1.0;
   for (double angle = std::sqrt(std::max(a, b)) * longest; part * angle > kSeries;) part *= 0.5;
   times *= part;
   const double s = a + b, p = a * b;
   const double s3 = -s / 6.0, s5 = (s * s + 12.0 * p) / 120.0, s7 = -s * (s * s + 132.0 * p) / 5040.0,
                s9 = (s * s * (s * s + 1224.0 * p) + 3024.0 * p * p) / 362880.0;
-  const Times squares = times * times;
-  Times result = times + times * squares * (s3 + squares * (s5 + squares * (s7 + squares * s9)));
+  const Array squares = times * times;
+  Array result = times + times * squares * (s3 + squares * (s5 + squares * (s7 + squares * s9)));
   for (; part < 1.0; part *= 2.0) {
-    const Times q = result * result;
+    const Array q = result * result;
     result *= 2.0 * ((1.0 - a * q) * (1.0 - b * q)).sqrt() / (1.0 - p * q * q);
   }
   return result;
 }
 
-/// Lobatto's rules on 0 to 1. The point 0 is left out; its weight is that of 1, which comes last.
-struct FivePoints {
-  using Array = Eigen::Array4d;
-  static Array points() { return {0.17267316464601142810, 0.5, 0.82732683535398857190, 1.0}; }
-  static Array weights() { return {49.0 / 180.0, 64.0 / 180.0, 49.0 / 180.0, 9.0 / 180.0}; }
-};
-struct ThreePoints {
-  using Array = Eigen::Array2d;
-  static Array points() { return {0.5, 1.0}; }
-  static Array weights() { return {4.0 / 6.0, 1.0 / 6.0}; }
-};
-/// Turns of the momentum for which three points are as good as exact [rad].
-constexpr double kThreePoints = 0.004;
+/// Lobatto's rule on 0 to 1. The point 0 is left out; its weight is that of 1, which comes last.
+Array points() {
+  return {0.17267316464601142810, 0.5, 0.82732683535398857190, 1.0};
+}
+Array weights() {
+  return {49.0 / 180.0, 64.0 / 180.0, 49.0 / 180.0, 9.0 / 180.0};
+}
 
 /// cos x, sin x.
 std::pair<double, double> cosine_and_sine(double x) {
@@ -69,20 +55,16 @@ struct Way {
   double angle;  // [rad]
 };
 
-template <typename Rule>
 Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step) {
-  using Array = typename Rule::Array;
-  const int i2 = intermediate(inverse_moments), i3 = (i2 + 1) % 3, i1 = (i2 + 2) % 3;
-  const double m1 = momentum[i1], m2 = momentum[i2], m3 = momentum[i3];
-  const double j1 = inverse_moments[i3] - inverse_moments[i2], j2 = inverse_moments[i1] - inverse_moments[i3],
-               j3 = inverse_moments[i2] - inverse_moments[i1];
+  const double m1 = momentum[0], m2 = momentum[1], m3 = momentum[2];
+  const double j1 = inverse_moments[2] - inverse_moments[1], j2 = inverse_moments[0] - inverse_moments[2],
+               j3 = inverse_moments[1] - inverse_moments[0];
   const double both = j1 * j3 * m2 * m2;
   const double a = both - j1 * j2 * m3 * m3, b = both - j2 * j3 * m1 * m1;
 
-  const Array points = Rule::points(), weights = Rule::weights();
   // 1 - c and 1 - d from half the time, and how far the momentum goes, not where: nothing cancels, and what
   // is rounded is small.
-  const Array half = elliptic<Array>(a, b, (0.5 * step) * points, 0.5 * step);
+  const Array half = elliptic(a, b, (0.5 * step) * points(), 0.5 * step);
   const Array q = half * half, c_squared = 1.0 - a * q, d_squared = 1.0 - b * q;
   const Array over = 1.0 / (1.0 - (a * b) * q * q);
   const Array c_less = (2.0 * a) * q * d_squared * over, d_less = (2.0 * b) * q * c_squared * over;
@@ -95,13 +77,13 @@ Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step)
   const double squared = momentum.squaredNorm(), size = std::sqrt(squared);
   const Vector3 rate = inverse_moments.cwiseProduct(momentum);
   const double twice_energy = momentum.dot(rate);
-  const Array about = (2.0 * twice_energy + rate[i1] * n1 + rate[i2] * n2 + rate[i3] * n3) /
+  const Array about = (2.0 * twice_energy + rate[0] * n1 + rate[1] * n2 + rate[2] * n3) /
                       (2.0 * squared + m1 * n1 + m2 * n2 + m3 * n3);
 
   Way way;
   const Eigen::Index last = n1.size() - 1;
-  way.of_momentum[i1] = n1[last], way.of_momentum[i2] = n2[last], way.of_momentum[i3] = n3[last];
-  way.angle = size * step * ((weights * about).sum() + weights[last] * (twice_energy / squared));
+  way.of_momentum = Vector3(n1[last], n2[last], n3[last]);
+  way.angle = size * step * ((weights() * about).sum() + weights()[last] * (twice_energy / squared));
   return way;
 }
 
@@ -109,10 +91,9 @@ Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step)
 
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double squared = momentum.squaredNorm(), size = std::sqrt(squared);
-  const double spread = inverse_moments.maxCoeff() - inverse_moments.minCoeff(), turn = spread * size * step;
-  const Way way = spread == 0.0         ? Way{Vector3::Zero(), inverse_moments[0] * size * step}
-                  : turn < kThreePoints ? way_of<ThreePoints>(inverse_moments, momentum, step)
-                                        : way_of<FivePoints>(inverse_moments, momentum, step);
+  const bool equal = inverse_moments.maxCoeff() == inverse_moments.minCoeff();
+  const Way way = equal ? Way{Vector3::Zero(), inverse_moments[0] * size * step}
+                        : way_of(inverse_moments, momentum, step);
   // Takes the momentum's new place in the body to its old one the shortest way, and turns about it.
   const Vector3 cross = way.of_momentum.cross(momentum);
   const double dot = 2.0 * squared + momentum.dot(way.of_momentum);

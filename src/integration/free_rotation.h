@@ -5,8 +5,8 @@
 namespace mrhi {
 
 /// How a body that nothing twists has turned after `step` seconds: body axes, as it ends against as it began.
-/// `inverse_moments` are 1/I along its principal axes [1/(kg m^2)], which are the axes here; `momentum` is
-/// its angular momentum [kg m^2/s] in them as the step begins, not zero.
+/// `inverse_moments` are 1/I along its principal axes [1/(kg m^2)], which are the axes here, the second
+/// between the others; `momentum` is its angular momentum [kg m^2/s] in them as the step begins, not zero.
 ///
 /// Not unit: the caller has to divide by its norm. Exact to rounding for turns of up to about kFreeTurn.
 ///
@@ -24,7 +24,8 @@ namespace mrhi {
 ///
 ///     L * integral of (2 E + m(0) . J m(t)) / (L^2 + m(0) . m(t)) dt,
 ///
-/// by Lobatto's three or five points, which are exact to rounding as far as a step goes.
+/// by Lobatto's five points, which are exact to rounding as far as a step goes. Short turns have a way of
+/// their own (short_turn.h).
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step);
 
 /// Rate at which `momentum` turns in the body, at most, times the step, in one free_rotation [rad].

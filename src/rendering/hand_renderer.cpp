@@ -67,13 +67,14 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   note_touches(contacts, slot, rendered);
   if (track.appeared) offset = HandOffset();
   ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0, interactions};
-  impl.end_shown_in(setting, track, offset);
-  HandOffset now = impl.keep_outside(setting, track, stamp, offset, rendered.hand);
+  const bool near = impl.begin(setting, track, offset);
+  HandOffset now = impl.keep_outside(setting, track, stamp, offset, near, rendered.hand);
   for (const bool fixtures : {false, true}) {
     const bool stays_behind = impl.left_behind(setting, stamp, now);
     if (impl.leap <= kTolerated && !stays_behind) break;
-    if (impl.show_in(fixtures, interactions))
-      now = impl.keep_outside(setting, track, stamp, offset, rendered.hand);
+    if (!impl.show_in(fixtures, interactions)) continue;
+    const bool others = impl.finder.begin(setting, margin(offset));
+    now = impl.keep_outside(setting, track, stamp, offset, others, rendered.hand);
   }
   if (now.zero()) rendered.hand = track.current;
   now.stamp = stamp;
@@ -81,13 +82,14 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   if (!now.zero()) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
 }
 
-/// The hand outside of all bodies but those that it is shown in.
+/// The hand outside of all bodies but those that it is shown in; the finder has begun with what is `near` it.
 HandOffset HandRenderer::Impl::keep_outside(ClearanceFinder::Setting& setting, const HandTrack& track,
-                                            Nanoseconds stamp, const HandOffset& offset, Hand& placed) {
+                                            Nanoseconds stamp, const HandOffset& offset, bool near,
+                                            Hand& placed) {
   placed = track.current;
   setting.shown_before = nullptr;
   setting.moved = 0.0;
-  const bool away = !offset.zero(), near = finder.begin(setting, margin(offset));
+  const bool away = !offset.zero();
   HandOffset now;
   clearances.clear();
   if (away || near) {
@@ -118,22 +120,24 @@ bool HandRenderer::Impl::show_in(bool fixtures, Interaction* interactions) const
   return any;
 }
 
-/// With what the hand, as it was shown, was clear of.
-void HandRenderer::Impl::end_shown_in(const ClearanceFinder::Setting& setting, const HandTrack& track,
-                                      const HandOffset& last) {
-  finder.begin(setting, margin(last));
-  if (!finder.shown_in_any()) return;
+/// Finds what is near the hand, but for what it is shown in. That ends with what the hand, as it was shown,
+/// was clear of.
+bool HandRenderer::Impl::begin(const ClearanceFinder::Setting& setting, const HandTrack& track,
+                               const HandOffset& last) {
+  const bool near = finder.begin(setting, margin(last));
+  if (!finder.shown_in_any()) return near;
   const Hand& from = track.appeared ? track.current : track.previous;
   Hand shown = from;
   chain_before.begin(from, last.lag);
   chain_before.place(last, shown);
   finder.end_shown_in(shown, setting.interactions);
+  return finder.begin(setting, margin(last));
 }
 
 /// At the frame before.
 void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& offset,
                                    ClearanceFinder::Setting& setting) {
-  finder.begin(setting, offset.shift.norm() + kFarthestPush);
+  if (offset.zero()) finder.begin(setting, kFarthestPush);
   setting.moved = kFromNowhere;
   if (track.appeared) return;
   const Shown& known = kept[static_cast<std::size_t>(setting.slot)];

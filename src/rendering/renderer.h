@@ -27,10 +27,10 @@ struct HandRenderer::Impl {
     clearances.reserve(256);
   }
 
+  bool begin(const ClearanceFinder::Setting& setting, const HandTrack& track, const HandOffset& last);
   HandOffset keep_outside(ClearanceFinder::Setting& setting, const HandTrack& track, Nanoseconds stamp,
-                          const HandOffset& offset, Hand& placed);
+                          const HandOffset& offset, bool near, Hand& placed);
   bool show_in(bool fixtures, Interaction* interactions) const;
-  void end_shown_in(const ClearanceFinder::Setting& setting, const HandTrack& track, const HandOffset& last);
   void look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& last,
                  ClearanceFinder::Setting& setting);
   void place_before();

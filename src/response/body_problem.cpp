@@ -52,6 +52,7 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
 
 void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vector3& gravity) {
   mass_ = body.mass;
+  unseen_ = kUnseenWay / step_ * mass_;
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   inertia_ = rotation * body.inertia * rotation.transpose();
   gyration_squared_ = body.inertia.trace() / (3.0 * body.mass);

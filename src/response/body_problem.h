@@ -24,6 +24,7 @@ class BodyProblem {
   void evaluate(bool renew_limits);
   double error_squared() const;
   double scale() const { return step_ * sum_.push; }
+  double unseen() const { return unseen_; }
   void factorise();
   void find_direction() { direction_ = factors_.solve(-gradient_); }
   void move(double part) { velocity_ += part * direction_; }
@@ -50,6 +51,7 @@ class BodyProblem {
   BodyContact no_body_contact_;
 
   double step_ = 0.0, mass_ = 0.0;
+  double unseen_ = 0.0;
   double gyration_squared_ = 0.0;  // squared radius of gyration, by which torques count as forces [m^2]
   Matrix3 inertia_;                // world axes
   Vector6 start_, free_;           // velocity at the step's start, and at its end without contact

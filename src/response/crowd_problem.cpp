@@ -121,7 +121,9 @@ void CrowdProblem::add_links(const ContactStep& step, const Island& island,
   }
   seen_.clear();
   least_missing_ = 0.0;
-  admit(step, step_ * step.gravity.norm());
+  // What rests has its velocities already, by what its contacts bore: beside it nothing is about to press.
+  const double fall = step_ * step.gravity.norm();
+  admit(step, nearly_rests(step) ? kIdle * fall : fall);
 }
 
 void CrowdProblem::add_link(const ContactStep& step, std::size_t index) {

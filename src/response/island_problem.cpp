@@ -53,6 +53,8 @@ void IslandProblem::begin(ContactStep& step, const Island& island,
     vector->resize(count);
   for (const IslandBody& body : island.bodies)
     begin_body(step.scene.bodies[body.body], step.bodies[body.body], step.gravity);
+  const auto lighter = [](const Mass& x, const Mass& y) { return x.mass < y.mass; };
+  unseen_ = kUnseenWay / step_ * std::min_element(masses_.begin(), masses_.end(), lighter)->mass;
 
   add_contacts(step, island, configuration);
   couple();

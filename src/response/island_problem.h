@@ -32,6 +32,7 @@ class IslandProblem {
   void evaluate(bool renew_limits);
   double error_squared() const;
   double scale() const { return scale_; }
+  double unseen() const { return unseen_; }
   void factorise();
   void find_direction() {
     direction_ = -gradient_;
@@ -82,7 +83,7 @@ class IslandProblem {
   std::vector<Mass> masses_;
   Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;
   BlockSystem system_;
-  double scale_ = 0.0;
+  double scale_ = 0.0, unseen_ = 0.0;
   std::vector<int> number_;  // of each of the scene's bodies in the island
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "../joints/joint_law.h"
@@ -33,6 +34,8 @@ class LinkageProblem {
   void evaluate(bool renew_limits);
   double error_squared() const;
   double scale() const { return scale_; }
+  /// What hangs on joints is solved for by the part of the forces' impulse alone.
+  static double unseen() { return std::numeric_limits<double>::infinity(); }
   void factorise();
   void find_direction();
   void move(double part) { velocity_ += part * direction_; }

@@ -4,12 +4,16 @@
 
 namespace mrhi {
 
+/// A way within a step that nobody sees: a body that is off by less has been solved for [m].
+constexpr double kUnseenWay = 1e-9;
+
 /// Solves a contact problem for its velocity: Newton's method with the friction limits of the last iterate;
 /// each iterate's problem is convex. A Problem has
 ///   restart()             puts the velocity back to the step's start; before, it is near the solution
 ///   evaluate(renew)       what acts at the velocity, with Coulomb's limits renewed there first or held
 ///   error_squared()       of the impulse that is missing [N^2 s^2]
 ///   scale()               impulses that act [N s]
+///   unseen()              an impulse that moves nothing by what could be seen [N s]
 ///   factorise()           the Hessian of the convex problem there
 ///   find_direction()      towards the solution, by the last Hessian
 ///   move(part)            along the direction; move(-part) goes back
@@ -64,14 +68,21 @@ class Newton {
   static constexpr double kTrustedAtOnce = 1e-4;
   /// Below this error the energy is rounding and no guide any more; of the forces' impulse.
   static constexpr double kFine = 1e-5;
+  /// Less than this part of the forces' impulse is rounding of what goes into it.
+  static constexpr double kRounding = 1e-12;
 
   bool error_below(double part) const {
     const double most = part * problem_.scale() + 1e-18;
     return problem_.error_squared() <= most * most;
   }
   /// The momenta at the step's end are what the forces found make of those at its start, so that what is
-  /// missing here costs no momentum.
-  bool solved() const { return error_below(effort_.converged); }
+  /// missing here costs no momentum. But it goes into them whole: where forces are large and the step is
+  /// long, a small part of their impulse is a way that can be seen.
+  bool solved() const {
+    if (!error_below(effort_.converged)) return false;
+    const double unseen = problem_.unseen();
+    return problem_.error_squared() <= unseen * unseen || error_below(kRounding);
+  }
 
   /// Where the limits keep chasing the velocity: they are held while the convex problem is solved to its end,
   /// then renewed. The solution for any limits is passive, so whenever this stops nothing is thrown.

@@ -56,10 +56,24 @@ bool is_diagonal(const Matrix3& matrix) {
   return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
 }
 
+/// Which axis has the intermediate moment: it is the second of the addition theorem (free_rotation.h), for
+/// which A and B are then not negative, and the functions real.
+int intermediate(const Vector3& moments) {
+  for (int i = 0; i < 2; ++i) {
+    if ((moments[(i + 1) % 3] - moments[i]) * (moments[i] - moments[(i + 2) % 3]) >= 0.0) return i;
+  }
+  return 2;
+}
+
 /// Of a body that has its inertia along its own axes, these: to the bit.
 void find_principal_axes(Body& body) {
-  body.principal_axes.setIdentity();
-  body.inverse_moments = body.inverse_inertia.diagonal();
+  const Vector3 diagonal = body.inverse_inertia.diagonal();
+  const int second = intermediate(diagonal);
+  for (int i = 0; i < 3; ++i) {
+    const int axis = (second + 2 + i) % 3;
+    body.principal_axes.col(i) = Vector3::Unit(axis);
+    body.inverse_moments[i] = diagonal[axis];
+  }
   if (body.fixed || is_diagonal(body.inverse_inertia)) return;
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(body.inverse_inertia);
   body.principal_axes = solver.eigenvectors();

@@ -27,6 +27,7 @@ std::vector<Contact>::iterator same_contact(std::vector<Contact>& contacts, cons
 }
 
 void add_strikes(const std::vector<Contact>& strikes, std::vector<Contact>& contacts) {
+  if (strikes.empty()) return;  // the contacts are sorted
   for (const Contact& strike : strikes) {
     const auto same = same_contact(contacts, strike);
     if (same == contacts.end()) {

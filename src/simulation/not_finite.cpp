@@ -10,14 +10,15 @@ namespace {
 bool finite(const Vector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
-bool finite(const Pose& pose) {
-  return finite(pose.position) && std::isfinite(pose.orientation.coeffs().sum());
-}
+/// By the sum of its numbers: opposite infinities leave no number either.
 bool finite(const Hand& hand) {
-  return finite(hand.palm) && finite(hand.wrist) &&
-         std::all_of(hand.capsules.begin(), hand.capsules.end(), [](const Capsule& capsule) {
-           return finite(capsule.start) && finite(capsule.end) && std::isfinite(capsule.radius);
-         });
+  Vector3 sum = hand.palm.position + hand.wrist;
+  double radii = hand.palm.orientation.coeffs().sum();
+  for (const Capsule& capsule : hand.capsules) {
+    sum += capsule.start + capsule.end;
+    radii += capsule.radius;
+  }
+  return std::isfinite(sum.sum() + radii);
 }
 bool finite(const Contact& contact) {
   return finite(contact.force) && finite(contact.impulse) && finite(contact.point) &&
@@ -30,8 +31,10 @@ std::string name_of(const Hand& hand) {
 
 }  // namespace
 
+/// By the sum of its numbers: opposite infinities leave no number either.
 bool is_finite(const BodyState& state) {
-  return finite(state.pose) && finite(state.linear_momentum) && finite(state.angular_momentum);
+  return std::isfinite(state.pose.position.sum() + state.pose.orientation.coeffs().sum() +
+                       state.linear_momentum.sum() + state.angular_momentum.sum());
 }
 
 void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {

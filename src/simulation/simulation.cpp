@@ -59,6 +59,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
       alone(scene),
+      flights(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, gravity, refinements(configuration)),
       renderer(scene, finder) {

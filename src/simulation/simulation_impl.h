@@ -9,6 +9,7 @@
 #include "../collision/contact_finder.h"
 #include "../collision/neighbours.h"
 #include "../collision/scene_geometry.h"
+#include "../integration/free_flights.h"
 #include "../rendering/hand_renderer.h"
 #include "../response/contact_step.h"
 #include "flying_alone.h"
@@ -55,6 +56,7 @@ struct Simulation::Impl {
   ContactFinder finder;
   BodyContactFinder body_finder;
   FlyingAlone alone;
+  FreeFlights flights;
   Sleeping sleeping;
   GraspAssist assist;
   HandRenderer renderer;

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "../integration/free_flight.h"
 #include "../joints/linkage.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
@@ -50,9 +49,10 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
     if (state.asleep[b] || (alone[b] && !last)) continue;
-    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity,
-                alone[b] ? frame_seconds() : step, state.bodies[b]);
+    flights.fly(b, changes.solved(b) ? Vector3::Zero() : gravity, alone[b] ? frame_seconds() : step,
+                state.bodies[b]);
   }
+  flights.turn(state.bodies);
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   sleeping.settle(neighbours, step, state);
   keep_in_bounds();
@@ -61,13 +61,13 @@ void Simulation::Impl::advance_step(double fraction, double step) {
 
 void Simulation::Impl::keep_in_bounds() {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (body.fixed) continue;
     const Vector3& p = state.bodies[b].pose.position;
     const bool sound = is_finite(state.bodies[b]);
     if (sound && (p.array() >= scene.bounds.min.array()).all() &&
         (p.array() <= scene.bounds.max.array()).all())
       continue;
+    const Body& body = scene.bodies[b];  // not looked at before: in scenes of many it is far away in memory
+    if (body.fixed) continue;
     if (!sound) result.not_finite.push_back("object '" + body.name + "'");
     put_back(b, scene, state);
     result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});

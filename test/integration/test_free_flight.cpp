@@ -122,8 +122,8 @@ TEST(FreeFlight, orientation_is_that_of_eulers_equations) {
 
 // A day at one step per 20 ms frame, 4.3 million steps: were each rounded by 1e-16 one way, 4e-10.
 TEST(FreeFlight, energy_holds_for_a_day_at_one_step_a_frame) {
-  for (const Vector3& spin :
-       {Vector3(0.1, 10, 0.1), Vector3(3, 4, 5), Vector3(0.01, 0.02, 0.03), Vector3(0, 0.1, 8)}) {
+  for (const Vector3& spin : {Vector3(0.1, 10, 0.1), Vector3(3, 4, 5), Vector3(0.01, 0.02, 0.03),
+                              Vector3(0.2, 0.3, 0.4), Vector3(0, 0.1, 8)}) {
     const Body body = body_of(Vector3(1e-4, 2e-4, 3e-4), spin);
     BodyState state = start_state(body);
     const double energy = kinetic_energy(body, state);
@@ -136,8 +136,39 @@ TEST(FreeFlight, energy_holds_for_a_day_at_one_step_a_frame) {
   }
 }
 
-// Ten seconds of turns just below and well above the one from which on the full method is used; 1e-11 is the
-// rounding of 10000 steps.
+/// The longest step in which a body's turn is a short one [s].
+double longest_short(const Body& body) {
+  return 1.0 / std::sqrt(quickness(body) * start_state(body).angular_momentum.squaredNorm());
+}
+
+// Rounding of one step, of the two methods: 1e-16 each, of numbers of size 1. At 0.025 rad the terms that the
+// series leave out would be 3e-18; were one term less taken, 1e-15 and more.
+TEST(FreeFlight, short_and_long_turns_meet_where_the_ones_end_and_the_others_begin) {
+  for (const Body& body : bodies_that_turn()) {
+    const double step = longest_short(body);
+    BodyState state = start_state(body);
+    const double part = step * (1.0 - 1e-9);
+    ASSERT_EQ(turn_of(quickness(body), state.angular_momentum, part), Turn::short_one);
+    free_flight(body, Vector3::Zero(), part, state);
+    Quaternion by_long = body.start.orientation;
+    turn_far(body, state.angular_momentum, part, by_long);
+    EXPECT_LE((by_long.coeffs() - state.pose.orientation.coeffs()).norm(), 4e-16)
+        << body.inertia << '\n'
+        << body.start_twist.angular.transpose();
+  }
+}
+
+TEST(FreeFlight, next_to_no_spin_is_none) {
+  const Body body = asymmetric_body();
+  for (const double size : {0.0, 1e-310, 1e-170, 1e-101, 1e-99}) {
+    BodyState state;
+    state.angular_momentum = Vector3(size, 0.0, size);
+    free_flight(body, Vector3::Zero(), 0.01, state);
+    EXPECT_LE((state.pose.orientation.coeffs() - Quaternion::Identity().coeffs()).norm(), 1e-90) << size;
+  }
+}
+
+// Ten seconds of short turns, in small and in large steps; 1e-11 is the rounding of 10000 steps.
 TEST(FreeFlight, a_slow_turn_does_not_depend_on_the_step) {
   Body body = asymmetric_body();
   body.start_twist.angular = Vector3(5e-3, 5e-3, 5e-3);
