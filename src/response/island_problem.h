@@ -46,7 +46,6 @@ class IslandProblem {
   /// Starts from these velocities in place of the bodies' own; `free` is what is reached without contact.
   void start_from(const Eigen::VectorXd& start, const Eigen::VectorXd& free);
   void set_velocity(const Eigen::VectorXd& velocity) { velocity_ = velocity; }
-  const Eigen::VectorXd& free_velocity() const { return free_; }
   /// Impulse that is missing at the last velocity evaluated, and its slope there.
   const Eigen::VectorXd& gradient() const { return gradient_; }
   void hessian(Eigen::MatrixXd& result);

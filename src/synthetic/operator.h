@@ -24,8 +24,6 @@ class SimulatedOperator : public Person {
   HandPlace move(double time, const Sight& sight) override;
 
   Phase phase() const { return phase_; }
-  /// That it means to grip with now [N].
-  double wanted_grip() const { return wanted_; }
 
  private:
   struct Moment {

@@ -59,10 +59,6 @@ struct Joint {
   std::optional<Latch> latch;
 
   bool is_limited() const { return lower > -kUnlimited || upper < kUnlimited; }
-  /// Whether it ever gives a force of its own.
-  bool has_force() const {
-    return is_limited() || damping > 0.0 || friction > 0.0 || spring || detents || latch;
-  }
 };
 
 /// Of the child's link frame, which is the joint's, against its frame at 0.
