@@ -100,7 +100,8 @@ class Seen:
 
     def wait_for_more(self, when):
         before = dict(self.counts)
-        wait_until(lambda: all(self.counts[what] > before[what] + 3 for what in before), "all topics " + when)
+        for what in before:
+            wait_until(lambda: self.counts[what] > before[what] + 3, what + " " + when)  # pylint: disable=cell-var-from-loop
 
 
 def free_port():
