@@ -45,7 +45,8 @@ const char* to_string(Stage stage);
 
 /// Hands and objects through time. One call per frame:
 ///   if (simulation.begin(frame) == Rejection::none) { while (simulation.step()) {} use(simulation.end()); }
-/// or advance(), which does just that. Copyable by copying state().
+/// or advance(), which does just that. Who waits for forces rather than for the picture calls report() before
+/// end(). Copyable by copying state().
 class Simulation {
  public:
   /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)), or for a step
@@ -60,7 +61,10 @@ class Simulation {
   /// Advances by one step of at most Configuration::step, or over the whole of a short frame in which nothing
   /// comes near anything; false, without a step, once the frame's stamp is reached.
   bool step();
-  /// Renders hands, derives events. Call after step() has returned false.
+  /// Contacts with their forces, events and tracked hands of the frame, whose rendered hands are still to
+  /// come. Call after step() has returned false.
+  const FrameResult& report();
+  /// All that the frame led to: renders the hands, after report() if that was not called.
   const FrameResult& end();
 
   Rejection advance(const HandFrame& frame);

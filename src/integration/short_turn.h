@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../response/lanes.h"
+#include "../math/lanes.h"
 
 namespace mrhi {
 

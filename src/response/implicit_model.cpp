@@ -14,7 +14,7 @@ constexpr std::size_t kMostExact = 4;
 constexpr std::size_t kMostAtRest = 10;
 
 /// True if no body is faster than what falls for a step, so that nothing is about to strike.
-bool nearly_rests(const ContactStep& step, const Island& island) {
+bool strikes_nothing(const ContactStep& step, const Island& island) {
   const double slow = step.step * step.gravity.norm();
   return std::all_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
     return step.bodies[body.body].linear_momentum.norm() < slow * step.scene.bodies[body.body].mass;
@@ -65,7 +65,7 @@ void ImplicitModel::press(ContactStep& step) {
     if (island.bodies.size() == 1) {
       solve_one(step, island);
     } else if (island.bodies.size() <= kMostExact ||
-               (island.bodies.size() <= kMostAtRest && nearly_rests(step, island))) {
+               (island.bodies.size() <= kMostAtRest && strikes_nothing(step, island))) {
       solve_few(step, island);
     } else {
       solve_crowd(step, island);

@@ -3,7 +3,7 @@
 #include <functional>
 #include <type_traits>
 
-#include "lanes.h"
+#include "../math/lanes.h"
 #include "mr_hand_interaction/math.h"
 
 namespace mrhi {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lanes.h"
+#include "../math/lanes.h"
 
 namespace mrhi {
 

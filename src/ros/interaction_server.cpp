@@ -209,11 +209,12 @@ void InteractionServer::Impl::take(const mr_hand_interaction::HandFrame& message
   }
   if (!begin(message)) return;
   while (timed_step()) results_.note_step();
+  results_.publish_response(live_.simulation().report());
   const FrameResult& result = live_.simulation().end();
   log_.frame(message, frame_stamp_, frame_expected_);
   place_dragged();
   for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
-  results_.publish(result);
+  results_.publish_picture(result);
   if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
   diagnostics_.waited((now - arrival).toSec());

@@ -77,16 +77,24 @@ void ResultPublisher::note_step() {
 }
 
 void ResultPublisher::publish(const FrameResult& result) {
-  const ros::Time stamp = to_ros_time(clock_.to_stamp(result.stamp));
-  const std_msgs::Header when = header(stamp);
-  // What robots and gloves wait for, then what eyes do, then what may come later.
+  publish_response(result);
+  publish_picture(result);
+}
+
+void ResultPublisher::publish_response(const FrameResult& result) {
+  const std_msgs::Header when = header(result);
   haptics_.publish(*simulation_, result, when);
   publish_contacts(result, when);
   publish_objects(when);
   if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
+}
+
+void ResultPublisher::publish_picture(const FrameResult& result) {
+  const std_msgs::Header when = header(result);
   publish_markers(result, when);
   let_picture_go();
   publish_transforms(when);
+  if (standard_) standard_->publish_hands(result, when);
   if (rendered_hands_.getNumSubscribers() > 0)
     publish_shared(rendered_hands_, rendered_message(result, when));
   if (tracked_hands_.getNumSubscribers() > 0) publish_shared(tracked_hands_, tracked_message(result, when));
@@ -119,6 +127,10 @@ std_msgs::Header ResultPublisher::header(const ros::Time& stamp) const {
   header.stamp = stamp;
   header.frame_id = fixed_frame_;
   return header;
+}
+
+std_msgs::Header ResultPublisher::header(const FrameResult& result) const {
+  return header(to_ros_time(clock_.to_stamp(result.stamp)));
 }
 
 void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs::Header& header) {

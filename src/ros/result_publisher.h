@@ -17,7 +17,7 @@
 
 namespace mrhi {
 
-/// Publishes what comes of a simulation: the picture first, then the rest, and only where somebody listens.
+/// Publishes what comes of a simulation, and only where somebody listens.
 class ResultPublisher {
  public:
   ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
@@ -29,7 +29,12 @@ class ResultPublisher {
   void show(const Simulation& simulation);
   /// After each step of a frame.
   void note_step();
-  /// All that a result holds, under its own stamp.
+  /// What robots and gloves wait for, under the result's own stamp: haptics, contacts, objects. Its rendered
+  /// hands are not looked at.
+  void publish_response(const FrameResult& result);
+  /// What eyes wait for, then what may come later.
+  void publish_picture(const FrameResult& result);
+  /// Both.
   void publish(const FrameResult& result);
   /// What may be shown again at any time: markers, objects, transforms.
   void publish_scene(const FrameResult& result, const ros::Time& stamp);
@@ -40,6 +45,7 @@ class ResultPublisher {
 
  private:
   std_msgs::Header header(const ros::Time& stamp) const;
+  std_msgs::Header header(const FrameResult& result) const;
   void publish_markers(const FrameResult& result, const std_msgs::Header& header);
   void let_picture_go() const;
   void publish_rest(const FrameResult& result, const std_msgs::Header& header);

@@ -80,17 +80,26 @@ StandardOutputs::StandardOutputs(const ros::NodeHandle& node)
 /// Topics of the bodies that there are.
 void StandardOutputs::follow(const Scene& scene) {
   std::map<std::string, ObjectTopics> objects;
-  for (const Body& body : scene.bodies) {
-    if (body.fixed) continue;
-    const auto known = objects_.find(body.name);
-    const std::string topic = topic_of(body.name);
-    objects[body.name] =
-        known != objects_.end()
-            ? known->second
-            : ObjectTopics{node_.advertise<geometry_msgs::PoseStamped>(topic + "/pose", kQueue),
-                           node_.advertise<geometry_msgs::WrenchStamped>(topic + "/wrench", kQueue)};
-  }
+  const auto each_free = [&scene](auto&& use) {
+    for (const Body& body : scene.bodies)
+      if (!body.fixed) use(body.name);
+  };
+  each_free([&](const std::string& name) {
+    if (const auto known = objects_.find(name); known != objects_.end()) objects.insert(*known);
+  });
+  each_free([&](const std::string& name) {
+    if (objects.count(name) == 0) objects.emplace(name, new_topics(name, objects));
+  });
   objects_ = std::move(objects);
+}
+
+StandardOutputs::ObjectTopics StandardOutputs::new_topics(const std::string& body,
+                                                          const std::map<std::string, ObjectTopics>& there) {
+  std::string name = topic_of(body);
+  const auto is_taken = [&name](const auto& other) { return other.second.name == name; };
+  while (std::any_of(there.begin(), there.end(), is_taken)) name += '_';
+  return {name, node_.advertise<geometry_msgs::PoseStamped>(name + "/pose", kQueue),
+          node_.advertise<geometry_msgs::WrenchStamped>(name + "/wrench", kQueue)};
 }
 
 void StandardOutputs::publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
@@ -103,6 +112,9 @@ void StandardOutputs::publish(const Scene& scene, const FrameResult& result, con
     wrench.wrench = wrench_message(i, result, state);
     objects_.at(scene.bodies[i].name).wrench.publish(wrench);
   }
+}
+
+void StandardOutputs::publish_hands(const FrameResult& result, const std_msgs::Header& header) {
   for (const RenderedHand& rendered : result.rendered)
     hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
 }

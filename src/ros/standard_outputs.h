@@ -27,22 +27,28 @@ geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result
 std::string held_objects(const Scene& scene, const SimulationState& state);
 
 /// The results as messages that everybody has, for those who do not have this package's:
-///   objects/NAME/pose (PoseStamped) and objects/NAME/wrench (WrenchStamped) of each free body, - in names as
-///   _ held_object (String), latched and when it changes rendered_hands/left/pose_array and
-///   rendered_hands/right/pose_array (PoseArray)
+///   objects/NAME/pose (PoseStamped) and objects/NAME/wrench (WrenchStamped) of each free body; a topic has
+///   no
+///     -, which becomes _, and ends in one _ more for each topic of that name that there is already;
+///   held_object (String), latched and when it changes;
+///   rendered_hands/left/pose_array and rendered_hands/right/pose_array (PoseArray).
 class StandardOutputs {
  public:
   explicit StandardOutputs(const ros::NodeHandle& node);
 
+  /// Of objects.
   void publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
                const std_msgs::Header& header);
+  void publish_hands(const FrameResult& result, const std_msgs::Header& header);
   /// Poses and what is held, as publish does.
   void publish_objects(const Scene& scene, const SimulationState& state, const std_msgs::Header& header);
 
  private:
   struct ObjectTopics {
+    std::string name;  // without /pose and /wrench
     ros::Publisher pose, wrench;
   };
+  ObjectTopics new_topics(const std::string& body, const std::map<std::string, ObjectTopics>& there);
   void follow(const Scene& scene);
 
   ros::NodeHandle node_;

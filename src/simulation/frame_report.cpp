@@ -4,7 +4,6 @@
 
 #include "../collision/near_bodies.h"
 #include "grasp.h"
-#include "mr_hand_interaction/rendering/rendered_hand.h"
 
 namespace mrhi {
 namespace {
@@ -67,25 +66,25 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
   }
 }
 
-void render(const FrameEnd& end, FrameResult& result) {
-  for (std::size_t slot = 0; slot < end.state.hands.size(); ++slot) {
-    const HandTrack& track = end.state.hands[slot];
-    if (!track.active) continue;
-    result.tracked.push_back(track.current);
-    result.rendered.emplace_back();
-    end.renderer.render(track, static_cast<int>(slot), end.state.time, end.state.bodies, result.contacts,
-                        end.state.interactions.data() + slot * end.state.bodies.size(),
-                        end.state.offsets[slot], result.rendered.back());
-  }
-}
-
 }  // namespace
 
 void report_frame(const FrameEnd& end, FrameResult& result) {
   find_contacts(end, result.contacts);
   add_strikes(end.strikes, result.contacts);
   update_interactions(end, result);
-  render(end, result);
+  for (const HandTrack& track : end.state.hands)
+    if (track.active) result.tracked.push_back(track.current);
+}
+
+void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& result) {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    result.rendered.emplace_back();
+    renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
+                    state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],
+                    result.rendered.back());
+  }
 }
 
 void note_strikes(const std::vector<Contact>& contacts, std::vector<Contact>& strikes) {

@@ -14,14 +14,16 @@ struct FrameEnd {
   std::vector<HandMotion>& hands;  ///< those that can touch
   Neighbours& neighbours;
   ContactFinder& finder;
-  HandRenderer& renderer;
   const std::vector<Contact>& strikes;  ///< impacts since the frame before, one entry per contact
-  SimulationState& state;               ///< its interactions and the rendered hands' offsets are updated
+  SimulationState& state;               ///< its interactions are updated
 };
 
 /// Contacts as they are at the frame's end, with the last step's forces, and the impacts since the frame
-/// before; then the events that follow from them, and the rendered hands.
+/// before; then the events that follow from them, and the tracked hands.
 void report_frame(const FrameEnd& end, FrameResult& result);
+
+/// The hands as they are shown, from the contacts of the report; their offsets in the state are updated.
+void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& result);
 
 /// Adds a step's impacts to those of the frame.
 void note_strikes(const std::vector<Contact>& contacts, std::vector<Contact>& strikes);

@@ -50,13 +50,16 @@ void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {
 }
 
 /// What is shown of a hand that is sound is the hand itself if the drawn one is not.
-void Simulation::Impl::report_what_is_finite() {
+void Simulation::Impl::show_hands_that_are_finite() {
   for (std::size_t i = 0; i < result.rendered.size(); ++i) {
     if (finite(result.rendered[i].hand)) continue;
     result.not_finite.push_back("rendered " + name_of(result.tracked[i]));
     result.rendered[i].hand = result.tracked[i];
     std::fill(state.offsets.begin(), state.offsets.end(), HandOffset());
   }
+}
+
+void Simulation::Impl::leave_out_contacts_that_are_not_finite() {
   const auto end = std::remove_if(result.contacts.begin(), result.contacts.end(), [this](const Contact& c) {
     if (finite(c)) return false;
     result.not_finite.push_back("contact with '" + scene.bodies[c.key.body].name + "'");

@@ -92,6 +92,7 @@ void Simulation::Impl::clear_result() {
   result.contacts.clear();
   result.events.clear();
   result.not_finite.clear();
+  reported = false;
   strikes.clear();
 }
 
@@ -127,10 +128,17 @@ bool Simulation::step() {
   return true;
 }
 
-const FrameResult& Simulation::end() {
+const FrameResult& Simulation::report() {
   Impl& s = *impl_;
   s.state.time = s.frame_to;
-  s.finish(s.frame_to);
+  s.report(s.frame_to);
+  return s.result;
+}
+
+const FrameResult& Simulation::end() {
+  Impl& s = *impl_;
+  if (!s.reported) report();
+  s.render();
   return s.result;
 }
 
@@ -168,7 +176,8 @@ bool Simulation::advance_without_hands(Nanoseconds time) {
   s.result.restarted = false;
   s.clear_result();
   s.pass_without_frames(time);
-  s.finish(state.time);
+  s.report(state.time);
+  s.render();
   return true;
 }
 

@@ -93,10 +93,16 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
   assist.let_go(state);
 }
 
-void Simulation::Impl::finish(Nanoseconds stamp) {
+void Simulation::Impl::report(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_frame({scene, hands, neighbours, finder, renderer, strikes, state}, result);
-  report_what_is_finite();
+  report_frame({scene, hands, neighbours, finder, strikes, state}, result);
+  leave_out_contacts_that_are_not_finite();
+  reported = true;
+}
+
+void Simulation::Impl::render() {
+  render_hands(renderer, state, result);
+  show_hands_that_are_finite();
 }
 
 }  // namespace mrhi

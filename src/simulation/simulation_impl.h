@@ -34,11 +34,13 @@ struct Simulation::Impl {
   void begin_hands(double seconds);
   void pass_without_frames(Nanoseconds until);
   void lose_hands(Nanoseconds now);
-  void finish(Nanoseconds stamp);
+  void report(Nanoseconds stamp);
+  void render();
 
   // What is not finite never leaves (not_finite.cpp); what it was of is named in the result.
   void lose_hands_that_are_not_finite(Nanoseconds now);
-  void report_what_is_finite();
+  void leave_out_contacts_that_are_not_finite();
+  void show_hands_that_are_finite();
 
   // A step.
   double driven(double step) const;
@@ -63,6 +65,7 @@ struct Simulation::Impl {
 
   SimulationState state;
   FrameResult result;
+  bool reported = false;  // the result but for the rendered hands
 
   // The way from the last frame to this one.
   Nanoseconds frame_from = 0, frame_to = 0;

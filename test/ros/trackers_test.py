@@ -19,17 +19,18 @@ import rosbag
 import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import Point32, PoseArray, PoseStamped, WrenchStamped
+from geometry_msgs.msg import Point, Point32, Pose, PoseArray, PoseStamped, WrenchStamped
 from sensor_msgs.msg import PointCloud
 from std_msgs.msg import String
 
 from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray
+from mr_hand_interaction.srv import SpawnObject, SpawnObjectRequest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
 from standing_clock import StandingClock  # noqa: E402
 from tracker_hands import Dropouts, Noise, joints, program, recording  # noqa: E402
-from waiting import wait_until  # noqa: E402
+from waiting import TIMEOUT, wait_until  # noqa: E402
 
 PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
 COUNTS, RATES, NOISES = (21, 25, 26), (30, 60, 120), (0.001, 0.003, 0.005)
@@ -295,6 +296,22 @@ class TrackersTest(unittest.TestCase):
         self.assertTrue(all(len(message.poses) == 21 for message in seen["hand"]))
         for subscriber in subscribers:
             subscriber.unregister()
+
+    def test_each_object_has_standard_topics_of_its_own_whatever_its_name(self):
+        motion = Motion(self.folder, 26, 60)
+        motion.messages = motion.messages[:1]
+
+        def topics():
+            return {name for name, _ in rospy.get_published_topics() if name.startswith("/objects/plate")}
+
+        def spawn_both():
+            rospy.wait_for_service("interaction_node/spawn", TIMEOUT)
+            for height, name in enumerate(("plate-1", "plate_1")):
+                answer = rospy.ServiceProxy("interaction_node/spawn", SpawnObject)(SpawnObjectRequest(
+                    name=name, shape="sphere", size=[0.02], mass=0.1, pose=Pose(position=Point(0.3, 0.3, 0.2 + 0.1 * height))))
+                self.assertTrue(answer.success, answer.message)
+            wait_until(lambda: len(topics()) == 4, "topics of both")
+        self.drive(motion, "standard_outputs:=true", watch=spawn_both)
 
     def test_the_example_publishes_what_its_tracker_sees(self):
         rows = recording(self.folder, 60)[100:110]
