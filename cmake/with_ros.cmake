@@ -6,6 +6,7 @@ write_tracker_registry(src/ros)
 target_include_directories(${PROJECT_NAME}_ros PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated src)
 target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
+precompile(${PROJECT_NAME}_ros <ros/ros.h> <visualization_msgs/MarkerArray.h>)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/replay/run.cpp src/replay/world.cpp PROPERTIES
