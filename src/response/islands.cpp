@@ -31,6 +31,7 @@ void Islands::unite(int a, int b) {
   parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
 }
 
+// Contacts come sorted by their bodies, so those of a body are one run of them.
 void Islands::build(const ContactStep& step) {
   bodies_.clear();
   links_.clear();
@@ -90,6 +91,7 @@ void Islands::gather() {
   if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
 }
 
+// Joints unite as contacts do: M of a linkage is dense, so that what pushes one of its bodies moves all.
 void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
