@@ -41,6 +41,7 @@ void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std
   }
 }
 
+// Without a moment delay_impacts() passes it over.
 void StepChanges::forget(int body) {
   const int place = places_[static_cast<std::size_t>(body)];
   if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
