@@ -8,7 +8,8 @@
 namespace mrhi {
 namespace {
 
-/// A linkage none of whose points is faster than this is still [m/s], as a body is that sleeps.
+/// A linkage none of whose points is faster than this is still [m/s]: a tenth of what a body that sleeps may
+/// have (simulation/sleeping.cpp).
 constexpr double kStill = 1e-6;
 /// What has been still for so long sleeps [s].
 constexpr double kTired = 0.5;
