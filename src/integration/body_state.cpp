@@ -2,6 +2,7 @@
 
 namespace mrhi {
 
+// I_w^-1 = R I^-1 R'.
 Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation) {
   const Matrix3 rotation = orientation.toRotationMatrix();
   return rotation * body.inverse_inertia * rotation.transpose();
@@ -9,6 +10,8 @@ Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation) {
 
 // w = R I^-1 R' L. Momenta are what is kept, since nothing changes them in flight; velocities follow from
 // them.
+// By the quaternion rather than R: a body's momentum is turned into its axes and the result back, two turns
+// of a vector where I_w^-1 takes two products of matrices.
 Twist twist_of(const Body& body, const BodyState& state) {
   if (body.fixed) return {};
   const Quaternion& q = state.pose.orientation;

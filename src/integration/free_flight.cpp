@@ -15,6 +15,11 @@ constexpr double kNoSpin = 1e-200;
 
 /// Turns `orientation` on by `by`, which need not be unit. What is added is rounded but once: were the
 /// product divided by its norm, slow turns would be rounded the same way in every step and drift.
+///
+///     q <- q + q (b - 1),      b - 1 = ((1 + s) cos - 1, (1 + s) sin),      s = (1 - |q|^2) / 2
+///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: what is small is made small
+///
+/// s takes back what |q| is off by in the first order, so q is never divided by its norm.
 void turn_on(const Quaternion& by, Quaternion& orientation) {
   const double scale = 1.0 / by.norm();
   Quaternion change(scale * by.w(), scale * by.x(), scale * by.y(), scale * by.z());
@@ -26,6 +31,7 @@ void turn_on(const Quaternion& by, Quaternion& orientation) {
   orientation.coeffs() += (orientation * change).coeffs();
 }
 
+// 1/I_min - 1/I_max: |w x L| is at most that times |L|^2, and 0 of a ball.
 double spread(const Body& body) {
   return body.inverse_moments.maxCoeff() - body.inverse_moments.minCoeff();
 }
@@ -49,12 +55,19 @@ void free_flight(const Body& body, const Vector3& gravity, double step, BodyStat
   state.pose.orientation = Quaternion(turning.w, turning.x, turning.y, turning.z);
 }
 
+// x += h p / m + h^2 g / 2 with the p of the step's start, then p += m h g. Where contacts have been solved
+// implicitly the caller gives g = 0: p is the end's already, and x += h v(h) is backward Euler's.
 void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
   const Vector3 velocity = state.linear_momentum / mass;
   state.pose.position += step * velocity + (0.5 * step * step) * gravity;
   state.linear_momentum += (mass * step) * gravity;
 }
 
+//     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortWay, (1/I_min) / kShortAngle)^2
+//
+// which is that the momentum goes by no more than kShortWay in the body and the body turns by no more than
+// kShortAngle, in squares, since a root of |L|^2 would cost more than the rest. The form !(x > y) is also
+// true of what is not a number.
 Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
   const double squared = angular_momentum.squaredNorm();
   if (!(squared > kNoSpin)) return Turn::none;

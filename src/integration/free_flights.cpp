@@ -25,6 +25,7 @@ FreeFlights::FreeFlights(const Scene& scene)
   }
 }
 
+// Which bodies share a four is fixed by their indices, so what does not change in flight is laid out once.
 void FreeFlights::fly(std::size_t body, const Vector3& gravity, double step, BodyState& state) {
   const Flyer& flyer = flyers_[body];
   if (!flyer.flies) return;
@@ -39,6 +40,9 @@ void FreeFlights::fly(std::size_t body, const Vector3& gravity, double step, Bod
   ++four.count;
 }
 
+// All four lanes are worked out if one of them turns. One that does not has an old state in it, or at first
+// no momentum, which is divided by: what comes of it is no number or of no use, and is not written back. A
+// lane's bits are those of turn_shortly on its body alone, so it makes no difference who turns beside it.
 void FreeFlights::turn(std::vector<BodyState>& states) {
   for (std::size_t f = 0; f < fours_.size(); ++f) {
     Four& four = fours_[f];

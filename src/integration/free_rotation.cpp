@@ -13,6 +13,14 @@ constexpr double kSeries = 1.0 / 32.0;
 using Array = Eigen::Array4d;
 
 /// S at times of which none is beyond a quarter of a period.
+///
+///     S = t - s t^3/3! + (s^2 + 12 p) t^5/5! - s (s^2 + 132 p) t^7/7!
+///           + (s^2 (s^2 + 1224 p) + 3024 p^2) t^9/9!
+///     s = A + B,  p = A B:      sn's series (Abramowitz & Stegun 16.22.1), for A = 1 and B = k^2
+///     S(2t) = 2 S c d / (1 - p S^4)
+///
+/// The time is halved until the series suffices and S doubled as often. With roots of c^2 and d^2 in it
+/// this knows S, c, d > 0 alone: hence no more than a quarter of a period.
 Array elliptic(double a, double b, Array times, double longest) {
   double part = 1.0;
   for (double angle = std::sqrt(std::max(a, b)) * longest; part * angle > kSeries;) part *= 0.5;
@@ -33,6 +41,7 @@ Array elliptic(double a, double b, Array times, double longest) {
 Array points() {
   return {0.17267316464601142810, 0.5, 0.82732683535398857190, 1.0};
 }
+/// Exact for polynomials of the seventh degree, by four values beside that at 0, which is known.
 Array weights() {
   return {49.0 / 180.0, 64.0 / 180.0, 49.0 / 180.0, 9.0 / 180.0};
 }
@@ -55,6 +64,13 @@ struct Way {
   double angle;  // [rad]
 };
 
+// With n(t) = m(t) - m(0), 1 - D = j1 j3 m2^2 S^2 (`less`) and the addition theorems
+//
+//     1 - c(2t) = 2 A S^2 d^2 / (1 - p S^4),     1 - d(2t) = 2 B S^2 c^2 / (1 - p S^4)         S, c, d at t
+//
+// m1 is put as (m1 (c - D) + ...) / D, c - D = (1 - D) - (1 - c): what is small is summed of small parts. A
+// and B are not negative, as j1 and j3 have one sign and j2 the other; two equal moments (a j of 0) and the
+// separatrix (A = B) are no cases of their own.
 Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double m1 = momentum[0], m2 = momentum[1], m3 = momentum[2];
   const double j1 = inverse_moments[2] - inverse_moments[1], j2 = inverse_moments[0] - inverse_moments[2],
@@ -89,6 +105,10 @@ Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step)
 
 }  // namespace
 
+//     turn by `angle` about m,  after  (m(0).m(t) + L^2, m(t) x m(0)):  the shortest from m(t) to m(0)
+//
+// With n = m(t) - m(0), m(t) x m(0) = n x m and the scalar part 2 L^2 + m.n, which is not small: m(t) is
+// near m.
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double squared = momentum.squaredNorm(), size = std::sqrt(squared);
   const bool equal = inverse_moments.maxCoeff() == inverse_moments.minCoeff();

@@ -39,6 +39,7 @@ Real series(const Real& x, double first, Others... others) {
 }
 
 /// Euler's equations from the principal momentum m on, as in free_rotation.h.
+/// Series as in elliptic(), without halving: a short turn's S needs none.
 template <typename Real>
 class Way {
  public:
@@ -110,6 +111,12 @@ struct About {
 ///     (2 E t + integral of n . k n / (4 (1 - e)) dt) / L,
 ///
 /// of which the integral is small. Simpson's rule with the slopes at the ends is exact for it, to rounding.
+/// It comes of free_rotation.h's integrand by what the motion keeps. |m + n| = |m| makes m.n = -n^2 / 2, so
+/// L^2 + m.m(t) = 2 L^2 (1 - e); the same energy makes m.J n = -n.J n / 2, so what is above is 2 (2 E) -
+/// n.J n / 2; and 2 E / L^2 taken off leaves n.k n / (4 L^2 (1 - e)). With f that integrand, f and f' are 0
+/// at the start, and
+///
+///     integral of f = t / 30 (16 f(t/2) + 7 f(t)) - t^2 / 60 f'(t)
 template <typename Real>
 About<Real> about(const Way<Real>& way, const Triple<Real>& m, const Triple<Real>& n,
                   const Real (&moments)[3], const Real& over, const Real& t) {
@@ -133,6 +140,10 @@ About<Real> about(const Way<Real>& way, const Triple<Real>& m, const Triple<Real
 }
 
 /// Turns the orientation on by a unit quaternion. What is added is rounded but once (free_flight.cpp).
+///
+///     q <- q + q ((1 + s) cos - 1, (1 + s) sin),     s = (1 - |q|^2) / 2,     cos - 1 = -sin^2 / (1 + cos)
+///
+/// A short turn's cosine is near 1, so that there is no other case.
 template <typename Real>
 void turn_on(const Real& cosine, const Triple<Real>& sine, Turning<Real>& state) {
   const Real one = constant<Real>(1.0), w = state.w;
@@ -148,6 +159,12 @@ void turn_on(const Real& cosine, const Triple<Real>& sine, Turning<Real>& state)
 /// What free_rotation.h has, for short turns: without roots and with few divisions. The momentum's shortest
 /// way and the turn about it make a quaternion of norm sqrt(1 - e) if the scalar part of the one is 1 - e and
 /// the vector of the other along m + n / 2.
+///
+///     (2 L^2 (1 - e), n x m)  then  (cos, sin m / L),  over 2 L^2:
+///     scalar  cos (1 - e),     vector  cos n x m / 2 L^2 + sin / L (m + n / 2)
+///
+/// as m x (n x m) = n L^2 - m (m.n) = n L^2 + m n^2 / 2. cos and sin are those of half the angle; `sine`
+/// has the 1 / L in it, so that no root of L^2 is needed.
 template <typename Real>
 void turn_shortly(const Spinner<Real>& body, Turning<Real>& state) {
   const Real half = constant<Real>(0.5);

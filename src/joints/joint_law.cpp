@@ -10,10 +10,15 @@ namespace {
 
 /// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step:
 /// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
+/// With K = 1e4 I / h^2 the Hessian I + h^2 K has 1e4 times the joint's own entry. It is a penalty that
+/// goes with step and inertia, no stiffness of the scene's, so that it costs H no more of its condition at
+/// short steps and heavy doors.
 constexpr double kStopOverInertia = 1e4;
 
 /// Half-way to its nearest neighbour a detent gives way, and there its spring has the force that it is known
 /// by.
+/// k_d = force / (gap / 2), gap the least between neighbours: the spring draws to one place, x_d, and there
+/// is a jump from -force to force where the next one's takes over.
 double detent_stiffness(const Detents& detents) {
   double least = detents.at.back() - detents.at.front();
   for (std::size_t i = 1; i < detents.at.size(); ++i)
@@ -26,6 +31,8 @@ double place_of(const Detents& detents, std::size_t index) {
 }
 
 /// At a limit is what is so near it; what has been there has left when this far off [rad, m].
+/// Two thresholds: a joint that presses on its limit moves by what holds it gives, and with one would be
+/// told to arrive again and again.
 constexpr double kAtLimit = 1e-5, kOffLimit = 1e-3;
 
 std::size_t nearest(const std::vector<double>& places, double to) {
@@ -52,6 +59,11 @@ JointState start_state(const Joint& joint) {
   return state;
 }
 
+//     turns:   q' = a.(w_child - w_parent)
+//     slides:  q' = a.(v_child - v_parent - w_parent x (c_child - c_parent))
+//
+// a = the joint's axis in world, fixed in the parent. Bodies' momenta are the state, so a joint's velocity
+// is read from them.
 double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
   const Joint& joint = scene.joints[index];
   const auto motion = [&](int body) {
@@ -69,6 +81,8 @@ double joint_velocity(const Scene& scene, std::size_t index, const std::vector<B
   return axis.dot(own.linear - carried);
 }
 
+// From the place alone, after the flight: what has passed a place within the step and come back is not
+// told.
 JointChange note_place(const Joint& joint, JointState& state) {
   JointChange change;
   const double below = joint.upper - state.position, above = state.position - joint.lower;
@@ -87,6 +101,10 @@ JointChange note_place(const Joint& joint, JointState& state) {
   return change;
 }
 
+//     F = clamp(K (s - h v), -+most),     -dF/d(h v) = K within it, 0 at it
+//
+// s is the anchor's distance. The spring that slips is dry friction as a god object's: it sticks to an
+// anchor, where a law of sign(v) would creep or chatter at rest.
 double JointLaw::Hold::force(double way) const {
   return std::clamp(wanted(way), -most, most);
 }
@@ -94,11 +112,13 @@ double JointLaw::Hold::slope(double way) const {
   return std::abs(wanted(way)) < most ? stiffness : 0.0;
 }
 // A spring that slips at `most`: a parabola, and a straight line from there on (Huber's function).
+// E(q) = K q^2 / 2 up to most / K, and most (q - most / 2K) beyond; dE/d(h v) = -F.
 double JointLaw::Hold::energy(double way) const {
   if (stiffness <= 0.0) return 0.0;
   const double size = std::abs(wanted(way));
   return (size < most ? 0.5 * size * size : most * (size - 0.5 * most)) / stiffness;
 }
+// How far x+ is beyond the limit: max(0, +-h v - room). K times it pushes back, and never draws.
 double JointLaw::Stop::over(double way) const {
   return std::max(0.0, sign * way - room);
 }
@@ -111,6 +131,9 @@ double JointLaw::Stop::over(double way) const {
 //
 // each term at the step's end, as contacts are: k and K add h k and h K to the slope, so that no stiffness
 // asks for a shorter step. K = kStopOverInertia * inertia / h^2.
+// Of what is beyond a limit already only h / h_usual is put right in a step, as Baumgarte (1972) has it
+// with a rate and not at once: all of it within a short step is a velocity of depth / h. The detent and the
+// latch are those of the step's start.
 void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
   blow_ = 0.0;
@@ -150,12 +173,15 @@ double JointLaw::force(double velocity) const {
          stop_ * (lower_.over(way) - upper_.over(way));
 }
 
+// -dt/dv = b + h (k + k_d) + h K for each that holds and does not slip.
 double JointLaw::slope(double velocity) const {
   const double way = step_ * velocity;
   const double stops = (lower_.over(way) > 0.0 ? stop_ : 0.0) + (upper_.over(way) > 0.0 ? stop_ : 0.0);
   return linear_ + step_ * (friction_.slope(way) + latch_.slope(way) + stops);
 }
 
+// e(v) = (b + h k) v^2 / 2 - k (rest - x) v + (E_friction + E_latch + K over^2 / 2) / h; the last by h v,
+// so that de/dv = -t.
 double JointLaw::energy(double velocity) const {
   const double way = step_ * velocity, lower = lower_.over(way), upper = upper_.over(way);
   const double held =
@@ -170,6 +196,7 @@ double JointLaw::size(double velocity) const {
          std::abs(latch_.force(way)) + stop_ * (lower_.over(way) + upper_.over(way));
 }
 
+// effort = t(v) + blow / h: what the joint's own forces gave in the mean over the step.
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
   state.effort = force(velocity) + blow_ / step_;

@@ -58,7 +58,8 @@ class LinkageMotion {
   void move(const Vector& velocity);
   /// Momenta of the unknowns that an impulse and its moment about the centre give, added.
   void push(int body, const Vector3& impulse, const Vector3& moment, Eigen::Ref<Vector> momenta) const;
-  /// How the unknown `column` moves a body: velocity of its centre, and angular. Zero if it does not.
+  /// How the unknowns move a body: velocity of its centre, and angular, a column each. Rows that are zero
+  /// before: columns of those that do not move it are left alone.
   void add_jacobian(int body, Eigen::Ref<Matrix> six_rows) const;
   /// What changes the joints' momenta by themselves: gravity [m/s^2], and that their axes move.
   void find_rates(const Vector3& gravity, Vector& rates);

@@ -7,9 +7,11 @@ namespace mrhi {
 namespace {
 
 /// No joint turns, or falls, by more than this in one part of a step [rad].
+/// The error of one part goes with the fifth power of it (fourth order).
 constexpr double kPart = 0.03;
 constexpr double kMostParts = 1000.0;
 /// What falls from rest turns as a pendulum of this length does, at most [m].
+/// w = sqrt(g / l): by its rate alone what is let go from rest would be taken in one part.
 constexpr double kFallLength = 0.1;
 constexpr int kMostRounds = 60;
 /// The stages are found when a round changes them by less than this, of their size.
@@ -19,6 +21,7 @@ const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>&
   return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
 }
 
+/// exp of a rotation vector: about it, by its length.
 Quaternion turned(const Vector3& turn) {
   const double angle = turn.norm();
   if (angle == 0.0) return Quaternion::Identity();
@@ -27,6 +30,11 @@ Quaternion turned(const Vector3& turn) {
 
 /// Rate of a turn from its angular velocity, which is in the frame that is not turned (Iserles et al.,
 /// Lie-group methods, Acta Numerica 2000, B.10).
+///
+///     theta' = w - 1/2 theta x w + (1/12 + |theta|^2 / 720) theta x (theta x w) + ...
+///
+/// the series of dexp^-1 with Bernoulli's numbers, and theta x four times = -|theta|^2 theta x twice. What
+/// is left off is of the sixth power in theta, and a part turns by about kPart at most.
 Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
   const Vector3 once = turn.cross(spin);
   return spin - 0.5 * once + (1.0 / 12.0 + turn.squaredNorm() / 720.0) * turn.cross(once);
@@ -61,6 +69,12 @@ void LinkageFlight::place(const std::vector<JointState>& joints, std::vector<Bod
 }
 
 /// Of the unknowns, in the frame of the centre of mass if it floats.
+///
+///     M(q) u = p,      p = (0, L, p_joints) of one that floats
+///
+/// In the frame of the centre of mass the momentum is 0 and L about it stays what it is, so neither is
+/// integrated and neither can drift. The root's row of M is about its own centre: with no momentum the
+/// angular momentum is the same about any point.
 void LinkageFlight::find_velocity(const Point& point) {
   motion_.place({Vector3::Zero(), turned(point.turn) * root_}, point.positions);
   motion_.weigh();
@@ -71,6 +85,8 @@ void LinkageFlight::find_velocity(const Point& point) {
 }
 
 /// Hamilton's equations: q' = M(q)^-1 p, p' = -dH/dq.
+/// H = p' M^-1 p / 2 - sum m g.c. Momenta and not velocities are integrated: forces of inertia then are in
+/// M(q) and in how axes move (find_rates), and no derivative of M is needed.
 void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point& rate) {
   find_velocity(point);
   motion_.find_rates(gravity, rate.momenta);
@@ -78,6 +94,7 @@ void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point&
   if (linkage_.floats()) rate.turn = turn_rate(point.turn, velocity_.segment<3>(3));
 }
 
+/// Of all bodies: the rate at which axes and arms turn.
 double LinkageFlight::fastest() const {
   double rate = 0.0;
   for (int i = 0; i < motion_.size(); ++i) rate = std::max(rate, motion_.at(i).angular.norm());
@@ -102,6 +119,13 @@ double LinkageFlight::distance(const Point& a, const Point& b) {
 /// Gauss's method of two stages, of fourth order and symplectic (Hairer, Lubich & Wanner, Geometric Numerical
 /// Integration, 2006, II.1.3): stages at 1/2 -+ sqrt(3)/6 of the way, by fixed-point rounds. It has no drift
 /// of energy, and keeps the momenta that the motion keeps.
+///
+///     Y_1 = y + h (1/4 f_1 + (1/4 - s) f_2),     Y_2 = y + h ((1/4 + s) f_1 + 1/4 f_2),     s = sqrt(3) / 6
+///     y' = y + h (f_1 + f_2) / 2,                f_i = f(Y_i)
+///
+/// The method is symplectic at the stages' fixed point only: rounds go on to rounding, or until they change
+/// it no less. A round takes off a factor of the order of the part's turn. The root's turn is counted from
+/// the part's start, so it stays small, and goes into the quaternion at the end.
 void LinkageFlight::advance(const Vector3& gravity, double seconds) {
   static const double kThird = std::sqrt(3.0) / 6.0;
   Stage &one = stages_[0], &two = stages_[1];
@@ -124,6 +148,10 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds) {
 }
 
 /// Always by the same sums of what is in the state, so that rounding does not add up over the steps.
+///
+///     C = sum m c / m,     P = sum p,     L = sum (l + (c - C) x (p - m v)),      v = P / m
+///
+/// The drift taken off p is a matter of rounding alone: sum m (c - C) x v = 0.
 LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) const {
   Whole whole{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   for (int i = 0; i < motion_.size(); ++i) {
@@ -142,6 +170,7 @@ LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) 
 }
 
 /// The joints' momenta; `drift` is that of the frame in which they count.
+/// p_joints = J' (p - m drift, l), by the poses of the step's start.
 void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& bodies) {
   motion_.place(of(linkage_, 0, bodies).pose, now_.positions);
   velocity_.setZero();
@@ -152,6 +181,7 @@ void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& b
   now_.momenta = velocity_.tail(now_.momenta.size());
 }
 
+// parts = 1 + h max(w, sqrt(g / l)) / kPart, w the fastest of any body at the start.
 void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   find_rate(now_, gravity, stages_[0].rate);
   const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
@@ -174,6 +204,8 @@ void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointSt
 
 /// What floats: its centre falls, its total angular momentum about it stays, and only shape and orientation
 /// are integrated, in the frame of the centre of mass. Rounding is put right at the root.
+///
+///     C(h) = C + h v + h^2 g / 2,     P(h) = P + m h g,      L about C stays
 void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,
                              std::vector<BodyState>& bodies) {
   const Whole start = whole(bodies);

@@ -5,6 +5,7 @@
 namespace mrhi {
 
 /// Numbers of four contacts side by side, in memory.
+/// Four is what a register of AVX2 holds, and two of SSE2's.
 constexpr int kLanes = 4;
 struct alignas(32) Lanes {
   double lane[kLanes];
@@ -13,6 +14,8 @@ struct alignas(32) Lanes {
 // This is compiled for any processor and once more for those with wider registers. No function of the one may
 // end up in the other's place, so all that is not a template of `Wide` stands in a namespace of its own.
 #ifdef __AVX2__
+// By the name of the namespace the linker tells the two copies apart. Had they the same name it would keep
+// one of them (ODR), and might take the AVX2 one for processors that have none.
 inline namespace avx2 {
 constexpr int kParts = 1;
 #else
@@ -22,6 +25,8 @@ constexpr int kParts = 2;
 
 /// Four numbers in registers. Every operation works lane by lane, each as exact as on a double, so that a law
 /// written for a `Real` gives the same bits on a double and on a lane, whatever the registers.
+/// What it takes for that: no multiply and add fused into one (-ffp-contract=off), since that rounds once
+/// where the other rounds twice; and only operations that IEEE 754 rounds correctly: + - * / and the root.
 struct [[gnu::may_alias]] alignas(Lanes) Wide {
   using Part [[gnu::vector_size(sizeof(Lanes) / kParts)]] = double;
   Part part[kParts];
@@ -74,6 +79,9 @@ inline Wide operator*(const Wide& a, const Wide& b) {
 inline Wide operator/(const Wide& a, const Wide& b) {
   return by_parts([&](int i) { return a.part[i] / b.part[i]; });
 }
+// Both sides of every choice are worked out and one is taken (no branch by lane): the side that is not
+// taken may be infinite or no number, and must not be used otherwise. lesser() and greater() of equals give
+// `a`, on doubles as on lanes, so that the sign of a zero is the same too.
 inline Wide lesser(const Wide& a, const Wide& b) {
   return by_parts([&](int i) { return b.part[i] < a.part[i] ? b.part[i] : a.part[i]; });
 }
@@ -118,6 +126,7 @@ inline Wide constant<Wide>(double value) {
   return side_by_side(value, value, value, value);
 }
 inline bool any_above(const Wide& a, const Wide& b) {
+  // Counts the lanes that are above: four ones add up exactly.
   return sum(where_at_most(a, b, constant<Wide>(0.0), constant<Wide>(1.0))) > 0.0;
 }
 }  // namespace

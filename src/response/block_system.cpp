@@ -40,6 +40,7 @@ void BlockSystem::clear() {
 }
 
 // Only the lower triangle is set: LLT reads no other.
+// Of islands with joints J' A J is wanted in place of a solution (linkage_problem.cpp).
 void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
   result.setZero(6 * bodies(), 6 * bodies());
   for (int i = 0; i < bodies(); ++i)
@@ -48,6 +49,8 @@ void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
 }
 
 // A = L L' (Cholesky), dense: of the few bodies of an island, most are coupled with most.
+// A is positive definite, M and slopes that are not negative, so that no pivots are needed (Golub & Van
+// Loan, Matrix Computations, 4.2). n bodies take (6 n)^3 / 6 multiplications, a column of ten 36 000.
 void BlockSystem::factorise() {
   to_dense(dense_);
   factors_.compute(dense_);

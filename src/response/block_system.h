@@ -52,6 +52,13 @@ class BlockSystem {
 /// Solves A x = b for a symmetric positive definite 6 x 6 matrix by its factors L D L'. Only the lower
 /// triangle is kept, row by row; loops over it are unrolled, which makes it several times as fast as one of
 /// any size.
+///
+///     A = L D L',   d_k = a_kk,   l_ik = a_ik / d_k,   a_ij -= l_ik a_jk for i >= j > k      (k = 0 to 5)
+///     L y = b,   D z = y,   L' x = z
+///
+/// By columns, each taking its part off all that is to the right of it (Golub & Van Loan, Matrix
+/// Computations, 4.1). No roots, as L L' would need, and divisions six in all; no pivots, as A is positive
+/// definite.
 class Cholesky6 {
  public:
   static constexpr int kEntries = 21;

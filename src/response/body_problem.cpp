@@ -50,6 +50,12 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
   begin_body(step.scene.bodies[touched.body], step.bodies[touched.body], step.gravity);
 }
 
+// The unknown is V = (v, w), world axes, w about the centre of mass, with M = diag(m 1, R I R') at the
+// step's start. No gyroscopic term w x I w is in it: it is what the axes' turning does, L itself changes by
+// torques alone, and the flight turns the axes under L afterwards (free_flight.h).
+//
+//     V* = (p / m + h g, I^-1 L)          V_0 = V* + h a,     a = (V - V*) / h of the last step
+//     unseen = m (1 nm) / h
 void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vector3& gravity) {
   mass_ = body.mass;
   unseen_ = kUnseenWay / step_ * mass_;
@@ -67,6 +73,12 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
 
 // Backward Euler: M (v - v_free) = h J' f(v), with forces as they are at the step's end. The gradient is the
 // impulse that is still missing.
+//
+//     g = M (V - V*) - h (sum f, sum r x f + T n)                  [N s], [N m s]
+//
+// This is time stepping on velocities as Anitescu & Potra (1997) have it, with springs, which need no
+// complementarity problem, in place of constraints; convex as Todorov (2014) and, with springs, Castro,
+// Permenter & Han (2023) have it.
 void BodyProblem::evaluate(bool renew_limits) {
   lanes_.respond(springs_.data(), springs_.data() + springs_.size(), velocity_.data(), renew_limits, sum_);
   const Vector6 change = velocity_ - free_;
@@ -75,6 +87,7 @@ void BodyProblem::evaluate(bool renew_limits) {
 }
 
 // M - h J' (df/dv) J: symmetric, and positive definite as no contact's slope is negative.
+// H = M + h sum J' S J of SpringLanes::slope().
 void BodyProblem::factorise() {
   SpringSlope slope;
   lanes_.slope(springs_.data(), springs_.data() + springs_.size(), slope);
@@ -87,10 +100,13 @@ void BodyProblem::factorise() {
 }
 
 // In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
+// |g_v|^2 + |g_w|^2 / k^2, k^2 = tr I / 3m the mean over the axes of their squared radii of gyration.
 double BodyProblem::error_squared() const {
   return gradient_.head<3>().squaredNorm() + gradient_.tail<3>().squaredNorm() / gyration_squared_;
 }
 
+// E(V) = (V - V*)' M (V - V*) / 2 + h sum V_c(u_c), whose gradient by V is g: u falls with V, and the
+// potential's gradient by u is the force on 2. Only a line search asks for it, contact by contact.
 double BodyProblem::energy() const {
   const Vector6 change = velocity_ - free_;
   double energy =

@@ -15,6 +15,8 @@ MRHI_ENTRIES(MRHI_DECLARE)
 namespace {
 
 /// A model of what hands do to objects, with `implicit` for what objects do to each other.
+/// In this order, as far as a step goes: hands change momenta, and objects meet each other with what that
+/// has made of them. A hand does not feel in the same step what lies behind the object that it pushes.
 class WithObjects : public ContactModel {
  public:
   WithObjects(std::unique_ptr<ContactModel> hands, const Configuration& configuration)

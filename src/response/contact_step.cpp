@@ -41,6 +41,7 @@ void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std
   }
 }
 
+// Without a moment delay_impacts() passes it over.
 void StepChanges::forget(int body) {
   const int place = places_[static_cast<std::size_t>(body)];
   if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
@@ -49,6 +50,12 @@ void StepChanges::forget(int body) {
 // Flight has moved the body by h times the velocity of the step's end, as if J had been there from its start.
 // It had h - t: so x -= sum t J / m, and the same of the turn. Springs answer the blow within the same solve;
 // what they gave (all that is neither J nor gravity) is taken to begin at the blows' mean time.
+//
+//     x -= (sum t J + T dp) / m,      turn by -I^-1 (sum t r x J + T dL),      T = sum t |J| / sum |J|
+//     dp = p - p_before - sum J - m h g,     dL = L - L_before - sum r x J
+//
+// The turn is taken back about the axes of the end, by I of the end: of second order in what a blow turns
+// in a step. Only poses are changed, so momenta and energy stay what they are.
 void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
                                 std::vector<BodyState>& bodies) const {
   for (const Struck& struck : struck_) {

@@ -57,6 +57,9 @@ class StepChanges {
 };
 
 /// What a contact model works on in one step.
+/// In a step: contacts are found at the poses of its start; respond() changes momenta, by h g too where it
+/// says so (mark_solved); free flight moves the poses on; delay_impacts() takes back what blows moved
+/// before their time.
 struct ContactStep {
   const Scene& scene;
   const Vector3& gravity;                   ///< [m/s^2]

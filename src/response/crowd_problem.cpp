@@ -37,6 +37,11 @@ Matrix3 response_of(double inverse_mass, const Matrix3& inverse_inertia, const V
 
 /// The larger eigenvalue of W across n. Friction is relaxed by this one number for both directions: by less
 /// of a mobility than there is it would overshoot, and to and fro between contacts it would not end.
+///
+///     T'WT = ( tt ts )      lambda = (tt + ss) / 2 + sqrt((tt - ss)^2 / 4 + ts^2)
+///            ( ts ss )
+///
+/// A grip's spring has no n: there the trace bounds all three eigenvalues.
 double most_across(const Matrix3& response, const Vector3& n) {
   if (n.isZero(0.0)) return response.trace();
   const Vector3 t = n.unitOrthogonal(), s = n.cross(t);
@@ -47,6 +52,9 @@ double most_across(const Matrix3& response, const Vector3& n) {
 
 }  // namespace
 
+// u* = (p / m + h g, I^-1 L) of each body, on which impulses then act at once: unlike in BodyProblem what
+// is sought are the contacts' impulses, and the velocities, u* + M^-1 J' of them, are kept up with each
+// that changes. Fixtures and hands are the last body, with 1/m and I^-1 of 0.
 void CrowdProblem::begin(const ContactStep& step, const Island& island,
                          const ContactConfiguration& configuration, const std::vector<Vector3>& carried) {
   step_ = step.step;
@@ -134,6 +142,11 @@ void CrowdProblem::add_link(const ContactStep& step, std::size_t index) {
 }
 
 /// How much faster the surfaces would have to close to press on each other [m/s].
+///
+///     missing = n.(c_a' - c_b') - d / e,      e the time that the spring looks ahead
+///
+/// as d+ = d - e n.u > 0 is what presses. e is not the same on both sides of d = 0 (look_ahead in
+/// spring_contact.cpp).
 double CrowdProblem::missing_speed(const BodyContact& touch) const {
   const Motion& b = bodies_[static_cast<std::size_t>(number_[touch.key.b])].motion;
   const int number = number_[touch.key.a];
@@ -144,6 +157,9 @@ double CrowdProblem::missing_speed(const BodyContact& touch) const {
 }
 
 /// By how much two surfaces may close faster than when contacts were last looked at, at most [m/s].
+/// A point of a body at an arm r changes by |dv + dw x r| <= |dv| + |r| |dw|, and two bodies by twice the
+/// most of one. So long as that is below the least that was missing then, nothing can press that did not,
+/// and no contact is looked at.
 double CrowdProblem::faster_since() const {
   double most = 0.0;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
@@ -155,6 +171,7 @@ double CrowdProblem::faster_since() const {
 }
 
 /// Takes in what was apart and will now press, or would if it closed faster by `slow`; true if there is any.
+/// What is taken in is not left out again in this step: it may come to bear nothing, which costs little.
 bool CrowdProblem::admit(const ContactStep& step, double slow) {
   if (apart_.empty() || faster_since() + slow < least_missing_) return false;
   seen_.clear();
@@ -199,12 +216,21 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
 /// has p = k / (1 + k e w) * (d - e u0), with u0 the rate without it: `firm`. Along the surface the same with
 /// the stretch, for t = k (s + e u) and u = u0 - w t, in terms of the rate u that there is with the last t:
 /// t' = kept t + pulled + pull u.
+///
+///     along n:   p = k (d - e u),   u = u_0 + w p:     p = k / (1 + k e w) (d - e u_0),   u_0 = u - w p_last
+///     across:    t' = k (s + e (u + w t - w t')):      t' = (1 - give) t + give k (s + e u)
+///                give = 1 / (1 + k e w)
+///
+/// k has the step in it (N s/m). Signs differ because n points from b to a and the push on b is -p n, which
+/// parts them, while t is along the sliding, which it slows down. Put in as it stands t' = k (s + e u),
+/// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
 void CrowdProblem::weigh(Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
                            response_of(b.inverse_mass, b.inverse_inertia, point.arm_b);
   const Vector3 by_push = response * point.normal;
   point.normal_mobility = point.normal.dot(by_push);
+  // W n has a part across n where the arm is not along it: a push makes the surfaces slide as well.
   point.slides = by_push - point.normal_mobility * point.normal;
   point.tangential_mobility = most_across(response, point.normal);
   point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
@@ -216,6 +242,8 @@ void CrowdProblem::weigh(Point& point) const {
   point.turn_b = b.inverse_inertia * cross_matrix(point.arm_b);
 }
 
+// The last step's force, by this step's normal, as the first guess: f = t - p n, so p = -n.f. One that
+// would pull by now is cut off. What is at rest is solved by it to begin with.
 void CrowdProblem::carry(const Vector3& borne, Point& point) {
   const double along = borne.dot(point.normal);
   point.given = {step_ * std::max(0.0, -along), step_ * (borne - along * point.normal)};
@@ -228,6 +256,9 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
   return point.drive + a.velocity + a.spin.cross(point.arm_a) - b.velocity - b.spin.cross(point.arm_b);
 }
 
+//     v_b += J / m_b,  w_b += I_b^-1 (b x J),      v_a and w_a by -J
+//
+// The turns' matrices I^-1 [r]x are made once for all turns.
 [[gnu::always_inline]] inline void CrowdProblem::push(const Point& point, const Vector3& impulse) {
   Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   a.motion.velocity -= a.inverse_mass * impulse;
@@ -238,6 +269,8 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
 
 /// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
 /// the surfaces part at u, so that what is let go is not thrown off (docs/contact.md, release).
+///
+///     -dp/du = k (p'(d+) e (1 - r^2) + 2 p(d+) r / u_f),      r = u / u_f, no fading left where r = 1
 double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
   const Point& point = points_[i];
   const double deep = std::max(0.0, point.depth - point.ahead * rate);
@@ -250,6 +283,9 @@ double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
 }
 
 /// The push that its own law asks for, where without it the rate would be `rate`.
+/// By its own law without fade and pulp it is in closed form, `firm`. The rate with that push is the
+/// highest there can be; where even that hardly parts, the fade, which goes by the square, takes a
+/// millionth at most.
 [[gnu::always_inline]] inline double CrowdProblem::find_push(std::size_t i, double rate) const {
   const Point& point = points_[i];
   const double deep = point.depth - point.ahead * rate;
@@ -260,6 +296,12 @@ double CrowdProblem::push_at(std::size_t i, double rate, double& slope) const {
 }
 
 /// Newton's method, kept between what is known to be too little and too much.
+///
+///     g(u) = u - u_0 - w p(u) = 0,     g' = 1 - w dp/du >= 1       in u_0 <= u <= u_0 + w k_firm d+
+///
+/// g grows, so there is one zero, and p at it follows from p = (u - u_0) / w. The upper end is where the
+/// plain spring has it: pulp and fade only give less. A step of Newton's that leaves the bracket gives way
+/// to halving it: beyond the release speed p is 0, and tells nothing of where it begins.
 double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) const {
   const double mobility = points_[i].normal_mobility;
   double low = rate, high = rate + mobility * plain, at = high;
@@ -275,11 +317,18 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
 }
 
 /// What friction would need to be for the tangential spring to be held, where the surfaces slide so.
+/// t' of weigh().
 [[gnu::always_inline]] inline Vector3 CrowdProblem::wanted_drag(const Point& point, const Vector3& sliding) {
   return point.kept * point.given.drag + point.pulled + point.pull * sliding;
 }
 
 /// Gives a contact what it asks for.
+///
+///     p' = find_push(u.n - w p),      t' = disc(wanted_drag(P u + (p' - p) P W n), mu p' + bond)
+///
+/// The sliding that the new push makes is foreseen, so that push and friction are of one moment. Limits are
+/// those of the new push, not of the last iterate's: no convex function is behind this, but the fixed point
+/// is Coulomb's law itself.
 [[gnu::always_inline]] inline void CrowdProblem::relax(std::size_t i) {
   Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
@@ -297,6 +346,8 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
   if (point.soft) twist(i);
 }
 
+// As the drag, about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
+// to 2/3 mu a p. Body a is a hand, which nothing turns.
 void CrowdProblem::twist(std::size_t i) {
   Point& point = points_[i];
   const SpringContact<double>& contact = contacts_[i];
@@ -319,6 +370,9 @@ bool CrowdProblem::pressed() const {
                      [](const Point& point) { return point.given.push > 0.0 || point.bond > 0.0; });
 }
 
+// To and fro: what a stack bears runs down it in one sweep and up it in the other, where sweeps one way
+// would carry it by one body a sweep in the other direction. And such a turn is symmetric (SSOR), as
+// conjugate directions ask of what they go on from.
 void CrowdProblem::turn() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) motions_before_[i] = bodies_[i].motion;
   for (std::size_t i = 0; i < points_.size(); ++i) given_before_[i] = points_[i].given;
@@ -344,6 +398,13 @@ double CrowdProblem::made_by_contacts() const {
 /// Carries on in the direction of the turns before, conjugate to this one by Fletcher and Reeves' rule (the
 /// ratio of the squares of what two turns have changed; none where that has grown); `last` is the square of
 /// what the turn before has changed. Returns that of this one.
+///
+///     d_k = x_turn - x_before,     beta = |d_k|^2 / |d_k-1|^2 < 1, else 0,      s_k = d_k + beta s_k-1
+///     x <- x_turn + beta s_k-1
+///
+/// of pushes and drags and of velocities alike, which hang on them linearly; torsion's impulse is not
+/// carried on. It comes before a turn and never after the last: a push may be negative and a drag outside
+/// its disc until contacts have been relaxed.
 double CrowdProblem::keep_going(double last) {
   double square = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -373,6 +434,9 @@ bool CrowdProblem::nearly_rests(const ContactStep& step) const {
                      [slow](const Body& body) { return body.motion.velocity.norm() < slow; });
 }
 
+// Ends where a turn changes no velocity by more than 1e-6 of what contacts have made of them, or with the
+// budget. What is undone then is an impulse that both bodies lack, hence no momentum, and is the next
+// step's.
 void CrowdProblem::solve(const ContactStep& step) {
   given_before_.resize(points_.size());
   given_along_.assign(points_.size(), {0.0, Vector3::Zero()});
@@ -392,6 +456,8 @@ void CrowdProblem::solve(const ContactStep& step) {
 }
 
 /// What the springs' settling looks at.
+/// Impulses over the step are forces. `wanted` is that of wanted_drag(): at the fixed point k q+ where a
+/// contact sticks, and as k q+ beyond the limit where it slips, as t' - t = give (k q+ - t).
 void CrowdProblem::report(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
@@ -406,6 +472,10 @@ void CrowdProblem::report(std::size_t i) {
   contact.spring.slip_limit = (point.friction * point.given.push + point.bond) / step_;
 }
 
+//     p += h m g + sum +-J,     L += sum +-(r x J + T n)
+//
+// Momenta are summed from the impulses, not taken from the velocities: what b gets a loses to the last bit
+// but rounding of the sums, wherever turns have ended.
 void CrowdProblem::finish(ContactStep& step, const Island& island) {
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const std::size_t index = island.bodies.begin()[k].body;

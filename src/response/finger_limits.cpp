@@ -25,6 +25,9 @@ struct MeetingFaces {
   /// Whether friction on these faces can bear the force F = normal + drag, which the object gives the finger:
   /// what points out of a face presses, N_i = max(0, n_i.F), and all else is friction, |F - sum N_i n_i| <=
   /// mu sum N_i.
+  /// A cone about n alone, 30 to 45 degrees off the faces, would let the edge be squeezed out like a pip.
+  /// Where N_i would be more than kMostOnAFace n_i.n, the part of a unit push along n that the face has by
+  /// itself, it is not borne.
   bool bear(const Vector3& normal, const Vector3& drag, double friction) const {
     const Vector3 force = normal + drag;
     Vector3 rest = force;
@@ -39,6 +42,8 @@ struct MeetingFaces {
   }
 };
 
+// Of a box the three on n's side, of a cylinder the end and the side at n's azimuth. One that n lies in has
+// no part of the push and is none of them.
 MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
   constexpr double kSameNormal = 1e-6;
   MeetingFaces faces;
@@ -58,6 +63,7 @@ MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
 }  // namespace
 
 // The largest f for which the faces bear normal + f along, by halving; 20 times leave 4e-6 of the push.
+// Halving takes it that they bear every f up to the largest. The least is what a face has by itself.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction) {
   const MeetingFaces faces = faces_at(shape, normal);
   double lowest = friction, highest = std::max(friction, kMostFriction);
@@ -69,6 +75,9 @@ double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3
   return lowest;
 }
 
+// grip = f_edge / mu (phi of a contact that slips), by which the spring's limit is multiplied. It is found
+// for the way in which the contact is drawn at the step's start, and held through the step, so that the
+// step's problem stays convex.
 void grip_edges(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     if (!contact.at_edge || !contact.touching()) continue;
@@ -104,6 +113,11 @@ double pressed_by(const Contact& contact) {
 
 // A finger gives way once its contacts together push with its strength: each has the part of it that it has
 // of the depths, as equal springs side by side.
+//
+//     S_i = S d_i / sum d,     d_i = share max(0, depth - given)
+//
+// of all points of the finger on all bodies. A point that does not press has all of S, should it come to
+// press within the step.
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
   std::array<std::array<double, kParts>, kMaxHands> depths{};
   const auto of = [&depths](const ContactKey& key) -> double& {

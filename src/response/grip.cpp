@@ -35,6 +35,11 @@ std::array<double, kFingers> weights_of(const Grip& grip) {
 }
 
 /// Of a matrix that is nearly flat, or mirrors.
+///
+///     A = U S V',    R = U diag(1, 1, det U det V) V'
+///
+/// of all rotations that with the largest tr(R'A) (Kabsch 1976; Umeyama 1991). The sign is on the least
+/// singular value, which Eigen has last: without it the nearest orthogonal matrix may be a mirror.
 Quaternion nearest_turn_of_any(const Matrix3& matrix) {
   const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3 &u = svd.matrixU(), &v = svd.matrixV();
@@ -44,6 +49,12 @@ Quaternion nearest_turn_of_any(const Matrix3& matrix) {
 
 /// The rotation that is nearest to a matrix: what is left of it in the limit of Newton's iteration for the
 /// polar decomposition (Higham 1986, scaled), in a twentieth of a singular value decomposition's time.
+///
+///     X <- (z X + X^-T / z) / 2,     z = sqrt(|X^-T| / |X|)
+///
+/// X = Q H has X^-T = Q H^-1: the turn Q stays, and each singular value s becomes (s + 1/s) / 2, which goes
+/// to 1 by squares. Scaling spares the first steps, which halve a large s only. A determinant <= 0 would
+/// lead to a mirror, and a small one to an inverse that is rounding: these go the other way.
 Quaternion nearest_turn(const Matrix3& matrix) {
   constexpr double kFlat = 1e-4, kSettled = 1e-28;  // of the size to its power
   constexpr int kMostSteps = 12;

@@ -10,24 +10,42 @@ namespace mrhi {
 
 // An impulse p at r changes v by p / m and w by I^-1 (r x p), so the point at r by p / m + (I^-1 [r]x p) x r,
 // which is p / m - [r]x I^-1 [r]x p.
+//
+//     K = 1/m + [r]x I^-1 [r]x'             [r]x' = -[r]x: positive definite, as 1/m is
+//
+// The paper has `K determined by the mass` (Eq. 12) and Eq. 15 without an angular part: with K = 1/m alone
+// a blow off the centre would spin nothing. This is Mirtich's (1996) collision matrix.
 Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r) {
   const Matrix3 arm = cross_matrix(r);
   return inverse_mass * Matrix3::Identity() - arm * world_inverse_inertia * arm;
 }
 
+// p += J, L += r x J: Eq. 15 by momenta, which are the state, and what turns.
 void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& state) {
   state.linear_momentum += impulse;
   state.angular_momentum += (point - state.pose.position).cross(impulse);
 }
 
+// c1' - c2' with c2' = v + w x r (Eqs. 7, 8).
 Vector3 relative_velocity(const Contact& contact, const Body& body, const BodyState& state) {
   return contact.hand_velocity - object_velocity(twist_of(body, state), state.pose.position, contact.point);
 }
 
+// An impulse J on 2 and -J on 1 does the work J.(v_2 + v_2') / 2 - J.(v_1 + v_1') / 2, the velocities being
+// the means of before and after (Thomson & Tait 1867): -J.(w + w') / 2 with w = v_1 - v_2. Of a hand, which
+// is driven, J.v_1 is its own work, and this is what the object has beyond it.
 double energy_gained(const Vector3& approach, const Vector3& given, const Vector3& after) {
   return -0.5 * given.dot(approach + after);
 }
 
+// With s the share of Newton's blow, J(s) = J_0 + s dJ and w'(s) = w_0' + s dw', where 0 is the blow
+// without restitution:
+//
+//     G(s) = -1/2 sum J(s).(w + w'(s)) = least + linear s + square s^2,      least <= 0 < G(1)
+//     linear = -1/2 sum (dJ.(w + w_0') + J_0.dw'),       square = -1/2 sum dJ.dw'
+//
+// and s the positive zero of G. All points of a blow have one share, as they act on each other: the blend
+// of two solutions then has a blow's momenta, and friction within Coulomb's disc, which is convex.
 void keep_from_gaining(std::vector<TwoBlows>& strikes) {
   double least = 0.0, exchanged = 0.0;
   for (const TwoBlows& strike : strikes) {
@@ -49,6 +67,7 @@ void keep_from_gaining(std::vector<TwoBlows>& strikes) {
     square -= 0.5 * more.dot(faster);
   }
   // Its zero in the form that does not cancel.
+  // (-b + root) / 2a, or the same multiplied out, -2c / (b + root), whichever adds numbers of one sign.
   const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * least));
   double share = 0.0;
   if (linear > 0.0)
@@ -63,6 +82,11 @@ double time_to_close(double gap, double rate, double acceleration) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (gap <= 0.0) return 0.0;
   // Zero of gap + rate t + a t^2 / 2 in the form that does not cancel.
+  //
+  //     t = (-r - root) / a = 2 g / (-r + root),     root = sqrt(r^2 - 2 a g)
+  //
+  // The first needs a = 0 set apart, and for a small a takes two equal numbers from each other. Without a
+  // root the gap turns round before it is closed; with a sum that is not positive it opens for good.
   const double discriminant = rate * rate - 2.0 * acceleration * gap;
   if (discriminant < 0.0) return kNever;
   const double closing = -rate + std::sqrt(discriminant);

@@ -25,13 +25,18 @@ bool is_crowd(const Island& island) {
 }
 
 /// What gravity makes of things in a step counts as slow too [m/s].
+/// slow = 1 mm/s + h g.
 double slow_in(const ContactStep& step) {
   return kSlow + step.step * step.gravity.norm();
 }
 
 /// Impulses that grow beyond this multiple of what the blows need have no end.
+/// The sum of what they need is at most (1 + epsilon) m |u| of each, as n'Kn >= 1/m. Between fingers that
+/// close from both sides every impulse that turns the body from one is taken up by the other, and they grow
+/// from sweep to sweep.
 constexpr double kPressed = 4.0;
 
+// Of a fixture 1/m and I^-1 are 0, which is what it is made with.
 Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
   const Body& body = step.scene.bodies[index];
   Strike::Partner partner;
@@ -51,6 +56,8 @@ double radius_of_ball(const Body& body) {
 }
 
 /// Of two bodies, as it is at the step's start.
+/// n.(c_a' - c_b') < 0 approaches. A pair that is followed through the step (swept) comes with the time of
+/// its first touch, and its gap is closed then.
 Strike strike_of(ContactStep& step, BodyContact& contact) {
   Strike strike;
   strike.a = partner(step, contact.key.a, contact.arm_a);
@@ -77,6 +84,8 @@ Strike strike_of(ContactStep& step, BodyContact& contact) {
 }
 
 /// An island of one body that a hand presses.
+/// `struck` tells that it is not in its approach any more: a finger that is about to strike holds nothing
+/// yet.
 bool is_held(const ContactStep& step, const Island& island) {
   if (island.bodies.size() != 1) return false;
   const IslandBody& body = *island.bodies.begin();
@@ -87,6 +96,11 @@ bool is_held(const ContactStep& step, const Island& island) {
 
 /// The springs look at where their ends are going from the step's start on: a gap that changes otherwise, by
 /// a blow within the step, is for them what it would have had to be then to end up the same.
+///
+///     d+ = d - h u = -gap(h)      so      d = h u - gap(h)
+///
+/// at the end's velocity u. A blow late in the step sends a body at its neighbour for the rest of the step
+/// only: with the depth that was found, d - h u would be an overlap that there is not.
 void widen(Strike strike, double step) {
   strike.move_to(step);
   BodyContact& contact = *strike.between;
@@ -109,6 +123,9 @@ ImpactSolver::ImpactSolver() {
   both_.reserve(kUsualStrikes);
 }
 
+// What a hand strikes is dealt at once, bodies among themselves in turn: elastic ones pass momentum on as
+// they should only if each blow finds what the one before has left (of Newton's cradle dealt at once the
+// first ball would bounce back and the others go on as one). A crowd has no time for that.
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                            const SpringMotion& springs) {
   friction_ = friction;
@@ -168,6 +185,8 @@ bool ImpactSolver::is_slow(const ContactStep& step, const BodyContact& contact) 
   return contact.normal.dot(velocity) > -slow_in(step);
 }
 
+// A hand's points go on as they do for the whole step; the object's fall with g, so that the gap closes by
+// g t^2 / 2 more or less. What would close later than this step is left for its own.
 void ImpactSolver::add(ContactStep& step, Contact& contact) {
   const Body& body = step.scene.bodies[contact.key.body];
   const BodyState& state = step.bodies[contact.key.body];
@@ -205,6 +224,8 @@ void ImpactSolver::add(Strike strike, const Material& material) {
   strikes_.push_back(strike);
 }
 
+// Parts is what has gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give the body at
+// the step's end: backward Euler's gap, as the springs see it.
 void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) {
   const auto parts = [&](const Strike& strike) {
     const Vector3 velocity = carried.linear + carried.angular.cross(strike.b.arm);
@@ -229,6 +250,9 @@ void ImpactSolver::deal_at_once(ContactStep& step) {
   deal(step);
 }
 
+// All links are looked at, also those that would not meet as they move now: a blow may send them to each
+// other. Each sweep of the loop is one blow; that the series may be infinite (a ball that bounces to rest
+// between two others within a step: Zeno) is why blows and work are bounded.
 void ImpactSolver::deal_in_turn(ContactStep& step, const Island& island) {
   strikes_.clear();
   for (const Link& link : island.links) {
@@ -250,6 +274,8 @@ bool ImpactSolver::find_blow(double end) {
   const double first = *std::min_element(meetings_.begin(), meetings_.end());
   if (first >= end) return false;
   blow_.clear();
+  // One blow is all points, as far as they meet in this step, of each pair that has a point that meets now:
+  // dealt one after the other they would tip a box that lands flat.
   for (std::size_t i = 0; i < strikes_.size(); ++i) {
     const auto now = [&](std::size_t other) {
       return meetings_[other] <= first + kTogether && strikes_[i].same_pair(strikes_[other]);
@@ -269,6 +295,9 @@ bool ImpactSolver::deal(ContactStep& step) {
   const auto passes = [&most](Strike* strike) {
     strike->prepare();
     strike->approach = strike->velocity_on_impact();
+    // Eqs. 10, 11 at the time of the blow, u' = -epsilon u with u = rate + t a, in terms of the rate, which
+    // is the momenta's: rate' = u' - t a = rate - (1 + epsilon) u. That way gravity of the step is neither
+    // lost nor given twice.
     strike->target = strike->rate();
     const double speed = strike->target + strike->time * strike->acceleration;
     if (classify(speed) != Approach::colliding) return true;
@@ -294,6 +323,8 @@ bool ImpactSolver::deal(ContactStep& step) {
 }
 
 /// Finds impulses that together give every strike its velocity; false if there are none.
+/// In velocities: the error is the largest change of one in a sweep, its scale the largest j n'Kn. Friction
+/// hangs on j, so both are relaxed in the same sweep, the normal first.
 bool ImpactSolver::solve(double most) {
   for (int sweep = 0; sweep < care_.sweeps; ++sweep) {
     work_ += blow_.size();
@@ -310,6 +341,7 @@ bool ImpactSolver::solve(double most) {
 }
 
 /// Energy that the blow has given to the bodies beyond the work of the hands [J].
+/// G = sum -J.(w + w') / 2, see energy_gained().
 double ImpactSolver::gain() const {
   double sum = 0.0;
   for (const Strike* strike : blow_)
@@ -319,6 +351,8 @@ double ImpactSolver::gain() const {
 
 /// Where restitution together with friction makes energy, the blow is one between theirs and one without
 /// restitution.
+/// The blow without restitution, u' = 0, is found from the same start: what has been given is taken back
+/// first, and target is raised by epsilon u. Then the difference to the blend is given along n and across.
 void ImpactSolver::keep_to_energy(double most) {
   double exchanged = 0.0;
   for (const Strike* strike : blow_) exchanged += strike->given().norm() * strike->approach.norm();
@@ -348,6 +382,7 @@ void ImpactSolver::keep_to_energy(double most) {
   }
 }
 
+// J and its time, on both: the flight takes back the way that J made before it fell (StepChanges).
 void ImpactSolver::report(ContactStep& step) {
   impacts_.clear();
   const auto note = [&](const Strike& strike, const Strike::Partner& partner, const Vector3& impulse) {

@@ -34,6 +34,9 @@ Matrix3 crossed(const Vector3& v, const Matrix3& m) {
 
 /// Adds J_x' S J_y, for arms x and y, by [x]x S and [y]x S; and the twist's slope. A point at the arm x moves
 /// by J_x (v, w) = v - [x]x w, so that J_x' = (1; [x]x).
+///
+///     J_x' S J_y = (  S         -S [y]x        )   =   (  S         ([y]x S)'        )      S = S'
+///                  (  [x]x S    -[x]x S [y]x   )       (  [x]x S    [x]x ([y]x S)'   )
 void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Vector3& x,
          const Matrix3& twist, BlockSystem::Matrix6& block) {
   block.topLeftCorner<3, 3>() += sign * slope;
@@ -53,6 +56,7 @@ void IslandProblem::begin(ContactStep& step, const Island& island,
     vector->resize(count);
   for (const IslandBody& body : island.bodies)
     begin_body(step.scene.bodies[body.body], step.bodies[body.body], step.gravity);
+  // Of the lightest body: what it would not be seen to move by, none of the others is.
   const auto lighter = [](const Mass& x, const Mass& y) { return x.mass < y.mass; };
   unseen_ = kUnseenWay / step_ * std::min_element(masses_.begin(), masses_.end(), lighter)->mass;
 
@@ -95,6 +99,7 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
   }
 }
 
+// u* = (p / m + h g, I^-1 L), and no gyroscopic term: as of BodyProblem.
 void IslandProblem::begin_body(const Body& body, const BodyState& state, const Vector3& gravity) {
   const Eigen::Index row = 6 * static_cast<Eigen::Index>(masses_.size());
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
@@ -151,6 +156,9 @@ double IslandProblem::relative_spin(const IslandContact& contact) const {
 }
 
 /// As most contacts of a crowd that may touch do: it then gives nothing, as respond() would find.
+/// d+ = d - tau u.n <= 0, in a form without the spring's other work. Two things forbid the short cut: a
+/// bond, which pulls without any push, and limits that are held, by which friction acts on though the push
+/// is gone.
 bool IslandProblem::stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits) {
   Spring<double>& spring = contact.spring;
   if (spring.bond > 0.0 || spring.depth > spring.ahead * u.dot(spring.normal)) return false;
@@ -162,6 +170,12 @@ bool IslandProblem::stays_apart(IslandContact& contact, const Triple<double>& u,
 
 /// Backward Euler: M (u - u*) = h sum J' f(J u), where u* is the motion without contacts. The gradient is the
 /// impulse that the two sides differ by. It is that of energy() too, as long as friction's limits are held.
+/// With u_c = J_a U_a - J_b U_b and f on b, -f on a:
+///
+///     g_b = M_b (U_b - U_b*) - h sum (f, b x f + T n),     g_a = M_a (U_a - U_a*) + h sum (f, a x f + T n)
+///
+/// Contacts between bodies cancel in the sum of g over the bodies, so that finish(), which takes g off M U,
+/// keeps momentum to rounding however large g is.
 void IslandProblem::evaluate(bool renew_limits) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(6 * i);
@@ -193,6 +207,7 @@ void IslandProblem::factorise() {
 }
 
 /// H = M + h sum J' K J: positive definite, as no spring's K has a negative eigenvalue.
+/// M is block diagonal; a contact adds to the blocks of its two bodies, and K's opposite between them.
 void IslandProblem::assemble() {
   system_.clear();
   for (int i = 0; i < static_cast<int>(masses_.size()); ++i) {
@@ -215,6 +230,8 @@ void IslandProblem::hessian(Eigen::MatrixXd& result) {
   system_.to_dense(result);
 }
 
+// H_aa += h J_a' K J_a,  H_bb += h J_b' K J_b,  H_ba -= h J_b' K J_a, of which the system keeps the one
+// below the diagonal: rows of the later body.
 void IslandProblem::add_slope(const IslandContact& contact) {
   const Matrix3 slope = step_ * slope_at_point(contact);
   const Vector3 n = vector(contact.spring.normal), b = vector(contact.arm);
@@ -234,6 +251,7 @@ void IslandProblem::add_slope(const IslandContact& contact) {
 }
 
 /// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
+/// k^2 = tr I / 3m, the mean over the axes.
 double IslandProblem::error_squared() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < masses_.size(); ++i) {

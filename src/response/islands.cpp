@@ -31,6 +31,7 @@ void Islands::unite(int a, int b) {
   parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
 }
 
+// Contacts come sorted by their bodies, so those of a body are one run of them.
 void Islands::build(const ContactStep& step) {
   bodies_.clear();
   links_.clear();
@@ -75,6 +76,8 @@ void Islands::link_bodies(const ContactStep& step) {
   gather();
 }
 
+// By root, then by body: the smallest index is the root, so both islands and the bodies within one come in
+// the scene's order, and results do not hang on the order in which contacts unite them.
 void Islands::gather() {
   for (IslandBody& body : bodies_) body.root = root_of(body.root);
   for (Link& link : links_) link.root = root_of(link.root);
@@ -90,6 +93,7 @@ void Islands::gather() {
   if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
 }
 
+// Joints unite as contacts do: M of a linkage is dense, so that what pushes one of its bodies moves all.
 void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);

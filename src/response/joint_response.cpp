@@ -8,7 +8,8 @@
 namespace mrhi {
 namespace {
 
-/// A linkage none of whose points is faster than this is still [m/s], as a body is that sleeps.
+/// A linkage none of whose points is faster than this is still [m/s]: a tenth of what a body that sleeps may
+/// have (simulation/sleeping.cpp).
 constexpr double kStill = 1e-6;
 /// What has been still for so long sleeps [s].
 constexpr double kTired = 0.5;
@@ -87,6 +88,7 @@ bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
 }
 
 /// Where its joints have it now.
+/// Poses are made of the joints' places, M of the poses: in this order.
 void JointedModel::place(const ContactStep& step, std::size_t index) {
   const Linkage& linkage = linkages_[index];
   positions_.resize(linkage.joints());
@@ -99,6 +101,7 @@ void JointedModel::place(const ContactStep& step, std::size_t index) {
   motions_[index].weigh();
 }
 
+// One problem for each island that is awake, each with M of its linkages at the step's start.
 void JointedModel::begin(ContactStep& step) {
   islands_apart_.clear();
   std::fill(at_work_.begin(), at_work_.end(), char(0));
@@ -117,6 +120,9 @@ void JointedModel::begin(ContactStep& step) {
   }
 }
 
+// A held island is solved once before the blow, as ImplicitModel does, to see what its springs carry away
+// from the hand. What limits gave in the blow is told to the joints last: start_with() begins their laws
+// anew.
 void JointedModel::strike(ContactStep& step, const Island& island, LinkageProblem& problem) {
   if (!blows_.find(step, island, problem, state_.joints)) return;
   if (is_held(step, island)) {
@@ -129,6 +135,8 @@ void JointedModel::strike(ContactStep& step, const Island& island, LinkageProble
   blows_.tell_limits(problem);
 }
 
+// Where nothing acts the island is left to the flight, which has gravity and no forces: that is exact to
+// its order, and keeps what moves freely from being damped by a backward Euler step.
 void JointedModel::solve(ContactStep& step) {
   for (std::size_t i = 0; i < islands_apart_.size(); ++i) {
     const Island& island = *islands_apart_[i];
@@ -163,6 +171,8 @@ void JointedModel::fly(const ContactStep& step) {
 }
 
 /// Only what forces of its own hold in its place may lie still: what moves freely, moves, however slowly.
+///
+///     |v| + R |w| < 1 um/s of all its bodies, R the bounding radius, for half a second
 void JointedModel::rest(const ContactStep& step, std::size_t linkage) {
   bool still = solved_[linkage] && !linkages_[linkage].floats();
   for (const LinkageBody& link : linkages_[linkage].bodies) {

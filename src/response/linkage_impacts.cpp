@@ -14,6 +14,8 @@ constexpr double kConverged = 1e-13;  // of the approach velocity
 constexpr double kPressed = 4.0;
 
 /// Velocity of a body's point by the unknowns, times `sign`, added.
+///
+///     c' = v + w x r = (J_v - [r]x J_w) u
 void add_point_rows(const LinkageProblem& problem, int place, const Vector3& arm, double sign,
                     Eigen::Matrix<double, 3, Eigen::Dynamic>& rows) {
   const auto linear = problem.jacobian().middleRows<3>(6 * place);
@@ -68,6 +70,9 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
 
 /// A limit that a joint meets within the step is struck as a surface is: springs and gravity, which push on
 /// through the step, then find it on its way back, and give it no energy that they have not.
+///
+///     room = upper - q for u > 0, q - lower for u < 0;   meets if 0 < room < h |u|
+///     w = -sign u: < 0 approaches, as of surfaces; the impulse on the joint is -sign j
 void LinkageImpacts::find_limits(const ContactStep& step, const LinkageProblem& problem,
                                  const std::vector<JointState>& joints) {
   for (Eigen::Index unknown = 0; unknown < problem.start().size(); ++unknown) {
@@ -127,6 +132,12 @@ void LinkageImpacts::spare_carried(const ContactStep& step, const LinkageProblem
 
 /// W = J M^-1 J' + 1/m_hand: change of the relative velocity by an impulse there, with all that joints pass
 /// on. The normal's effective mass is 1 / n'Wn; across n, one number below both, of the trace.
+///
+///     W n j is what n j does:  m_n = 1 / n'Wn,     M_t = P / tr(P W P) <= the inverse of P W P across n
+///
+/// A trace is at least the larger eigenvalue, so friction is relaxed by less than it might be and does not
+/// overshoot. J M^-1 J' may be singular, where the inverse that strikes of free bodies have would be
+/// infinite.
 void LinkageImpacts::prepare(const LinkageProblem& problem, Strike& strike) {
   strike.answer.resize(strike.rows.cols(), 3);
   for (int i = 0; i < 3; ++i) {
@@ -146,6 +157,7 @@ void LinkageImpacts::prepare(const LinkageProblem& problem, Strike& strike) {
   if (trace > 0.0) strike.tangential_mass = across / trace;
 }
 
+// u += M^-1 rows' J, with M^-1 rows' made once for the blow; a hand that gives way goes back by J / m.
 void LinkageImpacts::Strike::push(const Vector3& on_first, LinkageProblem::Vector& velocity) {
   velocity.noalias() += answer * on_first;
   recoil += inverse_mass * on_first;
@@ -174,6 +186,8 @@ double LinkageImpacts::Strike::relax_tangential(LinkageProblem::Vector& velocity
 }
 
 // Eqs. 9 to 11 for all strikes at once: n.w after = -epsilon n.w before, by impulses that only push.
+// Times of strikes are told but not dealt by: unlike the ImpactSolver's, blows of one step are one blow
+// here.
 bool LinkageImpacts::deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity) {
   velocity = problem.start();
   for (Strike& strike : strikes()) {
@@ -203,6 +217,7 @@ void LinkageImpacts::tell_limits(LinkageProblem& problem) {
 }
 
 /// Finds impulses that together give every strike its velocity; false if there are none.
+/// `most` is sum (1 + epsilon) |u| m_n: what each strike would need by itself.
 bool LinkageImpacts::solve(bool friction, LinkageProblem::Vector& velocity) {
   double most = 0.0, scale = 0.0;
   for (const Strike& strike : strikes()) {
@@ -224,6 +239,7 @@ bool LinkageImpacts::solve(bool friction, LinkageProblem::Vector& velocity) {
 }
 
 /// As ImpactSolver's.
+/// Blends two blows by one share for all strikes, and the unknowns, linear in the impulses, with them.
 void LinkageImpacts::keep_to_energy(const LinkageProblem& problem, bool friction,
                                     LinkageProblem::Vector& velocity) {
   double gain = 0.0, exchanged = 0.0;

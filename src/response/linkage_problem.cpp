@@ -31,6 +31,9 @@ bool touched(const ContactStep& step, const Island& island) {
 
 // u0 = M^-1 sum J_b' p_b: momenta of the bodies as the joints see them. What of them joints do not let
 // through is no error of this step: joints hold it back. u* = u0 + h M^-1 J' m g.
+// Joints in their own coordinates and not by multipliers: no constraint is there that could drift and be
+// drawn back (Baumgarte 1972), and M = J' M_b J is positive definite. J and M are those of the step's
+// start; that axes turn meanwhile is the flight's (linkage_flight.h).
 void LinkageProblem::begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration,
                            const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
                            const std::vector<JointState>& joints) {
@@ -69,6 +72,8 @@ void LinkageProblem::number(const ContactStep& step, const Island& island,
 }
 
 /// The momenta at the step's start are gathered in the gradient, those of gravity in the fall.
+/// A joint's torque is made a force by k^2 = M_ii / m of the body that hangs on it; of one that slides that
+/// has no unit, and is how many times that body it moves.
 void LinkageProblem::add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
                                  LinkageMotion& motion) {
   const auto first = static_cast<Eigen::Index>(unknowns_.size());
@@ -108,6 +113,7 @@ void LinkageProblem::add_free(const ContactStep& step, const Island& island, std
   }
 }
 
+// Free bodies have six unknowns each, so the second loop goes by sixes over those.
 void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
                                 const std::vector<JointState>& joints) {
   start_ = velocity;  // which it may be itself
@@ -135,6 +141,11 @@ void LinkageProblem::start_with(const Vector& velocity, const ContactStep& step,
 }
 
 /// M (u - u*) - h J' f(J u) - h t(u), with t what joints give by themselves: the impulses that are missing.
+///
+///     g = J' (M_b (J u - J u*) - h sum J_c' f) - h t(u),      J' M_b J = M: the bracket is IslandProblem's
+///
+/// scale: what contacts push and joints bear, each as a force, and a little of what is carried: where
+/// nothing acts no part of nothing could be reached.
 void LinkageProblem::evaluate(bool renew_limits) {
   body_velocity_.noalias() = jacobian_ * velocity_;
   several_.set_velocity(body_velocity_);
@@ -175,6 +186,7 @@ Effort LinkageProblem::effort() const {
 }
 
 /// H = J' (M_b + h K) J - h dt/du, dense: linkages are small, and J couples all of one.
+/// -dt/du is not negative and each joint's own, on the diagonal.
 void LinkageProblem::factorise() {
   several_.hessian(body_hessian_);
   product_.noalias() = body_hessian_.selfadjointView<Eigen::Lower>() * jacobian_;
@@ -193,6 +205,8 @@ void LinkageProblem::find_direction() {
 
 /// That of IslandProblem::energy(), in the joints' coordinates, and what their own forces store: convex too,
 /// as J is constant within the step and each joint's force falls as its velocity grows.
+///
+///     E(u) = E_b(J u) + h sum e_i(u_i),      de_i/du = -t_i
 double LinkageProblem::energy() const {
   double sum = several_.energy();
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -202,6 +216,8 @@ double LinkageProblem::energy() const {
   return sum;
 }
 
+// Bodies get M_b J u: what joints do not let through of contacts' impulses, the joints hold, and it does
+// not enter momenta at all. So J' of the bodies' momenta is M u, which the flight goes on from.
 void LinkageProblem::finish(bool agree, ContactStep& step, const Island& island,
                             std::vector<JointState>& joints) {
   several_.settle_touches(step, island);

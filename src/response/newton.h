@@ -31,6 +31,16 @@ struct Effort {
   double converged = 1e-7;  // when it is solved: error of the forces' impulse
 };
 
+// The problem is g(v) = M (v - v*) - h J' f(v; L) = 0 with g the gradient of a convex, once differentiable
+// E(v) while the limits L are held, and H = M + h J' K J, positive definite by its M:
+//
+//     H d = -g(v),     v <- v + s d,     s = 1 where it will do
+//
+// Forces have kinks where contacts open and slip, so H is one of the generalised Hessians there and this is
+// a semismooth Newton method (Qi & Sun 1993). Once contacts have their states and all stick, forces are
+// linear in v but for the fade and the pulp, and one step is as good as exact; where some slip and their
+// limits are renewed, what H leaves out of them (dL/dN, see Spring::respond) makes convergence linear.
+// Hessians are kept while the error falls fast (the chord method; Kelley 1995, ch. 5).
 template <typename Problem>
 class Newton {
  public:
@@ -72,6 +82,7 @@ class Newton {
   static constexpr double kRounding = 1e-12;
 
   bool error_below(double part) const {
+    // The last is for bodies on which nothing acts: of nothing no part is reached [N s].
     const double most = part * problem_.scale() + 1e-18;
     return problem_.error_squared() <= most * most;
   }
@@ -88,6 +99,9 @@ class Newton {
   /// then renewed. The solution for any limits is passive, so whenever this stops nothing is thrown.
   void solve_with_held_limits() {
     if (effort_.anew) problem_.restart();
+    // With limits held the problem is that of Tresca's friction, which has one solution; a fixed point of
+    // `solve, renew` solves Coulomb's (Panagiotopoulos 1975, Haslinger 1983). That it comes to one is
+    // proven for small coefficients only: hence the bound on how often.
     for (int renewed = 0; renewed < effort_.limits; ++renewed) {
       problem_.evaluate(true);
       for (int i = 0; i < effort_.held_iterations && !solved(); ++i) {
@@ -101,6 +115,8 @@ class Newton {
     if (!same_hessian) problem_.factorise();
     problem_.find_direction();
     if (!checked || error_below(kFine)) return problem_.move(1.0);
+    // Armijo's condition, E(v + d) <= E(v) + 1e-4 g.d, where g.d = -d'H d < 0 (Nocedal & Wright, Numerical
+    // Optimization, 2006, 3.1).
     const double before = problem_.energy(), descent = problem_.descent();
     problem_.move(1.0);
     if (problem_.energy() > before + 1e-4 * descent) go_back(descent);
@@ -110,6 +126,9 @@ class Newton {
   /// grows along the line, passes zero. To halve the step until it will do is not enough: a light object
   /// between stiff fingers goes to and fro across the rim of the friction cone then and hardly advances.
   void go_back(double descent) {
+    // phi(s) = E(v + s d), phi' = g(v + s d).d, which grows with s as E is convex: from phi'(0) = `descent`
+    // < 0 to phi'(1) > 0 there is one zero. By false position, which may creep up on it from one side; so
+    // every third trial halves.
     double low = 0.0, high = 1.0, part = 1.0, low_slope = descent;
     problem_.evaluate(false);
     double high_slope = problem_.descent();

@@ -13,6 +13,12 @@ PenetrationLaw penetration_law(const ContactConfiguration& configuration) {
 
 // Eqs. 16 and 17: gamma times the depth, along n alone. The factor behind it is not in the paper: without any
 // loss what is held in microgravity rings for ever.
+//
+//     N = gamma d max(0, 1 - v / v_r),     v = n.(c1' - c2') > 0 as they part,  v_r = kReleaseSpeed
+//
+// This is Hunt & Crossley's (1975) f = k d + lambda d d' with lambda = k / v_r, of the way back alone: what
+// comes together loses its part by Newton's law. A dashpot beside the spring would jump at the touch, and
+// pull as they part.
 double normal_force(double stiffness, double depth, double normal_velocity, double fade) {
   if (depth <= 0.0) return 0.0;
   const double parting = std::max(normal_velocity, 0.0) * fade;
@@ -21,6 +27,12 @@ double normal_force(double stiffness, double depth, double normal_velocity, doub
 
 // Eqs. 18 to 20. As printed a sliding contact gives phi f_t, which grows with the stretch without bound; here
 // it gives phi |f_n| in the direction of f_t, which is Coulomb's law.
+//
+//     sticks:   f_T = f_t                     |f_t| <= mu N; having slipped, |f_t| <= 0.9 phi N
+//     slips:    f_T = min(|f_t|, phi N) f_t / |f_t|
+//
+// Slipping has a way back of its own: with one limit for both, a contact at the rim would change over in
+// every step.
 Tangential coulomb(const Vector3& spring_force, double normal_force, const Material& material,
                    Friction before) {
   const double wanted = spring_force.norm();
@@ -34,6 +46,11 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
 // Eq. 16, f = gamma (p - c), and its parts: along n gamma times the depth (Eq. 17), across it the stretch
 // (Eq. 18). On the object: n points out of it, so the push is -N n, and friction is along the stretch, the
 // way in which the phalanx draws it.
+//
+//     f = -N n + f_T(gamma s + c w_t),      s = P (p - c),  w_t = P (c1' - c2'),  P = 1 - n n'
+//     c <- c + s - f_T / gamma               where it slips: then gamma s is f_T
+//
+// The paper's f is the push on the finger, gamma (c - p); the object has its opposite.
 Vector3 penetration_force(const Body& body, const BodyState& state, double damping, double fade,
                           Contact& contact) {
   contact.force.setZero();
@@ -61,6 +78,10 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 // Explicit: momenta change by h f, with the forces of the step's start, one contact after the other, each at
 // the velocity that those before it have left. Undamped it asks for steps below 2 sqrt(m / sum gamma);
 // docs/stability.md has where it fails.
+//
+//     p += h f,  then  x += h p / m:  symplectic Euler's method, stable below h = 2 / w, w^2 = sum gamma / m
+//
+// Forces of later contacts see the velocity that earlier ones have left, positions stay those of the start.
 void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
   const double fade = release_fade(law.release_fade);
   auto first = step.contacts.begin();

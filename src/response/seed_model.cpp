@@ -21,6 +21,8 @@ class SeedModel : public ContactModel {
 
 }  // namespace
 
+// The order is the paper's, 3.4.1 and then 3.4.2, and it matters: the springs' forces fade by the
+// velocities that the blow has left. Without friction in the blow, since J = j n (Eq. 9).
 void SeedModel::respond(ContactStep& step) {
   islands_.build(step);
   impacts_.resolve(step, islands_, ImpactFriction::none);

@@ -47,6 +47,12 @@ struct Skin {
   }
 
   /// How far the skin at (x, y) from the pressing point lies behind it, along n; nothing beside the phalanx.
+  ///
+  ///     sag(x, y) = R + u rise - sqrt(R^2 - (x - u run)^2 - y^2)            of the sphere u of the axis on
+  ///     least over u:     x - u run = sqrt(R^2 - y^2) slope,   slope = rise / hypot(run, rise)
+  ///
+  /// from d sag / du = rise - (x - u run) run / sqrt(...) = 0, with u kept on the axis. x is along the
+  /// surface from the pressing point, run and rise are the whole axis along the surface and along n.
   std::optional<double> sag(double x, double y) const {
     // Of the spheres that make up the capsule, the one whose skin is deepest there, u of the axis away.
     double u = 0.0;
@@ -77,6 +83,7 @@ class Surface {
 
   /// How deep a pad at `point` is. One beside the object touches nothing. What a mesh is like about the
   /// contact point is not known here: there the surface counts as flat.
+  /// Along n, not the shortest: pads of one phalanx all leave by the face that it entered by.
   double depth(const Vector3& point) const {
     if (std::holds_alternative<Mesh>(shape_)) return contact_.normal.dot(contact_.point - point);
     return way_out(shape_, pose_.to_local(point), normal_).value_or(0.0);
@@ -110,6 +117,11 @@ class PadGrid {
   }
 
   /// Drags the contact's memory to where friction lets go.
+  ///
+  ///     s <- f_T / k_p where the deepest pad slips,     theta <- clamp(theta + h w_n, -+mu N / (k_p l))
+  ///
+  /// k_p is a pad's stiffness and l the way between pads: turned by theta the next pads are sheared by l
+  /// theta. Explicit, and so bounded: what is stored is never more than friction bears.
   void drag(const BodyState& state, Contact& contact) {
     const Vector3 reach = contact.hand_point - contact.point;
     stretch_ = reach - n_.dot(reach) * n_;
@@ -131,6 +143,12 @@ class PadGrid {
   }
 
   /// Gives the object what the pads push and drag it with; returns the sum of their forces [N].
+  ///
+  ///     q_i = s + r_i - R(-theta) r_i           shear of the pad at r_i: about theta n x r_i, and s
+  ///     f_i = disc(k_p q_i + b_p (w_t + w_n n x r_i), mu N_i) - N_i n,      N_i = max(0, k_p d_i - b_p v_n)
+  ///
+  /// acting where the pad sticks to the object, which is q_i behind it. A torque about n comes of the pads'
+  /// arms.
   Vector3 act(bool fixed, BodyState& state) const {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < count_; ++i) {
@@ -186,6 +204,8 @@ class PadGrid {
 
 }  // namespace
 
+// Each body's pads see it as it was before any of them acted (`before`), so that their order makes no
+// difference: all forces are those of the step's start.
 void SoftPadModel::respond(ContactStep& step) {
   BodyState before;
   std::size_t current = step.bodies.size();

@@ -70,9 +70,16 @@ struct SpringContact {
 /// What a finger that gives way still gains in push with depth, of its stiffness.
 constexpr double kGivingWay = 0.02;
 
-// With d the depth and D the pad: p = d^2 / 2D within the pad, d - D/2 beyond it, without a kink; above
-// `yields` only kGivingWay of what is more. So the slope is nowhere zero: two fingers that both give way
-// still centre what they hold.
+// With d the depth, D the pad, Y what is as much as the strength at full stiffness (`yields`), and k p the
+// push:
+//
+//     p = d^2 / 2D           p' = d / D        d <= D      the pulp stiffens (Serina et al. 1997)
+//     p = d - D / 2          p' = 1            d > D       the two meet with the same slope
+//     p -> Y + e (p - Y)     p' -> e p'        p > Y       the finger gives way, e = kGivingWay
+//
+// The slope is zero at d = 0 alone: two fingers that both give way still centre what they hold. Without a
+// pad 1 / 2D counts as 0, as infinite it would be 0 times infinity in a lane; without a limit Y is
+// infinite, and the third line no number, but then no lane chooses it.
 template <typename Real>
 inline void Spring<Real>::press(const Real& deep, Real& pressed, Real& steepness) const {
   const Real one = constant<Real>(1.0), part = constant<Real>(kGivingWay);
@@ -92,6 +99,21 @@ inline void Spring<Real>::press(const Real& deep, Real& pressed, Real& steepness
 //
 // on body 2. While L and L_t are held these are the gradient by u and spin of a convex function, potential();
 // with L a function of N they are of none, which is why the limits are those of the last iterate.
+// The fade is Hunt & Crossley's (1975) way of losing energy, a factor on the spring's force, so that
+// nothing jumps at the touch; clamped, it does not pull either. It acts as the two part alone, and by the
+// square, so that its slope is zero where nothing moves.
+// All look ahead by tau where h would do: what tau is beyond h is a dashpot beside each spring (Kelvin and
+// Voigt; kRelaxation).
+// The slopes, which Newton's method needs, are by the velocity of 2, on which u hangs as u = u_1 - u_2:
+//
+//     -dF/du_2 = tau k p' (1 - r^2) n n' + 2 k p r fade n n'    along n, where N > 0
+//              + tau k P                             sticking
+//              + tau L / |q+| (P - q q' / q'q)       slipping, q = q+: it turns but grows no more
+//     -dT/dspin_2 = tau k_t, or 0 at the limit
+//
+// What the limits gain with N, dL/dv, is left out of it: Coulomb's law is not associated (de Saxce & Feng
+// 1998), and the matrix with it not symmetric. Held limits are Tresca's friction; that they are renewed
+// from iterate to iterate is the fixed point between the two (Haslinger 1983).
 template <typename Real>
 inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool renew_limits,
                                   SpringResponse<Real>& response) {
@@ -104,6 +126,8 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   press(deep, pressed, steepness);
   const Real push = stiffness * pressed * kept;
   response.push = push;
+  // Where N is 0 so is its slope. It has to be said: beyond the release speed r stays 1 and p is not 0, so
+  // the fade's part of the formula would be left over.
   const Real steep = steepness * ahead * kept + pressed * parting * (constant<Real>(2.0) * fade);
   response.normal_slope = where_at_most(push, zero, zero, stiffness * steep);
   if (renew_limits) {
@@ -112,6 +136,7 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   }
 
   response.drawn = stretch + ahead * (u - rate * normal);
+  // Sizes are compared by their squares: the root is taken only where something slips.
   response.drawn_squared = response.drawn.dot(response.drawn);
   response.wanted_squared = stiffness * stiffness * response.drawn_squared;
   response.tangential_slope = where_at_most(slip_limit, zero, zero, stiffness * ahead);
@@ -120,6 +145,7 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   const Real limit_squared = slip_limit * slip_limit;
   if (any_above(response.wanted_squared, limit_squared)) {
     // Beyond the limit the spring yields: it bears the limit at any stretch.
+    // Lanes that stick come along here: the floor keeps 0 / 0 out of theirs, whose result is not taken.
     const Real length = root(greater(response.drawn_squared, constant<Real>(1e-300)));
     borne = where_at_most(response.wanted_squared, limit_squared, stiffness, slip_limit / length);
     response.tangential_slope = where_at_most(slip_limit, zero, zero, borne * ahead);
@@ -127,6 +153,8 @@ inline void Spring<Real>::respond(const Triple<Real>& u, const Real& spin, bool 
   }
   response.force = borne * response.drawn - push * normal;
 
+  // Torque and force have limits of their own here. A real patch that slides bears less torque (the limit
+  // surface; Howe & Cutkosky 1996).
   const Real torque = twist_stiffness * (twist + ahead * spin);
   response.torque = greater(zero - twist_limit, lesser(torque, twist_limit));
   const Real size = greater(torque, zero - torque);

@@ -13,6 +13,10 @@ namespace {
 /// The contact's own damping, as the time by which a spring with a dashpot beside it (Kelvin-Voigt) looks
 /// ahead. A step solved at its end damps as much as half the step does, so only the rest is added: a held
 /// object comes to rest equally fast at every step length [s].
+/// Backward Euler solves k (q + h q') at the step's end; about the step's middle, q + h/2 q', that is the
+/// spring and a dashpot k h/2. With e = h + max(0, tau - h/2) in place of h the dashpot is k (e - h/2) = k
+/// tau at every step up to 2 tau = 10 ms; beyond that the step alone damps more, and cannot be told to damp
+/// less.
 constexpr double kRelaxation = 0.005;
 
 /// Lever at which the tangential springs of a fingertip's contact patch resist twisting about the normal [m].
@@ -20,9 +24,14 @@ constexpr double kTwistLever = 0.025;
 
 /// Friction torque of a patch that presses evenly, over friction times push times its radius: the mean
 /// distance of a disc's points from its middle.
+/// T = integral of mu p r dA over a disc of radius a with p = N / (pi a^2), which is mu N (2 / a^2) a^3 / 3
+/// = 2/3 mu N a. Hertz's pressure, which falls to the rim, would give 3 pi / 16 mu N a, an eighth less. The
+/// radius is Hertz's a = sqrt(R d) (collision/god_object.cpp).
 constexpr double kPatchTorque = 2.0 / 3.0;
 
 /// Nothing is damped before it touches.
+/// A gap is a spring of depth < 0 that closes at the step's end if h u.n < depth: with the dashpot's time
+/// in place of h it would push on what only comes near.
 template <typename Real>
 Real look_ahead(double step, const Real& depth, bool damping) {
   return where_at_most(depth, constant<Real>(0.0), constant<Real>(step),
@@ -34,6 +43,9 @@ double friction_of(const Material& material, Friction friction) {
 }
 
 /// With a hand; all on the same body.
+/// The share is of the stiffness, so that N = k share d sums to what the phalanx bears, and of the
+/// strength, but friction and patch are each point's own. Friction is that of the state before, mu or phi:
+/// which one it is to be is found as the step is settled.
 template <typename Each, typename Real>
 void make_from(const ContactStep& step, const ContactConfiguration& configuration, const Contact& first,
                const Each& each, SpringContact<Real>& result) {
@@ -99,6 +111,15 @@ SpringContact<double> contact_in(int, const SpringContact<double>& only) {
 
 /// By how much the end on 2 has to follow along the surface where it slips: what the spring and its damping,
 /// in line with the friction, do not.
+/// The spring and its dashpot bear what friction leaves of them, k (s + e s') = F with |F| <= phi N: so the
+/// stretch relaxes to F / k,
+///
+///     s(h) = s + (h / e) (F / k - s)          e = `ahead`, with s' = (s(h) - s) / h
+///     slide = s + h u_t - s(h)                h u_t = (h / e) (q+ - s)
+///
+/// Without the dashpot, e = h, the end is dragged to where the spring has just F (Eq. 20, and the god
+/// object of Zilles & Salisbury 1995). F itself is at the limit of the state before; where that was mu,
+/// `rim` takes it back to phi N.
 Vector3 slide(const SpringContact<double>& solved, double dynamic_friction, double step) {
   const Spring<double>& spring = solved.spring;
   const SpringResponse<double>& response = solved.response;
@@ -136,6 +157,8 @@ const Material& material_of(const ContactStep&, const BodyContact& contact) {
 }
 
 /// The turn that is left of the twist, as far as the torque holds it.
+/// As in slide(): theta(h) = theta + (h / e) (T / k_t - theta), which is theta + h spin while T is within
+/// its limit. A point that turns freely, k_t = 0, keeps what it has, and the quotient is not used.
 template <typename Real>
 Real kept_twist(const SpringContact<Real>& solved, double step) {
   const Spring<Real>& spring = solved.spring;
@@ -150,6 +173,12 @@ void keep_twist(double twist, Contact& contact) {
 void keep_twist(double, BodyContact&) {}
 
 /// One contact of those that `solved` stands for.
+///
+///     sticks:     |k q+| <= mu N            from sticking
+///                 |k q+| <= 0.9 phi N       from slipping
+///
+/// Friction of the step just solved had the limit of the state before: one that breaks away in this step
+/// bore mu N, and bears phi N in the next one. An open contact, N = 0, has nothing to follow.
 template <typename Stored, typename Touch>
 void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
   const auto of = [lane](const auto& value) { return lane_of(lane, value); };
@@ -169,6 +198,8 @@ void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, i
 
 SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four) {
   constexpr std::size_t kNumbers = sizeof(SpringContact<double>) / sizeof(double);
+  // One struct of doubles is a column of the other's Lanes: the number i of one is the lane `lane` of the
+  // i-th of four. That holds as long as both have the same members in the same order, all of them Real.
   static_assert(sizeof(four) == kNumbers * sizeof(Lanes), "the same members, each a number or four");
   SpringContact<double> result;
   for (std::size_t i = 0; i < kNumbers; ++i)
@@ -182,6 +213,7 @@ void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& fo
     reinterpret_cast<Lanes*>(&four)[i].lane[lane] = reinterpret_cast<const double*>(&one)[i];
 }
 
+// e = h + max(0, tau - h / 2): see kRelaxation.
 double look_ahead(double step, bool damping) {
   return step + (damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
 }
@@ -229,18 +261,25 @@ template void settle(const ContactStep&, const SpringContact<Lanes>&, BodyContac
 namespace {
 
 /// Integral of min(k q, limit) from 0 to q: energy of a spring that yields.
+/// Huber's function:
+///
+///     E(q) = k q^2 / 2                k q <= L
+///     E(q) = L q - L^2 / 2k           beyond: value L^2 / 2k and slope L meet at q = L / k
 double yielding_energy(double stiffness, double stretch, double limit) {
   if (stiffness * stretch <= limit) return 0.5 * stiffness * stretch * stretch;
   return limit * stretch - 0.5 * limit * limit / stiffness;
 }
 
 /// Gauss and Legendre's rule of three points, exact for polynomials up to degree five.
+/// The push is a polynomial of the fourth degree between its kinks: p of the second degree in the depth,
+/// which is linear in the rate, times 1 - r^2.
 template <typename Function>
 double integral(double from, double to, Function function) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from), off = std::sqrt(0.6) * half;
   return half / 9.0 * (5.0 * function(middle - off) + 8.0 * function(middle) + 5.0 * function(middle + off));
 }
 
+// N(v) as in Spring::respond().
 double push(const Spring<double>& spring, double rate) {
   const double deep = std::max(0.0, spring.depth - spring.ahead * rate);
   const double parting = std::min(std::max(rate, 0.0) * spring.fade, 1.0);
@@ -250,12 +289,19 @@ double push(const Spring<double>& spring, double rate) {
 }
 
 /// Depth at which the spring begins to give way.
+/// Spring::press() solved for p(d) = Y: d = Y + D / 2 beyond the pad, where p >= D / 2, and d = sqrt(2 Y D)
+/// within it.
 double yielding_depth(const Spring<double>& spring) {
   if (spring.yields >= 0.5 * spring.pad) return spring.yields + 0.5 * spring.pad;
   return std::sqrt(2.0 * spring.yields * spring.pad);
 }
 
 /// Integral of the push from the rate up, until it is none any more: piece by piece, a polynomial each.
+///
+///     E_N(v) = integral of N(x) dx from v on,     dE_N/dv = -N(v)
+///
+/// Kinks are where the finger begins to give way, where the pad ends, at rest, from where on the fade acts,
+/// and where the push ends: at d+ = 0 or at the release speed, whichever is slower.
 double push_energy(const Spring<double>& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
   const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
@@ -277,6 +323,8 @@ double push_energy(const Spring<double>& spring, double rate) {
 // spring that yields at L and L_t (Huber's function). d/du of E_F / tau is F, since q+ grows by tau P u.
 // Minus its gradient is the force. With Coulomb's limits held it is convex, since each force falls as its own
 // rate grows; so the step has one solution, and a line search along Newton's direction finds it.
+// In watts: a force times a velocity, the rate form of an incremental potential (Kane et al. 2000). It is
+// an energy over the time tau.
 double potential(const Spring<double>& spring, const Triple<double>& u, double spin) {
   const double rate = u.dot(spring.normal);
   const Triple<double> drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
@@ -289,6 +337,11 @@ double potential(const Spring<double>& spring, const Triple<double>& u, double s
 
 // With no normal and no depth the spring acts in all directions, and what it bears is the bond alone: a
 // Coulomb contact whose limit does not hang on a push.
+//
+//     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
+//
+// Depth and fade are 0, so N is 0. The four are at corners of a tetrahedron: forces alone, they bear
+// torques about any axis.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
                       int point, SpringContact<double>& result) {
   const auto i = static_cast<std::size_t>(point);
@@ -317,6 +370,7 @@ void settle_grip(const ContactStep& step, const SpringContact<double>& solved, i
   grip.slips = true;
   // Ideal plasticity: the end on the body goes after by what the force at the limit does not stretch, as far
   // as the step goes of the time that the spring looks ahead.
+  // As in slide(), with phi = mu: s + h u - s(h) = (h / e) (q+ - F / k).
   const double followed = step.step / spring.ahead;
   const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
   const Pose& pose = step.bodies[grip.body].pose;

@@ -13,6 +13,13 @@ inline void write_sum(const Triple<Wide>& v, double* result) {
   result[0] = sum(v.x), result[1] = sum(v.y), result[2] = sum(v.z);
 }
 
+// Of all springs on a body with velocity v and angular velocity w, at arms r from its centre:
+//
+//     u = u_1 - (v + w x r),     spin = n.(w_1 - w)
+//     F = sum f,                 T = sum r x f + T_n n
+//
+// Sums are lane by lane over the fours and then over the lanes, in the same order on every processor:
+// floating point's sums hang on their order.
 inline void respond(SpringContact<Lanes>* first, SpringContact<Lanes>* last, const double* velocity,
                     bool renew_limits, SpringSum& result) {
   const Triple<Wide> linear = everywhere(velocity), angular = everywhere(velocity + 3);
@@ -34,6 +41,7 @@ inline void respond(SpringContact<Lanes>* first, SpringContact<Lanes>* last, con
 }
 
 /// Symmetric.
+/// S += weight v v'.
 struct Slope3 {
   Wide xx, xy, yy, xz, yz, zz;
 
@@ -44,6 +52,13 @@ struct Slope3 {
   }
 };
 
+// The point of the body at the arm r moves by J (v, w) = v - [r]x w, so J' = (1; [r]x) and
+//
+//     J' S J = (  S         .             )      S = s_t 1 + (s_n - s_t) n n' - slip d d' / d'd
+//              (  [r]x S    [r]x S [r]x'  )      and the twist's s_T n n' is added at the lower right
+//
+// s are the slopes of SpringResponse. A row of A [r]x' is r x that row of A, as [r]x' = -[r]x. Only the
+// lower triangle is summed, in three blocks: what is symmetric is made once.
 inline void slope(const SpringContact<Lanes>* first, const SpringContact<Lanes>* last, SpringSlope& result) {
   const Wide zero = constant<Wide>(0.0), tiny = constant<Wide>(1e-300);
   Wide sums[21];

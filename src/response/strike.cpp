@@ -15,6 +15,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// When two points `apart` that part by `velocity` are `distance` from each other for the first time [s].
 double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
   // |apart + t velocity| = distance has two roots: the first, in the form that does not cancel.
+  //
+  //     v^2 t^2 - 2 c t + o = 0,    o = x^2 - d^2,  c = -x.v:    t = (c - root) / v^2 = o / (c + root)
   const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
   if (outside <= 0.0) return 0.0;
   const double discriminant = closing * closing - velocity.squaredNorm() * outside;
@@ -29,6 +31,8 @@ Vector3 Strike::Partner::velocity_of_centre() const {
   return inverse_mass * state->linear_momentum;
 }
 
+// v + w x r (Eq. 7). A hand's own velocity is in `drive`; what is left of it here is by how much it has
+// given way.
 Vector3 Strike::Partner::velocity() const {
   if (state == nullptr) return recoil;
   return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
@@ -43,11 +47,14 @@ void Strike::Partner::push(const Vector3& by) {
   state->angular_momentum += arm.cross(by);
 }
 
+// A phalanx counts as a point that has its mass alone; 1/m is 0 of the paper's hand and of fixtures.
 Matrix3 Strike::Partner::inverse_effective_mass() const {
   if (state == nullptr) return inverse_mass * Matrix3::Identity();
   return collision_matrix(inverse_mass, inverse_inertia, arm);
 }
 
+// The gap closes at t + wait, and there surfaces that part again, or only rest on each other, do not strike
+// (Eq. 8's cases).
 double Strike::meeting() const {
   const double wait =
       is_of_balls()
@@ -70,6 +77,8 @@ void Strike::move_to(double later) {
     move_arms(wait);
     return;
   }
+  // Balls: the line of centres is followed exactly, whatever they spin, and the point divides it by the
+  // radii. On a normal of the step's start a blow that falls later would turn smooth balls.
   const Vector3 apart = b.arm - a.arm + wait * (a.velocity_of_centre() - b.velocity_of_centre());
   const double distance = apart.norm(), radii = radius_a + radius_b;
   gap = distance - radii;
@@ -78,6 +87,8 @@ void Strike::move_to(double later) {
   b.arm = (radius_b / radii) * apart;
 }
 
+// r += t (c' - v), the rate of an arm from a moving centre to a moving point c. Both arms end at the same
+// c: with two of them J and -J would turn the pair by (c_b - c_a) x J.
 void Strike::move_arms(double seconds) {
   // Where a ball touches moves with its centre, not with its surface.
   const Vector3 point = radius_b > 0.0   ? b.velocity_of_centre()
@@ -88,6 +99,10 @@ void Strike::move_arms(double seconds) {
   }
 }
 
+//     m_n = 1 / n'Kn  (Eq. 14's denominator),     M_t = (T'KT)^-1,     K = K_a + K_b,  T = two tangents
+//
+// K is not isotropic off the centre, so M_t is a matrix: a single number would steer friction off the
+// sliding.
 void Strike::prepare() {
   magnitude = 0.0;
   drag.setZero();
@@ -102,6 +117,11 @@ void Strike::prepare() {
 }
 
 // A row of projected Gauss-Seidel (Catto 2005): the sum of the impulses must not pull, a single one may.
+//
+//     j <- max(0, j + m_n (target - u)),      u = n.w with all impulses so far
+//
+// which for a single strike is Eq. 14 at once. At the end 0 <= j, target <= u, and one of them with =:
+// Newton's law for many points as Moreau (1988) has it.
 double Strike::relax_normal() {
   const double velocity = normal.dot(relative_velocity());
   const double wanted = std::max(0.0, magnitude + normal_mass * (target - velocity));
@@ -114,6 +134,10 @@ double Strike::relax_normal() {
 
 // Likewise, within Coulomb's disc of radius mu j. Both directions at once: limited one by one they would make
 // a square, and friction at its corners be 1.4 times too strong.
+//
+//     d <- disc(d + M_t T'w),    |d| <= mu j,    on b, along the sliding of a over it
+//
+// j is the last one of the same sweep. A blow's friction is static friction, the most that there may be.
 double Strike::relax_tangential() {
   if (friction <= 0.0) return 0.0;
   const Eigen::Vector2d needed = tangential_mass * (tangents.transpose() * relative_velocity());

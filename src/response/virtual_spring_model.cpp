@@ -18,6 +18,9 @@ class VirtualSpringModel : public ContactModel {
  public:
   /// Of the coupling, unless material/stiffness is set. An explicit spring and damper ask for steps below
   /// 2 / sqrt(sum k / m) and 2 m / sum b [N/m].
+  /// Of N phalanges both together ask for h^2 N k + 2 h N b < 4 m, where each alone has the bounds above: p
+  /// += -h (k x + b p / m), x += h p / m has its roots within the unit circle up to there
+  /// (docs/stability.md: of 2433 cells beyond it 12 are stable).
   static constexpr double kStiffness = 500.0;
   /// The coupling's damper is critical for a virtual phalanx of this mass: b = 2 sqrt(k m), 4.5 N s/m at 500
   /// N/m [kg].
@@ -27,6 +30,12 @@ class VirtualSpringModel : public ContactModel {
 };
 
 /// Force of the coupling on the object [N]; drags the virtual phalanx where it slips.
+///
+///     N = max(0, k d - b v_n),     f_T = coulomb(k s + b v_t),     f = f_T - N n          on the object
+///
+/// v is the hand's against the object's (Eq. 8), so that b v_n < 0 as they approach pushes the more. The
+/// damper makes the push begin with a jump, b |v_n|, at the touch: what Hunt & Crossley (1975) object to in
+/// it, and what those systems have.
 Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contact) {
   const double stiffness = body.material.stiffness * contact.share;
   if (!contact.touching() || stiffness <= 0.0) return Vector3::Zero();
