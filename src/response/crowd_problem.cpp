@@ -187,7 +187,7 @@ bool CrowdProblem::admit(const ContactStep& step, double slow) {
   });
   apart_.erase(kept, apart_.end());
   given_before_.resize(points_.size());
-  given_along_.resize(points_.size(), {0.0, Vector3::Zero()});
+  given_along_.resize(points_.size(), {0.0, Vector3::Zero(), 0.0});
   return points_.size() > before;
 }
 
@@ -206,8 +206,8 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
   point.friction = spring.friction;
   point.bond = step_ * spring.bond;
   point.soft = spring.pad > 0.0 || spring.yields < kNeverYields;
-  point.given = {0.0, Vector3::Zero()};
-  point.twisted = 0.0;
+  point.twists = spring.twist_stiffness > 0.0;
+  point.given = {0.0, Vector3::Zero(), 0.0};
   weigh(point);
   return point;
 }
@@ -246,7 +246,7 @@ void CrowdProblem::weigh(Point& point) const {
 // would pull by now is cut off. What is at rest is solved by it to begin with.
 void CrowdProblem::carry(const Vector3& borne, Point& point) {
   const double along = borne.dot(point.normal);
-  point.given = {step_ * std::max(0.0, -along), step_ * (borne - along * point.normal)};
+  point.given = {step_ * std::max(0.0, -along), step_ * (borne - along * point.normal), 0.0};
   push(point, point.given.drag - point.given.push * point.normal);
 }
 
@@ -335,15 +335,17 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
   const double rate = point.normal.dot(velocity);
   const double wanted = find_push(i, rate - point.normal_mobility * point.given.push);
   const double limit = point.friction * wanted + point.bond;
-  const bool open = limit == 0.0 && point.given.push == 0.0 && point.given.drag == Vector3::Zero();
+  const bool open = limit == 0.0 && point.given.push == 0.0 && point.given.drag == Vector3::Zero() &&
+                    point.given.twist == 0.0;
   if (open && wanted == 0.0) return;
   const double more = wanted - point.given.push;
   Vector3 drag = wanted_drag(point, velocity - rate * point.normal + more * point.slides);
   const double squared = drag.squaredNorm();
   if (squared > limit * limit) drag *= limit / std::sqrt(squared);
   push(point, drag - point.given.drag - more * point.normal);
-  point.given = {wanted, drag};
-  if (point.soft) twist(i);
+  point.given.push = wanted;
+  point.given.drag = drag;
+  if (point.twists) twist(i);
 }
 
 // As the drag, about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
@@ -352,17 +354,16 @@ void CrowdProblem::twist(std::size_t i) {
   Point& point = points_[i];
   const SpringContact<double>& contact = contacts_[i];
   const Spring<double>& spring = contact.spring;
-  if (spring.twist_stiffness <= 0.0) return;
   Body& b = bodies_[static_cast<std::size_t>(point.b)];
   const Vector3 turned = b.inverse_inertia * point.normal;
   const double spin = contact.drive_spin - point.normal.dot(b.motion.spin);
   const double stiffness = step_ * spring.twist_stiffness, limit = spring.patch_friction * point.given.push;
   const double give = 1.0 / (1.0 + stiffness * spring.ahead * point.normal.dot(turned));
   const double wanted =
-      point.twisted + give * (stiffness * (spring.twist + spring.ahead * spin) - point.twisted);
+      point.given.twist + give * (stiffness * (spring.twist + spring.ahead * spin) - point.given.twist);
   const double kept = std::max(-limit, std::min(wanted, limit));
-  b.motion.spin += (kept - point.twisted) * turned;
-  point.twisted = kept;
+  b.motion.spin += (kept - point.given.twist) * turned;
+  point.given.twist = kept;
 }
 
 bool CrowdProblem::pressed() const {
@@ -402,9 +403,8 @@ double CrowdProblem::made_by_contacts() const {
 ///     d_k = x_turn - x_before,     beta = |d_k|^2 / |d_k-1|^2 < 1, else 0,      s_k = d_k + beta s_k-1
 ///     x <- x_turn + beta s_k-1
 ///
-/// of pushes and drags and of velocities alike, which hang on them linearly; torsion's impulse is not
-/// carried on. It comes before a turn and never after the last: a push may be negative and a drag outside
-/// its disc until contacts have been relaxed.
+/// of all that is given and of velocities alike, which hang on it linearly. It comes before a turn and never
+/// after the last: a push may be negative and a drag outside its disc until contacts have been relaxed.
 double CrowdProblem::keep_going(double last) {
   double square = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -414,9 +414,10 @@ double CrowdProblem::keep_going(double last) {
   const double part = last > 0.0 && square < last ? square / last : 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Given &now = points_[i].given, &before = given_before_[i], &along = given_along_[i];
-    const Given on{part * along.push, part * along.drag};
-    along = {on.push + now.push - before.push, on.drag + now.drag - before.drag};
-    now = {now.push + on.push, now.drag + on.drag};
+    const Given on{part * along.push, part * along.drag, part * along.twist};
+    along = {on.push + now.push - before.push, on.drag + now.drag - before.drag,
+             on.twist + now.twist - before.twist};
+    now = {now.push + on.push, now.drag + on.drag, now.twist + on.twist};
   }
   for (std::size_t i = 0; i < free_.size(); ++i) {
     Motion &now = bodies_[i].motion, &before = motions_before_[i], &along = motions_along_[i];
@@ -439,7 +440,7 @@ bool CrowdProblem::nearly_rests(const ContactStep& step) const {
 // step's.
 void CrowdProblem::solve(const ContactStep& step) {
   given_before_.resize(points_.size());
-  given_along_.assign(points_.size(), {0.0, Vector3::Zero()});
+  given_along_.assign(points_.size(), {0.0, Vector3::Zero(), 0.0});
   motions_before_.resize(bodies_.size());
   motions_along_.assign(bodies_.size(), {Vector3::Zero(), Vector3::Zero()});
   const auto points = static_cast<int>(points_.size());
@@ -466,7 +467,7 @@ void CrowdProblem::report(std::size_t i) {
   contact.response = {};
   contact.response.force = triple((point.given.drag - point.given.push * point.normal) / step_);
   contact.response.push = point.given.push / step_;
-  contact.response.torque = point.twisted / step_;
+  contact.response.torque = point.given.twist / step_;
   contact.response.wanted_squared = wanted_drag(point, sliding).squaredNorm() / (step_ * step_);
   contact.response.drawn = triple(point.stretch + point.ahead * sliding);
   contact.spring.slip_limit = (point.friction * point.given.push + point.bond) / step_;
@@ -490,7 +491,7 @@ void CrowdProblem::finish(ContactStep& step, const Island& island) {
     const auto give = [&](int body, double sign, const Vector3& arm) {
       BodyState& state = step.bodies[island.bodies.begin()[body].body];
       state.linear_momentum += sign * impulse;
-      state.angular_momentum += sign * (arm.cross(impulse) + point.twisted * point.normal);
+      state.angular_momentum += sign * (arm.cross(impulse) + point.given.twist * point.normal);
     };
     give(point.b, 1.0, point.arm_b);
     if (point.a != static_cast<int>(free_.size())) give(point.a, -1.0, point.arm_a);

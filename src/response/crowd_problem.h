@@ -38,6 +38,7 @@ class CrowdProblem {
   struct Given {
     double push;   // against the normal [N s]
     Vector3 drag;  // along the surface [N s]
+    double twist;  // about the normal [N m s]
   };
   /// A contact as it is relaxed.
   struct Point {
@@ -54,8 +55,8 @@ class CrowdProblem {
     double kept, pull;  // parts of the last drag, and of the sliding, in the next one
     Vector3 pulled;     // and of the stretch [N s]
     double friction, bond;
-    bool soft;       // its push is not simply proportional to depth
-    double twisted;  // impulse about the normal [N m s]
+    bool soft;    // its push is not simply proportional to depth
+    bool twists;  // a hand's, which turns about the normal with what it holds
   };
 
   void add_body(const mrhi::Body& body, const BodyState& state, const ContactStep& step);

@@ -7,6 +7,17 @@ namespace mrhi {
 /// A way within a step that nobody sees: a body that is off by less has been solved for [m].
 constexpr double kUnseenWay = 1e-9;
 
+/// How long a Problem is worked on, at most.
+struct Effort {
+  int iterations = 40;       // with limits renewed in each
+  int limits = 8;            // held after that, one after the other,
+  int held_iterations = 60;  // for each of them
+  int unchecked = 2;  // first steps: exact while contacts neither open nor slip, else the next one shows
+  bool anew = true;   // from the step's start on, else from where the others have led
+  int trials = 20;    // for the least energy along a direction
+  double converged = 1e-7;  // when it is solved: error of the forces' impulse
+};
+
 /// Solves a contact problem for its velocity: Newton's method with the friction limits of the last iterate;
 /// each iterate's problem is convex. A Problem has
 ///   restart()             puts the velocity back to the step's start; before, it is near the solution
@@ -20,27 +31,17 @@ constexpr double kUnseenWay = 1e-9;
 ///   kTrustsLastStep       whether the last step's effect may go unmeasured
 ///   effort()              how long to try
 ///   energy(), descent()   of the convex problem, and its slope along the direction [J]
-/// How long a Problem is worked on, at most.
-struct Effort {
-  int iterations = 40;       // with limits renewed in each
-  int limits = 8;            // held after that, one after the other,
-  int held_iterations = 60;  // for each of them
-  int unchecked = 2;  // first steps: exact while contacts neither open nor slip, else the next one shows
-  bool anew = true;   // from the step's start on, else from where the others have led
-  int trials = 20;    // for the least energy along a direction
-  double converged = 1e-7;  // when it is solved: error of the forces' impulse
-};
-
-// The problem is g(v) = M (v - v*) - h J' f(v; L) = 0 with g the gradient of a convex, once differentiable
-// E(v) while the limits L are held, and H = M + h J' K J, positive definite by its M:
-//
-//     H d = -g(v),     v <- v + s d,     s = 1 where it will do
-//
-// Forces have kinks where contacts open and slip, so H is one of the generalised Hessians there and this is
-// a semismooth Newton method (Qi & Sun 1993). Once contacts have their states and all stick, forces are
-// linear in v but for the fade and the pulp, and one step is as good as exact; where some slip and their
-// limits are renewed, what H leaves out of them (dL/dN, see Spring::respond) makes convergence linear.
-// Hessians are kept while the error falls fast (the chord method; Kelley 1995, ch. 5).
+///
+/// The problem is g(v) = M (v - v*) - h J' f(v; L) = 0 with g the gradient of a convex, once differentiable
+/// E(v) while the limits L are held, and H = M + h J' K J, positive definite by its M:
+///
+///     H d = -g(v),     v <- v + s d,     s = 1 where it will do
+///
+/// Forces have kinks where contacts open and slip, so H is one of the generalised Hessians there and this is
+/// a semismooth Newton method (Qi & Sun 1993). Once contacts have their states and all stick, forces are
+/// linear in v but for the fade and the pulp, and one step is as good as exact; where some slip and their
+/// limits are renewed, what H leaves out of them (dL/dN, see Spring::respond) makes convergence linear.
+/// Hessians are kept while the error falls fast (the chord method; Kelley 1995, ch. 5).
 template <typename Problem>
 class Newton {
  public:
