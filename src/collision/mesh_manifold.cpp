@@ -35,6 +35,9 @@ struct Touch {
 };
 
 /// Measures what sticks out of one shape in the other.
+///
+/// The normal of what is found points out of `other`: turned over unless that is b, as a manifold's points
+/// out of b.
 struct Probing {
   const ManifoldShape& of;
   const Pose& pose;
@@ -58,7 +61,9 @@ struct Probing {
                  static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name)};
   }
 
-  /// No part of a node is deeper in the other shape than this.
+  /// No part of a node is deeper in the other shape than this. Signed distance changes by no more than the
+  /// way between two places: with the node's centre at the distance D and all its parts within r of it, none
+  /// is deeper than r - D.
   double most(const MeshTree::Node& node) const {
     const Vector3 centre = pose * node.centre;
     const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
@@ -199,7 +204,9 @@ class Touches {
   std::size_t count_ = 0;
 };
 
-/// Of the touches that agree with the deepest those farthest out in eight directions across its normal.
+/// Of the touches that agree with the deepest those farthest out in eight directions across its normal. The
+/// first direction is 0.1 rad off u, so that none lies along a box's sides, where two corners would be as far
+/// out but for rounding.
 class Spread {
  public:
   Spread(const Touches& touches, const Touch& deepest) : deepest_(deepest) {
@@ -239,6 +246,9 @@ class Spread {
   std::array<Touch, kDirections> outermost_;
 };
 
+/// Seen along the normal, in the plane of u and v; `feature` counts the points while they are sorted, and is
+/// a name again at the end. Two that have the same name, which numbers modulo 100 and 28 may give, are told
+/// apart by the next free one.
 Manifold chosen(const Touches& touches) {
   Manifold manifold;
   const auto deepest = touches.deepest();
