@@ -117,6 +117,9 @@ Common common_of(const ShapePair& pair, const Touch& touch) {
           pair.b.at(then).position};
 }
 
+/// Of a pair that meets within the step points are where they will touch, and arms are from where the centres
+/// will be then; the depth is no more than 0 until it has happened. A pair's stiffness is shared by its
+/// points alike.
 BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
                          const Common& common, const ManifoldPoint& point, const BodyContact* memory) {
   BodyContact contact;
@@ -145,6 +148,8 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
   found_.reserve(16 * scene.bodies.size());
 }
 
+/// Boxes along the world's axes with room for the step come before shapes: apart in one dimension is apart
+/// (separating axes). Contacts of a pair that sleeps are kept by simulation/sleeping.cpp meanwhile.
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                              const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {

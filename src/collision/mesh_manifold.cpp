@@ -94,7 +94,8 @@ struct Probes {
   }
 
  private:
-  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach.
+  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach. Features are of
+  /// the other shape and its normal points out of it, to this one: less that is where it lies.
   Vector3 facing_from(const Capsule& inside, double reach) const {
     const Pose& other = probing.other_pose;
     const auto features = closest_on(
@@ -118,7 +119,9 @@ struct Probes {
       see(Probe::edge(prism.corner(low), prism.corner(high), i));
     }
   }
-  /// Rims, and the side line that faces the other, and with it the lowest point of a rim.
+  /// Rims, and the side line that faces the other, and with it the lowest point of a rim. The capsule within
+  /// the cylinder stands for it: half ends of the lesser of radius and half length, so that none of it sticks
+  /// out.
   void of_round(const Prism& prism) const {
     for (const double side : {-1.0, 1.0}) {
       const FlatFace cap = face_towards(prism, side * prism.axis());
@@ -136,6 +139,7 @@ struct Probes {
     see(Probe::corner(line.at(line.half), 9));
     see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
+  /// A corner belongs to the first of its edges: it is asked once, whichever edges are visited.
   void of_mesh(const MeshSurface& surface, int part) const {
     const int index = part - static_cast<int>(surface.faces().size());
     if (index < 0) return;
@@ -149,6 +153,8 @@ struct Probes {
 
 /// Calls `see(touch)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
 /// `wanted(probing, node)`.
+///
+/// Visits of a tree are always in the same order, so that the first of equals is the same one at every call.
 class Touches {
  public:
   Touches(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
@@ -167,6 +173,7 @@ class Touches {
     if (count_ > kRemembered) return measure(wanted, see);
     for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
   }
+  /// The bound grows as it is found: nodes that cannot beat it are left out.
   double greatest_depth() const {
     double depth = -1e300;
     each([&](const Probing& probing, const MeshTree::Node& node) { return probing.most(node) > depth; },

@@ -8,7 +8,7 @@ namespace mrhi {
 
 /// A tree over the faces and edges of a surface. Each node knows a ball and a slab that hold its parts, and a
 /// cone that holds their normals: on a curved surface the slab is thin, and a search that knows a direction
-/// sees at once that a node is below all it has found.
+/// sees at once that a node is below all it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
 class MeshTree {
  public:
   struct Node {
