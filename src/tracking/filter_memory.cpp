@@ -37,6 +37,8 @@ bool has_point(const Hand& hand, std::size_t point) {
   return point < 2 || hand.capsules[(point - 2) / 2].radius > 0.0;
 }
 
+/// Only of the capsules' ends: palm and wrist are always there, estimated where they are not seen. A joint
+/// that two bones share counts twice.
 double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   double sum = 0.0;
   int count = 0;
@@ -48,6 +50,7 @@ double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
+/// What is known of the tracker's noise stays: it is not the hand's.
 void FilterMemory::restart(const Hand& sample) {
   history.size = 0;
   history.push(sample, 0.0, 1);

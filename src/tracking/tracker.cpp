@@ -42,6 +42,9 @@ bool knows_nothing(const HandTrack& track, const Hand&) {
   return !track.active && track.filter.noise.size == 0;
 }
 
+/// The surest first, each for all slots, before the next: id and side, id alone (a tracker that took a left
+/// for a right hand), a new id near a hand that is held; then free slots, those that know the noise of this
+/// side first. In the order of slots and of the frame: equal frames give equal tracks.
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
@@ -81,6 +84,8 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.filter_change.reset();
 }
 
+/// Both filters run on the same samples, and the hand is (1 - s) old + s new, with s of minimum jerk, whose
+/// first two derivatives are 0 at both ends.
 Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configuration& configuration,
                              HandTrack& track) {
   const double elapsed = to_seconds(stamp - track.last_seen);
@@ -96,6 +101,9 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
   return blend(before, now, minimum_jerk(u));
 }
 
+/// The jump is told by raw samples: what is filtered lags behind, and the difference would look like a leap.
+/// A hand that was held begins its filter anew, as its samples of before say nothing about now, and catches
+/// up from the pose that was shown.
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
   if (farthest_joint(track.filter.history.samples[0], hand) > configuration.tracking.max_speed * away) {
