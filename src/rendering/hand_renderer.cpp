@@ -22,7 +22,7 @@ double margin(const HandOffset& offset) {
   return offset.zero() ? kAhead : offset.shift.norm() + kFarthestPush;
 }
 
-/// By the share of each contact.
+/// By the share of each contact. The mean, by shares w, as it goes: m <- m + w / sum w (x - m).
 void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
   rendered.touching.fill(false);
   std::array<double, kCapsules> shares{};

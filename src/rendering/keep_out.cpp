@@ -30,6 +30,10 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 
 /// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
 /// leave room, it gives way.
+///
+/// In turn: from what is solved, at the pace that bodies push at; at the hand's own; then from the offset
+/// that leaves the hand as it was shown, with the palm's lag in more and more. The best so far is kept, and
+/// only what is no deeper than allowed counts.
 void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
   if (farthest_joint(before, placed) <= tracked_way + kPace) return;
@@ -66,7 +70,8 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
   chain.place(offset, placed);
 }
 
-/// The longest way by which a body that the hand leans on has come towards it since the frame before [m].
+/// The longest way by which a body that the hand leans on has come towards it since the frame before [m]. n.v
+/// of the body's point at the capsule's surface, n out of the body: > 0 comes at the hand.
 double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const {
   double fastest = 0.0;
   for (const Clearance& clearance : clearances) {
@@ -89,6 +94,8 @@ HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, 
   return stay;
 }
 
+/// Given up in this order: the bound on a fingertip's turn; nearness to the offset of before, for where the
+/// hand was shown; bending round what is in the way, for a shift of the whole.
 void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
   if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
@@ -105,6 +112,10 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 
 /// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
 /// [m].
+///
+/// Rows J of the gaps are n for the shift and FingerChain::gradient for joints. A plane is the surface's
+/// tangent there: on what is curved, or once joints turn, it is right for small steps only, and gaps are
+/// found anew at the place that was solved for.
 double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
                                   const Pace* pace, double tolerated) {

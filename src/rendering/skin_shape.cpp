@@ -14,6 +14,9 @@ constexpr double kFlesh = 0.010;       // two parts of the palm [m]
 constexpr double kBetweenWebs = 0.92;  // of a finger's width
 constexpr double kStump = 0.036;       // from the wrist to where the sleeve ends [m]
 
+/// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
+/// / 4, and the lesser of both beyond w. Unlike a minimum it is not associative: the order of the parts is
+/// part of the shape.
 double smooth_min(double a, double b, double width) {
   const double overlap = std::max(0.0, 1.0 - std::abs(a - b) / width);
   return std::min(a, b) - 0.25 * width * overlap * overlap;
@@ -24,6 +27,8 @@ struct Cone {
   Vector3 a, b;
   double at_a, at_b;  // radii [m]
 
+  /// To the ball about the axis's nearest place. The true distance is the least for any place on the axis,
+  /// and a little less on a slope.
   double distance(const Vector3& p) const {
     const Vector3 along = b - a;
     const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
