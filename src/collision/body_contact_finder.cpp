@@ -13,7 +13,8 @@ namespace {
 constexpr double kMostFollowed = 0.001;
 /// Surfaces this far apart have ended their approach: the next one may strike again [m].
 constexpr double kApart = 1e-5;
-/// What is struck may leave this much faster than what strikes it (twice, by far heavier things).
+/// What is struck may leave this much faster than what strikes it (twice, by far heavier things). Of masses M
+/// and m the struck one leaves with (1 + e) v M / (M + m) < 2 v.
 constexpr double kStruck = 2.0;
 
 /// Geometric means: two alike bodies have their own, and either's zero is the pair's. A touch's stiffness is
@@ -31,7 +32,8 @@ double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
 
-/// Distance of a point from a shape is at least this [m].
+/// Distance of a point from a shape is at least this [m]. As from the box about it: max(|x_i| - half_i, 0) in
+/// each dimension. Less than the true distance beside a round side.
 double at_least_away(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
                      const Pose& body) {
   if (!shape.prism) return 0.0;

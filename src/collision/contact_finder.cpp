@@ -7,7 +7,8 @@
 namespace mrhi {
 namespace {
 
-/// Contacts are followed from this gap on, plus what the pair can close within a step [m].
+/// Contacts are followed from this gap on, plus what the pair can close within a step [m]. More than
+/// kSeparation, so that a touch is forgotten while it is still followed: what comes back strikes anew.
 constexpr double kMargin = 0.001;
 
 Capsule to_local(const Pose& pose, const Capsule& capsule) {

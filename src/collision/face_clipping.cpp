@@ -95,12 +95,16 @@ class Clipping {
     const Vector3 in_plane = offset - height(offset) * normal_;
     return {{frame_.along[0].dot(in_plane), frame_.along[1].dot(in_plane)}};
   }
+  /// Linear, as both are flat: d(p) = d_0 + slope.p, and so is known at every crossing without a third
+  /// coordinate.
   double depth(const Place& place) const { return depth_ + slope_[0] * place[0] + slope_[1] * place[1]; }
   void add(const Place& place, std::uint8_t feature) { region_.add({place, depth(place), feature, 0}); }
   std::uint8_t crossing(int of_frame, int of_other) const {
     return frame_is_a_ ? crossing_name(of_frame, of_other) : crossing_name(of_other, of_frame);
   }
 
+  /// Corners (+-1, +-1) of the rectangle's two half sides, seen in the frame: a parallelogram where it is
+  /// tilted.
   void take_polygon() {
     const int corners = other_.is(Outline::line) ? 2 : 4;
     for (int k = 0; k < corners; ++k) {
@@ -305,6 +309,8 @@ std::array<double, 4> rim_angles(double radius, const Place& slope) {
   return {{first, first + kQuarter, first + 2 * kQuarter, first + 3 * kQuarter}};
 }
 
+/// Regions that gaps are taken from stay convex polygons in order, of which reduce() leaves four. The normal
+/// is turned to point out of b: the reference's own points out of the reference.
 Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin) {
   const bool by_reference = in_frame_of(reference, incident);
   Clipping clipping(by_reference ? reference : incident, by_reference ? incident : reference, by_reference,

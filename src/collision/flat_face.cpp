@@ -10,6 +10,8 @@ constexpr double kCapOrSide = 0.7071067811865476;
 
 }  // namespace
 
+/// Flat along itself only: `along` has the one direction, no breadth, and its two corners are the line's
+/// ends, at +half and -half.
 FlatFace FlatFace::of(const Line& line) {
   return {line.middle,
           Vector3::Zero(),

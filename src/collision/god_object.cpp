@@ -28,7 +28,7 @@ Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, c
   return {memory->god_object, memory->entry_normal, true};
 }
 
-/// The contacts of a pair in the last step.
+/// The contacts of a pair in the last step. A pair has at most two, named 0 and 1.
 struct PairMemory {
   PairMemory(const Contact* before, int count, double s) {
     for (int i = 0; i < count; ++i) of_point[before[i].key.point] = before + i;

@@ -182,6 +182,8 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const MeshNearest search = impl_->nearest(segment, reach);
   if (!search.found()) return std::nullopt;
 
+  // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
+  // gap has no direction, and for what is inside, where it points inwards.
   const SurfaceNearest& nearest = search.nearest();
   ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
                            nearest.stretch.middle()};

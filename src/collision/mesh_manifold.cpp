@@ -12,8 +12,10 @@ namespace {
 /// Touches whose normals are within 20 degrees of the deepest's belong to it.
 constexpr double kAgrees = 0.94;
 constexpr double kSameDepth = 1e-6;
+/// Names of a byte: 0 to 99 corners and 100 to 127 edges of what sticks out in b, and 128 beyond these of
+/// what sticks out in a.
 constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
-/// An edge that touches with its end leaves that to the corner there.
+/// An edge that touches with its end leaves that to the corner there. Else one place would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
 
@@ -53,6 +55,7 @@ struct Probing {
     const auto features =
         closest_on(other, {other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
+    // A part of the edge's length, not metres.
     const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
     if (probe.start != probe.end && at_end) return std::nullopt;
     const Vector3 normal = other_pose.orientation * features->normal;

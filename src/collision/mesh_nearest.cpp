@@ -61,6 +61,7 @@ void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see
   }
 }
 
+/// The limit shrinks as nearer parts are found: it is asked anew at every node.
 void MeshNearest::search(const MeshTree& tree, double range) {
   visit(
       tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });

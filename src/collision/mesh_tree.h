@@ -28,7 +28,8 @@ class MeshTree {
     bool may_be_way_out(const Segment& segment) const;
   };
 
-  /// No branch is longer.
+  /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that
+  /// is opened puts back two: halving by the median, 64 hold any mesh.
   static constexpr std::size_t kMostLevels = 64;
 
   explicit MeshTree(const MeshSurface& surface);
