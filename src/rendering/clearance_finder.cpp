@@ -80,6 +80,8 @@ Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clear
 
 }  // namespace
 
+/// The box about the tracked hand against the ball about each body: by the squares of what the ball's centre
+/// is beyond the box.
 bool ClearanceFinder::begin(const Setting& setting, double margin) {
   near_.clear();
   shown_in_.clear();
@@ -180,7 +182,10 @@ bool ClearanceFinder::clear(const Hand& hand) const {
 }
 
 /// The face that the capsule keeps to. Deep inside the nearest way out may lead through the body: then it is
-/// the side on which the capsule was shown last, told by the god object if it is on that side too.
+/// the side on which the capsule was shown last, told by the god object if it is on that side too. In order:
+/// shallow, the nearest surface; the god object's plane, if the hand was shown on its side; the plane that
+/// was nearest before. A plane of before is no longer believed once it asks for more than the hand and bodies
+/// have moved.
 ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Near& near,
                                             const ClosestFeatures& features, const AxisSpan& span,
                                             const Setting& setting) const {

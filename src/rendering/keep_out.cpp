@@ -21,6 +21,8 @@ constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is 
 
 }  // namespace
 
+/// Deeper than kShallow the side on which the hand was shown before has a say, which the first look at the
+/// frame did not know: gaps are found anew.
 void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                   double least, HandOffset& offset, Hand& placed) {
   const HandOffset reference = offset;
@@ -84,7 +86,8 @@ double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, c
   return fastest * elapsed;
 }
 
-/// The hand does not move from where it was shown.
+/// The hand does not move from where it was shown. Joints as they pointed, within the limits that they have
+/// in the palm of now; the shift takes the palm's own way off.
 HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const PalmLag& lag) {
   HandOffset stay;
   stay.lag = lag;
@@ -145,6 +148,7 @@ void HandRenderer::Impl::begin_anew(const ClearanceFinder::Setting& setting, con
   finder.find(placed, setting, kAhead, clearances);
 }
 
+///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
 void HandRenderer::Impl::linearise(const Hand& placed) {
   for (Clearance& clearance : clearances) {
     const int capsule = clearance.key.capsule;

@@ -46,7 +46,8 @@ Vector3 on(int finger, int index, double share) {
 
 /// A finger from its knuckle on, straight. The half on the palm's side, tip included, is the capsules'
 /// surface but for the webs, between which a finger is narrower; the other half is flatter, thickest at the
-/// joints.
+/// joints. Not a true distance: y and z are drawn out to a capsule of the one radius, so that it is right in
+/// sign and at 0, and roughly in between.
 class Finger {
  public:
   explicit Finger(int finger) : frame_(bone(finger, 1)) {
@@ -119,7 +120,8 @@ std::vector<Cone> web_cones() {
   return cones;
 }
 
-/// An elliptic cylinder about x that ends round, at the x of its last point.
+/// An elliptic cylinder about x that ends round, at the x of its last point. x counts twice from half a
+/// thickness before the end on: it ends in half an ellipsoid.
 double forearm_distance(const Vector3& p, double end, double half_width, double half_thickness) {
   const Vector3 q(std::max(0.0, p.x() - end + 0.5 * half_thickness) * 2.0,
                   p.y() * half_thickness / half_width, p.z() - 0.001);
@@ -128,6 +130,8 @@ double forearm_distance(const Vector3& p, double end, double half_width, double 
 
 }  // namespace
 
+/// Parts are united in a fixed order, and cut off at the wrist by x >= -kStump: an intersection is the
+/// negative of a union of negatives.
 double skin_distance(const Vector3& point) {
   static const std::vector<Cone> palm = palm_cones(), webs = web_cones();
   static const std::array<Finger, kFingers> fingers{{Finger(0), Finger(1), Finger(2), Finger(3), Finger(4)}};

@@ -83,6 +83,7 @@ void add_finger(int finger, double share, const Vector3& p, BoneWeights& weights
 
 }  // namespace
 
+/// The sum over fingers of w_f times the sum over its bones, 1 each: it is 1.
 BoneWeights skin_weights(const Vector3& point) {
   BoneWeights weights{};
   const auto fingers = finger_weights(point);
@@ -93,6 +94,8 @@ BoneWeights skin_weights(const Vector3& point) {
   return weights;
 }
 
+/// A bend counts half for the bone before and half for the bone after; the thumb's first has no bone before
+/// it.
 std::array<float, kCapsules> capsule_shares(const Vector3& point) {
   const BoneWeights weights = skin_weights(point);
   std::array<float, kCapsules> shares{};

@@ -16,6 +16,7 @@ auto& point_of(AnyHand& hand, std::size_t point) {
 
 }  // namespace
 
+/// elapsed[i] goes with samples[i]: since the sample before it, which is samples[i + 1].
 void SampleHistory::push(const Hand& sample, double since, int keep) {
   size = std::min(size + 1, keep);
   for (auto i = static_cast<std::size_t>(size - 1); i > 0; --i) {

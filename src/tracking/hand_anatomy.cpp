@@ -36,6 +36,7 @@ Correspondences correspondences(const HandJoints& hand) {
 
 }  // namespace
 
+/// The inverse way: out of the adult's palm to the device.
 Vector3 PalmFit::place(const Vector3& anatomical) const {
   return palm * (scale * mirrored(anatomical, side));
 }

@@ -42,6 +42,8 @@ bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
   return 2 * std::abs(stamp - waiting_->stamp) <= interval;
 }
 
+/// A frame waits for one of the other side only while that goes on. What waited and found no partner is
+/// dropped, not shown late: time does not go back.
 std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
   streams_[index(side)].note(frame.stamp);
   if (is_partner(side, frame.stamp)) {

@@ -21,6 +21,9 @@ Nanoseconds rejoin_duration(double way, double away) {
   return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kShortest, kLongest));
 }
 
+///     x = from + s(u) (tracked - from),   u = (t - begin) / duration,   s' = s'' = 0 at both ends
+/// It begins at rest, as the held hand was, and ends with the tracked hand's velocity. The duration is fixed
+/// at the start, for a hand that goes on as fast.
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
   const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
   return blend(rejoin.from, tracked, minimum_jerk(u));

@@ -58,6 +58,8 @@ bool has_bone(const HandJoints& hand) {
 
 }  // namespace
 
+/// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
+/// on what came before.
 std::string defect(const HandJoints& hand) {
   const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
                                                      {"grab strength", hand.grab_strength},

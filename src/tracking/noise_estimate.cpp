@@ -45,6 +45,7 @@ Weights third_difference(const SampleHistory& history, std::size_t newest) {
   return weights;
 }
 
+/// At the bone's end: joints that are starts are other bones' ends, but for the roots.
 Vector3 difference_of(const SampleHistory& history, std::size_t newest, std::size_t capsule,
                       const Weights& weights) {
   Vector3 sum = Vector3::Zero();
@@ -84,6 +85,8 @@ double overlap(const Weights& now, const Weights& before) {
   return sum;
 }
 
+/// Negative products, which motion makes, count as no noise: were they left out, only what looks like noise
+/// would count.
 void add(double variance, SeenNoise& noise) {
   noise.size = std::min(noise.size + 1, kNoiseWindow);
   for (auto i = static_cast<std::size_t>(noise.size - 1); i > 0; --i)

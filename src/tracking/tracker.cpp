@@ -72,6 +72,7 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
   return assignment;
 }
 
+/// Before and now are one pose, so that it has no velocity: what it overlaps is not struck by its coming.
 void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;
@@ -125,6 +126,7 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
 }
 
+/// Its last two poses are one: the hand stands still.
 void hold(HandTrack& track) {
   track.held = true;
   track.emerged = track.appeared;
@@ -159,6 +161,8 @@ void check_filter(FilterKind kind) {
   hand_filter(kind);
 }
 
+/// The new filter starts from the last pose shown, at rest and knowing nothing of its own error; the old one
+/// runs on beside it with all that it knew.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands) {
   for (HandTrack& track : hands) {
     if (!track.active || track.filter.empty()) continue;
@@ -168,6 +172,7 @@ void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector
   }
 }
 
+/// What is known of the tracker's noise stays in the slot, for the next hand of its side.
 void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
                        std::vector<Event>& events) {
   for (HandTrack& track : hands) {

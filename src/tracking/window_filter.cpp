@@ -23,6 +23,8 @@ Quaternion mean_orientation(const SampleHistory& history, int count) {
   return mean.normalized();
 }
 
+/// From the newest back to the first sample that lacks it: a bone that has been away is not drawn towards
+/// where it was before.
 Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
   Capsule sum;
   int present = 0;
