@@ -2,6 +2,8 @@
 
 namespace mrhi {
 
+/// By the support function, exactly: in a shape's frame the body's axis e_i is R^T e_i, and the shape reaches
+/// position_i + h(R^T e_i) along it. h is asked for both signs, as a mesh is not symmetric.
 BodyBox box_around(const Body& body) {
   if (body.shapes.empty()) return {};
   Vector3 min = Vector3::Constant(1e300), max = -min;

@@ -13,10 +13,12 @@ namespace {
 constexpr double kMostFollowed = 0.001;
 /// Surfaces this far apart have ended their approach: the next one may strike again [m].
 constexpr double kApart = 1e-5;
-/// What is struck may leave this much faster than what strikes it (twice, by far heavier things).
+/// What is struck may leave this much faster than what strikes it (twice, by far heavier things). Of masses M
+/// and m the struck one leaves with (1 + e) v M / (M + m) < 2 v.
 constexpr double kStruck = 2.0;
 
-/// Two alike bodies have their own; the springs of a pair are in series.
+/// Geometric means: two alike bodies have their own, and either's zero is the pair's. A touch's stiffness is
+/// `contact/object_stiffness`, whatever the pair.
 Material together(const Material& a, const Material& b) {
   Material material;
   material.restitution = std::sqrt(a.restitution * b.restitution);
@@ -25,11 +27,13 @@ Material together(const Material& a, const Material& b) {
   return material;
 }
 
+/// By its spin about its centre alone: |w| R [m/s].
 double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
 
-/// Distance of a point from a shape is at least this [m].
+/// Distance of a point from a shape is at least this [m]. As from the box about it: max(|x_i| - half_i, 0) in
+/// each dimension. Less than the true distance beside a round side.
 double at_least_away(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
                      const Pose& body) {
   if (!shape.prism) return 0.0;
@@ -63,6 +67,7 @@ struct Touch {
   double time = -1.0;  // of a first touch within the step
 };
 
+/// The rate is n.(v_a - v_b) of the deepest point as a point of both, n from b to a (Eq. 8).
 std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
   const auto separation = [&](double time) -> std::optional<Separation<Manifold>> {
     const Manifold manifold = pair.at(time, margin);
@@ -86,6 +91,10 @@ std::optional<Touch> find_touch(const ShapePair& pair, double step, double follo
 
 /// The anchors' stretch is kept; they move along with the place where the surfaces meet, so that rolling
 /// stretches nothing.
+///
+/// xi = A - B less its part along n, from the two body-fixed places that stick to each other. Both are set
+/// anew half of it to either side of the point: A - B is still xi, but a pair that rolls or turns has its
+/// anchors where it touches now, at the arms that its forces have.
 void anchor(const MovingBody& a, const MovingBody& b, bool lasting, BodyContact& contact) {
   contact.stretch.setZero();
   if (lasting) {
@@ -110,6 +119,9 @@ Common common_of(const ShapePair& pair, const Touch& touch) {
           pair.b.at(then).position};
 }
 
+/// Of a pair that meets within the step points are where they will touch, and arms are from where the centres
+/// will be then; the depth is no more than 0 until it has happened. A pair's stiffness is shared by its
+/// points alike.
 BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
                          const Common& common, const ManifoldPoint& point, const BodyContact* memory) {
   BodyContact contact;
@@ -138,6 +150,8 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
   found_.reserve(16 * scene.bodies.size());
 }
 
+/// Boxes along the world's axes with room for the step come before shapes: apart in one dimension is apart
+/// (separating axes). Contacts of a pair that sleeps are kept by simulation/sleeping.cpp meanwhile.
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                              const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {
@@ -160,7 +174,8 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
 }
 
 /// No farther than one thing's blow may send another within the step. Where nothing moves, next to nothing:
-/// the bricks of a wall have no contact with those beside them.
+/// the bricks of a wall have no contact with those beside them. |w| = |I^-1 L| <= tr(I^-1) |L|, as the trace
+/// of a positive matrix is no less than its greatest eigenvalue: a bound without a product, in any frame.
 double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                                        const std::vector<char>& asleep, double step, double driven) const {
   double fastest = driven;
@@ -174,7 +189,8 @@ double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::
   return std::min(kMostFollowed, kApart + kStruck * step * fastest);
 }
 
-/// The axis-aligned box that a body may touch another from within in this step.
+/// The axis-aligned box that a body may touch another from within in this step. A box turned by R reaches
+/// sum_j |R_ij| half_j along world axis i (its support function); v h + g h^2 / 2 is its way in the step h.
 BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const BodyState& state,
                                                      double step) const {
   const Body& body = scene_.bodies[index];
@@ -205,6 +221,7 @@ const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
   return reached_ < before.size() && before[reached_].key == key ? &before[reached_] : nullptr;
 }
 
+/// The margin is as far as the two may close in the step; what is farther apart has no manifold.
 void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vector<BodyState>& bodies,
                                   double step, const std::vector<BodyContact>& before) {
   const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];

@@ -12,7 +12,8 @@ double length(const Capsule& core) {
 }
 
 /// Each kind of pair is computed one way round: the longer of two cores, the round one of two prisms, and a
-/// mesh come first.
+/// mesh come first. Computed the other way round a manifold's normal turns; its points, midway between the
+/// surfaces, and their depths are the same.
 bool comes_first(const ManifoldShape& a, const ManifoldShape& b) {
   if (a.core && b.core) return length(*a.core) >= length(*b.core);
   if (a.core || b.core) return a.core.has_value();

@@ -8,7 +8,8 @@
 
 namespace mrhi {
 
-/// Axis-aligned boxes of bodies; finds those that a box touches. A cache of the state, not part of it.
+/// Axis-aligned boxes of bodies; finds those that a box touches. A cache of the state, not part of it. Of
+/// spheres' boxes: sound (a body is within its sphere, a sphere within its box), never exact.
 class BroadPhase {
  public:
   explicit BroadPhase(std::size_t bodies);

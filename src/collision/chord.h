@@ -9,9 +9,13 @@
 
 namespace mrhi {
 
-/// The part of the line x + t * dx that is inside a shape.
+/// The part of the line x + t * dx that is inside a shape. Of a convex shape that is one interval in..out,
+/// the common part of those of its slabs and balls (Kay & Kajiya 1986; Ericson, Real-Time Collision
+/// Detection, 5.3.3); it is empty where out < in.
 class Chord {
  public:
+  /// Keeps |x + t dx| <= half: t between (-half - x) / dx and (half - x) / dx, in whatever order. A level
+  /// line is in or out as a whole; by the quotients it would be 0 / 0 along a side.
   void clip_to_slab(double x, double dx, double half) {
     if (std::abs(dx) < kLevel) {
       if (std::abs(x) > half + kBorder) out_ = -std::numeric_limits<double>::infinity();
@@ -22,6 +26,8 @@ class Chord {
   }
   /// Keeps what is within `radius` of the origin, in as many dimensions as the line is given in.
   template <class Vector>
+  /// t = f -+ sqrt(r^2 - m^2) / |dx| about the foot f = -x.dx / dx^2, which is m off the origin. With a line
+  /// given in the plane this is an endless cylinder.
   void clip_to_ball(const Vector& x, const Vector& dx, double radius) {
     const double length = dx.norm();
     if (length < kLevel) {

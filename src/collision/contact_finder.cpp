@@ -7,7 +7,8 @@
 namespace mrhi {
 namespace {
 
-/// Contacts are followed from this gap on, plus what the pair can close within a step [m].
+/// Contacts are followed from this gap on, plus what the pair can close within a step [m]. More than
+/// kSeparation, so that a touch is forgotten while it is still followed: what comes back strikes anew.
 constexpr double kMargin = 0.001;
 
 Capsule to_local(const Pose& pose, const Capsule& capsule) {
@@ -22,6 +23,8 @@ ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, 
   found_.reserve(64 * kMaxHands);
 }
 
+/// Bodies, capsules, shapes and points ascend, which is the keys' order for one hand. The body comes before
+/// the hand in a key, so that those of two hands interleave.
 void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours& neighbours,
                          const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts) {
   found_count_ = 0;
@@ -60,6 +63,10 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
   return features;
 }
 
+/// No point of the body is faster than |v| + |w| R + |g| h / 2 on average through the step h, nor a phalanx
+/// than its faster end: what is farther than kMargin and the two speeds' sum times h cannot meet within the
+/// step. Clearances were measured as the pair was listed, for all of the hand's way in the frame; less what
+/// the body has moved since they still hold.
 void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state,
                               double step, const std::vector<Contact>& before) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(near.body)];
@@ -83,6 +90,8 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
   }
 }
 
+/// Nearer than kMargin: the features of now. Farther: only if the pair meets within the step, and then with
+/// the face that it meets, whose distance is told as of now: n.(a(s) - point) - r.
 void ContactFinder::find_touch(const TouchingPair& pair, double step, double margin,
                                const std::vector<Contact>& before) {
   const PlacedCollider& collider =
@@ -103,6 +112,7 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
   touch(pair, features, span, before);
 }
 
+/// Eq. 8 of the nearest points gives the rate: n.(c1' - c2'), n from the object to the hand in world.
 std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, const PlacedCollider& collider,
                                                     double step, double margin) const {
   const MovingBody& moving = pair.moving;
@@ -123,6 +133,9 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
   return touch->features;
 }
 
+/// Contacts of the last step are sorted by key, and the capsules and shapes of one hand and body come in the
+/// same order: memory_ only moves on. Surfaces farther apart than kSeparation have no memory; what overlapped
+/// as it appeared may touch again from then on.
 void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                           const std::vector<Contact>& before) {
   const ContactKey key = pair.key(0);

@@ -29,6 +29,8 @@ void ContactRegion::remove_gaps(double margin) {
   count = kept;
 }
 
+/// By insertion: stable, no allocation, and there are twelve at most. Corners of a convex polygon are in
+/// order by their angle about any place within, such as their mean.
 void ContactRegion::sort_around() {
   double u = 0.0, v = 0.0;
   for (int i = 0; i < count; ++i) u += (*this)[i].place[0] / count, v += (*this)[i].place[1] / count;
@@ -51,11 +53,13 @@ void ContactRegion::erase(int i) {
   --count;
 }
 
+/// Twice the area that the region loses without corner i.
 double ContactRegion::triangle(int i) const {
   return std::abs(
       cross((*this)[(i + count - 1) % count].place, (*this)[i].place, (*this)[(i + 1) % count].place));
 }
 
+/// Of those as deep the first in the polygon's order.
 std::uint8_t ContactRegion::first_deepest() const {
   const double deep = deepest() - kAsDeep;
   return std::find_if(points.begin(), points.begin() + count,
@@ -75,6 +79,10 @@ void ContactRegion::straighten() {
   }
 }
 
+/// Again and again the corner goes whose triangle with its neighbours is the least (Visvalingam & Whyatt
+/// 1993). Triangles of regular regions are equal but for rounding: a later corner only beats an earlier one
+/// by a noticeable part, and the round begins with the least name, wherever clipping began. So the same four
+/// points, with their anchors, are kept from step to step.
 void ContactRegion::reduce() {
   if (count <= 4) return;
   const auto by_feature = [](const RegionPoint& a, const RegionPoint& b) { return a.feature < b.feature; };
@@ -94,11 +102,14 @@ void ContactRegion::reduce() {
   }
 }
 
+/// The direction is (0.137, 0.241, 0.961), of length 1 and square to nothing that is likely in a scene: faces
+/// that meet exactly upright still have one that is below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal) {
   if (std::abs(area_a - area_b) > kSameSize * (area_a + area_b)) return area_a > area_b;
   return 0.137 * normal.x() + 0.241 * normal.y() + 0.961 * normal.z() < 0.0;
 }
 
+/// Depth changes by slope per metre across the face, so that kDepth / slope changes it by 1 um.
 double border_tolerance(double size, double slope) {
   constexpr double kMost = 0.00015, kDepth = 1e-6;
   return std::min({kMost, 0.005 * size, kDepth / std::max(slope, 1e-12)});

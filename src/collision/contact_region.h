@@ -8,18 +8,22 @@
 
 namespace mrhi {
 
-/// Normals nearer than this (2.5 degrees) to a face's count as that face's.
+/// Normals nearer than this (2.5 degrees) to a face's count as that face's. 1 - cos(2.5 degrees) is about a
+/// thousandth: as much as a depth along the face's normal may differ from that along n by their angle alone.
 constexpr double kSameFace = 0.99905;
 /// Faces of sizes nearer than this are as large.
 constexpr double kSameSize = 1e-6;
 
-/// A face's deepest point may differ so much from the depth along the best direction.
+/// A face's deepest point may differ so much from the depth along the best direction. By a thousandth, as
+/// kSameFace allows for, and by 3 um, so that what only just touches, where a thousandth is nothing, still
+/// lies on its face.
 inline bool as_deep(double deepest, double separation) {
   return deepest >= -separation - 1e-3 * std::abs(separation) - 3e-6;
 }
 
 using Place = std::array<double, 2>;
 
+/// Twice the signed area of the triangle o, p, q: > 0 where p to q turns left, seen from o.
 inline double cross(const Place& o, const Place& p, const Place& q) {
   return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
 }
@@ -34,6 +38,9 @@ struct RegionPoint {
 };
 
 /// The corners of such a region, a convex polygon, in their order.
+///
+/// `points` holds what clipping may make of two faces: a convex polygon of four corners gains at most one
+/// with each of four borders, and a rim counts with four points and two crossings with each edge or rim.
 struct ContactRegion {
   std::array<RegionPoint, 12> points;  ///< two rims have ten, a rim and a rectangle twelve
   int count = 0;
@@ -64,7 +71,8 @@ bool first_is_reference(double area_a, double area_b, const Vector3& normal);
 
 /// How far beyond a face's border a corner may lie and still be the one that touches: neither rounding nor
 /// creep must change what two aligned boxes are said to touch with. `slope` is the tangent of the angle
-/// between the faces; depths change by less than 1 um [m].
+/// between the faces; depths change by less than 1 um [m]. At the border a corner counts as the place on it:
+/// it moves by up to the tolerance, and its depth by slope times that.
 double border_tolerance(double size, double slope);
 
 inline void add_point(Manifold& manifold, const Vector3& point, double depth, int feature) {

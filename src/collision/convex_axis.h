@@ -9,6 +9,11 @@ namespace mrhi {
 /// greatest s(n) = n.(centre a - centre b) - reach a(n) - reach b(n). Every direction tried bounds it from
 /// below, so that a translation by -s always separates; it is exact if the best direction was tried. Prisms
 /// are symmetric about their centres: n and -n are one try.
+///
+/// The separating axis (Gottschalk, Lin & Manocha 1996; Ericson, Real-Time Collision Detection, 5.2.1): a and
+/// b overlap if and only if the origin is in their Minkowski difference a - b, and n.x <= h(n) bounds a
+/// convex set by its support function h. The greatest s is the origin's signed distance from a - b: the gap,
+/// or less the depth of the least translation.
 class ConvexAxis {
  public:
   ConvexAxis(const Prism& a, const Prism& b) : a_(a), b_(b), offset_(a.centre - b.centre) {}
@@ -17,7 +22,9 @@ class ConvexAxis {
   const Vector3& normal() const { return normal_; }
   const Vector3& offset() const { return offset_; }
 
-  /// The normals of flat faces of both.
+  /// The normals of flat faces of both. In the frame of the one whose face it is n is a unit axis: its own
+  /// reach is half[i], and the other sees row or column i of turn = A^T B. |n.offset| stands for the better
+  /// of n and -n; the sign is settled once for the winner.
   void try_flats() {
     const Matrix3 turn = a_.axes.transpose() * b_.axes;
     const Vector3 in_a = a_.axes.transpose() * offset_, in_b = b_.axes.transpose() * offset_;
@@ -27,7 +34,9 @@ class ConvexAxis {
       take(std::abs(in_b[i]) - b_.half[i] - a_.reach_along(turn.col(i)), b_.axes.col(i));
     if (normal_.dot(offset_) < 0.0) normal_ = -normal_;
   }
-  /// Any length; zero is no direction.
+  /// Any length; zero is no direction. The sign with n.offset >= 0 is the better one: both reaches are even
+  /// in n. The cross product of parallel edges has no direction; there the flats, or another edge, have the
+  /// answer.
   void try_direction(Vector3 n) {
     const double length = n.norm();
     if (length < kParallel) return;
@@ -37,6 +46,13 @@ class ConvexAxis {
 
   /// Tries the local maxima among the directions across a unit axis: an edge or a side there, a rim on the
   /// other shape. Seen along the axis the shapes are convex figures; the slope of s falls wherever it jumps.
+  /// On the half circle n(phi) from -90 to 90 degrees about the offset; on the other half n.offset < 0. With
+  /// the farthest points fixed (a support function's derivative is its farthest point) ds/dphi = n'.apart,
+  /// and
+  ///     d2s/dphi2 = -s - n'.(bend a + bend b) n' <= -s :
+  /// where s > 0 it is concave and has a single top; overlapping it may have several, of which one is found
+  /// between two of the 12 rays. Jumps of the farthest point from corner to corner only make the slope fall,
+  /// as h is convex.
   void try_around(const Vector3& axis) {
     Vector3 ahead = offset_ - axis.dot(offset_) * axis;
     ahead = ahead.norm() > kParallel ? Vector3(ahead.normalized()) : any_normal(axis);
@@ -48,7 +64,9 @@ class ConvexAxis {
     }
   }
 
-  /// Newton's ascent over all directions, for rim on rim: there s is smooth.
+  /// Newton's ascent over all directions, for rim on rim: there s is smooth. s on the sphere has the gradient
+  /// g = apart - (n.apart) n and the Hessian -(s 1 + bend a + bend b) across n. It may have several tops: the
+  /// caller brings the starts. A step that does not rise is halved, and n ends on the best that was seen.
   void climb(Vector3 n) {
     if (n.norm() < kParallel) return;
     n.normalize();
@@ -103,7 +121,9 @@ class ConvexAxis {
     return ray(cosine * from.n + sine * from.turn, cosine * from.turn - sine * from.n);
   }
 
-  /// Not much less than the greatest s between two rays: where their tangents meet.
+  /// Not much less than the greatest s between two rays: where their tangents meet. Lines from both ends as
+  /// far as they go, and 0.5 |s| angle^2 for what s may curve upwards where it is negative (s'' <= -s, with s
+  /// at the first ray for that in between).
   static double bound(const Ray& from, const Ray& to, double angle) {
     const double falls = from.slope - to.slope;
     const double meet = falls > 0.0 ? (to.value - from.value - to.slope * angle) / falls : 0.0;
@@ -111,6 +131,8 @@ class ConvexAxis {
     return from.value + from.slope * std::max(0.0, std::min(meet, angle)) + curved;
   }
 
+  /// Newton's method on ds/dphi in the bracket lo..hi, halved where Newton leaves it: at a jump of the slope
+  /// it never settles, and halving finds the corner. Ends early once the bracket cannot beat what is known.
   void refine(const Ray& from, const Ray& to) {
     double lo = 0.0, hi = kStep;
     double angle = kStep * from.slope / (from.slope - to.slope);
@@ -129,7 +151,9 @@ class ConvexAxis {
     try_direction(now.n);
   }
 
-  /// Newton's step, or up the gradient where s is not concave.
+  /// Newton's step, or up the gradient where s is not concave. In the basis u, v across n:
+  /// step = (s 1 + bend a + bend b)^-1 gradient, by Cramer's rule; concave if trace and determinant are
+  /// positive.
   Vector3 ascent(const Vector3& n, const Vector3& gradient) const {
     const Vector3 u = any_normal(n), v = n.cross(u);
     const Matrix3 curve = at(n) * Matrix3::Identity() + a_.bend(n) + b_.bend(n);

@@ -25,7 +25,10 @@ struct Lying {
 };
 
 /// What hangs over an edge is nearest there as soon as it tilts: the face is what its middle or its ends
-/// stand over.
+/// stand over. A bar that tilts by less than kSameFace on the table's edge is nearest at the edge, with a
+/// normal between the face's and the edge's, and would lose its second point. So its middle, then its ends,
+/// are asked by themselves: whichever is over a face with nearly that normal has the face, if the bar is as
+/// deep by it as it is by the edge.
 Lying lying_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features,
                double margin) {
   const Lying found{features, span_on(shape, capsule, features)};
@@ -56,6 +59,8 @@ std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Caps
   return features;
 }
 
+/// A point is midway between the two surfaces: at a(s) - (r + gap / 2) n, with the gap n.(a(s) - point) - r,
+/// < 0 where they overlap. All in b's frame, turned to world at the end; n is out of b, towards the core.
 Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin) {
   const auto to_b = [&](const Vector3& place) { return pose_b.to_local(pose_a * place); };

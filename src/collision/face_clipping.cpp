@@ -37,8 +37,15 @@ Place between(const Place& from, const Place& to, double part) {
   return {{from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])}};
 }
 
+/// With n the reference's normal, out of it, f the frame's and m the other's, all in world; places in the
+/// frame are 2D coordinates about its centre.
 class Clipping {
  public:
+  // The plane of the other, m.(x - c) = 0, is above the frame's place p by t(p) = -m.(p - c) / (m.n) along n.
+  // Depth is -t seen from the reference, where the incident face is below it, and +t seen from the incident
+  // one: `inwards` is that sign. So
+  //     slope_i = -inwards m.along_i / (m.n),   depth(p) = depth_ + slope.p.
+  // A line has no plane: its depth is known along itself, rise / run, and is made constant across.
   Clipping(const FlatFace& frame, const FlatFace& other, bool frame_is_reference, bool frame_is_a)
       : frame_(frame),
         other_(other),
@@ -78,19 +85,26 @@ class Clipping {
   }
 
  private:
-  /// How far the end of an offset from the frame's plane is above it, along the normal.
+  /// How far the end of an offset from the frame's plane is above it, along the normal. x = in plane + height
+  /// n with f.x = height (f.n): per_height_ is 1 / (f.n), 1 for the reference itself and about -1 for the
+  /// incident face, which looks the other way.
   double height(const Vector3& offset) const { return per_height_ * offset.dot(frame_.normal); }
+  /// Along n, not square to the frame: in a tilted frame the two differ.
   Place project(const Vector3& offset) const {
     if (frame_is_reference_) return {{frame_.along[0].dot(offset), frame_.along[1].dot(offset)}};
     const Vector3 in_plane = offset - height(offset) * normal_;
     return {{frame_.along[0].dot(in_plane), frame_.along[1].dot(in_plane)}};
   }
+  /// Linear, as both are flat: d(p) = d_0 + slope.p, and so is known at every crossing without a third
+  /// coordinate.
   double depth(const Place& place) const { return depth_ + slope_[0] * place[0] + slope_[1] * place[1]; }
   void add(const Place& place, std::uint8_t feature) { region_.add({place, depth(place), feature, 0}); }
   std::uint8_t crossing(int of_frame, int of_other) const {
     return frame_is_a_ ? crossing_name(of_frame, of_other) : crossing_name(of_other, of_frame);
   }
 
+  /// Corners (+-1, +-1) of the rectangle's two half sides, seen in the frame: a parallelogram where it is
+  /// tilted.
   void take_polygon() {
     const int corners = other_.is(Outline::line) ? 2 : 4;
     for (int k = 0; k < corners; ++k) {
@@ -106,6 +120,7 @@ class Clipping {
   /// Of a line only the first corner leads on.
   bool is_end(int corner) const { return other_.is(Outline::line) && corner == polygon_.count - 1; }
 
+  /// Corners kept for the tolerance are put onto the border, and their depth is that of the place there.
   void polygon_on_rectangle() {
     for (int border = 0; border < 4 && polygon_.count > 0; ++border) clip(border);
     region_ = polygon_;
@@ -116,7 +131,8 @@ class Clipping {
       region_[i].depth = depth(place);
     }
   }
-  /// Where a line of the polygon crosses a border.
+  /// Where a line of the polygon crosses a border. Two borders of the frame meet in its corner: number i is
+  /// between the borders i - 1 and i.
   std::uint8_t crossing_feature(int line, int border) const {
     if (line >= 4) {
       const int next = line - 4 == (border + 1) % 4 ? line - 4 : border;
@@ -126,7 +142,10 @@ class Clipping {
                     other_.edges[static_cast<std::size_t>(line)]);
   }
   /// By one border (Sutherland & Hodgman 1974). What is out by less than the tolerance stays, and counts as
-  /// on the border.
+  /// on the border. With b = sign x_d - half_d of either end, the crossing is at the part b_from / (b_from -
+  /// b_to) of the way: the signs differ, and nothing cancels. Its place on the border is set, not left to
+  /// rounding, so that the next border sees what lies on its own line. If no corner is out the polygon stays
+  /// as it is, names and all.
   void clip(int border) {
     const Border side = kBorders[static_cast<std::size_t>(border)];
     const std::size_t d = side.dimension;
@@ -177,6 +196,8 @@ class Clipping {
     }
     if (closed) region_.sort_around();
   }
+  /// To the left of all four sides, or to the right: a rectangle that is seen from below goes round the other
+  /// way, which `turn` tells. The cross product with a side is its length times the distance from it.
   bool in_polygon(const Place& place) const {
     const double turn = cross(polygon_[0].place, polygon_[1].place, polygon_[2].place) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < 4; ++i) {
@@ -188,6 +209,9 @@ class Clipping {
   }
   /// The part of an edge that the disc covers, between the zeros of |from + s along|^2 = radius^2: its start,
   /// or a corner where that is covered.
+  ///
+  /// a s^2 + 2 b s + c = 0 with s in 0..1 along the edge. Each edge adds where the part begins, and where it
+  /// ends only if that is not a corner, which the next edge adds: every corner once.
   void add_chord(const RegionPoint& from, const RegionPoint& to) {
     const Place start = from.place, along{{to.place[0] - start[0], to.place[1] - start[1]}};
     const int edge = other_.edges[static_cast<std::size_t>(from.line)];
@@ -205,12 +229,14 @@ class Clipping {
     if (to_is_in && other_.is(Outline::line)) add(to.place, to.feature);
   }
 
-  /// How far a place, seen on the other disc, is beyond its rim.
+  /// How far a place, seen on the other disc, is beyond its rim. x less (x.m / n.m) n is the place on the
+  /// other's plane above or below, along n.
   double beyond_rim(const Place& place) const {
     const Vector3 offset = frame_.at(place) - other_.centre;
     return (offset - offset.dot(other_.normal) / normal_.dot(other_.normal) * normal_).norm() -
            other_.half[0];
   }
+  /// The slope is a vector in the frame's plane, seen again along the other's axes for its lowest point.
   void rim_on_rim() {
     add_rim(frame_, frame_is_a_, slope_,
             [this](const Place& place) { return beyond_rim(place) <= tolerance_; });
@@ -223,7 +249,10 @@ class Clipping {
     add_rim_crossings();
     region_.sort_around();
   }
-  /// Exactly, by the law of cosines, if the discs are parallel, then by the secant method.
+  /// Exactly, by the law of cosines, if the discs are parallel, then by the secant method. With the other's
+  /// centre at the distance D, and r and R the radii, the rims cross at +-turn from the direction to it, R^2
+  /// = D^2 + r^2 - 2 D r cos turn. None if one is within the other, or beyond it: |cos| >= 1. A tilted rim is
+  /// an ellipse along n, and the circle's answer is a first guess.
   void add_rim_crossings() {
     const double away = length(middle_), radius = frame_.half[0], beyond_size = other_.half[0];
     if (away <= 0.0) return;
@@ -265,6 +294,10 @@ bool in_frame_of(const FlatFace& reference, const FlatFace& incident) {
 
 }  // namespace
 
+/// The rim is out of level by 2 r |slope| from its highest to its lowest, the gradient's direction. Turned by
+/// less than an eighth of a turn, one way or the other, to the nearest of the four: a quarter turn leaves the
+/// four in place, but for their names. From kLevel to kTilted the points glide there in proportion, so that
+/// none jumps.
 std::array<double, 4> rim_angles(double radius, const Place& slope) {
   double first = kFirstRimPoint;
   const double rise = 2.0 * radius * length(slope);
@@ -276,6 +309,8 @@ std::array<double, 4> rim_angles(double radius, const Place& slope) {
   return {{first, first + kQuarter, first + 2 * kQuarter, first + 3 * kQuarter}};
 }
 
+/// Regions that gaps are taken from stay convex polygons in order, of which reduce() leaves four. The normal
+/// is turned to point out of b: the reference's own points out of the reference.
 Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin) {
   const bool by_reference = in_frame_of(reference, incident);
   Clipping clipping(by_reference ? reference : incident, by_reference ? incident : reference, by_reference,

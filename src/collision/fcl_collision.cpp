@@ -65,6 +65,7 @@ struct BroadPhase::Impl {
   }
   Body& body_of(const FclObject* object) { return *static_cast<Body*>(object->getUserData()); }
 
+  /// FCL hands over the two in either order, and goes on as long as false is returned.
   static bool add(FclObject* a, FclObject* b, void* data) {
     Impl& self = *static_cast<Impl*>(data);
     self.found.push_back(self.index_of(a == &self.asked ? b : a));
@@ -91,6 +92,7 @@ BroadPhase::BroadPhase(std::size_t bodies) : impl_(std::make_unique<Impl>(bodies
 BroadPhase::~BroadPhase() = default;
 BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 
+/// The sphere is a box to FCL's tree; the object must be registered but once.
 void BroadPhase::update(int index, const Vector3& centre, double radius) {
   Impl::Body& body = impl_->bodies.at(static_cast<std::size_t>(index));
   body.sphere->radius = radius;

@@ -10,6 +10,8 @@ constexpr double kCapOrSide = 0.7071067811865476;
 
 }  // namespace
 
+/// Flat along itself only: `along` has the one direction, no breadth, and its two corners are the line's
+/// ends, at +half and -half.
 FlatFace FlatFace::of(const Line& line) {
   return {line.middle,
           Vector3::Zero(),
@@ -26,6 +28,7 @@ double FlatFace::to_border(const Vector3& point) const {
   return std::min(half[0] - std::abs(along[0].dot(offset)), half[1] - std::abs(along[1].dot(offset)));
 }
 
+/// Largest component of `outward` in the prism's axes; a disc has its caps alone.
 FlatFace face_towards(const Prism& prism, const Vector3& outward) {
   const Vector3 local = prism.axes.transpose() * outward;
   int side = 2;
@@ -52,6 +55,9 @@ FlatFace lying_towards(const Prism& prism, const Vector3& outward) {
   return on_side ? FlatFace::of(side_line(prism, outward)) : face_towards(prism, outward);
 }
 
+/// |n.axis i| < tolerance is the sine of the angle by which axis i is off square to n. The line's middle is
+/// the support point with its part along the axis taken off: of a rectangle's edge the middle, of a round
+/// side's line too.
 Line line_facing(const Prism& prism, const Vector3& n, double tolerance, const Vector3& beside) {
   const Vector3 local = prism.axes.transpose() * n, parallel = prism.axes.transpose() * beside;
   int direction = -1, corner = 0;

@@ -12,7 +12,8 @@ namespace mrhi {
 /// A prism on a rectangle has corners 0..7 (bit i set: on the positive side of axis i) and edges 0..11 (4 *
 /// direction + two bits for the sides of the axes that follow), one on a disc corners 4 * cap + rim point,
 /// and what is round there is edge 0. Touches of a and b are named: corner of a, 8 + corner of b, 16 + 12 *
-/// edge of a + edge of b.
+/// edge of a + edge of b. With 12 edges each, 16 + 12 * 11 + 11 = 159 is the last: a byte holds it, and
+/// leaves 200 on for lines.
 constexpr int kCorners = 8, kEdges = 12;
 
 inline int edge_name(int direction, int corner) {
@@ -36,6 +37,9 @@ struct Line {
 
 /// What a shape has straight across a direction: a flat piece with its outline, or a line on it. Corners of a
 /// rectangle go round; edge i leads from corner i to the next, and stands on the side kBorders[i].
+///
+/// A place (x, y) on it is centre + x along[0] + y along[1]; its normal points out of its own shape. Of a
+/// face along[0] x along[1] is the normal or its opposite: corners go round left or right.
 struct FlatFace {
   enum class Outline { rectangle, circle, line };
 
@@ -58,7 +62,8 @@ struct FlatFace {
 };
 constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
-/// Ends of an edge of a rectangle's prism: corners.
+/// Ends of an edge of a rectangle's prism: corners. Undoes edge_name: the two bits go back to the axes that
+/// follow the direction; along it one end has 0, the other 1.
 inline std::array<int, 2> edge_ends(int edge) {
   const int direction = edge / 4;
   const int low = (edge & 1) << (direction + 1) % 3 | (edge >> 1 & 1) << (direction + 2) % 3;
@@ -75,7 +80,8 @@ FlatFace lying_towards(const Prism& prism, const Vector3& outward);
 /// along `beside`, if there are two. A point if nothing is.
 Line line_facing(const Prism& prism, const Vector3& n, double tolerance, const Vector3& beside);
 
-/// The line of a round side that is farthest along `facing`.
+/// The line of a round side that is farthest along `facing`. The tolerance lets any direction pass, even one
+/// aslant.
 inline Line side_line(const Prism& prism, const Vector3& facing) {
   constexpr double kAny = 2.0;
   return line_facing(prism, facing, kAny, prism.axis());

@@ -12,7 +12,11 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// A plane fitted to triangles by their areas, as they are added.
+/// A plane fitted to triangles by their areas, as they are added. With A_i the doubled area vectors (edge x
+/// edge, along the normal) and x_i the middles:
+///     n = sum A_i / |sum A_i|,   height = n.(sum |A_i| x_i) / sum |A_i|.
+/// For triangles in one plane that is exact; large ones outweigh the rounding of slivers, whose own normals
+/// mean nothing.
 class Plane {
  public:
   void add(const Vector3& doubled_area, const Vector3& centre) {
@@ -33,7 +37,8 @@ class Plane {
   double weight_ = 0.0, height_ = 1e300;  // without an area it is near nothing
 };
 
-/// Cuts a surface along its edges into faces.
+/// Cuts a surface along its edges into faces. Growing regions from the largest triangle down: the order is by
+/// area, ties by the sorted mesh's order, so that a file's order does not count.
 class FaceFinder {
  public:
   FaceFinder(const TriangleMesh& mesh, const Neighbourhood& neighbourhood, double tolerance)
@@ -66,7 +71,9 @@ class FaceFinder {
   }
 
   /// Over the neighbours that are flat beside what is there, as long as they lie on the plane of all: the
-  /// largest triangles begin, whose planes are the surest.
+  /// largest triangles begin, whose planes are the surest. Each triangle is held against the plane of all
+  /// taken so far, not against its neighbour alone: over a fine curve neighbours are flat beside each other
+  /// all the way round.
   void grow(int seed) {
     const int face = static_cast<int>(planes_.size());
     planes_.emplace_back();
@@ -88,7 +95,10 @@ class FaceFinder {
     planes_.back().add(areas_[at(triangle)], centre);
   }
 
-  /// The one is flat beside the other, or so thin that it has no direction of its own.
+  /// The one is flat beside the other, or so thin that it has no direction of its own. By the height of the
+  /// one's apex above the other's plane, A.(apex - corner) / |A|, the lesser of the two: a length, as the
+  /// tolerance is. An angle would ask much of slivers, whose apex is near the side that they share. Triangles
+  /// that face each other (A.B <= 0) are a fold, however flat.
   bool goes_on(int triangle, int side, const Neighbourhood::Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
     const Vector3 &area = areas_[at(triangle)], &other = areas_[at(beyond.triangle)];
@@ -100,6 +110,7 @@ class FaceFinder {
     const double other_rise = std::abs(other.dot(on_side)) / other.norm();
     return std::min(rise, other_rise) <= tolerance_;
   }
+  /// Doubled area / side = height of the apex above it: a thousandth of the tolerance is no height.
   bool is_needle(int triangle, int side) const {
     const double length = (corner(triangle, side + 1) - corner(triangle, side)).norm();
     return areas_[at(triangle)].norm() <= tolerance_ * 1e-3 * length;
@@ -157,6 +168,7 @@ class SeamFinder {
     bool followed;
   };
 
+  /// Two pieces meet here and part the same two faces; or there is no piece, and the vertex is within a face.
   bool is_on_the_way(int vertex) const {
     const std::vector<int>& pieces = around_[at(vertex)];
     if (pieces.size() != 2) return pieces.empty();
@@ -167,6 +179,8 @@ class SeamFinder {
     for (const int piece : around_[at(corner)])
       if (!pieces_[at(piece)].followed) follow(piece, corner);
   }
+  /// From corner to corner, in either direction; the seam is turned round at the end if it began against its
+  /// first piece, so that its first face is on its left.
   void follow(int piece, int start) {
     Seam seam{pieces_[at(piece)].face, pieces_[at(piece)].other, {start}};
     const bool along = pieces_[at(piece)].from == start;
@@ -214,6 +228,8 @@ class SeamFinder {
       open.emplace_back(from, i), open.emplace_back(i, to);
     }
   }
+  /// From a half line, `part` >= 0: what lies behind the start is as far as the start, or a line that doubles
+  /// back would seem straight.
   std::pair<std::size_t, double> farthest(const std::vector<int>& line, std::size_t from,
                                           std::size_t to) const {
     const Vector3& start = mesh_.vertices[at(line[from])];
@@ -242,6 +258,7 @@ double corner_angle(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+///     N = sum angle_i n_i   over the triangles around the vertex, of any length
 std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& faces) {
   std::vector<Vector3> normals(mesh.vertices.size(), Vector3::Zero());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {

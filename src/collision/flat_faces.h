@@ -55,7 +55,8 @@ struct FlatFaces {
 };
 
 /// Places that are out of a plane or a line by less than this part of the mesh's extent are on it: vertices
-/// have passed through floats.
+/// have passed through floats. A float's half ulp is 6e-8 of a coordinate. A mesh that lies far from its own
+/// origin, against its size, has more rounding than this allows for, and is cut into more faces.
 constexpr double kFlatness = 5e-7;
 
 /// Throws std::invalid_argument if no triangle has an area.

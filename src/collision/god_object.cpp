@@ -19,6 +19,8 @@ struct Plane {
   bool entry;  // the face that the phalanx entered by, which is not the nearest any more
 };
 
+/// On the entry face the god object itself stands for the plane's point: the nearest features are those of
+/// another face, and say nothing of this one.
 Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
   if (memory == nullptr || !pair.refinements.entry_face ||
       memory->entry_normal.dot(features.normal) >= kSameFace)
@@ -26,7 +28,7 @@ Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, c
   return {memory->god_object, memory->entry_normal, true};
 }
 
-/// The contacts of a pair in the last step.
+/// The contacts of a pair in the last step. A pair has at most two, named 0 and 1.
 struct PairMemory {
   PairMemory(const Contact* before, int count, double s) {
     for (int i = 0; i < count; ++i) of_point[before[i].key.point] = before + i;
@@ -40,6 +42,11 @@ struct PairMemory {
 };
 
 /// A phalanx on a plane, with what all its points share.
+///
+/// The depth of axis point a(s) below the plane through q with the outward normal n:
+///     depth(s) = n.(q - a(s)) + r = n.(c - p),   c the god object, p = a(s) - r n,
+/// linear in s. It is measured in the body's frame, where the plane stands still, but velocities are those in
+/// world.
 struct Press {
   Press(const TouchingPair& of, const Plane& on)
       : pair(of),
@@ -71,6 +78,10 @@ struct Press {
 /// Where the god object is, in the body's frame. One that has not been pressed yet follows the finger: the
 /// stretch begins at the touch. When another point of the phalanx comes to press, it moves along by as much:
 /// the stretch between the two, which is what friction has stored, stays.
+///
+/// Zilles & Salisbury 1995: of all places on the active plane the one nearest to the point that it stands
+/// for, which is its projection x + n n.(q - x). A single plane is active, that of the entry face; where
+/// faces meet, the nearest features choose.
 Vector3 god_object(const Press& press, double s, const Contact* pressed) {
   const Vector3 point = pressed != nullptr
                             ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * press.along)
@@ -82,12 +93,18 @@ Vector3 god_object(const Press& press, double s, const Contact* pressed) {
 /// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm. Over
 /// an edge the nearest point stays while the skin rolls past it: there it is the axis that has moved, about
 /// the edge, from the way it came.
+///
+/// With w the way back (palm * touched_from) and d the depth: p + d w, held against p + d n, is off by
+/// d (w - (n.w) n) along the surface. At an edge the axis's point is r - d off it, along n now, along w as it
+/// came: it has gone (r - d)(n - w), of which across n is left (d - r)(w - (n.w) n).
 Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
   const Vector3 way_back = palm * contact.touched_from;
   const double length = at_edge ? contact.depth - contact.radius : contact.depth;
   return length * (way_back - contact.normal.dot(way_back) * contact.normal);
 }
 
+/// The lever begins at zero with the touch, w = n, and grows as palm and body turn against each other. What
+/// slips begins anew.
 void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact) {
   const Matrix3& palm = pair.hand.palm;
   contact.lever.setZero();
@@ -103,6 +120,9 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
 }
 
 /// Where the point at s is. `memory` is the contact that it goes on from, or null.
+///
+/// The patch is Hertz's, a^2 = r d for a ball of radius r pressed in by d (Johnson 1985), whose depth counts
+/// up to r.
 void place(const Press& press, double s, const Contact* memory, Contact& contact) {
   const ContactConfiguration& refinements = press.pair.refinements;
   contact.depth = press.depth(s);
@@ -130,7 +150,9 @@ void place(const Press& press, double s, const Contact* memory, Contact& contact
   swing_back(press.pair, held ? memory : nullptr, contact);
 }
 
-/// Contact `point` of the pair, going on from its memory, or beginning. `nearest` tells what the pair did.
+/// Contact `point` of the pair, going on from its memory, or beginning. `nearest` tells what the pair did. A
+/// second point that comes to an old pair does what the first has done: it must not strike again, nor press
+/// where its neighbour has given way or is ignored.
 void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory,
                    const ContactMemory* nearest, ContactMemory& contact) {
   if (memory != nullptr) {
@@ -145,7 +167,9 @@ void begin_contact(const TouchingPair& pair, int point, const ContactMemory* mem
 }
 
 /// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a
-/// phalanx that lies flat and for one that stands on its tip.
+/// phalanx that lies flat and for one that stands on its tip. With d_a, d_b > 0 shares are d_a / (d_a + d_b)
+/// and the rest, so that the push is gamma (d_a^2 + d_b^2) / (d_a + d_b): gamma d for d_a = d_b = d,
+/// gamma d_a for d_b = 0, and continuous as the phalanx tips up.
 void share_load(Contact& a, Contact& b) {
   const double da = std::max(a.depth, 0.0), db = std::max(b.depth, 0.0);
   a.share = da + db > 0.0 ? da / (da + db) : 0.5;
@@ -154,6 +178,10 @@ void share_load(Contact& a, Contact& b) {
 
 }  // namespace
 
+/// Flat is what has both ends of the span at the surface, or nearly: from -kSeparation on. Names 0 and 1 are
+/// by the ends of the span, so that each keeps its own memory; a single point goes on as the nearer of the
+/// two by s. On the entry face the nearest features' s is that of another face, and the deepest end presses
+/// instead.
 int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                        const Contact* before, int count, Contact* now) {
   const PairMemory memory(before, count, features.axis_parameter);
@@ -179,11 +207,13 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
   return 2;
 }
 
+/// Eq. 8's v is hardly ever exactly 0: rounding of speeds near 1 m/s is some 1e-16 m/s.
 Approach classify(double normal_velocity) {
   if (normal_velocity < -kRestingSpeed) return Approach::colliding;
   return normal_velocity > kRestingSpeed ? Approach::separating : Approach::resting;
 }
 
+/// Eq. 7: o' + w x (c - o).
 Vector3 object_velocity(const Twist& twist, const Vector3& centre, const Vector3& point) {
   return twist.linear + twist.angular.cross(point - centre);
 }

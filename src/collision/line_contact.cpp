@@ -14,7 +14,11 @@ double clamp(double x, double lo, double hi) {
   return std::max(lo, std::min(x, hi));
 }
 
-/// How far along `a` the lines, seen along the normal, are nearest.
+/// How far along `a` the lines, seen along the normal, are nearest. With p = apart, a and b unit and c = a.b,
+/// |p + t b - s a|^2 is least where
+///     s = a.p + c t   and   t (1 - c^2) = c a.p - b.p,
+/// with 1 - c^2 = |a x b|^2 from the cross product, as it cancels for lines that are almost parallel. Below
+/// 1e-10 rad every s is as good.
 double crossing(const Line& a, const Line& b, const Vector3& apart) {
   const double cosine = a.along.dot(b.along), s = apart.dot(a.along), t = apart.dot(b.along);
   const double sine_squared = a.along.cross(b.along).squaredNorm();
@@ -25,6 +29,10 @@ double crossing(const Line& a, const Line& b, const Vector3& apart) {
 
 }  // namespace
 
+/// Parallel lines of half lengths h_a and h_b face each other where |s - middle| <= c h_b and |s| <= h_a, s
+/// along a. Depth n.(on b - on a) is > 0 where b's line is above a's along n, which points from b to a.
+/// Turned across each other by psi the two points draw together in proportion to 1 - sin psi / 0.1, about the
+/// deeper end where depth changes along the lines, else about the crossing.
 Manifold line_on_line(const Line& a, const Line& b, const Vector3& normal, int feature) {
   Manifold manifold;
   manifold.normal = normal;

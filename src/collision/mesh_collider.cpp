@@ -15,6 +15,9 @@ constexpr double kLeastFlat = 0.002;
 
 /// Where the nearest part was found last, by the place of the segment's middle: a guess to begin the next
 /// search with. No result depends on it, so that all who ask may share it.
+///
+/// The place's cell in a grid of 32 across the mesh is hashed to one of a prime number of entries: two cells
+/// that share one only make worse guesses. Relaxed order is enough, as a guess stands for itself.
 class GuessMemory {
  public:
   explicit GuessMemory(const MeshSurface& surface)
@@ -41,6 +44,10 @@ class GuessMemory {
 
 /// What was near to segments that were asked for, so that who asks again from almost the same place needs no
 /// search. No result depends on it either; who finds an entry in use by another goes without.
+///
+/// Entries lie in sets by the 2 mm cells of both ends, four to a set. The set is locked by a flag while it is
+/// read or written, and no one waits. A segment that has moved by kStill or more gets an entry for its place
+/// alone, without parts: gathering them pays only if it stays.
 class NearMemory {
  public:
   /// The answer if it is known; else `search()`, and what it found is remembered if the segment has kept so
@@ -111,6 +118,8 @@ struct MeshCollider::Impl {
     if (search.part() >= 0) guess.store(search.part(), std::memory_order_relaxed);
     return search;
   }
+  /// N.gap < 0 with the gap from the surface to the segment: the segment's nearest place is below the surface
+  /// there (Baerentzen & Aanaes 2005).
   bool inside(const MeshNearest& search) const {
     return shape.surface.closed() && search.gap().dot(shape.surface.outward(search.nearest())) < 0.0;
   }
@@ -140,7 +149,8 @@ ClosestFeatures MeshCollider::Impl::leave(const Segment& segment, const SurfaceN
 }
 
 /// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
-/// inwards.
+/// inwards. The end's own nearest place is at depth d along the normal -gap / d, out of the solid; the
+/// segment has come out with it only if the other end is not behind: normal.(other - end) >= 0.
 void MeshCollider::Impl::leave_by_end(const Segment& segment, double s,
                                       std::optional<ClosestFeatures>& best) const {
   const Vector3 end = segment.at(s);
@@ -161,6 +171,8 @@ const MeshShape& MeshCollider::shape() const {
   return impl_->shape;
 }
 
+/// From deep inside the surface may be any way off. A segment whose middle is out of the bounds has at most
+/// an end inside, and then cuts the surface, at the distance 0: it is searched no farther than the margin.
 std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, double margin) const {
   const MeshSurface& surface = impl_->shape.surface;
   const Segment segment(capsule);
@@ -170,6 +182,8 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const MeshNearest search = impl_->nearest(segment, reach);
   if (!search.found()) return std::nullopt;
 
+  // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
+  // gap has no direction, and for what is inside, where it points inwards.
   const SurfaceNearest& nearest = search.nearest();
   ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
                            nearest.stretch.middle()};

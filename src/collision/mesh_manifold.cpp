@@ -12,8 +12,10 @@ namespace {
 /// Touches whose normals are within 20 degrees of the deepest's belong to it.
 constexpr double kAgrees = 0.94;
 constexpr double kSameDepth = 1e-6;
+/// Names of a byte: 0 to 99 corners and 100 to 127 edges of what sticks out in b, and 128 beyond these of
+/// what sticks out in a.
 constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
-/// An edge that touches with its end leaves that to the corner there.
+/// An edge that touches with its end leaves that to the corner there. Else one place would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
 
@@ -35,6 +37,9 @@ struct Touch {
 };
 
 /// Measures what sticks out of one shape in the other.
+///
+/// The normal of what is found points out of `other`: turned over unless that is b, as a manifold's points
+/// out of b.
 struct Probing {
   const ManifoldShape& of;
   const Pose& pose;
@@ -50,6 +55,7 @@ struct Probing {
     const auto features =
         closest_on(other, {other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
+    // A part of the edge's length, not metres.
     const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
     if (probe.start != probe.end && at_end) return std::nullopt;
     const Vector3 normal = other_pose.orientation * features->normal;
@@ -58,7 +64,9 @@ struct Probing {
                  static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name)};
   }
 
-  /// No part of a node is deeper in the other shape than this.
+  /// No part of a node is deeper in the other shape than this. Signed distance changes by no more than the
+  /// way between two places: with the node's centre at the distance D and all its parts within r of it, none
+  /// is deeper than r - D.
   double most(const MeshTree::Node& node) const {
     const Vector3 centre = pose * node.centre;
     const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
@@ -89,7 +97,8 @@ struct Probes {
   }
 
  private:
-  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach.
+  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach. Features are of
+  /// the other shape and its normal points out of it, to this one: less that is where it lies.
   Vector3 facing_from(const Capsule& inside, double reach) const {
     const Pose& other = probing.other_pose;
     const auto features = closest_on(
@@ -113,7 +122,9 @@ struct Probes {
       see(Probe::edge(prism.corner(low), prism.corner(high), i));
     }
   }
-  /// Rims, and the side line that faces the other, and with it the lowest point of a rim.
+  /// Rims, and the side line that faces the other, and with it the lowest point of a rim. The capsule within
+  /// the cylinder stands for it: half ends of the lesser of radius and half length, so that none of it sticks
+  /// out.
   void of_round(const Prism& prism) const {
     for (const double side : {-1.0, 1.0}) {
       const FlatFace cap = face_towards(prism, side * prism.axis());
@@ -131,6 +142,7 @@ struct Probes {
     see(Probe::corner(line.at(line.half), 9));
     see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
+  /// A corner belongs to the first of its edges: it is asked once, whichever edges are visited.
   void of_mesh(const MeshSurface& surface, int part) const {
     const int index = part - static_cast<int>(surface.faces().size());
     if (index < 0) return;
@@ -144,6 +156,8 @@ struct Probes {
 
 /// Calls `see(touch)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
 /// `wanted(probing, node)`.
+///
+/// Visits of a tree are always in the same order, so that the first of equals is the same one at every call.
 class Touches {
  public:
   Touches(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
@@ -162,6 +176,7 @@ class Touches {
     if (count_ > kRemembered) return measure(wanted, see);
     for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
   }
+  /// The bound grows as it is found: nodes that cannot beat it are left out.
   double greatest_depth() const {
     double depth = -1e300;
     each([&](const Probing& probing, const MeshTree::Node& node) { return probing.most(node) > depth; },
@@ -199,7 +214,9 @@ class Touches {
   std::size_t count_ = 0;
 };
 
-/// Of the touches that agree with the deepest those farthest out in eight directions across its normal.
+/// Of the touches that agree with the deepest those farthest out in eight directions across its normal. The
+/// first direction is 0.1 rad off u, so that none lies along a box's sides, where two corners would be as far
+/// out but for rounding.
 class Spread {
  public:
   Spread(const Touches& touches, const Touch& deepest) : deepest_(deepest) {
@@ -239,6 +256,9 @@ class Spread {
   std::array<Touch, kDirections> outermost_;
 };
 
+/// Seen along the normal, in the plane of u and v; `feature` counts the points while they are sorted, and is
+/// a name again at the end. Two that have the same name, which numbers modulo 100 and 28 may give, are told
+/// apart by the next free one.
 Manifold chosen(const Touches& touches) {
   Manifold manifold;
   const auto deepest = touches.deepest();

@@ -25,6 +25,9 @@ struct NearParts {
 /// What of a surface is nearest to a segment, if it is no farther than a range. Faces come before the edges
 /// around them, and of parts that are as near the first: the answer does not depend on where the search
 /// began.
+///
+/// A face is only nearest by its inside, so that a place on a border has edges and corners alone;
+/// kSameDistance has those that rounding makes nearer than their face by an ulp give way to it.
 class MeshNearest {
  public:
   /// `guess` is a part to begin with, or -1. What stands above a convex solid needs no search if the guess is

@@ -5,9 +5,10 @@
 namespace mrhi {
 namespace {
 
-/// Edges that bend by less are as good as flat [rad].
+/// Edges that bend by less are as good as flat [rad]. |n0 x n1| is the sine of the bend.
 constexpr double kFlat = 1e-6;
-/// A place counts as within a border if it is beyond it by no more than this part of the border's length.
+/// A place is clear of a border if it is within it by more than this part of the border's length, a gap clear
+/// of a plane if it is off it by more than this part of its own.
 constexpr double kClear = 1e-5;
 
 std::size_t at(int index) {
@@ -19,7 +20,11 @@ double nearest_to(const Vector3& place, const Segment& segment) {
   return squared == 0.0 ? 0.5 : clamp_unit(segment.along.dot(place - segment.start) / squared);
 }
 
-/// Where the segment, seen along the face, crosses an edge of it; nothing (2) if it passes it by.
+/// Where the segment, seen along the face, crosses an edge of it; nothing (2) if it passes it by. With q =
+/// along x n across the segment in the face's plane, the edge's ends are q.(start - p) and that plus q.edge
+/// to one side of it: it crosses if the signs differ, at start - from / rise * edge. An end that is on the
+/// line counts as >= 0, so that a ray through a corner crosses one of the two edges there, or both or none;
+/// but for rounding, as an edge's far end is a sum. Signs differ, so that rise is not 0.
 double crossing(const Segment& segment, const Vector3& normal, const MeshSurface::Edge& edge) {
   const Vector3 across = segment.along.cross(normal);
   const double from = across.dot(edge.start - segment.start), rise = across.dot(edge.along);
@@ -48,6 +53,9 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
   find_bends(flat.one_piece);
 }
 
+/// Edges have `face` on their left, seen from outside: along x n points out of it, in its plane; round
+/// `other` the edge runs the other way. `reach` is the side's plane, outward.x = reach; lengths are those of
+/// the edges, not 1.
 void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
   first_edge_.assign(corners_.size() + 1, 0);
   for (const FlatFaces::Edge& edge : edges) {
@@ -75,6 +83,9 @@ void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
   for (Face& face : faces_) face.convex = is_convex(face);
 }
 
+/// sin bend = (n0 x n1).along / |along| with n0's face on the left: > 0 where the solid bulges. A closed
+/// surface of one piece that bends inwards nowhere is convex as a whole (Tietze 1928, Nakajima 1928), unless
+/// it cuts itself.
 void MeshSurface::find_bends(bool one_piece) {
   convex_ = closed_ && one_piece;
   for (Edge& edge : edges_) {
@@ -85,6 +96,7 @@ void MeshSurface::find_bends(bool one_piece) {
   }
 }
 
+/// No corner of it is beyond any of its sides, by more than its seams may be off a line at both ends.
 bool MeshSurface::is_convex(const Face& face) const {
   if (face.count <= 3) return true;
   for (int i = face.first; i < face.first + face.count; ++i) {
@@ -98,7 +110,8 @@ bool MeshSurface::is_convex(const Face& face) const {
   return true;
 }
 
-/// By the number of sides that a ray from there crosses.
+/// By the number of sides that a ray from there crosses. An odd number is inside (Jordan); any direction
+/// does.
 bool MeshSurface::inside(const Face& face, const Vector3& place) const {
   const Segment ray(Capsule{place, place + any_normal(face.normal), 0.0});
   bool inside = false;
@@ -122,6 +135,7 @@ Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) 
   return stretch;
 }
 
+/// Of a convex face by its sides' half-planes, outward.(start + s along) <= reach (Cyrus & Beck 1978).
 Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) const {
   if (!face.convex) return around(face, segment, s);
   Stretch stretch;
@@ -134,6 +148,9 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
   return stretch;
 }
 
+/// The height above the plane, n.start - height + s rise, is 0 at the crossing; held in 0..1 that is the
+/// segment's place nearest to the plane. If it is straight above the face it is the nearest of all; if not,
+/// an edge or a corner is nearer to the segment, and found by itself.
 SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) const {
   const Face& face = faces_[at(index)];
   SurfaceNearest found;
@@ -187,6 +204,11 @@ Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
   return normal[0] + normal[1];
 }
 
+/// Over a convex solid it is enough to look about the part itself: a face whose inside is nearest, from
+/// above; an edge with the gap between its faces' normals, gap.(along x n0) > 0 and gap.(n1 x along) > 0; a
+/// corner from which all edges go down, -along.gap > 0. Then the plane across the gap supports the solid
+/// (what is locally so is so everywhere), and nothing is nearer. What is nearly on the next part is not
+/// certain: it has to be searched, so that ties go as they always do.
 bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) const {
   const double clear = kClear * nearest.distance;
   if (nearest.part == SurfacePart::face) {

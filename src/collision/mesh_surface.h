@@ -20,6 +20,9 @@ struct SurfaceNearest {
 
 /// The surface of a triangle mesh: flat faces, the edges between them and their corners, with normals for
 /// each (Baerentzen & Aanaes 2005: the angle-weighted normal at the nearest point tells inside from outside).
+///
+/// Inside is where N.(p - nearest) < 0 with N the face's normal, the sum of an edge's two or a corner's
+/// weighted by angles: the nearest face's own normal is wrong beside corners that are sharp.
 class MeshSurface {
  public:
   struct Face {

@@ -29,6 +29,7 @@ void span(const MeshSurface& surface, int part, const Place& place, const Normal
 
 }  // namespace
 
+/// Its ball: |c - a(s)| - r at the foot s of c.
 double MeshTree::Node::distance(const Segment& segment) const {
   const Vector3 offset = centre - segment.start;
   const double squared = segment.along.squaredNorm(), along = segment.along.dot(offset);
@@ -36,6 +37,11 @@ double MeshTree::Node::distance(const Segment& segment) const {
   return (offset - s * segment.along).norm() - radius;
 }
 
+/// A part with the normal m through p is m.(p - e) above the end e. With theta <= spread the angle between m
+/// and the node's n:
+///     m.(p - e) = m.(c - e) + m.(p - c) >= least - (cos theta bottom + sin theta r),
+/// of which cos theta <= 1 and sin theta <= sin spread. Least is |c - e| cos(phi + spread) with phi the angle
+/// of c - e from n. What comes out last is the deeper end: the greater of both bounds.
 double MeshTree::Node::depth(const Segment& segment) const {
   if (cos_spread <= 0.0) return -1e300;
   double depth = -1e300;
@@ -51,6 +57,12 @@ double MeshTree::Node::depth(const Segment& segment) const {
   return depth;
 }
 
+/// A way out from x to a place p of a part goes along its normal m, at the angle theta <= spread from n: p -
+/// x = lambda m. Across n and along it
+///     |(c - x) across| <= lambda sin theta + |(c - p) across|,   lambda cos theta = n.(c - x) - n.(c - p),
+/// so that, times cos theta, |(c - x) across| cos theta <= n.(c - x) sin theta + r, as (sin theta, cos theta)
+/// is a unit vector and |c - p| <= r. At the greatest theta, and the greatest n.(c - x) of what may come out
+/// last, this is the widest.
 bool MeshTree::Node::may_be_way_out(const Segment& segment) const {
   if (cos_spread <= 0.1) return true;
   const double rise = normal.dot(segment.along), swing = sin_spread * segment.along.norm() + kParallel;
@@ -81,6 +93,9 @@ MeshTree::MeshTree(const MeshSurface& surface) : parts_(surface.faces().size() +
   build(surface, 0, centres, 0, static_cast<int>(parts_.size()));
 }
 
+/// Halves by the median along the longest side of the box of the parts' middles, so that the tree is no
+/// deeper than log2 of their number. Equal places go by number, so that the tree, and the order of all that
+/// it finds, is the surface's own. The node is written before its children are, as these move the array.
 void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>& centres, int first,
                      int last) {
   Node built{};
@@ -109,6 +124,9 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
   build(surface, built.first + 1, centres, middle, last);
 }
 
+/// The cone's axis is the mean of the normals, its spread their greatest angle from it: not the smallest
+/// cone, but one that holds all of them. Normals that cancel have no cone that is of use: about z it comes
+/// out wide.
 void MeshTree::bound(const MeshSurface& surface, Node& node, int first, int last) const {
   const auto each = [&](const auto& place, const auto& normal) {
     for (int i = first; i < last; ++i) span(surface, parts_[at(i)], place, normal);

@@ -8,7 +8,7 @@ namespace mrhi {
 
 /// A tree over the faces and edges of a surface. Each node knows a ball and a slab that hold its parts, and a
 /// cone that holds their normals: on a curved surface the slab is thin, and a search that knows a direction
-/// sees at once that a node is below all it has found.
+/// sees at once that a node is below all it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
 class MeshTree {
  public:
   struct Node {
@@ -28,7 +28,8 @@ class MeshTree {
     bool may_be_way_out(const Segment& segment) const;
   };
 
-  /// No branch is longer.
+  /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that
+  /// is opened puts back two: halving by the median, 64 hold any mesh.
   static constexpr std::size_t kMostLevels = 64;
 
   explicit MeshTree(const MeshSurface& surface);

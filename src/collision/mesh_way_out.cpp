@@ -14,6 +14,10 @@ struct WayOut {
   int face = -1;
 };
 
+/// Along n the segment leaves the plane n.x = height by -separation, with
+///     separation = min over s of n.a(s) - height = n.start - height + min(rise, 0),
+/// and the end with the lesser n.a comes out last: the start if the segment rises, all of it if it is
+/// parallel.
 WayOut way_out(const Segment& segment, const MeshSurface& surface, int index) {
   const MeshSurface::Face& face = surface.faces()[static_cast<std::size_t>(index)];
   const double rise = face.normal.dot(segment.along);
@@ -30,7 +34,12 @@ WayOut way_out(const Segment& segment, const MeshSurface& surface, int index) {
 }
 
 /// Across the segment and the edge, if that is a direction between those of the edge's faces. Seen along it,
-/// the two cross where the segment comes out.
+/// the two cross where the segment comes out. The solid swept along the segment has a face that the edge
+/// sweeps where the arc between n0 and n1, on the sphere of directions, crosses the circle n.along = 0: r0 =
+/// n0.along and r1 = n1.along have opposite signs, and n is along |r1| n0 + |r0| n1. All of the segment is at
+/// the same height n.(a - edge), < 0, over the edge. With the segment moved out by that, the crossing is at
+///     s a - t b = d,   s b - t c = e,   a = along^2, b = along.edge, c = edge^2,
+/// d and e the offset along either.
 std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshSurface& surface,
                                              const MeshSurface::Edge& edge) {
   const std::array<Vector3, 2> normals = surface.normals(edge);
@@ -64,6 +73,7 @@ class WayOutSearch {
     if (surface_.convex()) return depth;
     return node.may_be_way_out(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
   }
+  /// Less the best separation is the least depth so far; 1e-9 keeps ties, which the numbers decide.
   double limit() const { return -std::max({face_.separation, edge_.distance, known_}) + 1e-9; }
   void see(int part) {
     const int faces = static_cast<int>(surface_.faces().size());
@@ -81,6 +91,8 @@ class WayOutSearch {
  private:
   static constexpr double kNoWay = std::numeric_limits<double>::infinity();  // beyond any limit
 
+  /// A convex solid has every plane as a bound, also from outside by rounding. Elsewhere a face that the
+  /// segment is above is no way out.
   bool allowed(double separation) const { return surface_.convex() || separation < kOnSurface; }
   void see_face(int index) {
     const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(index)];
@@ -112,6 +124,8 @@ class WayOutSearch {
 
 }  // namespace
 
+/// Of a convex solid the greatest separation of all faces and edges is the least translation (ConvexAxis has
+/// the argument); the tree finds the least depth by best first.
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, const MeshTree& tree,
                            int fallback, const ClosestFeatures* known) {
   WayOutSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);

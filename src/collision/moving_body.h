@@ -13,6 +13,8 @@ struct MovingBody {
   /// Velocity, at that time, of its point that is `arm` off its centre [m/s].
   Vector3 velocity(double time, const Vector3& arm) const;
 
+  /// x_world = R x + p, and back by R^T: the matrix is made once, where a quaternion would be turned into it
+  /// for every point.
   Vector3 to_world(const Vector3& local) const { return rotation * local + pose.position; }
   Vector3 to_local(const Vector3& world) const { return rotation.transpose() * (world - pose.position); }
   Capsule to_local(const Capsule& world) const {

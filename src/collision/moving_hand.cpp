@@ -5,6 +5,8 @@
 
 namespace mrhi {
 
+/// Ends move by (to - from) / T, with T the frame's time; the palm turns at one rate about the axis of R_to
+/// R_from^-1, the shorter way. A capsule that has only just appeared has no way: it stands still where it is.
 HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)
     : seconds_(seconds),
       emerged_(track.emerged),
@@ -26,6 +28,7 @@ HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)
   move_to(0.0);
 }
 
+///     R(f) = exp(f angle [axis]x) R_from
 void HandMotion::move_to(double fraction) {
   hand_.time = fraction * seconds_;
   hand_.emerged = emerged_ && fraction == 0.0;

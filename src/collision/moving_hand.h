@@ -7,6 +7,12 @@
 namespace mrhi {
 
 /// How a phalanx moves: its ends as given, its turn about its own axis as the palm's.
+///
+/// The two ends' velocities v0, v1 tell five of the six numbers of a rigid motion: v1 - v0 = w x a has what
+/// of w is across the axis a,
+///     swing = a x (v1 - v0) / a^2,
+/// as a x (w x a) = a^2 w - (a.w) a. A change of length along a drops out. The spin about a is not to be seen
+/// from the ends: spin = swing + (a.w_palm) a / a^2.
 struct PhalanxMotion {
   Vector3 axis;                     ///< from start to end [m]
   Vector3 velocity;                 ///< of the start [m/s]
@@ -21,7 +27,8 @@ struct PhalanxMotion {
   }
 };
 
-/// The capsules of one hand through a frame: all points move on straight lines at constant speed.
+/// The capsules of one hand through a frame: all points move on straight lines at constant speed. A point of
+/// an axis moves by a mean of its ends' velocities, so that none is faster than the faster end.
 struct MovingHand {
   int slot = 0;                                   ///< of the track
   std::array<Capsule, kCapsules> from;            ///< at the frame's start

@@ -14,6 +14,8 @@ HandExtent::HandExtent(const Hand& hand)
   }
 }
 
+/// Per axis at most one of min - c and c - max is positive; the length of these three is how far the centre
+/// is from the box (Arvo 1990).
 bool HandExtent::reaches(const Vector3& centre, double radius) const {
   const Vector3 outside = (min_ - centre).cwiseMax(centre - max_).cwiseMax(0.0);
   return outside.squaredNorm() <= radius * radius;

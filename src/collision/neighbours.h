@@ -26,6 +26,10 @@ struct NearBody {
     clearances[static_cast<std::size_t>(count++)] = clearance;
   }
   /// At most how far a point of the body, within `radius` of its frame's origin, is from where it was [m].
+  ///
+  /// Turned by theta a point moves by 2 radius sin(theta / 2) at most; the quaternions, four-vectors of
+  /// length 1 at the angle theta / 2, are 2 sin(theta / 4) apart, and sin(theta / 2) <= 2 sin(theta / 4). Of
+  /// opposite signs they are farther apart: still a bound.
   double moved(const Pose& now, double radius) const {
     return (now.position - pose.position).norm() +
            2.0 * radius * (now.orientation.coeffs() - pose.orientation.coeffs()).norm();

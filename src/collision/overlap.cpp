@@ -7,6 +7,7 @@
 namespace mrhi {
 namespace {
 
+/// By the balls about their frames' origins.
 bool are_near(const Body& a, const Body& b) {
   return (a.start.position - b.start.position).norm() < a.bounding_radius + b.bounding_radius;
 }
@@ -30,6 +31,8 @@ std::vector<BodyState> start_states(const Scene& scene) {
 
 }  // namespace
 
+/// The deepest point of all pairs of shapes. Each is of two shapes alone: a body that has several may have to
+/// go farther to be out.
 double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
                std::size_t a, std::size_t b) {
   double deepest = 0.0;

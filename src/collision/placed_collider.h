@@ -25,11 +25,14 @@ class PlacedCollider {
   }
 
   /// Between the body's frame and the shape's.
+  ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both
+  /// Shapes that have the body's frame are asked without a rotation, which would only add its rounding.
   Capsule to_shape(const Capsule& in_body) const {
     if (has_bodys_frame_) return in_body;
     return {rotation_.transpose() * (in_body.start - position_),
             rotation_.transpose() * (in_body.end - position_), in_body.radius};
   }
+  /// A mesh's face is not taken along: `span` has to be asked in the shape's frame.
   ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
     if (has_bodys_frame_) return in_shape;
     return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,

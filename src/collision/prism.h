@@ -16,17 +16,23 @@ struct Prism {
         half(form.half),
         round(form.round) {}
 
-  /// Axes from here to 2 have flat faces at their ends, and straight lines on the surface along them.
+  /// Axes from here to 2 have flat faces at their ends, and straight lines on the surface along them. A
+  /// disc's two axes across are of no account: only z remains.
   int first_flat() const { return round ? 2 : 0; }
   Vector3 axis() const { return axes.col(2); }
   Vector3 across(const Vector3& n) const { return n - axes.col(2).dot(n) * axes.col(2); }
 
   double reach(const Vector3& n) const { return reach_along(axes.transpose() * n); }
   /// The same for a direction in its own axes.
+  ///     box:       h(n) = sum |n_i| half_i
+  ///     cylinder:  h(n) = r sqrt(n_x^2 + n_y^2) + half_z |n_z|
   double reach_along(const Vector3& local) const {
     if (!round) return local.cwiseAbs().dot(half);
     return half.x() * local.head<2>().norm() + half.z() * std::abs(local.z());
   }
+  /// The gradient of h: h(n) = n.farthest(n). Where it is not unique (n along a face, or along a disc's axis)
+  /// it is the corner on the positive sides, or the cap's middle: always the same, not always the middle of
+  /// what is level.
   Vector3 farthest(const Vector3& n) const {
     const Vector3 local = axes.transpose() * n;
     Vector3 place = (local.array() < 0.0).select(-half, half);
@@ -36,7 +42,10 @@ struct Prism {
     }
     return axes * place;
   }
-  /// Second derivatives of h on the sphere of directions: a rim bends, corners do not.
+  /// Second derivatives of h on the sphere of directions: a rim bends, corners do not. With h taken as
+  /// homogeneous of degree 1 and t = axis x n, |t| = sqrt(n_x^2 + n_y^2), that of a rim is (r / |t|) (t/|t|)
+  /// (t/|t|)^T: it turns about the axis alone. Along the axis t is 0 and the rim as a whole is farthest: h
+  /// has a kink there and no second derivative; zero stands for it, and try_flats has looked.
   Matrix3 bend(const Vector3& n) const {
     if (!round) return Matrix3::Zero();
     const Vector3 tangent = axis().cross(n);

@@ -40,6 +40,9 @@ struct FlatContact {
   /// Is no other direction better than the face's? Turned by t towards where the deepest point is w from the
   /// face's border, the overlap d grows to d cos t + w sin t at least: there the other shape still stands
   /// over the face. Turned far enough to leave by another side it is the thickness that has to be passed.
+  /// That is no less than d while w >= d tan(t / 2), as (1 - cos t) / sin t = tan(t / 2). With w = 2 d it
+  /// holds up to t = 127 degrees, 2 atan 2. Beyond that the way out leads through the thickness, which is
+  /// more than 4 d.
   bool is_certain(double thickness) const {
     if (!found) return false;
     const double depth = deepest_depth(manifold);
@@ -54,7 +57,9 @@ struct FlatContact {
   bool found = false;  ///< as deep as the direction says
 
  private:
-  /// It touches as deep everywhere, in a region that is twice that wide in every direction.
+  /// It touches as deep everywhere, in a region that is twice that wide in every direction. Over each line
+  /// through two of its points the region's breadth, as |edge x normal| scales it: a convex polygon is
+  /// narrowest across one of its sides (Houle & Toussaint 1988), which are among these lines.
   bool is_wide(double depth) const {
     constexpr double kSameDepth = 1e-6;
     double width = manifold.count > 2 ? 1e300 : 0.0;
@@ -82,7 +87,9 @@ int name_of(const Line& on_a, const Line& on_b) {
   return crossing_name(on_a.name, on_b.name);
 }
 
-/// Where no face touches: lines that face each other, or a point.
+/// Where no face touches: lines that face each other, or a point. The wider tolerance first: sides that are
+/// parallel to within 0.01 count as lines that lie on each other. Depth is that of the direction,
+/// -separation, at the deepest point: between lines that are not quite square to n it would come out less.
 Manifold lines_or_point(const Prism& a, const Prism& b, const Vector3& normal, double separation) {
   Manifold manifold;
   for (const double tolerance : {kAlmostFaces, kFaces}) {
@@ -100,7 +107,8 @@ Manifold lines_or_point(const Prism& a, const Prism& b, const Vector3& normal, d
 /// Of two convex shapes the best direction is the normal of a face of a - b, or where s is smooth a maximum
 /// of it. Of prisms that is the normal of a flat face (try_flats), a direction across a straight line of each
 /// (which is all for two on rectangles: Gottschalk, Lin & Manocha 1996), across one line and a side or a rim,
-/// or rim on rim, which has no closed form: it is climbed from several starts.
+/// or rim on rim, which has no closed form: it is climbed from several starts. Faces come first and must be
+/// beaten by kBetter, so that a face's normal stays as long as it is as good.
 class Search {
  public:
   Search(const ManifoldShape& shape_a, const Prism& a, const Prism& b, double margin)
@@ -112,6 +120,8 @@ class Search {
   const Vector3& normal() const { return axis_.normal(); }
   bool is_beyond() const { return separation() > margin_; }
 
+  /// The directions in turn: across a straight line of each (e_i x e_j), from an axis straight to the other's
+  /// middle (a side's normal), those of distances to b's edges, and what is only found by iteration.
   void try_rest() {
     for (int i = a_.first_flat(); i < 3; ++i)
       for (int j = b_.first_flat(); j < 3; ++j) axis_.try_direction(a_.axes.col(i).cross(b_.axes.col(j)));
@@ -138,6 +148,8 @@ class Search {
       if (features.distance > 0.0) axis_.try_direction(turn_a * features.normal);
     }
   }
+  /// Starts: the line of centres, aslant from either axis towards the other (where a rim is), and either of
+  /// these mixed into the best so far: s has several tops once the shapes overlap.
   void climb() {
     const auto aslant = [&](const Prism& prism) -> Vector3 {
       const Vector3 out = prism.across(axis_.offset());
@@ -157,7 +169,8 @@ class Search {
 
 }  // namespace
 
-/// Faces first: what stands or lies on one needs no more.
+/// Faces first: what stands or lies on one needs no more. The thickness is the lesser extent of the two along
+/// the face's normal: 2 h(n).
 Manifold prism_manifold(const ManifoldShape& shape_a, const Pose& pose_a, const ManifoldShape& shape_b,
                         const Pose& pose_b, double margin) {
   const Prism a(*shape_a.prism, pose_a), b(*shape_b.prism, pose_b);

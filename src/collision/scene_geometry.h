@@ -9,7 +9,8 @@
 
 namespace mrhi {
 
-/// What collision makes of a scene's shapes, once, at loading. Refers to the scene.
+/// What collision makes of a scene's shapes, once, at loading. Refers to the scene. Its parts refer to shapes
+/// in the scene and to meshes behind pointers, not to each other's places in these lists, which may grow.
 struct SceneGeometry {
   explicit SceneGeometry(const Scene& scene);
 

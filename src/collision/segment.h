@@ -8,8 +8,13 @@
 namespace mrhi {
 
 /// What a segment rises or runs by less than this counts as nothing: it is parallel, or a point [m].
+/// Components below it are set to 0 once, as the segment is made, so that all that follows may ask for exact
+/// zeros. It is a length, not an angle: a rise of 1e-12 m is some thousand times the rounding of coordinates
+/// near 1 m.
 constexpr double kParallel = 1e-12;
-/// An axis nearer to a surface than this lies on it: the direction between the two would be rounding [m].
+/// An axis nearer to a surface than this lies on it: the direction between the two would be rounding [m]. The
+/// distance comes out of a difference of coordinates near 1 m, right to some 1e-16 m: at 1e-11 m a direction
+/// made of it is still right to 1e-5 rad.
 constexpr double kOnSurface = 1e-11;
 
 /// A capsule's axis start + s * along, s in 0..1, with along's rounding taken off.
@@ -26,7 +31,10 @@ struct Segment {
   Vector3 start, along;
 };
 
-/// How far x lies beyond -half..half, with its sign; nothing within rounding.
+/// How far x lies beyond -half..half, with its sign; nothing within rounding. The squared distance from a box
+/// is the sum of these squared (Ericson, Real-Time Collision Detection, 5.1.3). The limit is absolute, some
+/// ulps of a coordinate of 1 m, and makes the zeros exact that ConvexMinimum counts on: a clamp and a product
+/// that meet at a face's plane differ by an ulp.
 inline double excess(double x, double half) {
   const double beyond = x - std::max(-half, std::min(x, half));
   return std::abs(beyond) < 1e-15 ? 0.0 : beyond;
@@ -42,12 +50,17 @@ struct Stretch {
     if (next.s0 > s1 + 1e-9 || next.s1 < s0 - 1e-9) return;
     s0 = std::min(s0, next.s0), s1 = std::max(s1, next.s1);
   }
-  /// Keeps what has |x0 + s * dx| <= half.
+  /// Keeps what has |x0 + s * dx| <= half. Both ends within are looked at first: the quotients below would
+  /// cut an end off by an ulp. What runs level beside the slab is kept whole, so that who asks must know that
+  /// it is over it.
   void clip_to_slab(double x0, double dx, double half) {
     if (std::abs(x0) <= half && std::abs(x0 + dx) <= half) return;
     clip(-x0, -dx, half), clip(x0, dx, half);
   }
-  /// Keeps what is no farther than `radius` from the z axis.
+  /// Keeps what is no farther than `radius` from the z axis. |x + s d|^2 = r^2, seen along z, has the roots
+  /// s = f -+ sqrt((r^2 - m^2) / d^2) about the foot f = -x.d / d^2 of the middle, where the line misses it
+  /// by m. Without the foot the root would be of b^2 - a c, in which far starts cancel. Of a line that misses
+  /// the disc the foot alone is kept.
   void clip_to_disc(const Segment& axis, double radius) {
     const Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();
     const double along_squared = along.squaredNorm();
@@ -67,6 +80,11 @@ struct Stretch {
 
 /// Closes in on the minimum of a convex function of s in 0..1 by its slope at chosen places. Where the slope
 /// is zero over a stretch, its middle is the minimum.
+///
+/// The slope f'(s) of a convex f never falls: it brackets the minimum in lo..hi with f'(lo) < 0 < f'(hi), and
+/// where f' is linear between the two its zero is lo + (hi - lo) f'(lo) / (f'(lo) - f'(hi)), without
+/// iterations. So all places where f' bends have to be added before linear() is asked. A zero counts only if
+/// it is exact.
 class ConvexMinimum {
  public:
   ConvexMinimum(double slope_at_0, double slope_at_1) : slope_lo_(slope_at_0), slope_hi_(slope_at_1) {
@@ -103,7 +121,9 @@ class ConvexMinimum {
   Stretch flat_{2.0, -1.0};
 };
 
-/// A unit vector across v, the same for the same v; v may be zero.
+/// A unit vector across v, the same for the same v; v may be zero. e - (e.v) v / v^2 of the unit axis e that
+/// has the least of v: |e.v| <= |v| / sqrt(3), so that two thirds of e's square are left and nothing cancels.
+/// Of components alike the last counts.
 inline Vector3 any_normal(const Vector3& v) {
   int least = 2;
   for (int i = 1; i >= 0; --i) {
@@ -125,7 +145,14 @@ struct SegmentPair {
 };
 
 /// Of the segment and the edge from `corner` along `edge`, which has a length (Ericson, Real-Time Collision
-/// Detection, 5.1.9).
+/// Detection, 5.1.9). With r = start - corner, d1 and d2 the two directions, the square |r + s d1 - t d2|^2
+/// has its least where
+///     s a - t b = -c   and   s b - t e = -f,   a = d1.d1, b = d1.d2, c = d1.r, e = d2.d2, f = d2.r,
+/// that is at s = (b f - c e) / (a e - b^2). Held in 0..1 one after the other: t facing s, then s facing t.
+///
+/// The determinant a e - b^2 is |d1 x d2|^2 (Lagrange), but cancels below some 1e-8 rad: so the cross product
+/// says what is parallel. Between the two s may come out anywhere, even as no number, which clamp_unit makes
+/// 0; the projections to and fro then still end at a nearest pair, one of many.
 inline SegmentPair nearest_stretch(const Segment& segment, const Vector3& corner, const Vector3& edge) {
   const Vector3 offset = segment.start - corner, &along = segment.along;
   const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);
@@ -133,6 +160,7 @@ inline SegmentPair nearest_stretch(const Segment& segment, const Vector3& corner
   if (a == 0.0) return {{0.5, 0.5}, clamp_unit(f / e)};
   const bool parallel = along.cross(edge).squaredNorm() <= kParallel * kParallel * e;
   if (parallel) {
+    // Facing the edge's ends, at t = 0 and 1: s = (t b - c) / a.
     const double at_start = -c / a, at_end = (b - c) / a;
     const double s0 = clamp_unit(std::min(at_start, at_end)), s1 = clamp_unit(std::max(at_start, at_end));
     return {{s0, s1}, clamp_unit((0.5 * (s0 + s1) * b + f) / e)};

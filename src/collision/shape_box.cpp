@@ -6,14 +6,19 @@
 namespace mrhi {
 namespace {
 
-/// Half the derivative of the squared distance from the box by s.
+/// Half the derivative of the squared distance from the box by s. With e_i = excess of coordinate i: d^2 =
+/// sum e_i^2, and half its derivative is sum along_i e_i, as e_i grows at the rate along_i outside the slab
+/// and stays 0 inside.
 double slope(const Segment& axis, const Vector3& half, double s) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) sum += axis.along[i] * excess(axis.start[i] + s * axis.along[i], half[i]);
   return sum;
 }
 
-/// Where the axis is nearest to the box. The slope grows with s, linearly between the planes of the faces.
+/// Where the axis is nearest to the box. The slope grows with s, linearly between the planes of the faces. It
+/// bends where the axis passes a plane x_i = +-half_i, at s = (+-half_i - start_i) / along_i: with these six
+/// places known the zero of one line is exact. An axis level with a face has a slope of exactly 0 over it,
+/// and its middle is taken.
 double nearest(const Segment& axis, const Vector3& half) {
   ConvexMinimum minimum(slope(axis, half, 0.0), slope(axis, half, 1.0));
   if (minimum.done()) return minimum.linear();
@@ -29,7 +34,8 @@ double nearest(const Segment& axis, const Vector3& half) {
 }
 
 /// The dimension in which the whole axis is outside the box, while it is between the faces of the others; or
-/// none.
+/// none. Then that face is nearest for every s, and the distance is linear in s: no search. An axis that is
+/// only kOnSurface away goes the long way, which tells a touch from an overlap.
 int outside_dimension(const Capsule& capsule, const Vector3& half) {
   int outside = -1;
   for (int i = 0; i < 3; ++i) {
@@ -44,6 +50,7 @@ int outside_dimension(const Capsule& capsule, const Vector3& half) {
 
 /// The frequent case: the whole axis is over one face.
 template <int i>
+/// Nearest is its lower end, or the middle of what is level.
 ClosestFeatures over_face(const Capsule& capsule, const Vector3& half) {
   const double side = capsule.start[i] > 0.0 ? 1.0 : -1.0;
   const double rise = side * (capsule.end[i] - capsule.start[i]);
@@ -63,7 +70,13 @@ struct BoxWayOut {
 };
 
 /// The box swept along the axis is a polytope: its faces are those of the box, and those that an edge of the
-/// box sweeps out. The axis leaves the box by the nearest.
+/// box sweeps out. The axis leaves the box by the nearest. With m the axis's middle and l = along, they are
+/// apart by
+///     face normals +-e_i:        |m_i| - |l_i| / 2 - half_i
+///     edge normals n = e_i x l:  |n.m| - sum |n_j| half_j, |n| = 1   (n.l = 0: the axis adds nothing)
+/// It is the separating-axis test of a box and a segment (Ericson, Real-Time Collision Detection, 5.3.3), of
+/// which the greatest value is kept instead of a yes or no. Of an axis along e_i the cross product is zero,
+/// and a face is as good.
 BoxWayOut leaving(const Segment& axis, const Vector3& half) {
   const Vector3 middle = axis.middle(), reach = 0.5 * axis.along.cwiseAbs();
   BoxWayOut best;
@@ -85,6 +98,8 @@ BoxWayOut leaving(const Segment& axis, const Vector3& half) {
   return best;
 }
 
+/// The end that is deeper, along the normal n, comes out last: the start where n.along > 0. Where the axis is
+/// level all of it comes out at once, and the middle of what is over the face stands for it.
 ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
   const int i = way.dimension;
   double s = way.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
@@ -98,6 +113,9 @@ ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const Bo
   return {way.separation, way.normal, point, s};
 }
 
+/// The edge runs along e_i at the corner that n points to. Across e_i n is across the axis too, so that the
+/// axis, moved out by -separation n, passes the edge where it is nearest to it now: at the foot s =
+/// across.(edge - start) / across^2, with `across` the axis seen along e_i. Along e_i both are at one height.
 ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
   const int i = way.dimension;
   Vector3 edge;
@@ -131,7 +149,8 @@ ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
   return features;
 }
 
-/// A quick look before the closed form is asked: is the capsule beyond `margin` from a face's plane?
+/// A quick look before the closed form is asked: is the capsule beyond `margin` from a face's plane? Each
+/// face's plane bounds the distance from below by |m_i| - |l_i| / 2 - half_i.
 ClosestFeatures Box::closest(const Capsule& capsule, double margin) const {
   const Vector3 half_length = 0.5 * (capsule.end - capsule.start).cwiseAbs();
   const Vector3 gap = capsule.centre().cwiseAbs() - half_length - half_extents;
@@ -140,6 +159,8 @@ ClosestFeatures Box::closest(const Capsule& capsule, double margin) const {
   return capsule_box(capsule, *this);
 }
 
+/// The normal has one component on a face, two across an edge, three at a corner. Over a face the axis is
+/// clipped by the slabs of the two other dimensions.
 AxisSpan Box::span(const Capsule& capsule, const ClosestFeatures& features) const {
   const Segment axis(capsule);
   if (axis.along.isZero(0.0)) return at_point(features);
@@ -169,6 +190,7 @@ std::optional<double> Box::way_out(const Vector3& point, const Vector3& directio
   return chord.out();
 }
 
+///     V = 8 a b c,   integral of x^2 = V a^2 / 3
 SolidMoments Box::moments() const {
   const double volume = 8.0 * half_extents.prod();
   return {volume, Vector3::Zero(), (volume / 3.0 * half_extents.cwiseAbs2()).asDiagonal()};

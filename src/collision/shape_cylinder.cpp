@@ -5,7 +5,8 @@
 namespace mrhi {
 namespace {
 
-/// The axis of a capsule and what it is seen from a cylinder's own axis, z.
+/// The axis of a capsule and what it is seen from a cylinder's own axis, z. With rho(s) the distance from z
+/// and R the radius, d^2 = max(0, rho - R)^2 + excess(z)^2.
 struct AxisByCylinder {
   const Segment& axis;
   const Cylinder& cylinder;
@@ -16,6 +17,10 @@ struct AxisByCylinder {
     return excess(axis.start.z() + s * axis.along.z(), cylinder.half_length);
   }
   /// Half the derivative of the squared distance from the cylinder by s, and the derivative of that.
+  ///     rho' = place.along / rho,   rho rho'' = along^2 - rho'^2   (along seen along z)
+  ///     d d' = (rho - R) rho' + z' excess(z)
+  ///     its derivative = z'^2 + rho'^2 + (rho - R) rho'' = z'^2 + along^2 - (R / rho) (along^2 - rho'^2)
+  /// The last is that beyond the rim, where both parts are at work. It is never negative, as R < rho there.
   double slope(double s, double* change = nullptr) const {
     const Eigen::Vector2d place = start + s * along;
     const double from_axis = place.norm(), run = place.dot(along);
@@ -31,7 +36,9 @@ struct AxisByCylinder {
   }
 };
 
-/// Beyond the rim: a quartic, by Newton's method held in its bracket.
+/// Beyond the rim: a quartic, by Newton's method held in its bracket. d d' = 0 has the square root rho in it:
+/// squared away it is of fourth degree, whose closed roots cancel badly. Newton's step is taken while it
+/// stays in lo..hi, else the bracket is halved; it ends where s does not move by 1e-16.
 double nearest_to_rim(const AxisByCylinder& seen, double lo, double hi) {
   double s = 0.5 * (lo + hi);
   for (int i = 0; i < 100 && hi - lo > 1e-16; ++i) {
@@ -47,7 +54,9 @@ double nearest_to_rim(const AxisByCylinder& seen, double lo, double hi) {
   return s;
 }
 
-/// Where the axis crosses the planes of the caps and the side's surface, the slope changes its form.
+/// Where the axis crosses the planes of the caps and the side's surface, the slope changes its form. That is
+/// at z = +-half_length and at rho = R, whose roots are s = f -+ sqrt((R^2 - m^2) / along^2) about the foot
+/// f, where the axis passes z at the distance m.
 void add_crossings(const AxisByCylinder& seen, ConvexMinimum& minimum) {
   const auto add = [&](double s) {
     if (minimum.holds(s)) minimum.add(s, seen.slope(s));
@@ -67,6 +76,10 @@ void add_crossings(const AxisByCylinder& seen, ConvexMinimum& minimum) {
   add(nearest + half_chord);
 }
 
+/// Between two crossings the middle tells which surface is nearest:
+///     rho <= R:                above a cap or inside; the slope is linear in s
+///     z within the caps:       beside the side; rho is least at the foot -start.along / along^2
+///     neither:                 beyond a rim
 double nearest(const Segment& axis, const Cylinder& cylinder) {
   const AxisByCylinder seen{axis, cylinder};
   ConvexMinimum minimum(seen.slope(0.0), seen.slope(1.0));
@@ -79,6 +92,8 @@ double nearest(const Segment& axis, const Cylinder& cylinder) {
   return std::max(minimum.lo(), std::min(-seen.start.dot(seen.along) / seen.along_squared, minimum.hi()));
 }
 
+/// The nearest point of the solid. Nearest on a round side is straight towards z; both parts may be held one
+/// after the other, as the side's and the caps' directions are across each other.
 Vector3 clamp(const Vector3& place, const Cylinder& cylinder) {
   Vector3 point = place;
   const double from_axis = point.head<2>().norm();
@@ -87,6 +102,7 @@ Vector3 clamp(const Vector3& place, const Cylinder& cylinder) {
   return point;
 }
 
+/// As a box is left by a face: z up or down, the deeper end out last.
 ClosestFeatures leave_by_cap(const Segment& axis, const Cylinder& cylinder) {
   const double middle = axis.middle().z(), side = middle < 0.0 ? -1.0 : 1.0;
   double s = side * axis.along.z() > 0.0 ? 0.0 : 1.0;
@@ -101,7 +117,9 @@ ClosestFeatures leave_by_cap(const Segment& axis, const Cylinder& cylinder) {
   return {std::abs(middle) - reach - cylinder.half_length, side * Vector3::UnitZ(), point, s};
 }
 
-/// Seen along z: a segment in a disc.
+/// Seen along z: a segment in a disc. It leaves along the direction from z to its nearest place, at rho: by
+/// R - rho, as all of the segment is beyond the line across that direction (a segment is convex). One that
+/// passes z itself leaves across its own direction, and one along z to x: any would do, so always the same.
 ClosestFeatures leave_by_side(const Segment& axis, const Cylinder& cylinder) {
   const Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();
   const double along_squared = along.squaredNorm();
@@ -126,7 +144,9 @@ ClosestFeatures leave_by_side(const Segment& axis, const Cylinder& cylinder) {
   return {from_axis - cylinder.radius, normal, point, s};
 }
 
-/// Across the segment, which is a point then.
+/// Across the segment, which is a point then. The directions n with n.along = 0 are a circle, and
+/// s(n) = n.middle - h(n) on it is searched for the greatest: no closed form, as h has a root in it. The
+/// point is where the solid is farthest along n, and s the segment's foot from there.
 ClosestFeatures leave_by_rim(const Segment& axis, const Cylinder& cylinder) {
   const Prism place({Vector3::Zero(), false}, {axis.middle(), Quaternion::Identity()});
   const Prism solid(*cylinder.prism(), {Vector3::Zero(), Quaternion::Identity()});
@@ -139,7 +159,10 @@ ClosestFeatures leave_by_rim(const Segment& axis, const Cylinder& cylinder) {
 
 /// The shortest translation that takes a segment, which overlaps the cylinder, out of it: distance <= 0. The
 /// cylinder swept along the segment is convex; the segment leaves by the nearest piece of its surface: a cap,
-/// the side at an end of the segment, or what a rim or a line of the side sweeps.
+/// the side at an end of the segment, or what a rim or a line of the side sweeps. The nearest point of a
+/// convex solid's surface, seen from inside, is never on an edge that bulges: so that of the sweep's surface
+/// only what has an area counts. The cap comes first, then the side, then what is better than both by more
+/// than rounding.
 ClosestFeatures leave(const Segment& axis, const Cylinder& cylinder) {
   ClosestFeatures best = leave_by_cap(axis, cylinder);
   const auto take = [&](const ClosestFeatures& way, double better) {
@@ -166,6 +189,7 @@ ClosestFeatures Cylinder::closest(const Capsule& capsule, double) const {
   return features;
 }
 
+/// By the normal: along z a cap, across z the side, anything between the rim.
 AxisSpan Cylinder::span(const Capsule& capsule, const ClosestFeatures& features) const {
   const Segment axis(capsule);
   if (axis.along.isZero(0.0)) return at_point(features);
@@ -198,6 +222,7 @@ std::optional<double> Cylinder::way_out(const Vector3& point, const Vector3& dir
   return chord.out();
 }
 
+///     V = 2 pi r^2 h,   x^2: V r^2 / 4,   z^2: V h^2 / 3   (h the half length)
 SolidMoments Cylinder::moments() const {
   constexpr double kPi = 3.141592653589793;
   const double square = radius * radius;

@@ -19,6 +19,7 @@ std::optional<Capsule> Mesh::core() const {
   return std::nullopt;
 }
 
+/// Vertices that no triangle has do not count.
 double Mesh::bounding_radius() const {
   double squared = 0.0;
   each_corner(*triangles, [&](const Vector3& corner) { squared = std::max(squared, corner.squaredNorm()); });
@@ -36,6 +37,12 @@ std::optional<double> Mesh::way_out(const Vector3&, const Vector3&) const {
 }
 
 /// By the tetrahedra from the origin to the triangles, with their signs (Tonon 2004).
+///
+/// Of a tetrahedron with the corners 0, a, b, c:
+///     V = a.(b x c) / 6,   integral of x = V (a + b + c) / 4,
+///     integral of x x^T = V / 20 (a a^T + b b^T + c c^T + (a + b + c)(a + b + c)^T).
+/// V is positive for a triangle that faces away from the origin and negative else, so that what is outside
+/// the solid is taken off again: right for a closed mesh alone.
 SolidMoments Mesh::moments() const {
   SolidMoments moments;
   for (const std::array<int, 3>& triangle : triangles->triangles) {

@@ -4,6 +4,9 @@
 
 namespace mrhi {
 
+/// Two capsules are as far apart as their axes are, less both radii. Where the axes cross, the gap has no
+/// direction, and z x along is taken, which is across both; of parallel ones that is zero too, and any normal
+/// of z does.
 ClosestFeatures Pill::closest(const Capsule& capsule, double) const {
   const Segment axis(capsule);
   const SegmentPair nearest =
@@ -32,11 +35,13 @@ std::optional<Capsule> Pill::core() const {
   return Capsule{-half_length * Vector3::UnitZ(), half_length * Vector3::UnitZ(), radius};
 }
 
+/// A ball's moved by an end: h(n) = r |n| + half_length |n_z|.
 Vector3 Pill::farthest(const Vector3& n) const {
   return radius * n.normalized() + (n.z() < 0.0 ? -half_length : half_length) * Vector3::UnitZ();
 }
 
-/// The last of its parts that the line leaves.
+/// The last of its parts that the line leaves. The whole is convex, so that the line is in it without a
+/// break, and leaves it where it leaves the last of the three.
 std::optional<double> Pill::way_out(const Vector3& point, const Vector3& direction) const {
   std::optional<double> last;
   const auto add = [&](const Chord& chord) {
@@ -54,6 +59,8 @@ std::optional<double> Pill::way_out(const Vector3& point, const Vector3& directi
   return last;
 }
 
+/// A ball has 1/5 V r^2 about its middle. Of a half ball the middle of mass is 3/8 r beyond the end at h, so
+/// that its part of z^2 is V/2 (h^2 + 2 h 3/8 r + r^2 / 5); of both V (h^2 + 3/4 h r + r^2 / 5).
 SolidMoments Pill::moments() const {
   constexpr double kPi = 3.141592653589793;
   const double square = radius * radius;

@@ -3,6 +3,8 @@
 
 namespace mrhi {
 
+/// The axis is nearest to the centre at its foot s = -start.along / along^2, held in 0..1; the distance is
+/// |a(s)| less both radii, along a(s). Through the centre every direction across the axis is as short.
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere) {
   const Segment axis(capsule);
   const double length_squared = axis.along.squaredNorm();
@@ -36,6 +38,7 @@ std::optional<double> Sphere::way_out(const Vector3& point, const Vector3& direc
   return chord.out();
 }
 
+///     V = 4/3 pi r^3,   x^2: V r^2 / 5
 SolidMoments Sphere::moments() const {
   constexpr double kPi = 3.141592653589793;
   const double volume = 4.0 / 3.0 * kPi * radius * radius * radius;

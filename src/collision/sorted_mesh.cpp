@@ -6,6 +6,7 @@
 namespace mrhi {
 namespace {
 
+/// Exactly the same place is one vertex; what is nearly so has been joined as the file was loaded, if it was.
 bool before(const Vector3& a, const Vector3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
@@ -39,6 +40,8 @@ std::vector<DirectedSide> sides_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
+/// A triangle is turned to begin with its least vertex, which keeps its sense; what has lost a vertex by
+/// joining has no area and goes.
 TriangleMesh sorted(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const std::array<int, 3>& triangle : mesh.triangles)
@@ -65,6 +68,9 @@ TriangleMesh sorted(const TriangleMesh& mesh) {
   return result;
 }
 
+/// Of a closed surface whose triangles all face outwards each line has as many sides up as down. Sides of one
+/// line pair up in the order of their triangles: more than two meet where bodies touch along an edge, and any
+/// pairing closes it.
 Neighbourhood::Neighbourhood(const TriangleMesh& mesh) : beyond_(mesh.triangles.size()) {
   const std::vector<DirectedSide> sides = sides_of(mesh);
   const auto set = [this](const Side& of, const Side& beyond) {

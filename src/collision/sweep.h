@@ -23,6 +23,12 @@ struct FirstTouch {
 /// an optional Separation, nothing where the two are far apart. For convex shapes in relative translation the
 /// distance is convex in time, so that Newton's method from the start approaches the first touch from before
 /// it.
+///
+/// The distance's rate is n.(v_a - v_b) of the two nearest points: that these wander does not count, as each
+/// is nearest (the envelope theorem). Traps: bodies that turn make the distance concave at times, so that a
+/// step may end beyond the touch, which then counts with what it overlaps; and what parts now is given up,
+/// also where a turn would bring another corner in before the step ends. What only grazes may use up all 30
+/// steps, and is no touch then.
 template <typename Features, typename SeparationAt>
 std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, double duration) {
   constexpr double kTouch = 1e-6;  // nearer is a touch [m]
@@ -33,6 +39,8 @@ std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, 
     if (!now) return std::nullopt;
     if (now->distance <= kTouch) return FirstTouch<Features>{time, now->features};
     if (now->rate >= 0.0) return std::nullopt;
+    // The tangent's zero: t + d / -d'. Where d is convex, the tangent is below it, so that this is never
+    // late.
     time += now->distance / -now->rate;
     if (time > duration) return std::nullopt;
   }

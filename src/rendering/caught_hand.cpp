@@ -6,7 +6,8 @@
 namespace mrhi {
 
 /// The clearances contradict each other: the hand as it is goes as a whole to that side of the deepest body
-/// which is the nearest.
+/// which is the nearest. For a side with the normal n and height h the hand's deepest capsule is at
+/// min n.a - r - h < 0, and the hand is out by as much along n.
 void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset,
                                    Hand& placed) {
   constexpr int kMaxBodies = 4;
@@ -37,7 +38,9 @@ void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, Hand
 }
 
 /// Leads the hand as it is out along that of its palm's axes on which it is out the soonest. No step is
-/// longer than what is left of the way out.
+/// longer than what is left of the way out. Sphere tracing (Hart 1996): with a gap of -d the hand cannot be
+/// out before it has gone d, so that a step of d passes over no way out; near the surface kShortestStep gets
+/// it on.
 void HandRenderer::Impl::lead_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed) {
   constexpr double kFarthestOut = 0.5;      // [m]
   constexpr double kShortestStep = 0.0005;  // [m]

@@ -53,11 +53,13 @@ bool outside(const Capsule& capsule, const Vector3& normal, const Vector3& point
 }
 
 /// No plane that keeps a capsule out of a shape is nearer than the nearest way out; where a shape is hollow,
-/// or has turned, a plane of before may be.
+/// or has turned, a plane of before may be. A plane has all of a convex shape below it, so that the height
+/// above it is a bound from below of the distance: larger than the distance it is no such plane.
 bool keeps_out(const Capsule& capsule, const Vector3& normal, const Vector3& point, double distance) {
   return height(capsule, normal, point) <= distance + kFlat;
 }
 
+/// n.a(s) - height - r, with n.x = height the plane and r the capsule's radius.
 double gap(const Capsule& capsule, const Clearance& clearance) {
   return clearance.normal.dot(capsule.axis_point(clearance.s)) - clearance.height - capsule.radius;
 }
@@ -78,6 +80,8 @@ Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clear
 
 }  // namespace
 
+/// The box about the tracked hand against the ball about each body: by the squares of what the ball's centre
+/// is beyond the box.
 bool ClearanceFinder::begin(const Setting& setting, double margin) {
   near_.clear();
   shown_in_.clear();
@@ -104,6 +108,7 @@ void ClearanceFinder::end_shown_in(const Hand& shown, Interaction* interactions)
   });
 }
 
+/// |v| + |w| R.
 double ClearanceFinder::fastest_body(const std::vector<BodyState>& bodies) const {
   double fastest = 0.0;
   for (const Near& near : near_) {
@@ -123,6 +128,7 @@ Vector3 ClearanceFinder::velocity(int body, const Vector3& point,
   return twist.linear + twist.angular.cross(point - bodies[b].pose.position);
 }
 
+/// Near is who is so by the balls about capsule and body.
 template <typename See>
 void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& hand, double margin,
                                 const See& see) {
@@ -138,6 +144,8 @@ void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& han
   }
 }
 
+/// What was found in earlier passes stays, measured with its plane of then: dropped, a gap that has been
+/// closed by its pressure would open again, and the passes would go to and fro.
 double ClearanceFinder::find(const Hand& placed, const Setting& setting, double margin,
                              std::vector<Clearance>& clearances) const {
   double least = margin;
@@ -174,7 +182,10 @@ bool ClearanceFinder::clear(const Hand& hand) const {
 }
 
 /// The face that the capsule keeps to. Deep inside the nearest way out may lead through the body: then it is
-/// the side on which the capsule was shown last, told by the god object if it is on that side too.
+/// the side on which the capsule was shown last, told by the god object if it is on that side too. In order:
+/// shallow, the nearest surface; the god object's plane, if the hand was shown on its side; the plane that
+/// was nearest before. A plane of before is no longer believed once it asks for more than the hand and bodies
+/// have moved.
 ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Near& near,
                                             const ClosestFeatures& features, const AxisSpan& span,
                                             const Setting& setting) const {
@@ -195,6 +206,7 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
   if (!last || last->distance < -kShallow || last->normal.dot(features.normal) >= kSameSide) return nearest;
   // A way that is longer than what the hand has gone leads around a corner.
   const double s = features.axis_parameter;
+  // r - n.(a - q): by how much the capsule is below the plane of before.
   const double way = capsule.radius - last->normal.dot(capsule.axis_point(s) - last->point);
   if (way > setting.moved + kRound) return nearest;
   if (!keeps_out(capsule, last->normal, last->point, features.distance)) return nearest;

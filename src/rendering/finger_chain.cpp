@@ -28,6 +28,10 @@ struct RootFrame {
   Vector3 along, hinge;
 };
 
+/// Right hand: along to the fingers (x), hinge to the thumb (y), so that a turn by +angle about it, x to -z,
+/// closes the hand. A left hand is the mirror image in y: `along` is mirrored as a vector, `hinge` as an
+/// axis, with its sign turned besides. A metacarpal that stands almost out of the palm leaves no hinge; then
+/// the palm's own axes serve.
 RootFrame root_frame(const Hand& hand, int finger) {
   const Matrix3 palm = hand.palm.orientation.toRotationMatrix();
   if (finger == 0) {
@@ -46,6 +50,7 @@ RootFrame root_frame(const Hand& hand, int finger) {
 
 }  // namespace
 
+///     x' = c + R (x - c),   R_palm' = lag.frame R R_palm,   c the palm's position, R = lag.whole
 void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned) {
   turned = tracked;
   const Vector3& centre = tracked.palm.position;
@@ -70,6 +75,8 @@ FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift, 
   placed_hinge_ = hinge_;
 }
 
+/// At the finger as tracked: swing is across the proximal phalanx and the root's axis, hinge is the root's
+/// axis less its part along the phalanx, (along x root) x along.
 void FingerChain::find_axes(const Hand& tracked) {
   const std::size_t proximal = static_cast<std::size_t>(capsule_index(finger_, 1));
   root_ = Vector3::UnitY(), swing_ = Vector3::UnitZ(), hinge_ = Vector3::UnitY();
@@ -92,6 +99,9 @@ void FingerChain::find_axes(const Hand& tracked) {
   }
 }
 
+/// Offsets count from the tracked angles: lower <= angle + offset <= upper, with each limit put out to where
+/// the joint was tracked, so that 0 is among them. reach is the length from a joint on along the bones: no
+/// way to the tip is longer.
 void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
   const auto bone = [&](int index) -> const Capsule& {
     return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
@@ -119,6 +129,10 @@ void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
   }
 }
 
+/// With the frame (onward, root, up = onward x root): flexion atan2(-along.up, along.onward), abduction the
+/// angle off the plane of onward and up, towards root. A hinge's angle is that between the bones before and
+/// after, a and b, with its sign: atan2((a x b).hinge, a.b). What bends sideways there is not seen, and stays
+/// as it is.
 FingerOffset FingerChain::angles(const Hand& hand, const Vector3& hinge) const {
   const auto bone = [&](int index) {
     return direction(hand.capsules[static_cast<std::size_t>(capsule_index(finger_, index))]);
@@ -143,6 +157,10 @@ FingerOffset FingerChain::like(const Hand& shown, const FingerChain& chain) cons
   return pointing(shown, chain).max(lower_).min(upper_);
 }
 
+/// Forward kinematics by products of exponentials, all axes as tracked: R_1 = exp(o0 root) exp(o1 swing),
+/// R_k = R_{k-1} exp(o_k hinge). The factor on the right is the first to act, in the tracked finger's frame,
+/// so that what turns a joint carries the axes of all beyond it; hinge is the same before and after its own
+/// turn. With no offset points are added, not turned: the tracked hand to the last bit.
 void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed) {
   const auto first = static_cast<std::size_t>(capsule_index(finger_, 0));
   placed_swing_ = swing_;
@@ -178,6 +196,8 @@ void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const V
   }
 }
 
+/// A turn about the axis a through the joint p moves x by a x (x - p), so that n.x grows by n.(a x (x - p)) =
+/// a.((x - p) x n).
 FingerOffset FingerChain::gradient(int bone, const Vector3& x, const Vector3& n) const {
   if (!tied_) return {n.x(), n.y(), n.z(), 0.0};
   const Vector3 at_root = (x - joints_[1]).cross(n);
@@ -187,6 +207,7 @@ FingerOffset FingerChain::gradient(int bone, const Vector3& x, const Vector3& n)
   return gradient;
 }
 
+/// sum |turn| reach: arcs are no shorter than chords, and turns of a chain add at most.
 double FingerChain::way(const FingerOffset& change) const {
   if (!tied_) return change.head<3>().matrix().norm();
   return (change.abs() * reach_).sum();

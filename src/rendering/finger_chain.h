@@ -26,6 +26,9 @@ void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned);
 /// A tracked finger as a chain: a root joint that flexes and abducts, fixed to the palm, and two hinges.
 /// Joints are turned from where they were tracked, so that bones keep their lengths whatever the offset. All
 /// in world.
+///
+/// Axes are lines fixed to bones: root_ stays with the palm, swing_ is turned by the root's flexion, hinge_
+/// by both. Angles are signed by the right-hand rule about them.
 class FingerChain {
  public:
   FingerChain() = default;

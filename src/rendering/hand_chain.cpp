@@ -14,6 +14,8 @@ void HandChain::begin(const Hand& tracked, const PalmLag& lag) {
   known_.fill(false);
 }
 
+/// A finger that has had a chain goes through it from then on, also without an offset: its joints must be
+/// known as placed now.
 void HandChain::place(const HandOffset& offset, Hand& placed) {
   shift_ = offset.shift;
   placed.palm = {tracked_->palm.position + shift_, tracked_->palm.orientation};

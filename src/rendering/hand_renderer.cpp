@@ -22,7 +22,7 @@ double margin(const HandOffset& offset) {
   return offset.zero() ? kAhead : offset.shift.norm() + kFarthestPush;
 }
 
-/// By the share of each contact.
+/// By the share of each contact. The mean, by shares w, as it goes: m <- m + w / sum w (x - m).
 void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
   rendered.touching.fill(false);
   std::array<double, kCapsules> shares{};
@@ -38,6 +38,7 @@ void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& 
   }
 }
 
+/// To the bit: what is placed anew from the same numbers is the same.
 bool same_place(const Hand& a, const Hand& b) {
   const auto same = [](const Capsule& x, const Capsule& y) {
     return x.radius == y.radius && x.start == y.start && x.end == y.end;
@@ -135,6 +136,9 @@ bool HandRenderer::Impl::begin(const ClearanceFinder::Setting& setting, const Ha
 }
 
 /// At the frame before.
+///
+/// `moved` bounds what can have come into each other since: the farthest joint's way and the fastest body's,
+/// |v| + |w| R times the time.
 void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& offset,
                                    ClearanceFinder::Setting& setting) {
   if (offset.zero()) finder.begin(setting, kFarthestPush);

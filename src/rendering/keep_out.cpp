@@ -21,6 +21,8 @@ constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is 
 
 }  // namespace
 
+/// Deeper than kShallow the side on which the hand was shown before has a say, which the first look at the
+/// frame did not know: gaps are found anew.
 void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                   double least, HandOffset& offset, Hand& placed) {
   const HandOffset reference = offset;
@@ -30,6 +32,10 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 
 /// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
 /// leave room, it gives way.
+///
+/// In turn: from what is solved, at the pace that bodies push at; at the hand's own; then from the offset
+/// that leaves the hand as it was shown, with the palm's lag in more and more. The best so far is kept, and
+/// only what is no deeper than allowed counts.
 void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
                                    const HandOffset& reference, HandOffset& offset, Hand& placed) {
   if (farthest_joint(before, placed) <= tracked_way + kPace) return;
@@ -66,7 +72,8 @@ void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, cons
   chain.place(offset, placed);
 }
 
-/// The longest way by which a body that the hand leans on has come towards it since the frame before [m].
+/// The longest way by which a body that the hand leans on has come towards it since the frame before [m]. n.v
+/// of the body's point at the capsule's surface, n out of the body: > 0 comes at the hand.
 double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const {
   double fastest = 0.0;
   for (const Clearance& clearance : clearances) {
@@ -79,7 +86,8 @@ double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, c
   return fastest * elapsed;
 }
 
-/// The hand does not move from where it was shown.
+/// The hand does not move from where it was shown. Joints as they pointed, within the limits that they have
+/// in the palm of now; the shift takes the palm's own way off.
 HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const PalmLag& lag) {
   HandOffset stay;
   stay.lag = lag;
@@ -89,6 +97,8 @@ HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, 
   return stay;
 }
 
+/// Given up in this order: the bound on a fingertip's turn; nearness to the offset of before, for where the
+/// hand was shown; bending round what is in the way, for a shift of the whole.
 void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
   if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
@@ -105,6 +115,10 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 
 /// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
 /// [m].
+///
+/// Rows J of the gaps are n for the shift and FingerChain::gradient for joints. A plane is the surface's
+/// tangent there: on what is curved, or once joints turn, it is right for small steps only, and gaps are
+/// found anew at the place that was solved for.
 double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
                                   const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
                                   const Pace* pace, double tolerated) {
@@ -134,6 +148,7 @@ void HandRenderer::Impl::begin_anew(const ClearanceFinder::Setting& setting, con
   finder.find(placed, setting, kAhead, clearances);
 }
 
+///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
 void HandRenderer::Impl::linearise(const Hand& placed) {
   for (Clearance& clearance : clearances) {
     const int capsule = clearance.key.capsule;

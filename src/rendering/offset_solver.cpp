@@ -17,6 +17,10 @@ struct Part {
   FingerOffset lower, upper, compliance, free, held;
 };
 
+/// With multipliers l >= 0 of the gaps, W (q - q0) = J^T l, less what limits hold. W is diagonal, so that for
+/// given l the best q within the limits is each component of q0 + W^-1 J^T l clamped by itself: `free` before
+/// and `held` after it. The dual function of l that is left is concave, and going up along one l after the
+/// other leads to its top.
 class OffsetProblem {
  public:
   OffsetProblem(const HandOffset& reference, const OffsetBounds& bounds, HandChain& chain,
@@ -53,6 +57,8 @@ class OffsetProblem {
   }
 
  private:
+  /// Bounds are taken together, limits last, so that lower <= upper whatever pace asks for: joints' limits
+  /// are never given up.
   void use(int finger, const HandOffset& reference, HandChain& chain, const HandOffset& from) {
     const auto f = static_cast<std::size_t>(finger);
     if (used_[f]) return;
@@ -69,6 +75,7 @@ class OffsetProblem {
     part.held = part.free.max(part.lower).min(part.upper);
   }
 
+  /// rest = gap - J q_k, so that the gap is rest + J q. Pressures of the last pass are put in first.
   void begin(Clearance& clearance, int finger, const HandOffset& from) {
     clearance.rest = clearance.gap - (clearance.by_shift.head<3>() * from.shift.array()).sum();
     shift_ += (kShiftCompliance * clearance.pressure) * clearance.by_shift;
@@ -93,6 +100,9 @@ class OffsetProblem {
   }
 
   /// Closes one gap, or lets go as far as it is open; returns by how much it changes [m].
+  /// dgap / dl = J W^-1 J^T over what is free to move; a step of -gap / (dgap / dl) brings the gap to 0, or
+  /// the pressure to 0 if it would pull. Where a joint meets its limit on the way the gap falls short, and
+  /// the next sweep goes on.
   double relax(Clearance& clearance) {
     Part* part = part_of(clearance);
     const double gap = gap_of(clearance, part);

@@ -7,7 +7,8 @@
 
 namespace mrhi {
 
-/// A point of a capsule's axis that must keep off a plane by the capsule's radius.
+/// A point of a capsule's axis that must keep off a plane by the capsule's radius. gap = normal.a(s) - height
+/// - radius, with normal.x = height the plane: linear in the axis's point a(s).
 struct Clearance {
   ContactKey key{};                   ///< the capsule, the shape, and which end of a stretch that lies flat
   double s = 0.0;                     ///< axis parameter of the point

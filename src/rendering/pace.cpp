@@ -25,6 +25,10 @@ double Pace::beyond(const Hand& placed) const {
   return farthest_joint(before_, placed) - way_;
 }
 
+/// The ball |x - x0| <= way is not linear: its tangent plane at the joint's side, with n = (x0 - x) / |x0 -
+/// x|, has n.x >= n.x0 - way, and the gap there is way - |x - x0|. The height has the capsule's radius taken
+/// off, so that a clearance's gap, which takes it off too, is that of the axis. Where a joint moves aside,
+/// the plane turns from pass to pass.
 double Pace::keep(const Hand& placed, std::vector<Clearance>& clearances) const {
   double least = 0.0;
   for (std::size_t c = 0; c < kCapsules; ++c) {

@@ -9,7 +9,9 @@ constexpr double kLastTurn = 0.02;  // [rad]
 constexpr double kFlatPalm = 1e-4;  // less than this is no palm [m^2]
 
 /// Axes of a palm by its bones: wrist and roots of index and little finger. By its orientation if it has
-/// none.
+/// none. x between the roots of index and little finger as seen from the wrist, z across both, y = z x x. z
+/// points into a right hand's palm and out of a left hand's back: no matter, as only the turn between two of
+/// one hand is asked for.
 Quaternion axes_by_bones(const Hand& hand) {
   const int index = capsule_index(1, 1), little = capsule_index(4, 1);
   if (!hand.has(index) || !hand.has(little)) return hand.palm.orientation;
@@ -38,14 +40,16 @@ double HandRenderer::Impl::held_by_limits(const ClearanceFinder::Setting& settin
   return held;
 }
 
-/// The palm's axes are not turned from how they were shown.
+/// The palm's axes are not turned from how they were shown. frame whole R_tracked = R_before.
 Quaternion HandRenderer::Impl::frame_staying(const ClearanceFinder::Setting& setting,
                                              const Quaternion& whole) const {
   return (before.palm.orientation * (whole * setting.tracked.palm.orientation).conjugate()).normalized();
 }
 
 /// The palm's bones are not turned from how they were shown; its axes, to which joints' limits count, such
-/// that the fingers can stay too, as far as there are such.
+/// that the fingers can stay too, as far as there are such. Compass search: a turn about each axis of world
+/// either way, as long as it is better, then half the turn. What limits hold has kinks, so that no derivative
+/// is asked for.
 PalmLag HandRenderer::Impl::lag_staying(const ClearanceFinder::Setting& setting) {
   PalmLag lag;
   lag.whole = (axes_by_bones(before) * axes_by_bones(setting.tracked).conjugate()).normalized();

@@ -13,7 +13,8 @@ constexpr double kLongestTurn = 0.0004;  // in a frame, of a fingertip with the 
 constexpr double kHandReach = 0.15;      // of the hand from its palm's position [m]
 constexpr double kFingerReach = 0.1;     // of a finger from its root [m]
 
-/// What is left of an offset that reaches this far.
+/// What is left of an offset that reaches this far. An offset of the size `way` goes back by the part 1 -
+/// exp(-t / 50 ms), but by no more than `longest`: exponential when near, a constant way a frame when far.
 double share_left(double way, double decayed, double longest = kLongestWay) {
   if (way <= kHome) return 0.0;
   return 1.0 - std::min(1.0 - decayed, longest / way);
@@ -48,6 +49,7 @@ PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp) {
   return left;
 }
 
+/// Limits are those of the hand as it is now: an offset that was right a frame ago may be beyond them.
 HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& chain) {
   HandOffset left = offset;
   if (offset.zero()) return left;

@@ -22,7 +22,9 @@ Carrier carrier(const SkinBone& bone) {
   return {bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
 }
 
-/// Adds to each vertex the area of the triangles at it, outward, as a share of the palm's width squared.
+/// Adds to each vertex the area of the triangles at it, outward, as a share of the palm's width squared. The
+/// cross product of two sides is twice the area along the normal; summed, large triangles count for more. A
+/// left hand's triangles run clockwise, and the sign is turned.
 void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& hand,
                 const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
   const double per_area =
@@ -60,6 +62,8 @@ Skin::Skin(TriangleMesh rest) : rest_(std::move(rest.vertices)), triangles_(std:
   }
 }
 
+/// A phalanx takes the place along it as a share of its length, and what is beyond its ends or beside it in
+/// radii: longer bones stretch the skin, thicker ones widen it, and tips stay round.
 Skin::Influence Skin::influence(int bone, double weight, const Vector3& vertex, const Vector3& normal) {
   const SkinBone& carrying = rest_hand().rig[static_cast<std::size_t>(bone)];
   Vector3 place = carrying.axes.transpose() * (vertex - carrying.start);
@@ -83,6 +87,9 @@ const Skin& Skin::outline() {
   return skin;
 }
 
+/// Linear blend skinning (Magnenat-Thalmann, Laperriere & Thalmann 1988):
+///     x = sum_b w_b (start_b + along length_b x_b + radius_b A_b beyond),   A_b the bone's axes in world.
+/// It thins a joint that bends far, as a mean of two turns does: so there are bones half-way, the bends.
 bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
   if (!has_whole_skin(hand)) return false;
   const SkinRig rig = pose_rig(hand);

@@ -14,7 +14,8 @@ double to_fourth(double x) {
   return x * x * x * x;
 }
 
-/// From a nail's middle, 1 at its edge: rather square.
+/// From a nail's middle, 1 at its edge: rather square. (x^4 + y^4)^(1/4), a superellipse (Lame), x along the
+/// finger and y round it.
 double from_middle(const Vector3& on_bone, double length) {
   const double begin = kBegins * length, end = length + kPast;
   const double along = (2.0 * on_bone.x() - begin - end) / (end - begin);

@@ -28,6 +28,7 @@ constexpr int sphere_of(int finger, int bone) {
   return finger * (kBonesPerFinger - 1) + bone - 1;
 }
 
+/// Seen from its side a capsule is 2 r l + pi r^2 large, as is a disc of R^2 = 2 r l / pi + r^2.
 struct Occluders {
   Floats x = Floats::Zero(), y = Floats::Zero(), z = Floats::Zero(), squared = Floats::Zero();
 
@@ -46,7 +47,10 @@ struct Occluders {
     }
   }
 
-  /// Share of the light from all around that is left; `counts` is 0 for the spheres that do not count.
+  /// Share of the light from all around that is left; `counts` is 0 for the spheres that do not count. A
+  /// sphere of radius R at the distance d takes (n.d / |d|) (R / |d|)^2 of the light that comes evenly from
+  /// the half space of n, while it is above the horizon; several are summed, as if none covered another. 1e-6
+  /// m^2 keeps one about the place itself from dividing by 0.
   float left(const Eigen::Vector3f& p, const Eigen::Vector3f& n, const Floats& counts) const {
     const Floats dx = x - p.x(), dy = y - p.y(), dz = z - p.z();
     const Floats d = dx * dx + dy * dy + dz * dz + 1e-6f;

@@ -14,7 +14,7 @@ HandPosture rest_posture() {
   return kDegree * posture;
 }
 
-/// z is as near to `back` as x allows.
+/// z is as near to `back` as x allows. y = back x x, z = x x y: what is left of `back` across x.
 Matrix3 axes_along(const Vector3& x, const Vector3& back) {
   Matrix3 axes;
   axes.col(0) = x.normalized();
@@ -45,7 +45,8 @@ RestHand make_rest_hand() {
   return rest;
 }
 
-/// The rest hand's axes for a hand of this side.
+/// The rest hand's axes for a hand of this side. M A M with M = diag(1, -1, 1): mirrored and mirrored back it
+/// is a rotation again.
 Matrix3 mirrored(Matrix3 axes, Side side) {
   if (side == Side::left) axes.row(1) *= -1.0, axes.col(1) *= -1.0;
   return axes;
@@ -78,6 +79,10 @@ class Poser {
     return mirrored(rest_[static_cast<std::size_t>(index)].axes, hand_.side);
   }
 
+  /// From the parent as it is now, by the turn that the rest hand has between the two, then by the least
+  /// rotation that brings x onto the bone: no twist about the bone, which the tracker does not tell. The bend
+  /// has half of that rotation. Folded back by 180 degrees the least rotation is not unique; no joint goes so
+  /// far.
   void turn(int index, int parent, int bend) {
     const auto i = static_cast<std::size_t>(index);
     const Capsule& capsule = hand_.capsules[i];

@@ -58,7 +58,8 @@ std::array<double, kSkinBones> skin_weights(const Vector3& point);
 /// distance.
 std::array<float, kCapsules> capsule_shares(const Vector3& point);
 
-/// 0 at `from`, 1 at `to`, constant beyond, with no kink; `from` may be the greater.
+/// 0 at `from`, 1 at `to`, constant beyond, with no kink; `from` may be the greater. t^2 (3 - 2 t): its slope
+/// is 0 at both ends.
 inline double smooth_step(double from, double to, double x) {
   const double t = std::min(1.0, std::max(0.0, (x - from) / (to - from)));
   return t * t * (3.0 - 2.0 * t);

@@ -14,6 +14,9 @@ constexpr double kFlesh = 0.010;       // two parts of the palm [m]
 constexpr double kBetweenWebs = 0.92;  // of a finger's width
 constexpr double kStump = 0.036;       // from the wrist to where the sleeve ends [m]
 
+/// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
+/// / 4, and the lesser of both beyond w. Unlike a minimum it is not associative: the order of the parts is
+/// part of the shape.
 double smooth_min(double a, double b, double width) {
   const double overlap = std::max(0.0, 1.0 - std::abs(a - b) / width);
   return std::min(a, b) - 0.25 * width * overlap * overlap;
@@ -24,6 +27,8 @@ struct Cone {
   Vector3 a, b;
   double at_a, at_b;  // radii [m]
 
+  /// To the ball about the axis's nearest place. The true distance is the least for any place on the axis,
+  /// and a little less on a slope.
   double distance(const Vector3& p) const {
     const Vector3 along = b - a;
     const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -41,7 +46,8 @@ Vector3 on(int finger, int index, double share) {
 
 /// A finger from its knuckle on, straight. The half on the palm's side, tip included, is the capsules'
 /// surface but for the webs, between which a finger is narrower; the other half is flatter, thickest at the
-/// joints.
+/// joints. Not a true distance: y and z are drawn out to a capsule of the one radius, so that it is right in
+/// sign and at 0, and roughly in between.
 class Finger {
  public:
   explicit Finger(int finger) : frame_(bone(finger, 1)) {
@@ -114,7 +120,8 @@ std::vector<Cone> web_cones() {
   return cones;
 }
 
-/// An elliptic cylinder about x that ends round, at the x of its last point.
+/// An elliptic cylinder about x that ends round, at the x of its last point. x counts twice from half a
+/// thickness before the end on: it ends in half an ellipsoid.
 double forearm_distance(const Vector3& p, double end, double half_width, double half_thickness) {
   const Vector3 q(std::max(0.0, p.x() - end + 0.5 * half_thickness) * 2.0,
                   p.y() * half_thickness / half_width, p.z() - 0.001);
@@ -123,6 +130,8 @@ double forearm_distance(const Vector3& p, double end, double half_width, double 
 
 }  // namespace
 
+/// Parts are united in a fixed order, and cut off at the wrist by x >= -kStump: an intersection is the
+/// negative of a union of negatives.
 double skin_distance(const Vector3& point) {
   static const std::vector<Cone> palm = palm_cones(), webs = web_cones();
   static const std::array<Finger, kFingers> fingers{{Finger(0), Finger(1), Finger(2), Finger(3), Finger(4)}};

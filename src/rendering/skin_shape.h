@@ -18,7 +18,8 @@ struct SkinBox {
 };
 SkinBox skin_box();
 
-/// Of a distance field, by central differences.
+/// Of a distance field, by central differences. (f(x + h e_i) - f(x - h e_i)) / 2 h: off by h^2 f''' / 6 and
+/// by f's rounding over h.
 template <typename Field>
 Vector3 gradient(const Field& distance, const Vector3& point) {
   constexpr double kStep = 1e-4;  // [m]

@@ -25,6 +25,7 @@ double distance_to_axis(const Capsule& capsule, const Vector3& p) {
   return (p - capsule.axis_point(s)).norm();
 }
 
+/// By (nearest / distance)^6 in radii, less a share below which it counts as none, and divided by their sum.
 std::array<double, kFingers> finger_weights(const Vector3& p) {
   std::array<double, kFingers> distance{}, weight{};
   for (int f = 0; f < kFingers; ++f) {
@@ -45,7 +46,9 @@ std::array<double, kFingers> finger_weights(const Vector3& p) {
   return weight;
 }
 
-/// How far the point is past the joint where the bone begins: 0 before it, 1 beyond.
+/// How far the point is past the joint where the bone begins: 0 before it, 1 beyond. A joint's zone is wider
+/// at the inside, where skin folds, than at the back: `inside` is 0 at the back of the bone, 1 one radius
+/// below its axis.
 double passed(int finger, int index, const Vector3& p) {
   const SkinBone& bone = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, index))];
   const Vector3 q = bone.axes.transpose() * (p - bone.start);
@@ -59,6 +62,8 @@ double passed(int finger, int index, const Vector3& p) {
   return even + kEase * (smooth_step(0.0, 1.0, even) - even);
 }
 
+/// Along the finger each joint's t passes the weight on: with u = 2 t - 1 the bend has 1 - |u|, the bone
+/// beyond max(0, u), the one before max(0, -u), which are 1 together for every t.
 void add_finger(int finger, double share, const Vector3& p, BoneWeights& weights) {
   int before = kWristBone;
   double left = share;  // not yet handed to a bone further in
@@ -78,6 +83,7 @@ void add_finger(int finger, double share, const Vector3& p, BoneWeights& weights
 
 }  // namespace
 
+/// The sum over fingers of w_f times the sum over its bones, 1 each: it is 1.
 BoneWeights skin_weights(const Vector3& point) {
   BoneWeights weights{};
   const auto fingers = finger_weights(point);
@@ -88,6 +94,8 @@ BoneWeights skin_weights(const Vector3& point) {
   return weights;
 }
 
+/// A bend counts half for the bone before and half for the bone after; the thumb's first has no bone before
+/// it.
 std::array<float, kCapsules> capsule_shares(const Vector3& point) {
   const BoneWeights weights = skin_weights(point);
   std::array<float, kCapsules> shares{};

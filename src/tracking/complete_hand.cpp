@@ -20,6 +20,8 @@ double fraction(float value) {
   return static_cast<double>(std::min(std::max(value, 0.0f), 1.0f));
 }
 
+/// A tracker's width is a diameter and a float; what is put in for it is rounded as if the tracker had given
+/// it.
 double finger_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger) {
   const auto& width = joints.finger_width[finger];
   return as_float(width ? 0.5 * static_cast<double>(*width) : fit.scale * anatomy::kFingerRadii[finger]);
@@ -34,6 +36,8 @@ std::array<std::optional<Vector3>, 5> complete_finger(const HandJoints& joints, 
   return completed;
 }
 
+/// Joint i is where bone i begins and bone i - 1 ends, in the device's frame; capsules are in world. A bone
+/// without length would have no direction: it is left out, as if the tracker had not given it.
 void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
                   const Pose& device_in_world, Hand& hand) {
   const auto completed = complete_finger(joints, fit, finger);
@@ -53,6 +57,8 @@ Vector3 wrist_of(const HandJoints& joints, const PalmFit& fit) {
 
 }  // namespace
 
+/// Along the palm's x, from the wrist to the fingers: 0.4 of its width between the ends' centres and 0.3
+/// thick, so that it is 0.7 long over all.
 Capsule palm_capsule(const Pose& palm, double palm_width) {
   const Vector3 half = 0.2 * palm_width * (palm.orientation * Vector3::UnitX());
   return {palm.position - half, palm.position + half, 0.15 * palm_width};
@@ -69,6 +75,7 @@ Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
   hand.grab_strength = fraction(joints.grab_strength);
   hand.pinch_strength = fraction(joints.pinch_strength);
   hand.palm = device_in_world * Pose{joints.palm_centre.value_or(fit.palm.position), fit.palm.orientation};
+  // The product of two unit quaternions is of length 1 but for rounding.
   hand.palm.orientation.normalize();
   hand.palm_width =
       joints.palm_width ? static_cast<double>(*joints.palm_width) : as_float(fit.scale * anatomy::kPalmWidth);

@@ -16,6 +16,14 @@ struct Gain {
 
 /// The Kalman filter's, for an acceleration that is white from frame to frame (Bar-Shalom, Li & Kirubarajan
 /// 2001, 6.3.2).
+///
+/// State (x, v) on an axis, over the interval T, with the acceleration's deviation a and the sample's r, P =
+/// [[position, mixed], [mixed, speed]]:
+///     F = [[1, T], [0, 1]],   Q = a^2 [[T^4 / 4, T^3 / 2], [T^3 / 2, T^2]],   P <- F P F^T + Q
+///     K = (P_xx, P_xv) / (P_xx + r^2),   P <- (1 - K H) P,   H = (1, 0).
+/// All axes and points share P, as they share a and r, so that three numbers are enough for a hand.
+/// Multiplied by one factor a and r give the same gains in the end: only their ratio counts. A hand that
+/// appears is where its sample says, within r, at a speed of kFirstSpeed or so.
 Gain update(double acceleration, double noise, double elapsed, MotionVariance& variance) {
   if (variance.speed == 0.0) variance = {noise * noise, 0.0, kFirstSpeed * kFirstSpeed};
   const double q = acceleration * acceleration * elapsed * elapsed;
@@ -30,6 +38,8 @@ Gain update(double acceleration, double noise, double elapsed, MotionVariance& v
 }
 
 /// rms speed of the hand without what noise beyond the usual feigns: three axes of the estimate's own error.
+/// The rms of an estimate is that of the truth and of its error together: E|v|^2 = v^2 + 3 P_vv. What the
+/// usual noise r0 adds stays in; of the rest the share is 1 - r0^2 / r^2.
 double true_speed(const FilterMemory& memory, double noise) {
   const double speed = rms_speed(memory.velocity, memory.filtered);
   if (noise <= kUsualNoise) return speed;
@@ -37,12 +47,16 @@ double true_speed(const FilterMemory& memory, double noise) {
   return std::sqrt(std::max(0.0, speed * speed - 3.0 * beyond * memory.variance.speed));
 }
 
+/// exp([turned]x): by |turned| about its direction, in world.
 Quaternion rotation(const Vector3& turned) {
   const double angle = turned.norm();
   if (angle == 0.0) return Quaternion::Identity();
   return Quaternion(Eigen::AngleAxisd(angle, turned / angle));
 }
 
+/// The same filter for a rotation: predicted = exp(T w) q, innovation = log(q_sample predicted^-1), which is
+/// small, so that turns about it add like vectors; all in world, from the left. AngleAxis takes the shorter
+/// way round, whichever sign the quaternions have.
 void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Quaternion& orientation,
                  Vector3& turn) {
   const Quaternion predicted = rotation(elapsed * turn) * before;
@@ -52,6 +66,7 @@ void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Qua
   turn += gain.velocity * innovation;
 }
 
+/// Prediction x + T v, innovation z - prediction; a point that comes or goes begins at rest where it is seen.
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (!filter.noise) observe_noise(memory.history, memory.noise);
   const double noise = filter.noise.value_or(filter_noise(memory.noise));

@@ -16,6 +16,7 @@ auto& point_of(AnyHand& hand, std::size_t point) {
 
 }  // namespace
 
+/// elapsed[i] goes with samples[i]: since the sample before it, which is samples[i + 1].
 void SampleHistory::push(const Hand& sample, double since, int keep) {
   size = std::min(size + 1, keep);
   for (auto i = static_cast<std::size_t>(size - 1); i > 0; --i) {
@@ -37,6 +38,8 @@ bool has_point(const Hand& hand, std::size_t point) {
   return point < 2 || hand.capsules[(point - 2) / 2].radius > 0.0;
 }
 
+/// Only of the capsules' ends: palm and wrist are always there, estimated where they are not seen. A joint
+/// that two bones share counts twice.
 double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   double sum = 0.0;
   int count = 0;
@@ -48,6 +51,7 @@ double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
+/// What is known of the tracker's noise stays: it is not the hand's.
 void FilterMemory::restart(const Hand& sample) {
   history.size = 0;
   history.push(sample, 0.0, 1);

@@ -36,10 +36,15 @@ Correspondences correspondences(const HandJoints& hand) {
 
 }  // namespace
 
+/// The inverse way: out of the adult's palm to the device.
 Vector3 PalmFit::place(const Vector3& anatomical) const {
   return palm * (scale * mirrored(anatomical, side));
 }
 
+///     sum |s R a_i + t - m_i|^2 -> min,   t = mean m - s R mean a
+/// over a scale s, a rotation R and a place t, a_i of the adult's palm, m_i measured in the device's frame
+/// (Umeyama 1991). A left hand is fitted to the mirrored palm, not by a reflection: R is a rotation for both.
+/// Sizes beyond 0.3 to 2.5 of an adult's are wrong units or wrong joints.
 std::optional<PalmFit> fit_palm(const HandJoints& hand) {
   const Correspondences points = correspondences(hand);
   const auto found = registered(points.anatomical.data(), points.measured.data(), points.size);

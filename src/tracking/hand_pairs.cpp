@@ -21,6 +21,7 @@ HandFrame joined(HandFrame first, const HandFrame& second) {
 
 }  // namespace
 
+/// An interval that is longer, or goes back, is a break: the next frame tells a new one.
 void HandPairs::Stream::note(Nanoseconds stamp) {
   const Nanoseconds since = stamp - last;
   interval = since > 0 && since <= kLongest ? since : 0;
@@ -31,6 +32,8 @@ bool HandPairs::Stream::goes_on(Nanoseconds stamp) const {
   return interval > 0 && std::abs(stamp - last) <= std::min(2 * interval, kLongest);
 }
 
+/// With the faster stream's interval T, |difference| <= T / 2: no frame of that stream is nearer, so that it
+/// is the right one; doubled on the left, as stamps are whole.
 bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
   if (!waiting_ || waiting_side_ == side) return false;
   Nanoseconds interval = kLongest;
@@ -39,6 +42,8 @@ bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
   return 2 * std::abs(stamp - waiting_->stamp) <= interval;
 }
 
+/// A frame waits for one of the other side only while that goes on. What waited and found no partner is
+/// dropped, not shown late: time does not go back.
 std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
   streams_[index(side)].note(frame.stamp);
   if (is_partner(side, frame.stamp)) {

@@ -14,16 +14,22 @@ Nanoseconds rejoin_duration(double way, double away) {
   constexpr double kAcceleration = 5.0;               // [m/s^2]
   constexpr double kShortest = 0.05, kLongest = 0.4;  // [s]
   constexpr double kOfSpeed = 4.63, kOfWay = 5.78;    // the two maxima of minimum jerk
+  // With s = 10 u^3 - 15 u^4 + 6 u^5: max |120 u^2 - 300 u^3 + 180 u^4| at u = 0.386, and max |s''| = 10 /
+  // sqrt(3) at u = (3 - sqrt(3)) / 6. Then a T^2 = b T + kOfWay way, of which T is the positive root.
   const double b = kOfSpeed * way / away;
   const double duration = (b + std::sqrt(b * b + 4.0 * kAcceleration * kOfWay * way)) / (2.0 * kAcceleration);
   return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kShortest, kLongest));
 }
 
+///     x = from + s(u) (tracked - from),   u = (t - begin) / duration,   s' = s'' = 0 at both ends
+/// It begins at rest, as the held hand was, and ends with the tracked hand's velocity. The duration is fixed
+/// at the start, for a hand that goes on as fast.
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
   const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
   return blend(rejoin.from, tracked, minimum_jerk(u));
 }
 
+/// Squares are compared, and one root is taken: the same bits, as a root keeps the order.
 double farthest_joint(const Hand& from, const Hand& to) {
   double distance_squared = 0.0;
   for (std::size_t c = 0; c < kCapsules; ++c) {
@@ -35,6 +41,9 @@ double farthest_joint(const Hand& from, const Hand& to) {
   return std::sqrt(distance_squared);
 }
 
+/// Quaternions by the shorter arc at one rate (slerp: Shoemake 1985), points on lines. At 1 it is `to` to the
+/// last bit: a hand that has caught up owes nothing to where it was. A capsule that only one of them has is
+/// as in `to`.
 Hand blend(const Hand& from, const Hand& to, double fraction) {
   if (fraction >= 1.0) return to;
   Hand hand = to;

@@ -12,7 +12,8 @@ auto& joint(Joints& hand, std::size_t i) {
 
 }  // namespace
 
-/// All of them, as those that are in both have.
+/// All of them, as those that are in both have. x' = to + R (x - from) with the rotation R between the joints
+/// that are in both (least squares, without their scale). Without one what was known is forgotten.
 void JointGaps::Memory::move_on(const Points& now) {
   std::array<Vector3, kJoints> from, to;
   std::size_t size = 0;
@@ -28,6 +29,8 @@ void JointGaps::Memory::move_on(const Points& now) {
   }
 }
 
+/// A joint is put in from its last place, moved on frame by frame, up to kLongest after it was seen itself:
+/// what has been put in counts as known for the next frame, but not as seen.
 void JointGaps::Memory::take(HandJoints& hand, Nanoseconds at) {
   for (std::size_t i = 0; i < kJoints; ++i)
     if (joint(hand, i) && !joint(hand, i)->allFinite()) return;  // it will be refused

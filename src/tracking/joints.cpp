@@ -26,6 +26,7 @@ std::string point_defect(const std::string& name, const std::optional<Vector3>& 
   return "";
 }
 
+/// Not a number fails both comparisons, and is a defect.
 std::string width_defect(const std::string& name, const std::optional<float>& width, float widest) {
   if (!width || (*width > 0.0f && *width <= widest)) return "";
   return name + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
@@ -47,6 +48,7 @@ std::string finger_defect(const HandJoints& hand, std::size_t finger) {
   return width_defect(name + " width", hand.finger_width[finger], kWidestFinger);
 }
 
+/// A metacarpal alone, b = 0, is within the palm.
 bool has_bone(const HandJoints& hand) {
   for (const auto& joints : hand.joints)
     for (std::size_t b = 1; b < kBonesPerFinger; ++b)
@@ -56,6 +58,8 @@ bool has_bone(const HandJoints& hand) {
 
 }  // namespace
 
+/// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
+/// on what came before.
 std::string defect(const HandJoints& hand) {
   const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
                                                      {"grab strength", hand.grab_strength},
@@ -77,6 +81,8 @@ std::string defect(const HandJoints& hand) {
   return "";
 }
 
+/// A frame that has hands, but none that is right, is nothing: taken as empty, the hands that there are would
+/// count as gone.
 std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& device_in_world,
                                         std::vector<std::string>& defects) {
   HandFrame frame;

@@ -26,6 +26,10 @@ constexpr int kFewestVariances = 5;
 
 /// Of third differences in which samples at uneven intervals count as one would at even ones: divided, and of
 /// unit length. The first is the newest sample's.
+///
+///     w_i = 1 / prod_{j != i} (t_i - t_j),   sum w_i x(t_i) = 0 for every parabola x
+/// is Newton's divided difference. At even intervals that is (1, -3, 3, -1) / sqrt(20). Of unit length, so
+/// that white noise has the variance sigma^2 in it whatever the intervals are.
 Weights third_difference(const SampleHistory& history, std::size_t newest) {
   std::array<double, kPoints> times{};
   for (std::size_t i = 1; i < kPoints; ++i) times[i] = times[i - 1] - history.elapsed[newest + i - 1];
@@ -41,6 +45,7 @@ Weights third_difference(const SampleHistory& history, std::size_t newest) {
   return weights;
 }
 
+/// At the bone's end: joints that are starts are other bones' ends, but for the roots.
 Vector3 difference_of(const SampleHistory& history, std::size_t newest, std::size_t capsule,
                       const Weights& weights) {
   Vector3 sum = Vector3::Zero();
@@ -55,7 +60,8 @@ bool is_in_all(const SampleHistory& history, std::size_t capsule) {
 }
 
 /// The middle one of the joints' products of the last two differences, as noise has it: above 0. Nothing
-/// without joints.
+/// without joints. Over three axes the mean of d_now.d_before is -3 overlap sigma^2; the sign is turned. The
+/// middle one, as a joint that leaps would rule a mean.
 std::optional<double> middle_product(const SampleHistory& history, const Weights& now,
                                      const Weights& before) {
   std::array<double, kPhalanges> products{};
@@ -71,13 +77,16 @@ std::optional<double> middle_product(const SampleHistory& history, const Weights
   return *middle;
 }
 
-/// The same for noise of variance 1 on an axis.
+/// The same for noise of variance 1 on an axis. The two share three samples: -sum w_now(i) w_before(i), 15 /
+/// 20 at even intervals.
 double overlap(const Weights& now, const Weights& before) {
   double sum = 0.0;
   for (std::size_t i = 1; i < kPoints; ++i) sum -= now[i] * before[i - 1];
   return sum;
 }
 
+/// Negative products, which motion makes, count as no noise: were they left out, only what looks like noise
+/// would count.
 void add(double variance, SeenNoise& noise) {
   noise.size = std::min(noise.size + 1, kNoiseWindow);
   for (auto i = static_cast<std::size_t>(noise.size - 1); i > 0; --i)
@@ -96,6 +105,8 @@ double low_variance(const SeenNoise& noise) {
 
 }  // namespace
 
+/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Where intervals differ much the two
+/// differences hardly overlap, and the division would make noise of rounding: such a sample is passed over.
 void observe_noise(const SampleHistory& history, SeenNoise& noise) {
   if (history.size < kNoiseSamples) return;
   const Weights now = third_difference(history, 0), before = third_difference(history, 1);

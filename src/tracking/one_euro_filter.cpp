@@ -7,11 +7,16 @@ namespace mrhi {
 namespace {
 
 /// Weight of the newest sample in a low-pass of first order that halves the power at `cutoff` [Hz].
+///
+///     alpha = 1 / (1 + tau / T),   tau = 1 / (2 pi cutoff)   (Casiez, Roussel & Vogel 2012)
+/// is the step of an implicit Euler method for tau y' = x - y: stable at any interval T, and the cutoff is as
+/// named as long as it is well below 1 / T.
 double weight(double cutoff, double elapsed) {
   const double turn = 2.0 * M_PI * cutoff * elapsed;
   return turn / (1.0 + turn);
 }
 
+/// Velocities of raw samples, low-passed: v <- v + alpha ((x - x_before) / T - v).
 void follow_velocity(const Hand& from, const Hand& to, double elapsed, double share, HandVelocity& velocity) {
   for (std::size_t point = 0; point < kHandPoints; ++point) {
     Vector3& v = velocity.points[point];
@@ -23,6 +28,9 @@ void follow_velocity(const Hand& from, const Hand& to, double elapsed, double sh
   }
 }
 
+///     cutoff = min_cutoff + beta |v|,   y <- y + alpha (x - y)
+/// with |v| the rms of the hand's joints, not each one's own: joints of one finger would lag by different
+/// times and bones change their lengths.
 Hand one_euro(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   const Hand& sample = memory.history.samples[0];
   follow_velocity(memory.history.samples[1], sample, elapsed, weight(filter.derivative_cutoff, elapsed),

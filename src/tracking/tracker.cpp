@@ -42,6 +42,9 @@ bool knows_nothing(const HandTrack& track, const Hand&) {
   return !track.active && track.filter.noise.size == 0;
 }
 
+/// The surest first, each for all slots, before the next: id and side, id alone (a tracker that took a left
+/// for a right hand), a new id near a hand that is held; then free slots, those that know the noise of this
+/// side first. In the order of slots and of the frame: equal frames give equal tracks.
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
@@ -69,6 +72,7 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
   return assignment;
 }
 
+/// Before and now are one pose, so that it has no velocity: what it overlaps is not struck by its coming.
 void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;
@@ -81,6 +85,8 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.filter_change.reset();
 }
 
+/// Both filters run on the same samples, and the hand is (1 - s) old + s new, with s of minimum jerk, whose
+/// first two derivatives are 0 at both ends.
 Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configuration& configuration,
                              HandTrack& track) {
   const double elapsed = to_seconds(stamp - track.last_seen);
@@ -96,6 +102,9 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
   return blend(before, now, minimum_jerk(u));
 }
 
+/// The jump is told by raw samples: what is filtered lags behind, and the difference would look like a leap.
+/// A hand that was held begins its filter anew, as its samples of before say nothing about now, and catches
+/// up from the pose that was shown.
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
   if (farthest_joint(track.filter.history.samples[0], hand) > configuration.tracking.max_speed * away) {
@@ -117,6 +126,7 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
 }
 
+/// Its last two poses are one: the hand stands still.
 void hold(HandTrack& track) {
   track.held = true;
   track.emerged = track.appeared;
@@ -151,6 +161,8 @@ void check_filter(FilterKind kind) {
   hand_filter(kind);
 }
 
+/// The new filter starts from the last pose shown, at rest and knowing nothing of its own error; the old one
+/// runs on beside it with all that it knew.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands) {
   for (HandTrack& track : hands) {
     if (!track.active || track.filter.empty()) continue;
@@ -160,6 +172,7 @@ void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector
   }
 }
 
+/// What is known of the tracker's noise stays in the slot, for the next hand of its side.
 void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
                        std::vector<Event>& events) {
   for (HandTrack& track : hands) {

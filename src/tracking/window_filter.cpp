@@ -6,6 +6,9 @@
 namespace mrhi {
 namespace {
 
+/// The unit q with the greatest sum of (q.q_i)^2 = q^T (sum q_i q_i^T) q, that is the eigenvector of the
+/// greatest eigenvalue, which the solver gives last. Signs of q_i drop out of the products; a mean of the
+/// four numbers would need them alike.
 Quaternion mean_orientation(const SampleHistory& history, int count) {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (int i = 0; i < count; ++i) {
@@ -20,6 +23,8 @@ Quaternion mean_orientation(const SampleHistory& history, int count) {
   return mean.normalized();
 }
 
+/// From the newest back to the first sample that lacks it: a bone that has been away is not drawn towards
+/// where it was before.
 Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
   Capsule sum;
   int present = 0;
@@ -35,6 +40,8 @@ Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsul
   return {sum.start / present, sum.end / present, sum.radius / present};
 }
 
+/// Read as printed, Eq. 1 adds F + 1 samples and divides by F: at F = 3 the hand would be 4/3 as far from the
+/// origin as it is.
 Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory) {
   const SampleHistory& history = memory.history;
   const int count = std::min(filter.window, history.size);
