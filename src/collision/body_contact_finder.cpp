@@ -227,11 +227,13 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
   const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
   const double travel = reaches_[ia].travel + reaches_[ib].travel;
   const MovingBody a(body_a, bodies[ia], gravity_), b(body_b, bodies[ib], gravity_);
-  const double margin = travel + (fastest_point(a) + fastest_point(b)) * step;
+  const double turned = fastest_point(a) * step, margin = travel + turned + fastest_point(b) * step;
+  const double within =
+      body_b.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
     const double away =
         at_least_away(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
-    if (away > body_b.bounding_radius + travel) continue;
+    if (away > within) continue;
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};

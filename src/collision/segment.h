@@ -45,11 +45,6 @@ struct Stretch {
   double s0 = 0.0, s1 = 1.0;
 
   double middle() const { return std::max(0.0, std::min(0.5 * (s0 + s1), 1.0)); }
-  /// Adds what goes on where this ends.
-  void join(const Stretch& next) {
-    if (next.s0 > s1 + 1e-9 || next.s1 < s0 - 1e-9) return;
-    s0 = std::min(s0, next.s0), s1 = std::max(s1, next.s1);
-  }
   /// Keeps what has |x0 + s * dx| <= half. Both ends within are looked at first: the quotients below would
   /// cut an end off by an ulp. What runs level beside the slab is kept whole, so that who asks must know that
   /// it is over it.
