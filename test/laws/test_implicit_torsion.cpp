@@ -46,7 +46,8 @@ double sunk_under_a_crowd(const Configuration& configuration) {
   Simulation simulation(scene, configuration);
   testing::play(simulation, 0.0, 3.0, 120.0, testing::closing_on_the_end);
   EXPECT_EQ(simulation.state().interactions[0].level, InteractionLevel::grasp);
-  EXPECT_GE(simulation.state().body_contacts.size(), 30u);
+  // The cubes lie on what is held, and have fallen off what is not.
+  EXPECT_EQ(simulation.state().body_contacts.size(), configuration.contact.torsion ? 40u : 0u);
   const Quaternion& turn = simulation.state().bodies[0].pose.orientation;
   return std::abs(2.0 * std::atan2(turn.x(), turn.w()));
 }
