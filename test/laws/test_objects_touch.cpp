@@ -307,8 +307,8 @@ TEST(ObjectsTouch, a_held_cube_carries_another_on_top_of_it) {
 }
 
 /// Bodies listed the other way round are the same scene.
-/// How deep a bar that turns fast gets into a ball in its way at most, by steps in which its end moves by more
-/// than the ball's radius [m].
+/// How deep a bar that turns fast gets into a ball in its way at most, by steps in which its end moves by
+/// more than the ball's radius [m].
 double deepest_of_a_blow_by_turning(bool bar_first) {
   const Vector3 half(0.005, 0.1, 0.005);
   constexpr double kRadius = 0.01;
