@@ -54,6 +54,13 @@ TEST(SafeYaml, names_the_line_of_what_is_no_yaml_or_an_alias) {
   EXPECT_EQ(refusal("a: &x 1\nb: 2\nc: *x\n"), "here:3: an alias is not allowed; allowed: the value itself");
 }
 
+// yaml-cpp 0.6.3 took all memory for these: Debian 11 and Ubuntu 20.04.
+TEST(SafeYaml, that_ends_on_a_colon_within_braces_is_refused) {
+  for (const char* text : {"{po:", "- {a: 1, leaving:", "[a, b:", "{a: {b:", "{:", "[:", "? {a:"})
+    EXPECT_EQ(refusal(text).rfind("here:1: not YAML: end of ", 0), 0u) << text;
+  EXPECT_EQ(refusal("po:"), "");
+}
+
 TEST(SafeYaml, of_a_file_that_is_not_there_is_told_by_its_name) {
   try {
     load_yaml_file("/nowhere/at/all.yaml");
