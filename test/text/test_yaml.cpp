@@ -57,7 +57,7 @@ TEST(SafeYaml, names_the_line_of_what_is_no_yaml_or_an_alias) {
 // yaml-cpp 0.6.3 took all memory for these: Debian 11 and Ubuntu 20.04.
 TEST(SafeYaml, that_ends_on_a_colon_within_braces_is_refused) {
   for (const char* text : {"{po:", "- {a: 1, leaving:", "[a, b:", "{a: {b:", "{:", "[:", "? {a:"})
-    EXPECT_EQ(refusal(text).rfind("here:1: not YAML: end of ", 0), 0u) << text;
+    EXPECT_NE(refusal(text).find(": not YAML: end of "), std::string::npos) << text << " " << refusal(text);
   EXPECT_EQ(refusal("po:"), "");
 }
 
