@@ -209,6 +209,24 @@ TEST(GraspAssist, lets_go_without_a_kick_as_the_hand_opens) {
 }
 
 // The hand closes beside the cube, or passes it without closing.
+// Fingers that closed by 24 mm beyond both sides and open by 23 mm are in the cube by half a millimetre each.
+TEST(GraspAssist, has_let_go_before_the_fingers_have_left) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.hand = HandStrength::of_a_person();
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1)),
+                        configuration);
+  constexpr double kDeep = 0.012, kOpened = 0.023 / (2.0 * (kFingersAway - kHalf + kDeep));
+  bool taken = false;
+  testing::play(
+      simulation, 0.0, 2.0, 120.0,
+      [&](double t) {
+        return reaching(std::min(t / 0.2, 1.0) - kOpened * testing::smooth(t - 1.0, 0.3), kDeep, 0.0);
+      },
+      [&](const Simulation& s) { taken = taken || !s.state().grips.empty(); });
+  EXPECT_TRUE(taken);
+  EXPECT_TRUE(simulation.state().grips.empty());
+}
+
 TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {
   Configuration configuration = testing::implicit_configuration();
   configuration.contact.grasp_assist = true;
