@@ -86,6 +86,15 @@ TEST(Sleeping, cubes_that_stand_still_sleep_where_they_stand) {
 // They slept where they stood to 1e-12 m, and sliding by fits and starts makes more of that, now and then
 // millimetres: on which step what slides holds or lets go is decided by the last bits. All agree over the
 // first centimetre, most over all of their way.
+// Less is what is about to fall; the cubes have settled within a tenth of a second.
+TEST(Sleeping, begins_once_all_has_been_still_for_half_a_second_and_no_sooner) {
+  Played played(standing_cubes(), true);
+  played.run(0.45);
+  EXPECT_FALSE(played.asleep(1) || played.asleep(2));
+  played.run(0.9);
+  EXPECT_TRUE(played.asleep(1) && played.asleep(2));
+}
+
 TEST(Sleeping, a_hand_that_comes_finds_them_awake_and_moves_them_as_if_they_had_not_slept) {
   constexpr int kPushes = 16;
   Played slept(standing_cubes(), true), waked(standing_cubes(), false);
