@@ -225,6 +225,24 @@ TEST(Silence, computed_bit_by_bit_or_in_one_go_it_gives_the_same_bits) {
   }
 }
 
+TEST(Silence, of_more_than_a_minute_is_not_made_up_for) {
+  for (const double gap : {50.0, 70.0}) {
+    Scene scene = drifting_cube();
+    scene.bounds = {Vector3::Constant(-100.0), Vector3::Constant(100.0)};
+    Simulation simulation(scene, unfiltered());
+    simulation.advance({at(0.0), {}});
+    const Vector3 before = simulation.state().bodies[0].pose.position;
+    const Nanoseconds now = at(gap);  // as a clock says too
+    ASSERT_EQ(simulation.begin({now, {}}, now), Rejection::none);
+    while (simulation.step()) {
+    }
+    simulation.end();
+    const double speed = scene.bodies[0].start_twist.linear.norm();
+    const double flown = (simulation.state().bodies[0].pose.position - before).norm();
+    EXPECT_NEAR(flown, gap < 60.0 ? gap * speed : 0.0, 0.01 * gap * speed) << gap;
+  }
+}
+
 TEST(Silence, within_hold_time_nothing_is_computed_ahead_of_the_next_frame) {
   Simulation simulation(drifting_cube(), unfiltered());
   run(simulation, 0, 70);

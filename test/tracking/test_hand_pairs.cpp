@@ -90,6 +90,15 @@ TEST(HandPairs, WhatWaitsAtTheEndIsTheRest) {
   EXPECT_FALSE(pairs.rest());
 }
 
+// Waiting for the other hand would cost more than is seen of it.
+TEST(HandPairs, FramesMoreThanATenthOfASecondApartWaitForNoPartner) {
+  HandPairs pairs;
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(pairs.take(Side::left, frame(Side::left, i * 200 * kMs))) << i;
+    EXPECT_TRUE(pairs.take(Side::right, frame(Side::right, i * 200 * kMs + 60 * kMs))) << i;
+  }
+}
+
 TEST(HandPairs, TimeThatGoesBackBeginsAnew) {
   HandPairs pairs;
   for (int i = 0; i < 10; ++i) {
