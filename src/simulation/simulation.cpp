@@ -130,16 +130,16 @@ bool Simulation::step() {
 
 const FrameResult& Simulation::report() {
   Impl& s = *impl_;
+  if (s.reported) return s.result;
   s.state.time = s.frame_to;
   s.report(s.frame_to);
   return s.result;
 }
 
 const FrameResult& Simulation::end() {
-  Impl& s = *impl_;
-  if (!s.reported) report();
-  s.render();
-  return s.result;
+  report();
+  impl_->render();
+  return impl_->result;
 }
 
 Rejection Simulation::advance(const HandFrame& frame) {

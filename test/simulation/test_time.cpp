@@ -207,6 +207,26 @@ TEST(Time, a_stream_that_begins_anew_restarts_everything_at_its_third_frame) {
   EXPECT_FALSE(simulation.result().restarted);
 }
 
+TEST(Time, a_report_before_the_end_has_all_but_the_rendered_hands_and_changes_no_bit) {
+  Simulation asked(drifting_cube(), unfiltered()), plain(drifting_cube(), unfiltered());
+  run(asked, 0, 60);
+  run(plain, 0, 60);
+  const HandFrame frame{at(60 / kRate), {pushing(60 / kRate)}};
+  ASSERT_EQ(asked.begin(frame), Rejection::none);
+  while (asked.step()) {
+  }
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(asked.report().tracked.size(), 1u) << i;
+    EXPECT_TRUE(asked.report().rendered.empty()) << i;
+  }
+  const std::size_t contacts = asked.report().contacts.size();
+  EXPECT_EQ(asked.end().rendered.size(), 1u);
+  plain.advance(frame);
+  EXPECT_EQ(plain.result().contacts.size(), contacts);
+  EXPECT_EQ(plain.result().tracked.size(), 1u);
+  EXPECT_EQ(hash(asked.state()), hash(plain.state()));
+}
+
 TEST(Silence, computed_bit_by_bit_or_in_one_go_it_gives_the_same_bits) {
   for (const double gap : {0.21, 0.5, 1.2345, 3.0}) {
     Simulation replayed(drifting_cube(), unfiltered()), live(drifting_cube(), unfiltered());
