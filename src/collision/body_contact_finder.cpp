@@ -142,6 +142,17 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   return contact;
 }
 
+/// Pairs come sorted, so that only the points of one need to be: each goes among those before it. What
+/// std::sort has for many, gcc 14 takes for a read beyond these few.
+void sort_points(Manifold& manifold) {
+  const auto before = [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.feature < y.feature; };
+  const auto begin = manifold.points.begin();
+  for (int count = 1; count < manifold.count; ++count) {
+    const auto next = begin + count;
+    std::rotate(std::upper_bound(begin, next, *next, before), next, next + 1);
+  }
+}
+
 }  // namespace
 
 BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& geometry,
@@ -239,9 +250,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
       auto touch = find_touch(pair, step, followed_, margin);
       if (!touch) continue;
-      // Pairs come sorted, so that only the points of one need to be.
-      std::sort(touch->manifold.points.begin(), touch->manifold.points.begin() + touch->manifold.count,
-                [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.feature < y.feature; });
+      sort_points(touch->manifold);
       const Common common = common_of(pair, *touch);
       for (int p = 0; p < touch->manifold.count; ++p) {
         const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
