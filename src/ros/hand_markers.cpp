@@ -20,7 +20,7 @@ constexpr double kFull = 0.012;    // at this distance its alpha is greatest [m]
 constexpr float kGreatestAlpha = 0.7f;
 constexpr std::uint32_t kMiddle = std::numeric_limits<std::uint32_t>::max();
 constexpr double kLidDepth = 0.01;     // from the rim on [m]
-constexpr int kSpare = 8 * kMaxHands;  // skin, wrist's sides and ghost of each
+constexpr int kSpare = 9 * kMaxHands;  // skin, wrist's sides, creases and ghost of each
 const Rgb kGhost(0.337f, 0.706f, 0.914f);
 
 HandStyle capsule_style() {
@@ -56,6 +56,7 @@ HandMarkers::HandMarkers(const Skin& skin)
     : skin_(skin),
       outline_(Skin::outline()),
       paint_(skin_),
+      creases_(skin_),
       skin_corners_(
           closed(corners_of(skin_, [this](const auto& triangle) { return !fades(triangle); }), rim_)),
       wrist_corners_(corners_of_wrist()),
@@ -161,6 +162,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, Drawn& drawn, int id, M
     for (const std::uint32_t vertex : corners) middle += drawn.surface.vertices[vertex];
     add_part(drawn, side, middle / static_cast<double>(corners.size()), ++id, layer);
   }
+  add_creases(drawn, ++id, layer);
 }
 
 std::pair<Vector3, Vector3> HandMarkers::middle_of_rim(const SkinSurface& surface) const {
@@ -197,6 +199,17 @@ void HandMarkers::add_part(const Drawn& drawn, const Corners& of_either_side, co
     marker.points[i] = mrhi::to_message((is_middle ? lid : drawn.surface.vertices[corners[i]]) - origin);
     marker.colors[i] = is_middle ? to_message(drawn.lid, 1.0f)
                                  : to_message(drawn.colours[corners[i]], paint_.opacity(corners[i]));
+  }
+}
+
+void HandMarkers::add_creases(const Drawn& drawn, int id, MarkerLayer& layer) {
+  creases_.pose(drawn.surface, drawn.colours, folds_);
+  Marker& marker = add_triangles(id, layer);
+  marker.points.resize(folds_.size());
+  marker.colors.resize(folds_.size());
+  for (std::size_t i = 0; i < folds_.size(); ++i) {
+    marker.points[i] = mrhi::to_message(folds_[i].place);
+    marker.colors[i] = to_message(folds_[i].colour, 1.0f);
   }
 }
 

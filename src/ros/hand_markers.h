@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "../rendering/skin_creases.h"
 #include "../rendering/skin_paint.h"
 #include "marker_layers.h"
 
@@ -13,7 +14,7 @@ namespace mrhi {
 
 /// Where hands are drawn.
 struct HandLayers {
-  MarkerLayer& hand;   ///< the rendered hand's skin, and apart from it the wrist's sides
+  MarkerLayer& hand;   ///< the rendered hand's skin, and apart from it the wrist's sides and the creases
   MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
 };
 
@@ -56,6 +57,7 @@ class HandMarkers {
   std::pair<Vector3, Vector3> middle_of_rim(const SkinSurface& surface) const;
   void add_part(const Drawn& drawn, const Corners& corners, const Vector3& origin, int id,
                 MarkerLayer& layer);
+  void add_creases(const Drawn& drawn, int id, MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, int id, MarkerLayer& layer);
 
   using Chosen = std::function<bool(const std::array<int, 3>& triangle)>;
@@ -68,6 +70,7 @@ class HandMarkers {
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
+  const SkinCreases creases_;
   std::vector<std::uint32_t> rim_;  // where the opaque skin ends
   const Corners skin_corners_;
   const std::array<Corners, kWristSides> wrist_corners_;
@@ -75,6 +78,7 @@ class HandMarkers {
   std::vector<Drawn> drawn_;     // by their place in the result
   SkinSurface ghost_, beneath_;  // kept for their memory, as are the rest
   std::vector<float> alphas_;
+  std::vector<SkinCreases::Corner> folds_;
   std::vector<visualization_msgs::Marker> spare_;
 };
 

@@ -12,8 +12,9 @@ namespace mrhi {
 namespace {
 
 constexpr int kWristSides = 6;
+constexpr int kParts = 1 + kWristSides + 1;  // the skin, the sides of its wrist, its creases
 
-/// The skin, then the wrist's sides.
+/// The skin, the wrist's sides, the creases.
 std::vector<const Marker*> parts_of(const Shown& shown) {
   std::vector<const Marker*> parts;
   for (const Marker& marker : shown.array.markers)
@@ -30,7 +31,7 @@ TEST(HandMarkers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   Shown shown;
   shown.see_hands(2);
   auto added = shown.update();
-  EXPECT_EQ(added["hand"], 2 * (1 + kWristSides));  // two skins, and the sides of their wrists
+  EXPECT_EQ(added["hand"], 2 * kParts);
   const int capsules = added["capsules"];
   EXPECT_GT(capsules, 2 * kPhalanges);
   const Marker& skin = shown.first("hand");
@@ -38,8 +39,8 @@ TEST(HandMarkers, a_hand_is_one_skin_and_hands_that_go_are_deleted) {
   EXPECT_EQ(skin.colors.size(), skin.points.size());
   shown.see_hands(1);
   added = shown.update();
-  EXPECT_EQ(added["hand"], 1 + kWristSides);
-  EXPECT_EQ(shown.deleted("hand"), 1 + kWristSides);
+  EXPECT_EQ(added["hand"], kParts);
+  EXPECT_EQ(shown.deleted("hand"), kParts);
   EXPECT_EQ(shown.deleted("capsules"), capsules / 2);
   shown.update();
   EXPECT_EQ(shown.deleted("hand"), 0);
@@ -51,10 +52,10 @@ TEST(HandMarkers, the_skin_is_opaque_and_closed_and_the_wrist_ends_in_nothing) {
     shown.see_hands(1, side);
     shown.update();
     const std::vector<const Marker*> parts = parts_of(shown);
-    ASSERT_EQ(parts.size(), 1u + kWristSides);
+    ASSERT_EQ(parts.size(), std::size_t{kParts});
     const Marker& skin = *parts[0];
     Marker wrist;
-    for (std::size_t part = 1; part < parts.size(); ++part) {
+    for (std::size_t part = 1; part <= kWristSides; ++part) {
       wrist.points.insert(wrist.points.end(), parts[part]->points.begin(), parts[part]->points.end());
       wrist.colors.insert(wrist.colors.end(), parts[part]->colors.begin(), parts[part]->colors.end());
     }
@@ -100,9 +101,9 @@ TEST(HandMarkers, the_lid_below_the_wrist_lies_within_the_hand) {
   shown.see_hands(1);
   shown.update();
   const std::vector<const Marker*> parts = parts_of(shown);
-  ASSERT_EQ(parts.size(), 1u + kWristSides);
+  ASSERT_EQ(parts.size(), std::size_t{kParts});
   std::vector<Triangle> surface = triangles_of(*parts[0]), wrist;
-  for (std::size_t part = 1; part < parts.size(); ++part)
+  for (std::size_t part = 1; part <= kWristSides; ++part)
     for (const Triangle& triangle : triangles_of(*parts[part])) wrist.push_back(triangle);
   const std::size_t skin = Skin::human().triangles().size() - wrist.size();
   ASSERT_GT(surface.size(), skin + 10);
@@ -123,12 +124,12 @@ TEST(HandMarkers, the_sides_of_the_wrist_that_face_the_eye_are_nearer_to_it_than
   shown.update();
   const std::vector<const Marker*> parts = parts_of(shown);
   Vector3 wrist = Vector3::Zero();
-  for (std::size_t part = 1; part < parts.size(); ++part)
+  for (std::size_t part = 1; part <= kWristSides; ++part)
     wrist += from_message(parts[part]->pose.position) / kWristSides;
   for (const Vector3& towards : {Vector3(0, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(0, 0, -1)}) {
     const Vector3 eye = wrist + 0.4 * towards;
     double farthest_facing = 0.0, nearest_averted = 1.0;
-    for (std::size_t part = 1; part < parts.size(); ++part) {
+    for (std::size_t part = 1; part <= kWristSides; ++part) {
       Vector3 area = Vector3::Zero();
       for (const Triangle& t : triangles_of(*parts[part])) area += (t[1] - t[0]).cross(t[2] - t[0]);
       const Vector3 place = from_message(parts[part]->pose.position);
