@@ -2,6 +2,7 @@
 """What launch files make of their arguments: no shell reads any of them, and nobody but this machine may connect."""
 import glob
 import os
+import shlex
 import subprocess
 import tempfile
 import unittest
@@ -9,8 +10,10 @@ import unittest
 import roslaunch.config
 import roslaunch.xmlloader
 import roslib.packages
+import rosbag
 import rospkg
 import rostest
+from std_msgs.msg import Empty
 
 PACKAGE = "mr_hand_interaction"
 FOLDER = os.path.join(rospkg.RosPack().get_path(PACKAGE), "launch")
@@ -90,18 +93,80 @@ class LaunchFilesTest(unittest.TestCase):
             self.assertEqual(apart.count("interaction_node"), 1, name)
             self.assertNotIn("hand_interaction_node", apart, name)
 
+    def test_a_path_is_one_word_whatever_is_in_it(self):
+        for path in ("/tmp/x y/my hand.bag", "/tmp/it's --loop \"my\" \\ hand.bag", "/tmp/a\tb.bag"):
+            for name, argument, of in (("playback.launch", "bag", path), ("record.launch", "bag", path),
+                                       ("training.launch", "folder", path + "/hands")):
+                node = [node for node in nodes_of(name, argument + ":=" + path) if node.package == "rosbag"][0]
+                self.assertEqual(dict(node.env_args)["RUN_WHEN_FILE"], of)
+                self.assertEqual(shlex.split(node.args).count("@FILE"), 1)
+                self.assertIn("run_when", node.launch_prefix)
+            for name, argument, kind in (("mr_view.launch", "still", "image_publisher"), ("interaction.launch", "view", "rviz")):
+                node = [node for node in nodes_of(name, argument + ":=" + path) if node.package == kind][0]
+                self.assertEqual(shlex.split(node.args)[-1], path)
+
+    def test_what_is_not_known_is_answered_with_what_is(self):
+        for name, argument, allowed in (("multi_machine.launch", "role:=x", "bridge, simulation, view, all"),
+                                        ("multi_machine.launch", "hands:=x", "leap, demo"),
+                                        ("mr_view.launch", "hands:=x", "demo, leap, none"),
+                                        ("training.launch", "hands:=x", "leap, operator, demo, none"),
+                                        ("playback.launch", "rate:=x", "a number above 0"),
+                                        ("playback.launch", "rate:=1 --pause", "a number above 0")):
+            with self.assertRaises(roslaunch.xmlloader.XmlParseException) as told:
+                nodes_of(name, argument)
+            self.assertIn("'%s; allowed: %s'" % (argument, allowed), str(told.exception))
+
+    @staticmethod
+    def run_when(file, *arguments):
+        """Exit status and what was said."""
+        script = roslib.packages.find_node(PACKAGE, "run_when")[0]
+        answer = subprocess.run([script, *arguments], env=dict(os.environ, RUN_WHEN_FILE=file), timeout=60,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return answer.returncode, answer.stdout
+
+    def test_a_bag_that_cannot_be_played_is_named_in_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            paths = {name: os.path.join(folder, "x y", name + ".bag") for name in ("none", "folder", "pipe", "empty", "text",
+                                                                                 "other")}
+            os.makedirs(paths["folder"])
+            os.mkfifo(paths["pipe"])
+            with open(paths["empty"], "w"), open(paths["text"], "w") as text:
+                text.write("no bag")
+            with rosbag.Bag(paths["other"], "w") as bag:
+                bag.write("/other", Empty())
+            for path, why in ((paths["none"], "there is no such bag"), (paths["folder"], "is a folder; allowed: a file"),
+                              (paths["pipe"], "is a pipe; allowed: a file"), (paths["empty"], "is empty"),
+                              (paths["text"], "This does not appear to be a bag file"), ("/dev/zero", "is a device"),
+                              (paths["other"], "allowed: a bag with one of /hands")):
+                status, said = self.run_when(path, "bag", "echo", "played", "--topics", "/hands")
+                self.assertEqual(status, 1)
+                self.assertTrue(said.startswith(path + ": "), said)
+                self.assertIn(why, said)
+                self.assertEqual(said.count("\n"), 1, said)
+                if path != paths["other"]:  # whoever plays it says so
+                    self.assertEqual(self.run_when(path, "bag_without", "/tf_static", "echo", "placed"), (0, ""))
+
+    def test_a_command_gets_the_file_as_it_is_named(self):
+        for name in ("/tmp/x y/my hand.bag", "/tmp/$(touch x) 'a\" \\.bag"):
+            self.assertEqual(self.run_when(name, "file", "echo", "-O", "@FILE"), (0, "-O " + name + "\n"))
+
+    def test_a_command_that_is_not_there_is_named_in_one_line(self):
+        self.assertEqual(self.run_when("", "file", "/nope/command"),
+                         (1, "run_when: /nope/command: cannot be run: No such file or directory\n"))
+
+    def test_waiting_for_a_message_needs_a_master(self):
+        with with_environment(ROS_MASTER_URI="foo"):
+            self.assertEqual(self.run_when("", "message", "/training/status", "true"), (1, (
+                "run_when: ROS_MASTER_URI 'foo' is no address of a master; allowed: http://HOST:PORT\n")))
 
     def test_a_bag_s_name_is_a_name(self):
-        script = roslib.packages.find_node(PACKAGE, "run_when")[0]
         with tempfile.TemporaryDirectory() as folder:
             made = os.path.join(folder, "made")
             for name in ("`touch %s`.bag" % made, "$(touch %s).bag" % made, "\"; touch %s; \".bag" % made):
-                answer = subprocess.run([script, "bag_without", "/tf_static", "true"],
-                                        env=dict(os.environ, RUN_WHEN_BAG=name), stderr=subprocess.PIPE, timeout=60,
-                                        universal_newlines=True)
-                self.assertEqual(answer.returncode, 1)
-                self.assertEqual(answer.stderr, name + ": there is no such bag\n")
+                path = os.path.join(folder, name)
+                self.assertEqual(self.run_when(path, "bag", "true"), (1, os.path.abspath(path) + ": there is no such bag\n"))
             self.assertFalse(os.path.exists(made))
+
 
 
 if __name__ == "__main__":

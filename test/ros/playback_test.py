@@ -36,8 +36,8 @@ class PlaybackTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("playback_test")
-        cls.folder = tempfile.mkdtemp()
-        cls.bag = os.path.join(cls.folder, "nudge.bag")
+        cls.folder = tempfile.mkdtemp(prefix="a nudge ")
+        cls.bag = os.path.join(cls.folder, "of the cube.bag")
         cls.clear()
         cls.subscribers = [rospy.Subscriber("hand_frame", HandFrame, cls.take_frame),
                            rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
@@ -131,6 +131,14 @@ class PlaybackTest(unittest.TestCase):
                 break
         self.assertEqual(difference, "")
         self.assertTrue(self.pushed())
+
+    def test_a_bag_that_is_not_there_ends_the_launch_with_one_line(self):
+        missing = os.path.join(self.folder, "no such.bag")
+        told = subprocess.run(["roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + missing, "rviz:=false"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, universal_newlines=True).stdout
+        self.assertEqual([line for line in told.splitlines() if missing in line], [missing + ": there is no such bag"], told)
+        self.assertNotIn("Error opening", told)
+        self.assertEqual(told.count("process has died"), 1, told)
 
     def test_a_looping_bag_begins_anew_each_time(self):
         with self.play("loop:=true", "rate:=2"):

@@ -199,7 +199,8 @@ class User:
         assert package == NAME, command
         if file != "record.launch":
             arguments.append("rviz:=false")
-        nodes = [node for node in self.nodes_of(file, arguments) if not node.launch_prefix]
+        nodes = [node for node in self.nodes_of(file, arguments) if (node.launch_prefix or "").split()[2:3] not in
+                 (["message"], ["bag_without"])]
         names = {"/" + node.name for node in nodes}
         assert names, command
         master = rosgraph.Master("/printed_commands")

@@ -1,0 +1,157 @@
+"""What the scripts for users have in common: whatever befalls them, they end with at most one line that names the thing, and
+never with a traceback. To be imported before what takes long to import, where Ctrl-C is answered too."""
+
+import errno
+import io
+import os
+import signal
+import socket
+import stat
+import sys
+import traceback
+import urllib.parse
+
+INTERRUPTED = 128 + signal.SIGINT  # what a shell says of a program that Ctrl-C has ended
+READER_GONE = 128 + signal.SIGPIPE
+PATIENCE = 5.0  # s, for a master's answer
+MEBIBYTE = 1 << 20
+
+
+def name():
+    return os.path.basename(sys.argv[0])
+
+
+def run(main, at_once=False):
+    """Calls it, and ends with the status that it gives: None is 0. `at_once`: threads of ROS would hold it up."""
+    _print_what_cannot_be_encoded()
+    try:
+        code = main()
+        _flush()
+    except BaseException as error:  # SystemExit and KeyboardInterrupt too
+        code = _code_of(error)
+    if at_once:
+        _leave(code or 0)
+    sys.exit(code)
+
+
+def _print_what_cannot_be_encoded():
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors='backslashreplace')
+
+
+def _flush():
+    if sys.stdout is not None:
+        sys.stdout.flush()
+
+
+def _code_of(error):
+    """Says what there is to be said."""
+    if isinstance(error, KeyboardInterrupt):
+        _leave(INTERRUPTED)
+    if isinstance(error, SystemExit) and not isinstance(error.code, str):
+        code, line = error.code, ''
+    elif isinstance(error, SystemExit):
+        code, line = 1, error.code
+    elif isinstance(error, BrokenPipeError):
+        code, line = READER_GONE, ''
+    else:
+        code, line = 1, '%s: %s' % (name(), line_of(error))
+    try:
+        _flush()
+    except BrokenPipeError:
+        code = READER_GONE
+        _silence()
+    except OSError as other:
+        line = line or '%s: standard output: %s' % (name(), other.strerror)
+        code = code or 1
+        _silence()
+    if line:
+        print(line, file=sys.stderr)
+    return code
+
+
+def line_of(error):
+    """One line for what nobody has caught."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return '%s: %s' % (error.filename, error.strerror)
+    if isinstance(error, OSError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return 'there is not enough memory for it'
+    place = traceback.extract_tb(error.__traceback__)[-1:]
+    where = ' (%s, line %d)' % (os.path.basename(place[0].filename), place[0].lineno) if place else ''
+    return 'a fault of this program, please report it: %s: %s%s' % (type(error).__name__, ' '.join(str(error).split()), where)
+
+
+def _silence():
+    """So that Python does not try to write out the rest once more as it ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+
+
+def _leave(code):
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            if stream is not None:
+                stream.flush()
+        except OSError:
+            pass
+    os._exit(code)
+
+
+def _hook(kind, error, _):
+    if issubclass(kind, KeyboardInterrupt):
+        _leave(INTERRUPTED)
+    print('%s: %s' % (name(), line_of(error)), file=sys.stderr)
+
+
+sys.excepthook = _hook
+
+
+def read_text(path, most=64 * MEBIBYTE, encoding='utf-8'):
+    """Of a file, and of nothing that has no end. Raises OSError, or UnicodeDecodeError."""
+    with open_regular(path, most) as file:
+        return file.read().decode(encoding)
+
+
+def open_regular(path, most=None):
+    """As open(path, 'rb') where it is a file of at most so many bytes; else OSError says what it is."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    try:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, 'is %s; allowed: a file' % _kind(found.st_mode), path)
+        if most is not None and found.st_size > most:
+            raise OSError(errno.EFBIG, 'has %d bytes; allowed: at most %d' % (found.st_size, most), path)
+        return os.fdopen(descriptor, 'rb')
+    except OSError:
+        os.close(descriptor)
+        raise
+
+
+def _kind(mode):
+    return 'a folder' if stat.S_ISDIR(mode) else 'a pipe' if stat.S_ISFIFO(mode) else 'a device or a socket'
+
+
+def why_no_master():
+    """One line; None: there is a master."""
+    import rosgraph
+    uri = rosgraph.get_master_uri()
+    try:
+        parts = urllib.parse.urlsplit(uri)
+        fine = parts.scheme == 'http' and bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        fine = False
+    if not fine:
+        return "ROS_MASTER_URI '%s' is no address of a master; allowed: http://HOST:PORT" % uri
+    before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(PATIENCE)
+    try:
+        online = rosgraph.is_master_online()
+    except Exception:  # of a server that is none
+        online = False
+    finally:
+        socket.setdefaulttimeout(before)
+    return None if online else '%s does not answer: start a launch file or roscore, or set ROS_MASTER_URI' % uri
