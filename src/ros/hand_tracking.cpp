@@ -2,8 +2,6 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
@@ -20,6 +18,8 @@
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "mr_hand_interaction/tracking/joint_gaps.h"
 #include "tracker_messages.h"
+#include "tracker_transforms.h"
+#include "update_diagnostics.h"
 
 namespace mrhi {
 namespace {
@@ -32,7 +32,8 @@ const char* const kNoStamp = "stamp out of range";
 const char* const kNoTransform = "no transform";
 
 std::vector<std::string> known_reasons() {
-  std::vector<std::string> reasons{kUnusableHand, kStampNotIncreasing, kNoStamp, kNoTransform};
+  std::vector<std::string> reasons{kUnusableHand, kStampNotIncreasing, kNoStamp, kNoTransform,
+                                   TrackerTransforms::kReason};
   for (auto kind :
        {DecodeError::Kind::unknown_version, DecodeError::Kind::malformed, DecodeError::Kind::wrong_count})
     reasons.emplace_back(DecodeError(kind, "").reason());
@@ -66,9 +67,6 @@ struct HandTracking::Impl {
   void take(const std::optional<HandFrame>& frame, const ros::Time& receipt);
 
   bool accept_stamp(Nanoseconds stamp);
-  /// Pose of a tracker's frame in the fixed frame: at the stamp, else the latest. Throws
-  /// tf2::TransformException.
-  Pose device_pose(const std::string& frame_id, Nanoseconds stamp) const;
 
   Sink sink_;
   std::string fixed_frame_;
@@ -82,8 +80,7 @@ struct HandTracking::Impl {
   SequenceWatch sequences_;
 
   ros::NodeHandle node_;
-  tf2_ros::Buffer transforms_;
-  tf2_ros::TransformListener transform_listener_;
+  TrackerTransforms transforms_;
   ros::Publisher publisher_;
   ros::Subscriber leap_subscriber_;
   std::vector<ros::Subscriber> point_subscribers_;
@@ -96,7 +93,8 @@ HandTracking::Impl::Impl(const ros::NodeHandle& node, const ros::NodeHandle& par
       side_(parse_side(parameters.param<std::string>("side", "right"))),
       statistics_(known_reasons()),
       node_(node),
-      transform_listener_(transforms_),
+      transforms_(
+          node_, [this](const char* reason, const std::string& what) { statistics_.rejected(reason, what); }),
       diagnostics_(node, parameters, ros::this_node::getName()) {
   publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
   subscribe_leap();
@@ -106,7 +104,7 @@ HandTracking::Impl::Impl(const ros::NodeHandle& node, const ros::NodeHandle& par
   diagnostics_.setHardwareID("hand tracker");
   diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
   timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
-    diagnostics_.force_update();
+    update(diagnostics_);
     accept_other_versions();
   });
 }
@@ -176,7 +174,8 @@ std::optional<HandFrame> HandTracking::Impl::place(JointsFrame joints, const std
     return std::nullopt;
   }
   try {
-    const Pose device = joints.hands.empty() ? Pose{} : device_pose(frame_id, joints.stamp);
+    const Pose device =
+        joints.hands.empty() ? Pose{} : transforms_.pose(fixed_frame_, frame_id, joints.stamp);
     std::vector<std::string> defects;
     const auto frame = complete_frame(joints, device, defects);
     for (const std::string& found : defects) statistics_.rejected(kUnusableHand, found);
@@ -206,18 +205,8 @@ bool HandTracking::Impl::accept_stamp(Nanoseconds stamp) {
                                                   std::to_string(to_seconds(last)) + " s");
     return false;
   }
-  // Transforms that move would be refused as older than what the buffer has; static ones survive.
   if (verdict == StampVerdict::restart) transforms_.clear();
   return true;
-}
-
-Pose HandTracking::Impl::device_pose(const std::string& frame_id, Nanoseconds stamp) const {
-  const std::string source = frame_id.substr(frame_id.compare(0, 1, "/") == 0 ? 1 : 0);
-  try {
-    return from_message(transforms_.lookupTransform(fixed_frame_, source, to_ros_time(stamp)).transform);
-  } catch (const tf2::ExtrapolationException&) {
-    return from_message(transforms_.lookupTransform(fixed_frame_, source, ros::Time(0)).transform);
-  }
 }
 
 HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)

@@ -1,5 +1,7 @@
 #include "interaction_diagnostics.h"
 
+#include "update_diagnostics.h"
+
 namespace mrhi {
 
 InteractionDiagnostics::InteractionDiagnostics(ros::NodeHandle node, ros::NodeHandle parameters,
@@ -8,8 +10,8 @@ InteractionDiagnostics::InteractionDiagnostics(ros::NodeHandle node, ros::NodeHa
   updater_.setHardwareID("scene " + scene);
   updater_.add("interaction", this, &InteractionDiagnostics::report);
   updater_.add("state", this, &InteractionDiagnostics::report_state);
-  timer_ = node.createWallTimer(ros::WallDuration(1.0),
-                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  timer_ =
+      node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { update(updater_); });
 }
 
 void InteractionDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {

@@ -45,9 +45,28 @@ SceneOptions options_of(const Configuration& configuration) {
   return options;
 }
 
+std::string without_slash(const std::string& frame_id) {
+  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
+}
+
+/// An object's pose is in tf by its name: with a name of these a tracker would go where the object goes.
+void require_no_frame(const std::string& name, const std::string& fixed_frame) {
+  for (const std::string& frame : {without_slash(fixed_frame), std::string("leap_hands")}) {
+    if (name == frame)
+      throw std::invalid_argument("object '" + name + "': this name is not allowed; allowed: any but '" +
+                                  frame + "', which is a frame in tf");
+  }
+}
+
+void require_no_frames(const Scene& scene, const std::string& fixed_frame) {
+  for (const Body& body : scene.bodies)
+    if (!body.fixed) require_no_frame(body.name, fixed_frame);
+}
+
 Scene scene_of(const ServerParameters& parameters) {
   Scene scene =
       load_scene(find_scene_file(parameters.scene, scene_folders()), options_of(parameters.configuration));
+  require_no_frames(scene, parameters.fixed_frame);
   for (const auto& [name, twist] : parameters.object_twists) free_body(scene, name).start_twist = twist;
   return scene;
 }
@@ -56,10 +75,6 @@ World world_of(const ServerParameters& parameters) {
   World world = world_of_file(find_scene_file(parameters.scene, scene_folders()), parameters.configuration);
   world.twists = parameters.object_twists;
   return world;
-}
-
-std::string without_slash(const std::string& frame_id) {
-  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
 }
 
 template <class Service, class Handler>
@@ -118,6 +133,7 @@ struct InteractionServer::Impl {
   std::string fixed_frame_;
   LiveSimulation live_;
   StampClock clock_;
+  ClockLeaps clock_leaps_;
   InputLog log_;
   Nanoseconds frame_stamp_ = 0, frame_expected_ = 0;  ///< of the frame that has begun
   StampCheck arrivals_;                               ///< of all frames, those too that come while paused
@@ -224,7 +240,8 @@ void InteractionServer::Impl::take(const mr_hand_interaction::HandFrame& message
 
 bool InteractionServer::Impl::begin(const mr_hand_interaction::HandFrame& message) {
   if (without_slash(message.header.frame_id) != without_slash(fixed_frame_)) {
-    diagnostics_.rejected("wrong frame", "'" + message.header.frame_id + "'; allowed: " + fixed_frame_);
+    diagnostics_.rejected("wrong frame",
+                          "'" + text::one_line(message.header.frame_id, 64) + "'; allowed: " + fixed_frame_);
     return false;
   }
   try {
@@ -251,7 +268,9 @@ bool InteractionServer::Impl::timed_step() {
 }
 
 void InteractionServer::Impl::idle() {
-  const Nanoseconds stamp = clock_.stamp(ros::Time::now());
+  const ros::Time now = ros::Time::now();
+  if (clock_leaps_.look(from_ros_time(now))) return;
+  const Nanoseconds stamp = clock_.stamp(now);
   const bool running = !clock_.paused() && live_.simulation().state().started;
   const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
   if (running && live_.simulation().advance_without_hands(until)) {
@@ -290,6 +309,7 @@ bool InteractionServer::Impl::spawn(const mr_hand_interaction::SpawnObject::Requ
     Spawn spawn{from_message(request)};
     if (spawn.request.name.empty())
       spawn.request.name = requested_body(spawn.request, options_of(live_.simulation().configuration())).name;
+    require_no_frame(spawn.request.name, fixed_frame_);
     make(spawn);
     show_change();
     return "'" + spawn.request.name + "' is there";
@@ -301,6 +321,7 @@ bool InteractionServer::Impl::spawn_urdf(const mr_hand_interaction::SpawnUrdf::R
   return answer(response, [&] {
     const Spawn spawn{from_message(request)};
     const Scene part = requested_scene(spawn.request, options_of(live_.simulation().configuration()));
+    require_no_frames(part, fixed_frame_);
     make(spawn);
     show_change();
     std::vector<std::string> names;

@@ -33,4 +33,15 @@ class StampClock {
   Nanoseconds pauses_ = 0;
 };
 
+/// Whether ROS's clock leaps ahead from one look at it to the next. It is believed once it is still there:
+/// /clock may be of another time for a moment, and a scene that had gone there with it would be at its start
+/// when it is back.
+class ClockLeaps {
+ public:
+  bool look(Nanoseconds now);
+
+ private:
+  Nanoseconds looked_ = 0, stride_ = 0;  // when, and what had passed since the look before
+};
+
 }  // namespace mrhi

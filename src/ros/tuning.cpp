@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <exception>
 #include <map>
+#include <utility>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
@@ -106,13 +107,42 @@ Tuning::Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions
   slider_ends(least, most);
   server_.setConfigMin(least);
   server_.setConfigMax(most);
-  show();
+  shown_ = current();
+  server_.updateConfig(shown_);
   server_.setCallback([this](Config& wanted, std::uint32_t) { take(wanted); });
+  teller_ = std::thread([this] { tell(); });
+}
+
+Tuning::~Tuning() {
+  {
+    const std::lock_guard<std::mutex> lock(asking_);
+    ends_ = true;
+  }
+  asked_.notify_one();
+  teller_.join();
 }
 
 void Tuning::show() {
   shown_ = current();
-  server_.updateConfig(shown_);
+  const std::lock_guard<std::mutex> lock(asking_);
+  to_tell_ = shown_;
+  asked_.notify_one();
+}
+
+/// The server's mutex comes first: what its callback has changed meanwhile is newer than what was to be told.
+void Tuning::tell() {
+  while (true) {
+    {
+      std::unique_lock<std::mutex> lock(asking_);
+      asked_.wait(lock, [this] { return to_tell_ || ends_; });
+      if (ends_) return;
+    }
+    const boost::recursive_mutex::scoped_lock server(mutex_);
+    std::unique_lock<std::mutex> lock(asking_);
+    const std::optional<Config> config = std::exchange(to_tell_, std::nullopt);
+    lock.unlock();
+    if (config) server_.updateConfig(*config);
+  }
 }
 
 void Tuning::take(Config& wanted) {
@@ -125,6 +155,8 @@ void Tuning::take(Config& wanted) {
     ROS_WARN("not changed: %s", error.what());
   }
   wanted = shown_ = current();
+  const std::lock_guard<std::mutex> lock(asking_);
+  to_tell_.reset();
 }
 
 Tuning::Values Tuning::changes(const Config& wanted) const {

@@ -4,8 +4,12 @@
 #include <mr_hand_interaction/TuneConfig.h>
 #include <ros/ros.h>
 
+#include <condition_variable>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,8 +33,10 @@ class Tuning {
   };
 
   Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions);
+  ~Tuning();
 
-  /// Tells those who look what holds now.
+  /// Tells those who look what holds now, soon: each number is a call to the master, and frames do not wait
+  /// for them.
   void show();
 
  private:
@@ -38,12 +44,19 @@ class Tuning {
   void take(Config& wanted);
   Config current() const;
   Values changes(const Config& wanted) const;
+  void tell();
 
   Actions actions_;
   bool place_by_mouse_;
   Config shown_;
   boost::recursive_mutex mutex_;
   dynamic_reconfigure::Server<Config> server_;
+
+  std::mutex asking_;
+  std::condition_variable asked_;
+  std::optional<Config> to_tell_;
+  bool ends_ = false;
+  std::thread teller_;
 };
 
 }  // namespace mrhi

@@ -11,12 +11,15 @@
 namespace mrhi {
 namespace {
 
+using testing::distance_to_axis;
 using testing::hand_in;
 using testing::open_posture;
 
-/// Of two triangles. Its ends are where it crosses edges of the skin's triangles.
+/// Of two triangles. Its ends are where it crosses edges of the skin's triangles; the last of a crease has
+/// none left of its width.
 struct Strip {
   std::array<Vector3, 2> ends;
+  std::array<double, 2> widths;
   Vector3 normal;
 };
 
@@ -36,7 +39,9 @@ std::vector<Strip> strips_on(const Hand& hand) {
   for (std::size_t i = 0; i + 5 < corners.size(); i += 6) {
     const Vector3 &a = corners[i].place, &b = corners[i + 1].place, &c = corners[i + 2].place,
                   &d = corners[i + 5].place;
-    strips.push_back({{0.5 * (a + d), 0.5 * (b + c)}, (c - a).cross(d - b).normalized()});
+    strips.push_back({{0.5 * (a + d), 0.5 * (b + c)},
+                      {(a - d).norm(), (b - c).norm()},
+                      (c - a).cross(d - b).normalized()});
   }
   return strips;
 }
@@ -52,11 +57,38 @@ Hand rest() {
   return hand_in(M_PI / 180.0 * posture);
 }
 
+/// Of the rest hand's triangles.
+double from_edges(const Vector3& place) {
+  const auto& vertices = Skin::human().rest();
+  double nearest = 1.0;
+  for (const auto& triangle : Skin::human().triangles()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      Capsule edge;
+      edge.start = vertices[static_cast<std::size_t>(triangle[i])];
+      edge.end = vertices[static_cast<std::size_t>(triangle[(i + 1) % 3])];
+      nearest = std::min(nearest, distance_to_axis(edge, place));
+    }
+  }
+  return nearest;
+}
+
+bool is_on_thumb(const Vector3& place) {
+  double thumb = 1.0, others = 1.0;
+  for (int c = 0; c < kPhalanges; ++c) {
+    if (!rest().has(c)) continue;
+    double& nearest = finger_of(c) == 0 ? thumb : others;
+    nearest = std::min(nearest, distance_to_axis(rest().capsules[static_cast<std::size_t>(c)], place));
+  }
+  return thumb < others;
+}
+
 TEST(SkinCreases, are_on_the_side_of_the_palm_upon_the_triangles) {
   for (const Strip& strip : strips_on(rest())) {
-    for (const Vector3& end : strip.ends) {
-      EXPECT_NEAR(skin_distance(end), 0.0, 0.0011);  // what the triangles are off the shape, and kAbove
-      const int finger = end.y() > 0.040 || end.z() < -0.018 ? 0 : 1;
+    for (const std::size_t i : {0, 1}) {
+      if (strip.widths[i] < 1e-4) continue;
+      const Vector3& end = strip.ends[i];
+      EXPECT_LT(from_edges(end), 0.0002) << end.transpose();  // before them by 0.15 mm
+      const int finger = is_on_thumb(end) ? 0 : 1;
       const Vector3 back = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 1))].axes.col(2);
       EXPECT_LT(skin_normal(end).dot(back), 0.3) << end.transpose();
     }

@@ -234,6 +234,33 @@ class HandTrackingTest(unittest.TestCase):
         with self.expect_rejected("no transform"):
             self.leap.publish(self.human(frame_id="nowhere"))
 
+    def test_a_transform_far_from_its_others_is_left_out_and_the_mount_goes_on(self):
+        moving = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        wait_until(lambda: moving.get_num_connections() > 0, "a subscriber of /tf")
+
+        def place(x, stamp):
+            message = mount()
+            message.transforms[0].header.stamp, message.transforms[0].child_frame_id = stamp, "arm"
+            message.transforms[0].transform.translation.x = x
+            moving.publish(message)
+
+        def goes_to(x):
+            """Messages of two topics may change places: a hand may be there before its transform."""
+            place(x, rospy.Time.from_sec(self.next_stamp))
+            on_arm = self.human(frame_id="arm")
+            self.leap.publish(on_arm)
+            self.answer(self.human())
+            return any(abs(hand.wrist.x - wrist_x - x) < 1e-6 for frame in list(self.frames)
+                       if frame.header.stamp == on_arm.header.stamp for hand in frame.hands)
+
+        wrist_x = leap_messages.open_hand("right")[1][0]
+        self.answer(self.human())
+        wait_until(lambda: goes_to(0.5), "the arm")
+        for stamp in (rospy.Time(4294967295, 999999999), rospy.Time.from_sec(self.next_stamp + 3600.0)):
+            with self.expect_rejected("unusable transform"):
+                place(9.0, stamp)
+        wait_until(lambda: goes_to(0.6), "the arm where it has gone")
+
     def test_unset_stamp_becomes_the_time_of_receipt(self):
         before, frames = rospy.Time.now(), len(self.frames)
         message = self.human()

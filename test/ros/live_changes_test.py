@@ -135,7 +135,7 @@ class LiveChangesTest(unittest.TestCase):
 
     def test_one_line_says_why_an_object_is_refused(self):
         for answer in (self.spawn_box("cube"), self.spawn_box("a b"), self.spawn_box("far", y=50.0),
-                       self.spawn_box("inside", y=0.01), self.spawn_box("odd", material="{restitution: 2}"),
+                       self.spawn_box("world"), self.spawn_box("leap_hands"), self.spawn_box("inside", y=0.01), self.spawn_box("odd", material="{restitution: 2}"),
                        self.spawn(SpawnObjectRequest(urdf="<robot"))):
             self.assertFalse(answer.success)
             self.assertIn("allowed", answer.message)
@@ -160,6 +160,7 @@ class LiveChangesTest(unittest.TestCase):
         answer = self.set("material/static_friction", "0.9")
         self.assertTrue(answer.success, answer.message)
         self.assertIn("0.9", answer.message)
+        wait_until(lambda: rospy.get_param("/interaction_node/tune/material_static_friction") == 0.9, "the slider")
         for name, value in (("step", "-1"), ("speed", "1"), ("material/dynamic_friction", "7"), ("step", "[")):
             answer = self.set(name, value)
             self.assertFalse(answer.success)

@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import socket
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -208,6 +209,19 @@ class PageByRequests(Page):
         self.assertIn('could not be saved', form)
         os.rmdir(self.file)
         self.assertEqual(self.request({'token': token, 'naturalness': 8, 'efficiency': 9})[0], 200)
+        self.assert_done()
+
+    def test_a_browser_that_goes_away_is_no_fault(self):
+        self.open()
+        url = urllib.parse.urlsplit(self.url)
+        for request in ('GET / HTTP/1.1\r\nHost: %s\r\n\r\n' % url.netloc, 'GET / HT',
+                        'POST / HTTP/1.1\r\nHost: %s\r\nContent-Length: 9\r\n\r\nab' % url.netloc):
+            for _ in range(5):
+                gone = socket.create_connection((url.hostname, url.port), timeout=LIMIT)
+                gone.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))  # closing resets it
+                gone.sendall(request.encode())
+                gone.close()
+        self.assertEqual(self.request({'token': self.token(), 'naturalness': 8, 'efficiency': 9})[0], 200)
         self.assert_done()
 
     def test_interrupted_before_an_answer(self):
