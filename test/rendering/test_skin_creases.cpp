@@ -57,19 +57,20 @@ Hand rest() {
   return hand_in(M_PI / 180.0 * posture);
 }
 
-/// Of the rest hand's triangles.
-double from_edges(const Vector3& place) {
+/// From the nearest place on an edge of the rest hand's triangles.
+Vector3 off_edges(const Vector3& place) {
   const auto& vertices = Skin::human().rest();
-  double nearest = 1.0;
+  Vector3 least = Vector3::Ones();
   for (const auto& triangle : Skin::human().triangles()) {
     for (std::size_t i = 0; i < 3; ++i) {
-      Capsule edge;
-      edge.start = vertices[static_cast<std::size_t>(triangle[i])];
-      edge.end = vertices[static_cast<std::size_t>(triangle[(i + 1) % 3])];
-      nearest = std::min(nearest, distance_to_axis(edge, place));
+      const Vector3& from = vertices[static_cast<std::size_t>(triangle[i])];
+      const Vector3 along = vertices[static_cast<std::size_t>(triangle[(i + 1) % 3])] - from;
+      const double s = std::clamp((place - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      const Vector3 off = place - from - s * along;
+      if (off.squaredNorm() < least.squaredNorm()) least = off;
     }
   }
-  return nearest;
+  return least;
 }
 
 bool is_on_thumb(const Vector3& place) {
@@ -87,7 +88,8 @@ TEST(SkinCreases, are_on_the_side_of_the_palm_upon_the_triangles) {
     for (const std::size_t i : {0, 1}) {
       if (strip.widths[i] < 1e-4) continue;
       const Vector3& end = strip.ends[i];
-      EXPECT_LT(from_edges(end), 0.0002) << end.transpose();  // before them by 0.15 mm
+      EXPECT_LT(off_edges(end).norm(), 0.0002) << end.transpose();  // 0.15 mm
+      EXPECT_GT(off_edges(end).dot(strip.normal), 0.0) << end.transpose();
       const int finger = is_on_thumb(end) ? 0 : 1;
       const Vector3 back = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 1))].axes.col(2);
       EXPECT_LT(skin_normal(end).dot(back), 0.3) << end.transpose();
