@@ -16,6 +16,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from study import program  # noqa: E402
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
 WIDTH, HEIGHT = 460, 360  # of a picture; drawn twice as large, for smooth edges
@@ -158,8 +161,7 @@ def placed(marker, moment, yaw):
 def read_moments(folder):
     """[(number, moment, markers)]"""
     import rosbag
-    with open(os.path.join(folder, "explain.json"), encoding="utf-8") as file:
-        moments = json.load(file)["moments"]
+    moments = json.loads(program.read_text(os.path.join(folder, "explain.json")))["moments"]
     number, read = None, []
     with rosbag.Bag(os.path.join(folder, "moments.bag")) as bag:
         for topic, message, _ in bag.read_messages():
@@ -250,15 +252,12 @@ def main():
         pictures(sys.argv[1])
     except ImportError as error:
         print("explain: no pictures: rviz draws them, and its Python modules are missing: %s" % error, file=sys.stderr)
-    except (RuntimeError, OSError, subprocess.SubprocessError, KeyError, ValueError) as error:
-        print("explain: no pictures: %s" % error, file=sys.stderr)
+    except Exception as error:  # what is in the folder may be anything
+        print("explain: no pictures: %s" % program.one_line(str(error) or type(error).__name__), file=sys.stderr)
     else:
         return 0
     return 1
 
 
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # rospy's threads would hold it up
+    program.run(main, at_once=True)

@@ -10,6 +10,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from study import program  # noqa: E402
+
 import rosbag
 import rospy
 import yaml
@@ -17,7 +20,7 @@ from mr_hand_interaction.msg import HandFrame, TrainingStatus
 
 from rviz_stage import STARTED, Stage, TOPICS, drawn, wait_for_rviz
 from screenshot import FONT, REPOSITORY
-from watch_demo import join_master, leave
+from watch_demo import join_master
 
 Scene = collections.namedtuple("Scene", "caption launch view lead")  # lead: seconds before the moment that it is about
 DEMO = ["demo.launch", "rviz:=false"]
@@ -168,7 +171,13 @@ def finish(picture, caption, size, file):
 
 
 def main():
-    options = parse(sys.argv[1:])
+    try:
+        return make(parse(sys.argv[1:]))
+    except (RuntimeError, subprocess.SubprocessError) as error:
+        return sys.exit("film: %s" % program.one_line(str(error)))
+
+
+def make(options):
     if options.print_screen:
         print("x".join(str(2 * int(number)) for number in options.size.split("x")))
         return 0
@@ -190,9 +199,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        code = main()
-    except (RuntimeError, OSError, subprocess.SubprocessError) as error:
-        print("film: %s" % error, file=sys.stderr)
-        code = 1
-    leave(code)
+    program.run(main, at_once=True)

@@ -4,10 +4,14 @@ and a wall. world is in the middle of the table's top. For trying mr_view.launch
 with --mark the silhouette of a box is painted where the camera would see it, and each corner of the picture gets a
 square."""
 import argparse
+import os
 import re
 import struct
 import sys
 import zlib
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from study import program  # noqa: E402
 
 import numpy
 
@@ -22,8 +26,7 @@ class Camera:
     """A pinhole without distortion: intrinsics from a camera_info YAML, the pose of its optical frame in world."""
 
     def __init__(self, info_file, pose):
-        with open(info_file, encoding="utf-8") as file:
-            text = file.read()
+        text = program.read_text(info_file)
         self.width, self.height = (int(re.search(key + r": *(\d+)", text).group(1))
                                    for key in ("image_width", "image_height"))
         matrix = re.search(r"camera_matrix:.*?data: *\[(.*?)\]", text, re.DOTALL).group(1)
@@ -155,7 +158,10 @@ def main():
     parser.add_argument("--mark", type=numbers(6), help="centre and sides of a box: x y z a b c")
     parser.add_argument("--output", required=True, help="a PNG file")
     options = parser.parse_args()
-    camera = Camera(options.camera, options.pose)
+    try:
+        camera = Camera(options.camera, options.pose)
+    except (AttributeError, ValueError):
+        sys.exit("room_picture: %s: is no camera_info; allowed: camera_calibration's YAML" % options.camera)
     picture = smooth_room(camera)
     if options.mark:
         picture[silhouette(camera, options.mark[:3], options.mark[3:])] = MARK
@@ -165,4 +171,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    program.run(main)

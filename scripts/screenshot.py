@@ -8,13 +8,16 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from study import program  # noqa: E402
+
 import rospkg
 import rospy
 import yaml
 from std_srvs.srv import SetBool
 from visualization_msgs.msg import MarkerArray
 
-from watch_demo import COLOURS, Demo, colours_of, grab, join_master, leave
+from watch_demo import COLOURS, Demo, colours_of, grab, join_master
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
@@ -188,4 +191,4 @@ def main():
 
 
 if __name__ == "__main__":
-    leave(main())
+    program.run(main, at_once=True)

@@ -10,6 +10,9 @@ import sys
 import threading
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from study import program  # noqa: E402
+
 import rosgraph
 import rospy
 from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, ObjectStateArray
@@ -136,13 +139,6 @@ def rviz_listens():
     return any(topic == "/markers" and "/rviz" in nodes for topic, nodes in subscribers)
 
 
-def leave(code):
-    """Ends the program, which rospy's threads would hold up."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)
-
-
 def grab(file):
     """What is on the screen."""
     subprocess.run(["import", "-silent", "-window", "root", file], check=True)
@@ -246,8 +242,8 @@ def main():
         file.write(text)
     if not done:
         print(f"watch_demo: {options.motion} was not seen done within {options.time_limit:.0f} s", file=sys.stderr)
-    leave(0 if done else 1)
+    return 0 if done else 1
 
 
 if __name__ == "__main__":
-    main()
+    program.run(main, at_once=True)

@@ -18,6 +18,8 @@ class Answers:
 
     def _read(self):
         """Columns of the file, and this condition's scores by question."""
+        if os.path.exists(self.path) and not os.path.isfile(self.path):
+            raise StudyError('%s: is no file; allowed: a file, or none yet' % self.path)
         if not os.path.exists(self.path) or os.path.getsize(self.path) == 0:
             return list(RATING_COLUMNS), {}
         notes = []

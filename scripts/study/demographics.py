@@ -6,7 +6,7 @@ import os
 
 import yaml
 
-from .session_folder import StudyError, read_header
+from .session_folder import StudyError, read_header, read_yaml
 
 FILE = 'participant.yaml'
 YES, NO = 'yes', 'no'
@@ -63,12 +63,8 @@ def of_folder(folder):
     path = os.path.join(folder, FILE)
     if not os.path.exists(path):
         return None
-    try:
-        with open(path, encoding='utf-8') as file:
-            said = yaml.safe_load(file)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise StudyError('%s: cannot be read: %s' % (path, ' '.join(str(error).split()))) from None
-    if not isinstance(said, dict) or not isinstance(said.get('consent'), bool):
+    said = read_yaml(path)
+    if not isinstance(said.get('consent'), bool):
         raise StudyError("%s: no 'consent'; allowed: true or false" % path)
     age = said.get('age')
     if age is not None and (type(age) is not int or not 0 < age <= OLDEST):

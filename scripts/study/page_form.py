@@ -5,9 +5,11 @@ import html
 import http.server
 import secrets
 import socketserver
+import sys
 import threading
 import urllib.parse
 
+from . import program
 from .questions import ALL, score_of
 from .session_folder import StudyError
 
@@ -43,6 +45,12 @@ class Form(socketserver.ThreadingMixIn, http.server.HTTPServer):
     @property
     def url(self):
         return 'http://%s:%d/' % (LOCALHOST, self.server_port)
+
+    def handle_error(self, *_):
+        """A browser that has gone is none."""
+        error = sys.exc_info()[1]
+        if not isinstance(error, OSError):
+            print('%s: %s' % (program.name(), program.line_of(error)), file=sys.stderr)
 
     def submit(self, fields):
         """(status, page) for a form that was sent. A form sent twice is saved once."""
@@ -127,9 +135,11 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             return
         text = self.rfile.read(length).decode('utf-8', 'replace')
         fields = {name: values[-1] for name, values in urllib.parse.parse_qs(text).items()}
-        self._reply(*self.server.submit(fields))
-        if self.server.saved:
-            threading.Thread(target=self.server.shutdown).start()
+        try:
+            self._reply(*self.server.submit(fields))
+        finally:
+            if self.server.saved:  # whether or not the browser waits for the answer
+                threading.Thread(target=self.server.shutdown).start()
 
     def _is_ours(self):
         """A name of another's that leads to this machine is turned away."""

@@ -97,8 +97,11 @@ def _steps(given, group, order, day):
 def _date(given, place, day, slots):
     if given.first is None:
         return ''
-    return (given.first + datetime.timedelta(days=place // slots * given.sessions * max(1, given.days_between)
-                                             + (day - 1) * given.days_between)).isoformat()
+    days = place // slots * given.sessions * max(1, given.days_between) + (day - 1) * given.days_between
+    try:
+        return (given.first + datetime.timedelta(days=days)).isoformat()
+    except OverflowError:
+        raise ValueError('--first %s is too late; allowed: what ends by the year 9999' % given.first) from None
 
 
 def _row(given, participant, group, place, date, time, day, step, phase, condition):

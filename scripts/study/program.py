@@ -15,22 +15,23 @@ INTERRUPTED = 128 + signal.SIGINT  # what a shell says of a program that Ctrl-C 
 READER_GONE = 128 + signal.SIGPIPE
 PATIENCE = 5.0  # s, for a master's answer
 MEBIBYTE = 1 << 20
+BEGINNING, END = 300, 200  # letters that are told of a line with more
 
 
 def name():
-    return os.path.basename(sys.argv[0])
+    return os.path.splitext(os.path.basename(sys.argv[0]))[0]
 
 
 def run(main, at_once=False):
     """Calls it, and ends with the status that it gives: None is 0. `at_once`: threads of ROS would hold it up."""
     _print_what_cannot_be_encoded()
     try:
-        code = main()
-        _flush()
+        code, line = main(), ''
     except BaseException as error:  # SystemExit and KeyboardInterrupt too
-        code = _code_of(error)
+        code, line = _end_of(error)
+    code = _tell(code or 0, line)
     if at_once:
-        _leave(code or 0)
+        _leave(code)
     sys.exit(code)
 
 
@@ -40,31 +41,27 @@ def _print_what_cannot_be_encoded():
             stream.reconfigure(errors='backslashreplace')
 
 
-def _flush():
-    if sys.stdout is not None:
-        sys.stdout.flush()
-
-
-def _code_of(error):
-    """Says what there is to be said."""
+def _end_of(error):
+    """Status, and what there is to be said."""
     if isinstance(error, KeyboardInterrupt):
         _leave(INTERRUPTED)
-    if isinstance(error, SystemExit) and not isinstance(error.code, str):
-        code, line = error.code, ''
-    elif isinstance(error, SystemExit):
-        code, line = 1, error.code
-    elif isinstance(error, BrokenPipeError):
-        code, line = READER_GONE, ''
-    else:
-        code, line = 1, '%s: %s' % (name(), line_of(error))
+    if isinstance(error, SystemExit):
+        return (1, error.code) if isinstance(error.code, str) else (error.code, '')
+    if isinstance(error, BrokenPipeError):
+        return READER_GONE, ''
+    return 1, '%s: %s' % (name(), line_of(error))
+
+
+def _tell(code, line):
+    """The status, which is another one where what was printed cannot be written."""
     try:
-        _flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except BrokenPipeError:
         code = READER_GONE
         _silence()
-    except OSError as other:
-        line = line or '%s: standard output: %s' % (name(), other.strerror)
-        code = code or 1
+    except OSError as error:
+        code, line = code or 1, line or '%s: standard output: %s' % (name(), error.strerror)
         _silence()
     if line:
         print(line, file=sys.stderr)
@@ -76,12 +73,20 @@ def line_of(error):
     if isinstance(error, OSError) and error.filename is not None:
         return '%s: %s' % (error.filename, error.strerror)
     if isinstance(error, OSError):
-        return str(error)
+        return error.strerror or str(error)
     if isinstance(error, MemoryError):
         return 'there is not enough memory for it'
+    if isinstance(error, RecursionError):
+        return 'something is nested too deep'
     place = traceback.extract_tb(error.__traceback__)[-1:]
     where = ' (%s, line %d)' % (os.path.basename(place[0].filename), place[0].lineno) if place else ''
-    return 'a fault of this program, please report it: %s: %s%s' % (type(error).__name__, ' '.join(str(error).split()), where)
+    return 'a fault of this program, please report it: %s: %s%s' % (type(error).__name__, one_line(str(error)), where)
+
+
+def one_line(text):
+    """Without what would break it, or make a terminal do things; of a long one its beginning and its end."""
+    text = ''.join(letter if letter.isprintable() else '?' for letter in text)
+    return text if len(text) <= BEGINNING + END else text[:BEGINNING] + ' ... ' + text[-END:]
 
 
 def _silence():
@@ -149,8 +154,8 @@ def why_no_master():
     before = socket.getdefaulttimeout()
     socket.setdefaulttimeout(PATIENCE)
     try:
-        online = rosgraph.is_master_online()
-    except Exception:  # of a server that is none
+        online = bool(rosgraph.Master('/' + name()).getPid())
+    except Exception:  # of a server that is none; rosgraph's own is_master_online would take Ctrl-C for one
         online = False
     finally:
         socket.setdefaulttimeout(before)

@@ -3,14 +3,18 @@
 import collections
 import csv
 import io
+import itertools
 import math
 import os
 
 import yaml
 
+from . import program
 from .questions import score_of
 
 GRAVITY = 9.80665  # m/s^2
+LARGEST_YAML, LARGEST_TABLE = program.MEBIBYTE // 4, 256 * program.MEBIBYTE
+MOST = 10 ** 9  # of what is counted
 VERSION = 1
 RESULTS = ('completed', 'skipped', 'timed_out', 'aborted')
 RATING_COLUMNS = ('condition', 'question', 'score')
@@ -22,6 +26,19 @@ Session = collections.namedtuple('Session', 'folder participant group handedness
 
 class StudyError(Exception):
     """One line that names the file, the line in it, and what is allowed."""
+
+    def __init__(self, text):
+        super().__init__(program.one_line(text))
+
+
+class _Loader(yaml.SafeLoader):
+    """Without aliases: a few of them are a text of any length."""
+
+    def compose_node(self, parent, index):
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.composer.ComposerError(None, None, 'has an alias; allowed: the thing itself',
+                                              self.peek_event().start_mark)
+        return super().compose_node(parent, index)
 
 
 def name(text):
@@ -52,8 +69,8 @@ def count(text):
     if not text.strip():
         return None
     value = _number(int, text, 'a whole number')
-    if value < 0:
-        raise ValueError("'%s' is less than 0" % text)
+    if not 0 <= value <= MOST:
+        raise ValueError("'%s' is not from 0 to %d" % (text, MOST))
     return value
 
 
@@ -89,13 +106,9 @@ RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 def read_table(path, columns, notes, added=()):
     """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash.
     `added`: columns that may all be missing."""
-    try:
-        with open(path, encoding='utf-8-sig', newline='') as file:
-            text = file.read()
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError('%s: cannot be read: %s' % (path, getattr(error, 'strerror', None) or error)) from None
+    text = _text_of(path, LARGEST_TABLE, 'utf-8-sig')
     reader = csv.reader(io.StringIO(text, newline=''))
-    header = [cell.strip() for cell in next(reader, [])]
+    header = [cell.strip() for _, cells in itertools.islice(_lines(reader, path), 1) for cell in cells]
     missing = [column for column in columns if column not in header]
     if missing:
         raise StudyError("%s: line 1: no column '%s'" % (path, missing[0]))
@@ -110,6 +123,31 @@ def read_table(path, columns, notes, added=()):
         elif cells:
             rows.append(_parse_row(path, line, cells, header, places))
     return rows
+
+
+def _text_of(path, most, encoding='utf-8'):
+    try:
+        return program.read_text(path, most, encoding)
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError('%s: cannot be read: %s' % (path, getattr(error, 'strerror', None) or error)) from None
+
+
+def read_yaml(path):
+    """Keys with values."""
+    text = _text_of(path, LARGEST_YAML)
+    try:
+        said = yaml.load(text, _Loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, 'problem_mark', None)
+        raise StudyError('%s: line %d: is not YAML: %s' % (path, mark.line + 1 if mark else 1,
+                                                            getattr(error, 'problem', None))) from None
+    except RecursionError:
+        raise StudyError('%s: is nested too deep' % path) from None
+    except Exception as error:  # of values that are not what they begin as: a date in month 13
+        raise StudyError('%s: is not YAML: %s' % (path, error)) from None
+    if not isinstance(said, dict):
+        raise StudyError('%s: is not a list of keys with values' % path)
+    return said
 
 
 def _lines(reader, path):
@@ -146,17 +184,7 @@ def read_ratings(path, notes):
 def read_header(folder):
     """What session.yaml says, checked, as a dict."""
     path = os.path.join(folder, 'session.yaml')
-    try:
-        with open(path, encoding='utf-8') as file:
-            said = yaml.safe_load(file)
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError('%s: cannot be read: %s' % (path, getattr(error, 'strerror', None) or error)) from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, 'problem_mark', None)
-        raise StudyError('%s: line %d: is not YAML: %s' % (path, mark.line + 1 if mark else 1,
-                                                            getattr(error, 'problem', None))) from None
-    if not isinstance(said, dict):
-        raise StudyError('%s: is not a list of keys with values' % path)
+    said = read_yaml(path)
     return {key: _checked(path, said, key, default, parse) for key, default, parse in HEADER}
 
 
@@ -202,7 +230,11 @@ def _seed(value):
 
 
 def _text(parse):
-    return lambda value: parse(str(value))
+    def checked(value):
+        if isinstance(value, (list, dict)):
+            raise ValueError('is a list; allowed: a text')
+        return parse(str(value))
+    return checked
 
 
 HEADER = (('version', None, _version), ('participant', None, _text(name)), ('group', None, _text(name)),
@@ -255,8 +287,8 @@ def _as_begun(folder, trials, notes):
 def _has_columns(path, columns):
     if not os.path.exists(path):
         return False
-    with open(path, encoding='utf-8-sig', errors='replace') as file:
-        return set(columns) <= {cell.strip() for cell in file.readline().split(',')}
+    first = _text_of(path, LARGEST_TABLE, 'utf-8-sig').split('\n', 1)[0]
+    return set(columns) <= {cell.strip() for cell in first.split(',')}
 
 
 def _changed_spans(events):

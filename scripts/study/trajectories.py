@@ -7,6 +7,7 @@ import os
 import numpy as np
 import pandas
 
+from . import program
 from .session_folder import StudyError
 from .style import FILTERED, INK, RAW, finish, new_figure, save
 
@@ -34,6 +35,7 @@ def read_path(file):
 def _read_numbers(file):
     """The columns that matter; these files have millions of lines. A last line that a crash cut off is left out."""
     try:
+        program.open_regular(file).close()
         table = pandas.read_csv(file, skipinitialspace=True, index_col=False)
         if not _ends_with_line(file):
             table = table.iloc[:-1].copy()
