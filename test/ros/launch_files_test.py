@@ -146,6 +146,14 @@ class LaunchFilesTest(unittest.TestCase):
                 if path != paths["other"]:  # whoever plays it says so
                     self.assertEqual(self.run_when(path, "bag_without", "/tf_static", "echo", "placed"), (0, ""))
 
+    def test_a_bag_that_cannot_be_played_to_its_end_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.bag")
+            with rosbag.Bag(path, "w") as bag:
+                bag.write("/hands", Empty())
+            self.assertEqual(self.run_when(path, "bag", "false", "--topics", "/hands"),
+                             (1, path + ": is damaged: false ended with status 1 on the way\n"))
+
     def test_a_command_gets_the_file_as_it_is_named(self):
         for name in ("/tmp/x y/my hand.bag", "/tmp/$(touch x) 'a\" \\.bag"):
             self.assertEqual(self.run_when(name, "file", "echo", "-O", "@FILE"), (0, "-O " + name + "\n"))
