@@ -6,6 +6,7 @@
 #include <locale>
 #include <sstream>
 
+#include "../text/file_text.h"
 #include "../text/safe_yaml.h"
 #include "../text/text.h"
 #include "../text/yaml_values.h"
@@ -100,7 +101,7 @@ std::vector<TouchedPoint> read_points(const std::string& file) {
 }
 
 void write_points(const std::string& file, const std::vector<TouchedPoint>& points) {
-  std::ofstream out(file);
+  std::ofstream out = file_to_write(file);
   out << "points:\n";
   for (const TouchedPoint& point : points) {
     YAML::Emitter name;

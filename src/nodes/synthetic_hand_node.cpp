@@ -11,6 +11,7 @@
 #include "../ros/synthetic_hand_publisher.h"
 #include "../synthetic/recording_writer.h"
 #include "../text/command_line.h"
+#include "../text/file_text.h"
 #include "exit_status.h"
 
 namespace {
@@ -52,7 +53,7 @@ int write_recording(const std::vector<std::string>& arguments) {
   }
   if (file.empty()) throw mrhi::UsageError("--csv FILE is missing; see --help");
   const auto frames = mrhi::record_motion(options);
-  std::ofstream out(file);
+  std::ofstream out = mrhi::file_to_write(file);
   mrhi::write_recording_csv(out, frames);
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + file);

@@ -8,14 +8,18 @@
 namespace {
 
 constexpr const char* kUsage =
-    R"(usage: rosrun mr_hand_interaction training_node _participant:=NAME _folder:=FOLDER [_PARAMETER:=VALUE]...
+    R"(usage: rosrun mr_hand_interaction training_node _participant:=NAME _folder:=FOLDER _group:=NAME _handedness:=SIDE
+              _condition:=NAME [_PARAMETER:=VALUE]...
 
 Leads a participant through a task beside a running interaction_node, and logs it; training.launch starts it with
 all that it needs. Publishes training/status and training/markers. Services: ~next, ~pause, ~skip, ~repeat.
 
-  ~participant, ~folder        who takes part, and the session's folder; must be given
+  ~participant, ~folder        who takes part, and the session's folder; these five must be given
+  ~group, ~handedness, ~condition
+                               such as beginner; right or left; what they work with, such as implicit
   ~task                        NAME|FILE; default pick_and_place
-  ~group, ~handedness, ~condition, ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_next, ~auto_start
+  ~auto_next                   break between trials, at most 3600 s; below 0: each waits for ~next; default 3
+  ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_start
                                see docs/training.md
 )";
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../scene/limits.h"
 #include "../text/command_line.h"
 #include "../text/text.h"
 
@@ -16,6 +17,10 @@ Pose pose(const Given& given, std::size_t first) {
   const double length = orientation.norm();
   if (!std::isfinite(length) || length < kShortestQuaternion) given.fail("the quaternion has no direction");
   orientation.coeffs() /= length;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!body_limits::kPlace.contains(v[i]))
+      given.fail("the place is not within " + text::number(body_limits::kPlace.max) + " m on each axis");
+  }
   return {{v[0], v[1], v[2]}, orientation};
 }
 

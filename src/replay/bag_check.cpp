@@ -4,17 +4,19 @@
 
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <new>
 #include <optional>
 
+#include "../text/file_text.h"
+#include "../text/text.h"
 #include "bag_input.h"
 
 namespace mrhi {
 namespace {
 
+const char* const kWhole = "; allowed: a whole bag (rosbag reindex or rosbag fix may save one)";
 const std::string kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kLongestHeader = 1u << 20, kLargestChunk = 1u << 30;
 enum Op : unsigned char { kIndex = 0x04, kChunk = 0x05, kChunkInfo = 0x06 };
@@ -135,8 +137,7 @@ class Walk {
   }
 
   [[noreturn]] void fail(std::uint64_t at, const std::string& what) const {
-    throw BagError(file_ + ": is corrupt: " + what + " at byte " + std::to_string(at) +
-                   "; allowed: a whole bag (rosbag fix may save one)");
+    throw BagError(file_ + ": is corrupt: " + what + " at byte " + std::to_string(at) + kWhole);
   }
 
   const std::string& file_;
@@ -155,10 +156,8 @@ void check_bag(const std::string& file) {
 
 /// The bag library says no more than that it cannot open it.
 void check_readable(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw BagError(file + ": there is no such file");
-  if (!std::filesystem::is_regular_file(file, error)) throw BagError(file + ": is no file; allowed: a bag");
-  if (!std::ifstream(file)) throw BagError(file + ": cannot be read; allowed: a file that may be read");
+  const std::string why = why_unreadable(file);
+  if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
   check_bag(file);
 }
 
@@ -166,11 +165,11 @@ void refuse_bag(const std::string& file) {
   try {
     throw;
   } catch (const rosbag::BagException& error) {
-    throw BagError(file + ": " + error.what());
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
   } catch (const ros::Exception& error) {
-    throw BagError(file + ": is corrupt: " + error.what());
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
   } catch (const std::bad_alloc&) {
-    throw BagError(file + ": is corrupt: it asks for more memory than there is");
+    throw BagError(file + ": is corrupt: it asks for more memory than there is" + kWhole);
   }
 }
 

@@ -84,8 +84,10 @@ const std::string& readable(const std::string& file) {
 }  // namespace
 
 struct BagInput::Impl {
-  Impl(const std::string& file, const std::optional<std::string>& wanted, const std::optional<Pose>& device)
-      : bag(readable(file), rosbag::bagmode::Read),
+  Impl(const std::string& of_file, const std::optional<std::string>& wanted,
+       const std::optional<Pose>& device)
+      : file(of_file),
+        bag(readable(file), rosbag::bagmode::Read),
         topics(chosen_topics(file, bag, wanted)),
         topic(joined(topics)),
         view(bag, rosbag::TopicQuery(std::vector<std::string>(topics.begin(), topics.end()))),
@@ -170,6 +172,7 @@ struct BagInput::Impl {
     }
   }
 
+  std::string file;
   rosbag::Bag bag;
   std::set<std::string> topics;
   std::string topic;
@@ -192,7 +195,7 @@ BagInput::BagInput(const std::string& file, const std::optional<std::string>& to
 
 BagInput::~BagInput() = default;
 
-std::optional<SourceFrame> BagInput::next() {
+std::optional<SourceFrame> BagInput::next() try {
   while (impl_->at != impl_->view.end()) {
     SourceFrame frame = impl_->read(*impl_->at);
     ++impl_->at;
@@ -203,6 +206,8 @@ std::optional<SourceFrame> BagInput::next() {
   last.frame = impl_->pairs.rest();
   if (!last.frame) return std::nullopt;
   return last;
+} catch (...) {
+  refuse_bag(impl_->file);
 }
 
 std::size_t BagInput::position() const {

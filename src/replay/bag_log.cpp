@@ -61,11 +61,13 @@ class BagLog : public LogSource {
     at_ = order_.begin();
   }
 
-  std::optional<LogEntry> next() override {
+  std::optional<LogEntry> next() override try {
     if (at_ == order_.end()) return std::nullopt;
     const auto message = (at_++)->second.instantiate<SimulationInput>();
     ++position_;
     return entry_of(*message);
+  } catch (...) {
+    refuse_bag(file_);
   }
   std::size_t position() const override { return position_; }
   std::size_t size() const override { return order_.size(); }

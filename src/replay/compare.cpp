@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
+#include "../text/file_text.h"
 #include "../text/text.h"
 #include "csv_columns.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
@@ -22,20 +23,22 @@ struct Row {
 
 using Ways = std::map<std::string, std::vector<Row>>;
 
-Ways read_ways(const std::string& folder) {
+Ways read_ways(const std::string& folder) try {
   const std::string file = folder + "/objects.csv";
-  std::ifstream in(file);
+  FileLines lines(file);
   std::string line;
-  if (!std::getline(in, line)) throw RecordingError(file + ": cannot be read, or is empty");
+  if (!lines.next(line)) throw RecordingError(file + ": is empty; allowed: what replay has written");
   CsvColumns columns(file, line);
   Ways ways;
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    columns.take(line, number);
+  while (lines.next(line)) {
+    columns.take(line, lines.number());
     const auto cell = [&](const char* name) { return columns.required(name); };
     const Pose pose{{cell("px"), cell("py"), cell("pz")}, {cell("qw"), cell("qx"), cell("qy"), cell("qz")}};
     ways[text::split(line).at(1)].push_back({cell("time"), pose, line});
   }
   return ways;
+} catch (const FileError& error) {
+  throw RecordingError(error.what());
 }
 
 /// Both ways of an object, and what counts as apart.
@@ -107,7 +110,8 @@ std::optional<Parting> parting_of(const Pair& pair) {
 
 /// As `replay` writes it into summary.json; empty where there is none.
 std::string end_hash(const std::string& folder) {
-  std::ifstream in(folder + "/summary.json");
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  std::istringstream in(file_text(folder + "/summary.json", kMostBytes).value_or(""));
   for (std::string line; std::getline(in, line);) {
     const std::string key = "\"state_hash\": \"";
     const std::size_t at = line.find(key);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "../text/file_text.h"
 #include "demonstration.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -79,6 +80,7 @@ class DemonstrationBag {
 }  // namespace
 
 void write_demonstration_bag(const Demonstration& demonstration, const std::string& file) try {
+  check_may_be_written(file);
   DemonstrationBag bag(file);
   for (const DemonstrationFrame& frame : demonstration.frames()) bag.write(frame);
 } catch (const rosbag::BagException& error) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../text/file_text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 
@@ -90,6 +91,7 @@ void MomentMarkers::keep(const Touched& touched) {
 }
 
 void MomentMarkers::write(const std::vector<PictureMoment>& moments, const std::string& file) const try {
+  check_may_be_written(file);
   rosbag::Bag bag(file, rosbag::bagmode::Write);
   bag.setCompression(rosbag::compression::LZ4);
   for (std::size_t i = 0; i < moments.size(); ++i) {

@@ -1,9 +1,9 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 
 #include <cmath>
-#include <fstream>
 #include <utility>
 
+#include "../text/file_text.h"
 #include "csv_columns.h"
 
 namespace mrhi {
@@ -70,16 +70,16 @@ HandJoints read_hand(const CsvColumns& row, std::uint32_t id) {
 
 }  // namespace
 
-std::vector<JointsFrame> read_recording_csv(const std::string& file) {
-  std::ifstream input(file);
+std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
+  FileLines lines(file);
   std::string line;
-  if (!input || !std::getline(input, line)) throw RecordingError(file + ": cannot be read, or is empty");
+  if (!lines.next(line)) throw RecordingError(file + ": is empty; allowed: a header and frames");
   CsvColumns row(file, line);
   std::vector<JointsFrame> frames;
   FrameKey key;
-  for (std::size_t number = 2; std::getline(input, line); ++number) {
+  while (lines.next(line)) {
     if (line.empty() || line == "\r") continue;
-    row.take(line, number);
+    row.take(line, lines.number());
     const FrameKey next = read_key(row);
     if (frames.empty() || !(next == key)) frames.push_back({next.stamp, {}});
     key = next;
@@ -87,6 +87,8 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) {
   }
   if (frames.empty()) throw RecordingError(file + ": has a header and no frames");
   return frames;
+} catch (const FileError& error) {
+  throw RecordingError(error.what());
 }
 
 }  // namespace mrhi

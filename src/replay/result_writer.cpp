@@ -7,6 +7,7 @@
 
 #include "../simulation/contact_phase.h"
 #include "../text/csv.h"
+#include "../text/file_text.h"
 #include "dictionary.h"
 
 namespace mrhi {
@@ -69,7 +70,7 @@ struct ResultWriter::Tables {
 ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
     : scene_(&scene), tables_(std::make_unique<Tables>(folder)) {
   const std::string path = folder + "/schema.json";
-  std::ofstream schema(path);
+  std::ofstream schema = file_to_write(path);
   schema << schema_json() << std::flush;
   if (!schema) throw std::runtime_error("cannot write " + path);
   if (!scene.joints.empty()) tables_->joints.emplace(folder + "/joints.csv", table_of("joints.csv").header());

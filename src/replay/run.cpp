@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "../text/file_text.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
@@ -60,7 +61,7 @@ void tell_end(const Simulation& simulation, ReplaySummary& summary) {
 namespace {
 
 void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
+  std::ofstream file = file_to_write(path);
   file << text << std::flush;
   if (!file) throw std::runtime_error("cannot write " + path);
 }

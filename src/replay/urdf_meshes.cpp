@@ -53,7 +53,7 @@ std::string with_meshes_in(const std::string& folder, std::string xml, const Rec
       continue;
     const fs::path path =
         fs::path(folder) / ("mesh_" + std::to_string(i) + fs::path(uri).extension().string());
-    std::ofstream out(path, std::ios::binary);
+    std::ofstream out = file_to_write(path.string());
     out << files[i].bytes << std::flush;
     if (!out) throw std::runtime_error("cannot write " + path.string());
     for (const char quote : {'"', '\''})

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "../scene/scene_edit.h"
+#include "../text/file_text.h"
 #include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -20,12 +20,12 @@ namespace fs = std::filesystem;
 const std::string kUrdf = "scene.urdf", kYaml = "scene.yaml";
 
 std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  return file_text(file.string(), kMostBytes).value_or("");
 }
 
 void write(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
+  std::ofstream out = file_to_write(file.string());
   out << text << std::flush;
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }

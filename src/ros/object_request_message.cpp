@@ -16,7 +16,8 @@ ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& mess
   request.twist = {from_message(message.twist.linear), from_message(message.twist.angular)};
   request.material = message.material;
   const auto& color = message.color;
-  if (color.a > 0.0f) request.rgba = {{color.r, color.g, color.b, color.a}};
+  // Opacity 0 is that of a request that says nothing of its colour; what is no number is not.
+  if (color.a != 0.0f) request.rgba = {{color.r, color.g, color.b, color.a}};
   return request;
 }
 

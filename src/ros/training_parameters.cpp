@@ -2,8 +2,11 @@
 
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <locale>
 #include <map>
 #include <sstream>
+#include <type_traits>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
@@ -15,13 +18,23 @@ namespace {
   throw ParameterError("parameter '" + name + "': '" + value + "' is not allowed; allowed: " + allowed);
 }
 
+constexpr int kMost = std::numeric_limits<int>::max();
+constexpr double kLongestBreak = 3600.0;  // [s]
+
 template <class Number>
-Number number(const std::string& name, const std::string& text, Number lowest, const char* allowed) {
+Number number(const std::string& name, const std::string& text, Number lowest, Number highest,
+              const char* more = "") {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
   Number value{};
-  if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof() || !(value >= lowest))
-    refuse(name, text, allowed);
+  if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof() ||
+      !(value >= lowest && value <= highest)) {
+    std::ostringstream allowed;
+    allowed.imbue(std::locale::classic());
+    allowed << (std::is_integral<Number>::value ? "a whole number" : "a number") << " from " << lowest
+            << " to " << highest << more;
+    refuse(name, text, allowed.str());
+  }
   return value;
 }
 
@@ -47,20 +60,18 @@ const std::map<std::string, Setter>& setters() {
       {"group", [](Text, Text text, P p) { p.header.group = text; }},
       {"handedness", [](Text, Text text, P p) { p.header.handedness = text; }},
       {"condition", [](Text, Text text, P p) { p.header.condition = text; }},
-      {"seed",
-       [](Text name, Text text, P p) {
-         p.header.seed =
-             static_cast<std::uint64_t>(number<int>(name, text, 0, "a whole number of at least 0"));
-       }},
-      {"session", [](Text name, Text text,
-                     P p) { p.header.session = number<int>(name, text, 1, "a whole number of at least 1"); }},
+      {"seed", [](Text name, Text text,
+                  P p) { p.header.seed = static_cast<std::uint64_t>(number<int>(name, text, 0, kMost)); }},
+      {"session", [](Text name, Text text, P p) { p.header.session = number<int>(name, text, 1, kMost); }},
       {"simulated", [](Text name, Text text, P p) { p.header.simulated = truth(name, text); }},
-      {"number", [](Text name, Text text,
-                    P p) { p.number = number<int>(name, text, 1, "a whole number of at least 1"); }},
+      {"number", [](Text name, Text text, P p) { p.number = number<int>(name, text, 1, kMost); }},
       {"folder", [](Text, Text text, P p) { p.folder = with_home(text); }},
       {"simulation", [](Text, Text text, P p) { p.simulation = text; }},
       {"auto_next",
-       [](Text name, Text text, P p) { p.auto_next = number<double>(name, text, -1e6, "a number [s]"); }},
+       [](Text name, Text text, P p) {
+         p.auto_next =
+             number<double>(name, text, -kLongestBreak, kLongestBreak, " [s], below 0: not by itself");
+       }},
       {"auto_start", [](Text name, Text text, P p) { p.auto_start = truth(name, text); }},
   };
   return all;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -127,14 +128,22 @@ TrainingServer::~TrainingServer() {
   try {
     session_.abort(now());
   } catch (const std::exception& error) {
-    ROS_ERROR("%s", error.what());
+    if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that is told
   }
 }
 
 void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
   using Trigger = std_srvs::Trigger;
   using SetBool = std_srvs::SetBool;
-  const auto answer = [this](const std::string& wrong, auto& response) {
+  // roscpp goes on after an exception of a service; what cannot be written any more ends the node.
+  const auto answer = [this](const auto& action, auto& response) {
+    std::string wrong = failed_;
+    try {
+      session_.folder().check_there();
+      if (wrong.empty()) wrong = action();
+    } catch (const SessionError& error) {
+      wrong = failed_ = error.what();
+    }
     response.success = wrong.empty();
     response.message = wrong;
     publish();
@@ -143,7 +152,7 @@ void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
   const auto offer = [&](const char* name, std::string (TrainingServer::*action)()) {
     services_.push_back(private_node.advertiseService<Trigger::Request, Trigger::Response>(
         name, [this, answer, action](Trigger::Request&, Trigger::Response& response) {
-          return answer((this->*action)(), response);
+          return answer([&] { return (this->*action)(); }, response);
         }));
   };
   offer("skip", &TrainingServer::skip);
@@ -151,7 +160,7 @@ void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
   offer("next", &TrainingServer::next);
   services_.push_back(private_node.advertiseService<SetBool::Request, SetBool::Response>(
       "pause", [this, answer](SetBool::Request& request, SetBool::Response& response) {
-        return answer(pause(request.data), response);
+        return answer([&] { return pause(request.data); }, response);
       }));
 }
 
@@ -279,12 +288,16 @@ void TrainingServer::take_input(const mr_hand_interaction::SimulationInput& mess
                parameter.as_begun ? " again, as the session was begun with"
                                   : ", which is not what the session was begun with: events.csv says so");
     }
+  } catch (const SessionError&) {
+    throw;
   } catch (const std::exception& error) {
     ROS_WARN("a change of the running system cannot be read: %s", error.what());
   }
 }
 
 void TrainingServer::tick() {
+  if (!failed_.empty()) throw SessionError(failed_);
+  if (session_.phase() != SessionPhase::finished) session_.folder().check_there();
   const ros::WallTime time = ros::WallTime::now();
   if (session_.phase() == SessionPhase::ready && !paused_ && !next_.isZero() && time >= next_) {
     const std::string wrong = begin_trial();

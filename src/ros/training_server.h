@@ -75,6 +75,7 @@ class TrainingServer {
   std::string participant_, fixed_frame_ = "world";
   double auto_next_;
   ros::WallTime next_;  ///< when the next trial begins by itself; zero: when told to
+  std::string failed_;  ///< why the session cannot go on
   bool paused_ = false;
   bool at_start_ = false;  ///< the running trial's object has been seen where it starts
 

@@ -13,6 +13,8 @@ namespace {
 
 using namespace body_limits;
 
+constexpr double kThinnest = 1e-12;  // smallest principal moment, of the largest
+
 [[noreturn]] void refuse(const Body& body, const std::string& what, const Range& allowed,
                          const std::string& unit) {
   throw std::invalid_argument("body '" + text::one_line(body.name, 60) + "': " + what +
@@ -42,14 +44,16 @@ void check_inertia(const Body& body) {
     throw std::invalid_argument(what + "is not symmetric; allowed: a symmetric matrix");
   }
   const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia).eigenvalues();
-  if (principal[0] > 1e-12 * principal[2]) {
+  if (principal[0] > kThinnest * principal[2]) {
     if (!kInertia.contains(principal[0]) || !kInertia.contains(principal[2]))
       refuse(body, "inertia with the principal moments " + text::vector(principal) + " kg m^2", kInertia,
              " kg m^2");
     return;
   }
   throw std::invalid_argument(what + "with the principal moments " + text::vector(principal) +
-                              " kg m^2 is not positive definite; allowed: all three above 0");
+                              " kg m^2 is not allowed; allowed: all three above 0, and the smallest more "
+                              "than " +
+                              text::number(kThinnest) + " of the largest");
 }
 
 bool is_diagonal(const Matrix3& matrix) {

@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/scene/joint.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "../text/text.h"
@@ -95,6 +96,32 @@ void check_tree(const Scene& scene, const Joint& joint) {
   }
 }
 
+/// The first joint above, or the joint itself: on the world, on a fixture or on a body that is free.
+const Joint& first_of(const Scene& scene, const Joint& joint) {
+  const Joint* first = &joint;
+  while (const Joint* above = joint_of(scene, first->parent)) first = above;
+  return *first;
+}
+
+/// Joints that a push on one of them may move: what hangs on a fixture or the world by one, all on a body
+/// that is free. What is to be solved at once grows with them.
+void check_together(const Scene& scene) {
+  std::map<std::string, std::size_t> together;
+  for (const Joint& joint : scene.joints) {
+    const Joint& first = first_of(scene, joint);
+    const Body* const parent =
+        first.parent == Joint::kWorld ? nullptr : &scene.bodies[static_cast<std::size_t>(first.parent)];
+    const bool floats = parent != nullptr && !parent->fixed;
+    const std::string which =
+        floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first.name, 60) + "'";
+    if (++together[which] > kMostTogether) {
+      throw std::invalid_argument("the mechanism of " + which + " has more than " +
+                                  std::to_string(kMostTogether) + " joints; allowed: at most that, and " +
+                                  std::to_string(kMostJoints) + " in a scene");
+    }
+  }
+}
+
 std::size_t depth_of(const Scene& scene, const Joint& joint) {
   std::size_t depth = 0;
   for (const Joint* above = joint_of(scene, joint.parent); above != nullptr;
@@ -123,6 +150,7 @@ void arrange_joints(Scene& scene) {
     check_detents(joint);
   }
   for (const Joint& joint : scene.joints) check_tree(scene, joint);
+  check_together(scene);
   std::vector<std::pair<std::size_t, Joint>> sorted;
   for (const Joint& joint : scene.joints) sorted.emplace_back(depth_of(scene, joint), joint);
   std::stable_sort(sorted.begin(), sorted.end(),

@@ -14,6 +14,7 @@ constexpr Range kSize{1e-5, 1000};     ///< of a shape, each [m]
 constexpr Range kPlace{-1000, 1000};   ///< of a body, on each axis [m]
 constexpr Range kSpeed{0, 100};        ///< [m/s]
 constexpr Range kSpin{0, 1000};        ///< [rad/s]
+constexpr Range kColor{0, 1};          ///< red, green, blue and opacity, each
 constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
 
 }  // namespace mrhi::body_limits
@@ -22,12 +23,14 @@ constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
 namespace mrhi::joint_ranges {
 
 constexpr std::size_t kMostJoints = 256;
+constexpr std::size_t kMostTogether = 32;  ///< that hang together: a step costs more than their square
 constexpr std::size_t kMostDetents = 64;
 constexpr double kLeastDetent = 1e-4;  // between two [rad], [m]
 constexpr Range kPlace{-1000.0, 1000.0};
 constexpr Range kForce{0.0, 1e5};
 constexpr Range kStiffness{0.0, 1e6};
 constexpr Range kRestitution{0.0, 1.0};
+constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis as it is given
 constexpr Range kReach{1e-5, 10.0};
 
 }  // namespace mrhi::joint_ranges

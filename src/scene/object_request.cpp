@@ -69,6 +69,7 @@ Body requested_body(const ObjectRequest& request, const SceneOptions& options) {
   Body body = read_body(kSource, placed, options);
   body.start_twist = request.twist;
   if (request.rgba) {
+    check_color(kSource, *request.rgba);
     for (Visual& visual : body.visuals) visual.rgba = *request.rgba;
   }
   if (!request.material.empty()) apply_material_yaml(kSource + ": material", request.material, body);

@@ -2,12 +2,17 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include "../text/file_text.h"
 #include "../text/text.h"
 #include "limits.h"
 #include "material_fields.h"
@@ -67,11 +72,20 @@ class Writer {
 
   void write() {
     write_urdf();
-    save(fs::path(file_).replace_extension(".yaml"), yaml());
-    save(file_, out_.str());  // last: who waits for it finds all
+    texts_.emplace_back(fs::path(file_).replace_extension(".yaml"), yaml());
+    texts_.emplace_back(file_, out_.str());  // last: who waits for it finds all
+    for (const auto& [file, text] : texts_) check_free(file);
+    for (const auto& [file, text] : texts_) save(file, text);
   }
 
  private:
+  static void check_free(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::symlink_status(file, ignored).type() == fs::file_type::not_found) return;
+    throw std::invalid_argument("'" + text::one_line(file.string()) +
+                                "' is there already; allowed: a file that is not");
+  }
+
   void write_urdf() {
     out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << quoted(scene_.name) << "\">\n  <link name=\""
          << root() << "\"/>\n";
@@ -148,7 +162,7 @@ class Writer {
     for (const Vector3& vertex : mesh.triangles->vertices) obj << "v " << numbers(vertex) << "\n";
     for (const auto& t : mesh.triangles->triangles)
       obj << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-    save(file_.parent_path() / name, obj.str());
+    texts_.emplace_back(file_.parent_path() / name, obj.str());
     return name;
   }
 
@@ -227,17 +241,47 @@ class Writer {
     return node;
   }
 
-  static void save(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
+  /// What was written before it is taken away again if it cannot be.
+  void save(const fs::path& file, const std::string& text) {
+    errno = 0;
+    std::ofstream out = file_to_write(file.string());
     out << text << std::flush;
-    if (!out) throw std::runtime_error("cannot write '" + text::one_line(file.string()) + "'");
+    if (out) return;
+    const std::string why = std::strerror(errno);
+    out.close();
+    std::error_code ignored;
+    for (const auto& written : texts_) {
+      if (fs::is_regular_file(written.first, ignored)) fs::remove(written.first, ignored);
+      if (written.first == file) break;
+    }
+    throw std::runtime_error("cannot write '" + text::one_line(file_.string()) + "': " + why);
   }
 
   const Scene& scene_;
   const fs::path file_;
   std::ostringstream out_;
+  std::vector<std::pair<fs::path, std::string>> texts_;
   int meshes_ = 0;
 };
+
+/// Of names that file systems have room for, and that a terminal shows as they are.
+void check_path(const fs::path& file, const std::string& shown) {
+  constexpr std::size_t kLongestName = 255, kLongest = 4095;
+  const std::string& whole = file.native();
+  const bool plain = std::none_of(whole.begin(), whole.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
+  });
+  const bool fits = std::all_of(file.begin(), file.end(),
+                                [](const fs::path& name) { return name.native().size() <= kLongestName; });
+  if (!plain || !fits || whole.size() > kLongest || file.extension() != ".urdf")
+    throw std::invalid_argument("file " + shown +
+                                " is not allowed; allowed: one that ends in .urdf, each name in it at most " +
+                                std::to_string(kLongestName) + " bytes, without control characters");
+  std::error_code ignored;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored))
+    throw std::runtime_error("cannot write " + shown + ": its folder is not there; allowed: one that is");
+}
 
 }  // namespace
 
@@ -259,13 +303,7 @@ Scene scene_as_it_is(const Scene& scene, const std::vector<BodyState>& bodies,
 void save_scene(const Scene& scene, const std::string& urdf_file) {
   const fs::path file = urdf_file;
   const std::string shown = "'" + text::one_line(urdf_file, 200) + "'";
-  if (file.extension() != ".urdf")
-    throw std::invalid_argument("file " + shown + " is not allowed; allowed: one that ends in .urdf");
-  for (const fs::path& taken : {file, fs::path(file).replace_extension(".yaml")}) {
-    if (fs::exists(taken))
-      throw std::invalid_argument("'" + text::one_line(taken.string(), 200) +
-                                  "' is there already; allowed: a file that is not");
-  }
+  check_path(file, shown);
   Writer(scene, file).write();
 }
 

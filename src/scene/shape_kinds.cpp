@@ -1,5 +1,7 @@
 #include "shape_kinds.h"
 
+#include <cmath>
+#include <limits>
 #include <locale>
 #include <sstream>
 
@@ -28,6 +30,16 @@ template <typename Kind>
 std::optional<Sizes> sizes_if(const Shape& shape) {
   const Kind* const one = std::get_if<Kind>(&shape);
   return one == nullptr ? std::nullopt : std::optional<Sizes>(sizes(*one));
+}
+
+/// What was given, be it no number that a size may be.
+double size_in(const std::string& word) {
+  std::istringstream stream(word);
+  stream.imbue(std::locale::classic());
+  double size = 0.0;
+  if (stream >> size && stream.eof()) return size;
+  const std::optional<double> other = text::to_number(word);  // infinity, and what is beyond a double
+  return other && std::isinf(*other) ? *other : std::numeric_limits<double>::quiet_NaN();
 }
 
 template <typename Long>
@@ -93,12 +105,7 @@ std::optional<GivenShape> from_filename(const std::string& filename) {
   words >> name;
   GivenShape given{find_shape_kind(name), {}};
   if (given.kind == nullptr) return std::nullopt;
-  for (std::string word; words >> word;) {
-    std::istringstream number(word);
-    number.imbue(std::locale::classic());
-    double size = 0.0;
-    given.size.push_back(number >> size && number.eof() ? size : 0.0);  // what is no number is no size
-  }
+  for (std::string word; words >> word;) given.size.push_back(size_in(word));
   given.size.resize(given.kind->sizes.size(), 0.0);
   return given;
 }

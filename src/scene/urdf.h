@@ -3,6 +3,7 @@
 #include <urdf_model/link.h>
 #include <urdf_model/model.h>
 #include <urdf_world/types.h>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,9 @@ UrdfDocument parse_urdf_file(const std::string& file);
 UrdfDocument parse_urdf(const std::string& source, const std::string& xml);
 
 Pose to_pose(const urdf::Pose& pose);
+
+/// Throws SceneError that begins with `element` for parts of a colour that are not from 0 to 1.
+void check_color(const std::string& element, const std::array<float, 4>& rgba);
 
 /// Whether it turns or slides.
 bool moves(const urdf::Joint& joint);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../text/text.h"
+#include "limits.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 
 namespace mrhi {
@@ -40,8 +41,10 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
   joint.name = given.name;
   joint.kind = given.type == urdf::Joint::PRISMATIC ? JointKind::sliding : JointKind::turning;
   const Vector3 axis{given.axis.x, given.axis.y, given.axis.z};
-  if (!(axis.norm() > 1e-6) || !axis.allFinite())
-    throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction");
+  const Range& length = joint_ranges::kAxis;  // in parts: squares of what is beyond are no numbers
+  if (!axis.allFinite() || !length.contains(axis.stableNorm()))
+    throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
+                     length.describe());
   joint.axis = axis.normalized();
   const auto child = static_cast<std::size_t>(*find_body(scene, given.child_link_name));
   joint.child = static_cast<int>(child);

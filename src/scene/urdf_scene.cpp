@@ -1,11 +1,23 @@
 #include "urdf.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 #include "../text/text.h"
+#include "limits.h"
 #include "shape_inertia.h"
 
 namespace mrhi {
+
+void check_color(const std::string& element, const std::array<float, 4>& rgba) {
+  const Range& range = body_limits::kColor;
+  if (std::all_of(rgba.begin(), rgba.end(), [&](float part) { return range.contains(double(part)); })) return;
+  std::string shown;
+  for (const float part : rgba) shown += (shown.empty() ? "" : ", ") + text::number(double(part));
+  throw SceneError(element + ": color [" + shown +
+                   "] is not allowed; allowed: red, green, blue and opacity, each " + range.describe());
+}
+
 namespace {
 
 constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the shape
@@ -78,6 +90,7 @@ class BodyReader {
       if (given.material && given.material->texture_filename.empty()) {
         const urdf::Color& color = given.material->color;
         visual.rgba = {{color.r, color.g, color.b, color.a}};
+        check_color(file_ + ": " + element, visual.rgba);
         visual.has_color = true;
       }
       body.visuals.push_back(visual);

@@ -1,6 +1,8 @@
 #include "urdf.h"
 
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <stdexcept>
 
 #include "../text/text.h"
 #include "limits.h"
@@ -18,6 +20,21 @@ Vector3 to_vector(const urdf::Vector3& v) {
 
 bool begins_with(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+void check_extent(const Vector3& extent, double part, const char* where) {
+  if (body_limits::kSize.contains(part)) return;
+  throw std::runtime_error("measures " + text::vector(extent) +
+                           " m; allowed: " + body_limits::kSize.describe() + " m " + where);
+}
+
+/// Of a thing that collides each size, as a box's; a picture may be flat.
+void check_sizes(const TriangleMesh& mesh, bool solid) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& vertex : mesh.vertices) box.extend(vertex);
+  const Vector3 extent = box.sizes();
+  check_extent(extent, extent.maxCoeff(), "along the longest axis");
+  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
 
 }  // namespace
@@ -67,8 +84,10 @@ Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, 
   if (!meshes_.count(key)) {
     try {
       TriangleMesh triangles = load_mesh(file, scale);
+      check_sizes(triangles, false);
       if (hull) triangles = convex_hull(triangles);
       if (solid) make_solid(triangles);
+      check_sizes(triangles, solid);
       meshes_[key] = std::make_shared<const TriangleMesh>(std::move(triangles));
     } catch (const std::runtime_error& error) {
       fail(element, "mesh '" + uri + "' " + error.what());

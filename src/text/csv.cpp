@@ -5,6 +5,7 @@
 #include <locale>
 #include <stdexcept>
 
+#include "file_text.h"
 #include "text.h"
 
 namespace mrhi {
@@ -40,7 +41,7 @@ std::ostream& CsvRows::next() {
 }
 
 CsvFile::CsvFile(const std::string& path, const std::string& header)
-    : path_(path), file_(path), rows_(file_) {
+    : path_(path), file_(file_to_write(path)), rows_(file_) {
   file_.imbue(std::locale::classic());
   file_.precision(12);
   file_ << header << '\n';

@@ -5,11 +5,26 @@
 #include <filesystem>
 #include <fstream>
 
+#include "text.h"
+
 namespace mrhi {
+namespace {
+
+constexpr std::size_t kLongestLine = 64 * 1024;
+
+}  // namespace
+
+std::string why_unreadable(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return "there is no such file";
+  if (!std::filesystem::is_regular_file(file, error)) return "is no file";
+  if (!std::ifstream(file, std::ios::binary)) return "cannot be read";
+  return "";
+}
 
 std::optional<std::string> file_text(const std::string& file, std::size_t most) {
+  if (!why_unreadable(file).empty()) return {};
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return {};
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   if (!stream || error) return {};
@@ -18,6 +33,37 @@ std::optional<std::string> file_text(const std::string& file, std::size_t most) 
   if (stream.bad()) return {};
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
+}
+
+FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), room_(kLongestLine + 1) {
+  const std::string why = why_unreadable(file);
+  if (!why.empty()) throw FileError(file_ + ": " + why + "; allowed: a file that may be read");
+  stream_.open(file, std::ios::binary);
+}
+
+bool FileLines::next(std::string& line) {
+  ++number_;
+  stream_.getline(room_.data(), static_cast<std::streamsize>(room_.size()));
+  const auto taken = static_cast<std::size_t>(stream_.gcount());
+  if (stream_.fail() && taken + 1 >= room_.size())
+    throw FileError(file_ + ":" + std::to_string(number_) + ": is longer than " +
+                    std::to_string(kLongestLine) + " bytes; allowed: at most that");
+  if (stream_.fail()) return false;
+  line.assign(room_.data(), stream_.eof() ? taken : taken - 1);
+  return true;
+}
+
+void check_may_be_written(const std::string& file) {
+  std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(file, error);
+  if (std::filesystem::is_fifo(there) || std::filesystem::is_socket(there) ||
+      std::filesystem::is_block_file(there))
+    throw FileError("cannot write " + text::one_line(file) + ": it is no file; allowed: a file, or none yet");
+}
+
+std::ofstream file_to_write(const std::string& file, std::ios::openmode mode) {
+  check_may_be_written(file);
+  return std::ofstream(file, mode | std::ios::out);
 }
 
 }  // namespace mrhi

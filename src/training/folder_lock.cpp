@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -33,7 +34,12 @@ std::string holder(const std::string& file) {
 
 FolderLock::FolderLock(const std::string& folder) {
   const std::string file = folder + kFile;
-  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
+  struct stat opened {};
+  if (file_ >= 0 && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
+    close(file_);
+    throw SessionError(file + ": is no file; allowed: a file, or none yet");
+  }
   if (file_ < 0)
     throw SessionError(file + ": cannot be written: " + std::strerror(errno) +
                        "; allowed: a folder to write to with space left");

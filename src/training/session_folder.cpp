@@ -1,12 +1,14 @@
 #include "mr_hand_interaction/training/session_folder.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <locale>
 #include <sstream>
 
 #include "../text/csv.h"
+#include "../text/file_text.h"
 #include "../text/text.h"
 #include "folder_lock.h"
 #include "session_header.h"
@@ -16,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const char *const kTrials = "trials.csv", *const kEvents = "events.csv", *const kHands = "hands.csv",
+                  *const kHandsRaw = "hands_raw.csv";
 const char* const kTrialColumns =
     "trial,object,condition,repetition,result,start,completion_time,manipulation_time,maintenance_time,"
     "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
@@ -45,9 +49,47 @@ class Line {
   CsvRows row_{stream_};
 };
 
-std::string read_all(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a table
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+/// What is in a table, in whole lines, and whether one that was cut off comes after them.
+struct Contents {
+  std::string lines;
+  bool cut = false;
+};
+
+/// Nothing is touched. Throws for what has other columns.
+Contents contents_of(const std::string& file, const std::string& columns) {
+  if (!is_there(file)) return {};
+  const std::optional<std::string> text = file_text(file, kMostBytes + 1);
+  if (!text || text->size() > kMostBytes)
+    throw SessionError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
+  const std::size_t whole = text->rfind('\n') + 1;  // 0 where there is none
+  const std::string first = text->substr(0, text->find('\n'));
+  if (whole == 0 ? columns.compare(0, first.size(), first) != 0 : first != columns)
+    throw SessionError(file + ":1: these columns are not allowed; allowed: " + columns);
+  return {text->substr(0, whole), whole < text->size()};
+}
+
+/// All but the header's.
+std::vector<std::vector<std::string>> rows_in(const std::string& file, const std::string& columns,
+                                              const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  const std::size_t fields = text::split(columns).size();
+  for (int number = 2; std::getline(lines, line); ++number) {
+    rows.push_back(text::split(line));
+    if (rows.back().size() != fields)
+      throw SessionError(file + ":" + std::to_string(number) + ": " + std::to_string(rows.back().size()) +
+                         " fields; allowed: " + std::to_string(fields));
+  }
+  return rows;
 }
 
 /// In seconds, with all nine decimals: a double has too few digits for those since 1970.
@@ -85,17 +127,21 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
                              const SessionSetup& setup)
     : path_(folder), condition_(header.condition) {
   check_header(header);
+  check(header, setup);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SessionError(folder + ": cannot be made: " + error.message());
   lock_ = std::make_unique<FolderLock>(folder);
+  check(header, setup);  // again, as it is now nobody else's
   open_header(header, setup);
 
-  for (const auto& row : open_table("trials.csv", kTrialColumns, trials_)) {
+  const std::string trials = open_table(kTrials, kTrialColumns, trials_);
+  for (const auto& row : rows_in(trials_.file, kTrialColumns, trials)) {
     earlier_.push_back({whole_number(row[0]), row[1], whole_number(row[3]), result_named(row[4]), 0.0, {}});
     last_trial_ = std::max(last_trial_, earlier_.back().trial);
   }
-  for (const auto& row : open_table("events.csv", kEventColumns, events_)) {
+  const std::string events = open_table(kEvents, kEventColumns, events_);
+  for (const auto& row : rows_in(events_.file, kEventColumns, events)) {
     std::istringstream time(row[0]);
     time.imbue(std::locale::classic());
     if (double seconds = 0.0; time >> seconds) last_time_ = std::max(last_time_, seconds);
@@ -105,54 +151,75 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
 
 SessionFolder::~SessionFolder() = default;
 
+void SessionFolder::check(const SessionHeader& header, const SessionSetup& setup) const {
+  const fs::path folder = path_;
+  const std::string file = (folder / "session.yaml").string();
+  if (is_there(file)) {
+    check_same_session(file, header);
+    check_same_setup(path_, setup);
+  } else if (is_there(folder / "setup") && !is_there(folder / "setup" / "SHA256SUMS")) {
+    throw SessionError((folder / "setup").string() + ": is no session's; allowed: another folder");
+  }
+  for (const char* const name : {kTrials, kEvents, kHands, kHandsRaw}) {
+    const std::string table = (folder / name).string();
+    const char* const columns = name == kTrials   ? kTrialColumns
+                                : name == kEvents ? kEventColumns
+                                                  : kHandColumns;
+    rows_in(table, columns, contents_of(table, columns).lines);
+  }
+}
+
 void SessionFolder::open_header(const SessionHeader& header, const SessionSetup& setup) {
   const fs::path file = fs::path(path_) / "session.yaml";
-  resumed_ = fs::exists(file);
-  if (resumed_) {
-    check_same_session(file.string(), header);
-    check_same_setup(path_, setup);
-    return;
-  }
+  resumed_ = is_there(file);
+  if (resumed_) return;
   write_setup(path_, setup);
   const fs::path unfinished = fs::path(path_) / "session.yaml.part";
-  std::ofstream out(unfinished, std::ios::binary);
+  std::error_code error;
+  fs::remove(unfinished, error);
+  std::ofstream out = file_to_write(unfinished.string());
   write_now(out, header_text(header), file.string());
   out.close();
-  fs::rename(unfinished, file);
+  fs::rename(unfinished, file, error);
+  if (error) throw SessionError(file.string() + ": cannot be written: " + error.message());
 }
 
 /// To be written on; what is in it, in whole lines. Throws if it has other columns.
-std::string SessionFolder::open_file(const char* name, const char* columns, std::ofstream& out) {
-  const fs::path file = fs::path(path_) / name;
-  std::string text = read_all(file);
-  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  if (whole < text.size()) {
-    notes_.push_back(file.string() + ": its last line was cut off while it was written: taken away");
-    fs::resize_file(file, whole);
-    text.resize(whole);
+std::string SessionFolder::open_table(const char* name, const char* columns, Table& table) {
+  table.file = (fs::path(path_) / name).string();
+  const Contents there = contents_of(table.file, columns);
+  if (there.cut) {
+    std::error_code error;
+    fs::resize_file(table.file, there.lines.size(), error);
+    if (error) throw SessionError(table.file + ": cannot be written: " + error.message());
+    notes_.push_back(table.file + ": its last line was cut off while it was written: taken away");
   }
-  out.open(file, std::ios::binary | std::ios::app);
-  if (text.empty()) write_now(out, std::string(columns) + '\n', file.string());
-  if (!text.empty() && text.substr(0, text.find('\n')) != columns)
-    throw SessionError(file.string() + ":1: these columns are not allowed; allowed: " + columns);
-  return text;
+  table.out = file_to_write(table.file, std::ios::binary | std::ios::app);
+  struct stat opened {};
+  if (!table.out || stat(table.file.c_str(), &opened) != 0) write_now(table.out, "", table.file);
+  table.device = opened.st_dev;
+  table.inode = opened.st_ino;
+  if (there.lines.empty()) table.write(std::string(columns) + '\n');
+  return there.lines;
 }
 
-std::vector<std::vector<std::string>> SessionFolder::open_table(const char* name, const char* columns,
-                                                                std::ofstream& out) {
-  const std::string file = (fs::path(path_) / name).string();
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(open_file(name, columns, out));
-  std::string line;
-  std::getline(lines, line);
-  const std::size_t fields = text::split(columns).size();
-  for (int number = 2; std::getline(lines, line); ++number) {
-    rows.push_back(text::split(line));
-    if (rows.back().size() != fields)
-      throw SessionError(file + ":" + std::to_string(number) + ": " + std::to_string(rows.back().size()) +
-                         " fields; allowed: " + std::to_string(fields));
-  }
-  return rows;
+/// The kernel writes to a file that was removed, or moved away, as to any other.
+void SessionFolder::Table::check_there() const {
+  if (!out.is_open()) return;
+  struct stat now {};
+  if (stat(file.c_str(), &now) == 0 && now.st_dev == device && now.st_ino == inode) return;
+  throw SessionError(file +
+                     ": was removed or replaced while the session runs; allowed: a folder that is left alone "
+                     "until then");
+}
+
+void SessionFolder::Table::write(const std::string& text) {
+  check_there();
+  write_now(out, text, file);
+}
+
+void SessionFolder::check_there() const {
+  for (const Table* table : {&trials_, &events_, &hands_, &hands_raw_}) table->check_there();
 }
 
 void SessionFolder::log(const EventRow& row) {
@@ -161,7 +228,7 @@ void SessionFolder::log(const EventRow& row) {
   line << (row.trial > 0 ? std::make_optional(row.trial) : std::nullopt);
   line << to_string(row.stage) << row.event << row.object << row.detail;
   line << stamp_text(row.stamp) << row.utc;
-  write_now(events_, line.text(), path_ + "/events.csv");
+  events_.write(line.text());
 }
 
 void SessionFolder::log(const TrialRow& row) {
@@ -173,7 +240,7 @@ void SessionFolder::log(const TrialRow& row) {
   line << m.attempts << m.drops << m.path_length << m.grip_force_mean << m.grip_force_max;
   line << m.release_drift << m.release_speed << m.tracking_losses;
   line << m.attempts << m.manipulation_drops;
-  write_now(trials_, line.text(), path_ + "/trials.csv");
+  trials_.write(line.text());
 }
 
 void SessionFolder::log(const HandRow& row) {
@@ -181,10 +248,9 @@ void SessionFolder::log(const HandRow& row) {
   Line line;
   line << row.time << row.hand << row.side << kIndex << kDistal << kTracked;
   line << row.start << row.end << row.radius << kUntouched;
-  const char* const name = row.filtered ? "hands.csv" : "hands_raw.csv";
-  std::ofstream& out = row.filtered ? hands_ : hands_raw_;
-  if (!out.is_open()) open_file(name, kHandColumns, out);
-  write_now(out, line.text(), path_ + '/' + name);
+  Table& table = row.filtered ? hands_ : hands_raw_;
+  if (!table.out.is_open()) open_table(row.filtered ? kHands : kHandsRaw, kHandColumns, table);
+  table.write(line.text());
 }
 
 }  // namespace mrhi

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "scene/scene_files.h"
 #include "support/joints.h"
@@ -95,9 +96,44 @@ TEST(JointScene, refuses_in_one_line_what_makes_no_tree_or_is_out_of_limits) {
   test::expect_words(error(good, "joints: {hinge: {friction: -1}}"), {"'hinge'", "friction -1"});
   test::expect_words(error(good, "joints: {hinge: {spring: {stiffness: soft}}}"), {"stiffness", "number"});
   test::expect_words(error(good, "joints: {hinge: {detents: {at: [0], force: 1}}}"), {"'hinge'", "detents"});
+  for (const char* const axis : {"1e200 0 0", "0 0 1e-9", "0 0 0"}) {
+    std::string turned = good;
+    turned.replace(turned.rfind("0 0 1\""), 5, axis);
+    test::expect_words(error(turned), {"'hinge'", std::string("axis [") + (axis[0] == '1' ? "1e+200" : "0"),
+                                       "a direction, its length a number from 1e-06 to 1000"});
+  }
   test::expect_words(error(test::robot(door + joint("hinge", "revolute", "frame", "door",
                                                     kLimit + R"(<mimic joint="other"/>)"))),
                      {"'hinge'", "mimic"});
+}
+
+TEST(JointScene, refuses_a_chain_of_more_than_32_in_a_file_and_in_what_is_spawned) {
+  const auto chain = [](int links) {
+    std::string content;
+    for (int i = 0; i < links; ++i) {
+      const std::string name = "link" + std::to_string(i);
+      content += test::link(name, kPart) + joint("j" + std::to_string(i), "continuous",
+                                                 i == 0 ? "world" : "link" + std::to_string(i - 1), name, "",
+                                                 R"(xyz="0.1 0 0")");
+    }
+    return test::robot(content);
+  };
+  const std::vector<std::string> words{"the mechanism of joint 'j0' has more than 32 joints",
+                                       "256 in a scene"};
+  const std::string wide = "bounds: {min: [-9, -9, -9], max: [9, 9, 9]}";
+  EXPECT_EQ(error(chain(32), wide), "");
+  test::expect_words(error(chain(33), wide), words);
+  ObjectRequest request;
+  request.whole = true;
+  request.urdf = chain(32);
+  EXPECT_NO_THROW(requested_scene(request, {}));
+  request.urdf = chain(33);
+  try {
+    requested_scene(request, {});
+    FAIL() << "it was taken";
+  } catch (const SceneError& refusal) {
+    test::expect_words(refusal.what(), words);
+  }
 }
 
 TEST(JointScene, refuses_a_loop_of_joints) {

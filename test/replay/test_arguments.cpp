@@ -110,6 +110,9 @@ TEST(ReplayArguments, poses_have_finite_numbers_and_a_direction) {
   expect_refused(with({"--object-pose", ",1,2,3,0,0,0,1"}), "name");
   expect_refused(with({"--hand-transform", "0,0,0,0,0,0,0"}), "quaternion");
   expect_refused(with({"--hand-transform", "0,0,0"}), "3 fields instead of 7");
+  expect_refused(with({"--hand-transform", "1e300,0,0,0,0,0,1"}), "not within 1000 m");
+  expect_refused(with({"--object-pose", "cube,0,0,-1001,0,0,0,1"}), "not within 1000 m");
+  EXPECT_EQ(refusal(with({"--hand-transform", "1000,0,-1000,0,0,0,1"})), "");
 }
 
 TEST(ReplayArguments, twists_have_six_finite_numbers) {

@@ -252,6 +252,7 @@ std::string message_of(const std::string& file) {
     }
   } catch (const std::exception& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find(file), 0u) << error.what();
     return error.what();
   }
   return "";
@@ -259,8 +260,9 @@ std::string message_of(const std::string& file) {
 
 TEST(BagInput, a_missing_bag_and_what_cannot_be_one_are_told_in_a_line) {
   test::TemporaryFolder folder;
-  EXPECT_EQ(message_of(folder / "missing.bag"), (folder / "missing.bag") + ": there is no such file");
-  EXPECT_EQ(message_of("/tmp"), "/tmp: is no file; allowed: a bag");
+  EXPECT_EQ(message_of(folder / "missing.bag"),
+            (folder / "missing.bag") + ": there is no such file; allowed: a bag that may be read");
+  EXPECT_EQ(message_of("/tmp"), "/tmp: is no file; allowed: a bag that may be read");
 }
 
 /// Wherever four bytes of a bag are another length, number or place, it is read or refused: the bag library,

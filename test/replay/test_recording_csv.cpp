@@ -77,8 +77,11 @@ TEST(RecordingCsv, ErrorsNameLineAndColumn) {
   EXPECT_EQ(error_of(header + "0,-1,1,4,,,,,,,\n"), ":2: time_s: a time of 0 to 1e9 s is needed");
   EXPECT_EQ(error_of(header + "0,0,1\n"), ":2: has 3 cells; the header names 11 columns");
   EXPECT_EQ(error_of(header), ": has a header and no frames");
-  EXPECT_EQ(error_of(""), ": cannot be read, or is empty");
+  EXPECT_EQ(error_of(""), ": is empty; allowed: a header and frames");
+  EXPECT_EQ(error_of(header + std::string(100'000, ',') + "\n"),
+            ":2: is longer than 65536 bytes; allowed: at most that");
   EXPECT_THROW(read_recording_csv("/nowhere/at_all.csv"), RecordingError);
+  EXPECT_THROW(read_recording_csv("/dev/zero"), RecordingError);
 }
 
 TEST(RecordingCsv, NumbersAreReadAlikeInEveryLocale) {

@@ -1,6 +1,7 @@
 #include "replay/result_writer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "replay/replay_files.h"
 #include "support/fixtures.h"
@@ -114,6 +115,19 @@ TEST(ResultWriter, a_folder_that_cannot_be_made_is_named) {
     FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find(written.folder / "file"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ResultWriter, a_pipe_among_its_files_is_refused_and_not_waited_for) {
+  Written written;
+  const std::string pipe = written.folder / "objects.csv";
+  ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+  try {
+    ResultWriter writer(written.folder / "", written.scene);
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("objects.csv: it is no file"), std::string::npos)
+        << error.what();
   }
 }
 

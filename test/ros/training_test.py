@@ -311,6 +311,35 @@ class TrainingTest(unittest.TestCase):
         self.assertIn(b"participant", answer.stdout)
         self.assertIn(b"'P02'", answer.stdout)
 
+    @staticmethod
+    def node(folder, *arguments):
+        command = roslib.packages.find_node("mr_hand_interaction", "training_node")[:1] + [
+            "_participant:=P01", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
+            "_folder:=" + folder, "__name:=other"]
+        return subprocess.Popen(command + list(arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def test_refuses_numbers_beyond_either_end(self):
+        """A break that no duration of ROS can hold ended the node after the first trial."""
+        for given, allowed in (("auto_next:=5e9", b"a number from -3600 to 3600 [s]"),
+                               ("auto_next:=-3601", b"a number from -3600 to 3600 [s]"),
+                               ("session:=0", b"a whole number from 1 to 2147483647")):
+            refused = self.node(self.folder, "_" + given)
+            self.assertIn(allowed, refused.communicate(timeout=120)[0])
+            self.assertEqual(refused.returncode, 1)
+            rospy.delete_param("/other")
+
+    def test_a_folder_that_is_removed_while_the_session_runs_ends_the_node_with_one_line(self):
+        with self.training("record:=false", "auto_next:=-1"):
+            self.wait_for(TrainingStatus.READY)
+            folder = os.path.join(self.parent, "removed")
+            other = self.node(folder, "training/status:=other/status", "training/events:=other/events")
+            wait_until(lambda: os.path.exists(os.path.join(folder, "events.csv")), "the session's folder")
+            shutil.rmtree(folder)
+            told = other.communicate(timeout=120)[0]
+        self.assertEqual(other.returncode, 1)
+        self.assertEqual(told.count(b"removed or replaced while the session runs"), 1, told)
+        rospy.delete_param("/other")
+
     def test_refuses_to_go_on_with_another_contact_model_under_the_same_condition(self):
         """The folder keeps what the session was begun with, and the events have the time of the clock."""
         with self.training("record:=false"):

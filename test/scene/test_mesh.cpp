@@ -112,6 +112,22 @@ TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
                      {"'thing' collision 1", "scale", "[1, 0, 1]"});
 }
 
+TEST_F(MeshScene, IsHeldToTheSizesOfEveryOtherShape) {
+  folder_.write("wedge.obj", std::string(kVertices) + kOutward);
+  for (const char* scale : {"1e-8 1e-8 1e-8", "1 1 5e-5", "1e-31 1e-31 1e-31", "20000 20000 20000"})
+    test::expect_words(error("filename=\"wedge.obj\" scale=\"" + std::string(scale) + "\""),
+                       {"'thing' collision 1", "'wedge.obj'", "measures [", "from 1e-05 to 1000 m"});
+  folder_.write("flat.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
+  const auto seen = [&](const std::string& scale) {
+    return test::scene_error(
+        folder_.write("seen.urdf", test::thing(std::string(test::kInertial) + test::kBox +
+                                               "<visual><geometry><mesh filename=\"flat.obj\" scale=\"" +
+                                               scale + "\"/></geometry></visual>")));
+  };
+  EXPECT_EQ("", seen("1 1 1")) << "a picture may be flat";
+  test::expect_words(seen("1e-8 1e-8 1e-8"), {"visual 1", "measures [", "along the longest axis"});
+}
+
 TEST_F(MeshScene, RefusesASurfaceThatIsNotClosed) {
   folder_.write("open.obj", std::string(kVertices) + "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
   test::expect_words(error("filename=\"open.obj\""), {"'open.obj'", "not closed", "3 edges"});

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "scene_files.h"
+#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -102,7 +104,11 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   test::expect_words(error_of(primitive("cone", {1, 1})), {"cone", "box", "capsule"});
   test::expect_words(error_of(primitive("box", {1, 1})), {"2 numbers", "x, y, z"});
   test::expect_words(error_of(primitive("box", {1, -1, 1})), {"-1"});
-  test::expect_words(error_of(primitive("sphere", {nan})), {"radius"});
+  test::expect_words(error_of(primitive("sphere", {nan})), {"radius nan"});
+  test::expect_words(error_of(primitive("box", {nan, 1, 1})), {"[nan, 1, 1]", "from 1e-05 to 1000 m"});
+  test::expect_words(error_of(primitive("box", {1, 1.0 / 0.0, 1})), {"[1, inf, 1]"});
+  test::expect_words(error_of(primitive("cylinder", {1e-5, 1000}, 1e-6)),
+                     {"principal moments", "the smallest more than 1e-12 of the largest"});
   test::expect_words(error_of(primitive("sphere", {1}, -2.0)), {"-2"});
   ObjectRequest bad = primitive("sphere", {0.1});
   bad.name = "a b";
@@ -121,6 +127,30 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   const std::string two = test::robot(test::link("a", test::kBox) + test::joint("fixed", "world", "a") +
                                       test::link("b", test::kBox) + test::joint("fixed", "world", "b"));
   test::expect_words(error_of(urdf(two)), {"several"});
+}
+
+TEST(ObjectRequest, a_colour_has_parts_from_0_to_1_and_no_others) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::array<float, 4>& rgba : {std::array<float, 4>{{nan, 0, 0, 1}},
+                                           {{0, 1e30f, 0, 1}},
+                                           {{0, 0, -5, 1}},
+                                           {{0, 0, 0, nan}},
+                                           {{0, 0, 0, 1.5f}}}) {
+    ObjectRequest request = primitive("box", {0.1, 0.1, 0.1});
+    request.rgba = rgba;
+    test::expect_words(error_of(request), {"color [", "opacity, each a number from 0 to 1"});
+    const std::string given = "\"" + text::number(double(rgba[0])) + " " + text::number(double(rgba[1])) +
+                              " " + text::number(double(rgba[2])) + " " + text::number(double(rgba[3])) +
+                              "\"";
+    const std::string link =
+        std::string(test::kInertial) + test::kBox +
+        "<visual><geometry><box size=\"1 1 1\"/></geometry><material name=\"m\"><color rgba=" + given +
+        "/></material></visual>";
+    EXPECT_NE(error_of(urdf("<robot name=\"r\">" + test::link("part", link) + "</robot>")), "") << given;
+  }
+  ObjectRequest request = primitive("box", {0.1, 0.1, 0.1});
+  request.rgba = {{0, 1, 0.5f, 1}};
+  EXPECT_EQ(error_of(request), "");
 }
 
 }  // namespace

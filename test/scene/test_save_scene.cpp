@@ -215,5 +215,48 @@ TEST_F(SavedScene, has_shapes_of_all_kinds_with_their_sizes) {
   }
 }
 
+std::string refusal(const Scene& scene, const std::string& file) {
+  try {
+    save_scene(scene, file);
+  } catch (const std::exception& error) {
+    EXPECT_EQ(std::string(error.what()).find_first_of("\n\x1b"), std::string::npos) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(SavedScene, has_a_path_that_file_systems_and_terminals_take) {
+  const Scene scene = load_scene("config/scenes/cube.urdf", {});
+  for (const std::string& name :
+       {std::string("a\nb.urdf"), std::string("a\x1b[31m.urdf"), std::string("a\0b.urdf", 8),
+        std::string(300, 'x') + ".urdf", std::string("a\x7f.urdf"), std::string("a.yaml")}) {
+    const std::string said = refusal(scene, file(name));
+    EXPECT_NE(said.find("allowed: one that ends in .urdf, each name in it at most 255 bytes"),
+              std::string::npos)
+        << said;
+  }
+  EXPECT_EQ(refusal(scene, "/nope/x.urdf"),
+            "cannot write '/nope/x.urdf': its folder is not there; allowed: one that is");
+  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_EQ(refusal(scene, file(std::string(250, 'x') + ".urdf")), "");
+}
+
+TEST_F(SavedScene, leaves_every_file_alone_that_is_there) {
+  Scene scene = load_scene("config/scenes/cube.urdf", {});
+  auto wedge = std::make_shared<TriangleMesh>();
+  wedge->vertices = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+  wedge->triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  scene.bodies[0].shapes = {{Mesh{wedge, "file:///wedge.obj", Vector3::Ones()}, {}}};
+  std::ofstream(file("wedge_1.obj")) << "mine";
+  EXPECT_EQ(refusal(scene, file("wedge.urdf")),
+            "'" + file("wedge_1.obj") + "' is there already; allowed: a file that is not");
+  fs::create_symlink("/nowhere/at/all", file("gone.yaml"));
+  EXPECT_NE(refusal(scene, file("gone.urdf")).find("gone.yaml' is there already"), std::string::npos);
+  std::string mine;
+  std::ifstream(file("wedge_1.obj")) >> mine;
+  EXPECT_EQ(mine, "mine");
+  EXPECT_FALSE(fs::exists(file("wedge.urdf")) || fs::exists(file("wedge.yaml")));
+}
+
 }  // namespace
 }  // namespace mrhi

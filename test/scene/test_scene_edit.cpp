@@ -256,11 +256,41 @@ TEST(ArrangeJoints, two_hundred_and_fifty_six_are_taken) {
   Scene scene;
   for (int i = 0; i < 257; ++i) {
     scene.bodies.push_back(named("b" + std::to_string(i)));
-    scene.joints.push_back(hinge(i - 1, i, {}, {}));
+    scene.joints.push_back(hinge(i % 32 == 0 ? Joint::kWorld : i - 1, i, {}, {}));
   }
   EXPECT_THROW(arrange_joints(scene), std::invalid_argument);
   scene.joints.pop_back();
   EXPECT_NO_THROW(arrange_joints(scene));
+}
+
+/// As chains and as stars: on the world, on a fixture, and on a body that is free, whose branches are one.
+TEST(ArrangeJoints, thirty_two_that_hang_together_are_taken) {
+  const auto said = [](int joints, bool chain, const char* root) {
+    Scene scene;
+    scene.bodies.push_back(named(root));
+    scene.bodies[0].fixed = std::string(root) == "frame";
+    for (int i = 1; i <= joints; ++i) {
+      scene.bodies.push_back(named("b" + std::to_string(i)));
+      const int on = std::string(root) == "world" ? Joint::kWorld : 0;
+      scene.joints.push_back(hinge(chain && i > 1 ? i - 1 : on, i, {}, {}));
+      scene.joints.back().name = "j" + std::to_string(i);
+    }
+    try {
+      arrange_joints(scene);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string rest = " has more than 32 joints; allowed: at most that, and 256 in a scene";
+  for (const char* const root : {"world", "frame", "free"}) {
+    EXPECT_EQ(said(32, true, root), "") << root;
+    EXPECT_EQ(said(33, true, root),
+              "the mechanism of " +
+                  std::string(root[1] == 'r' && root[2] == 'e' ? "body 'free'" : "joint 'j1'") + rest);
+  }
+  EXPECT_EQ(said(33, false, "free"), "the mechanism of body 'free'" + rest);
+  EXPECT_EQ(said(33, false, "frame"), "") << "fixtures pass nothing on";
 }
 
 TEST(ArrangeJoints, comes_to_the_same_in_whichever_order_they_were) {

@@ -183,8 +183,8 @@ TEST(UrdfScene, RefusesSizesThatAreNotPositive) {
                      {"'thing'", "cylinder", "length 0"});
   test::expect_words(error(with(R"(<capsule radius="0" length="1"/>)")),
                      {"'thing' collision 1", "capsule", "radius 0"});
-  test::expect_words(error(with(R"(<capsule radius="1"/>)")), {"capsule", "length 0"});
-  test::expect_words(error(with(R"(<capsule radius="1 1" length="wide"/>)")), {"capsule", "radius 0"});
+  test::expect_words(error(with(R"(<capsule radius="1"/>)")), {"capsule", "length nan"});
+  test::expect_words(error(with(R"(<capsule radius="1 1" length="wide"/>)")), {"capsule", "radius nan"});
   test::expect_words(error(with(R"(<cone radius="1" length="1"/>)")), {"thing", "cone"});
   test::expect_words(error(with(R"(<box size="0.1 0.1"/>)")), {"thing"});
   test::expect_words(error(with(R"(<box size="0.1 wide 0.1"/>)")), {"thing", "wide"});

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "scene/scene_files.h"
@@ -193,6 +195,53 @@ TEST(NamedFile, that_is_not_there_is_told_with_those_there_are) {
   EXPECT_EQ(not_found("c", folders), "unknown task 'c'" + allowed);
   EXPECT_EQ(not_found("./c", folders), "task file './c' does not exist" + allowed);
   EXPECT_EQ(not_found("c.yaml", folders), "task file 'c.yaml' does not exist" + allowed);
+}
+
+std::string message_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Opening a pipe waits for who is at its other end, and a device may have no end.
+TEST(Files, what_is_no_file_is_neither_read_nor_written) {
+  const test::Folder folder;
+  const std::string pipe = folder.path() + "/pipe", device = folder.path() + "/device";
+  ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+  std::filesystem::create_symlink("/dev/zero", device);
+  for (const std::string& file : {pipe, device, folder.path()}) {
+    EXPECT_EQ(why_unreadable(file), "is no file");
+    EXPECT_FALSE(file_text(file, 10));
+    EXPECT_EQ(message_of([&] { FileLines lines(file); }),
+              file + ": is no file; allowed: a file that may be read");
+  }
+  EXPECT_EQ(why_unreadable(folder.path() + "/none"), "there is no such file");
+  EXPECT_EQ(why_unreadable(folder.write("some", "")), "");
+  EXPECT_EQ(message_of([&] { file_to_write(pipe); }),
+            "cannot write " + pipe + ": it is no file; allowed: a file, or none yet");
+  EXPECT_TRUE(file_to_write(folder.path() + "/new"));
+  EXPECT_FALSE(file_to_write(folder.path())) << "a folder is for the stream to refuse";
+}
+
+TEST(Files, lines_are_those_of_the_text_and_have_a_bound) {
+  const test::Folder folder;
+  const std::string longest(64 * 1024, 'x');
+  const std::string file = folder.write("lines", "one\n\n" + longest + "\nlast");
+  FileLines lines(file);
+  std::string line;
+  std::vector<std::string> all;
+  while (lines.next(line)) all.push_back(line);
+  EXPECT_EQ(all, (std::vector<std::string>{"one", "", longest, "last"}));
+  const std::string beyond = folder.write("beyond", "one\n" + longest + "x\n");
+  FileLines too_long(beyond);
+  EXPECT_TRUE(too_long.next(line));
+  EXPECT_EQ(message_of([&] { too_long.next(line); }),
+            beyond + ":2: is longer than 65536 bytes; allowed: at most that");
+  FileLines none(folder.write("empty", ""));
+  EXPECT_FALSE(none.next(line));
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "mr_hand_interaction/training/session.h"
@@ -374,6 +376,72 @@ TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
   open();
   std::ofstream(trials_, std::ios::app) << "1,cube\n";
   test::expect_words(refusal(header()), {"trials.csv:2", "2 fields"});
+}
+
+/// All files below the folder, with what is in them.
+std::map<std::string, std::string> all_in(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    files[entry.path().string()] = entry.is_regular_file() ? text(entry.path().string()) : "";
+  return files;
+}
+
+TEST_F(SessionTest, refuses_a_folder_with_tables_of_others_and_touches_nothing_in_it) {
+  std::filesystem::create_directory(path_);
+  for (const std::string name : {"trials.csv", "events.csv", "hands.csv", "hands_raw.csv"}) {
+    for (const std::string foreign : {"day,weight\n1,70\n2,7", "day,weight", "trial,object\n"}) {
+      std::ofstream(path_ + "/" + name) << foreign;
+      const auto before = all_in(path_);
+      test::expect_words(refusal(header()), {name + ":1", "columns"});
+      EXPECT_EQ(before, all_in(path_)) << name;
+    }
+    std::filesystem::remove(path_ + "/" + name);
+  }
+  std::filesystem::create_directory(path_ + "/setup");
+  std::ofstream(path_ + "/setup/mine") << "x";
+  const auto before = all_in(path_);
+  test::expect_words(refusal(header()), {"/setup: is no session's"});
+  EXPECT_EQ(before, all_in(path_));
+}
+
+/// Opening a pipe waits for who writes to it; a device may have no end.
+TEST_F(SessionTest, refuses_pipes_and_devices_in_place_of_its_files) {
+  std::filesystem::create_directory(path_);
+  for (const std::string name : {"trials.csv", "events.csv", "hands.csv", "session.lock", "session.yaml"}) {
+    const std::string file = path_ + "/" + name;
+    ASSERT_EQ(0, mkfifo(file.c_str(), 0600));
+    EXPECT_NE(refusal(header()).find(file), std::string::npos);
+    std::filesystem::remove(file);
+    std::filesystem::create_symlink("/dev/zero", file);
+    EXPECT_NE(refusal(header()).find(file), std::string::npos);
+    std::filesystem::remove(file);
+  }
+  EXPECT_EQ("", refusal(header()));
+}
+
+/// Writing goes on without an error to a file that has no name any more.
+TEST_F(SessionTest, tells_that_its_folder_was_removed_or_its_tables_replaced) {
+  const auto said = [](const auto& work) {
+    try {
+      work();
+    } catch (const SessionError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string told = ": was removed or replaced while the session runs; allowed: a folder that is left";
+  for (const bool replaced : {false, true}) {
+    Session session = open();
+    session.folder().check_there();
+    std::filesystem::remove_all(path_);
+    if (replaced) {
+      std::filesystem::create_directory(path_);
+      std::ofstream(trials_) << "mine";
+    }
+    EXPECT_NE(said([&] { session.folder().check_there(); }).find(trials_ + told), std::string::npos);
+    EXPECT_NE(said([&] { session.skip(1); }).find(told), std::string::npos);
+    std::filesystem::remove_all(path_);
+  }
 }
 
 TEST_F(SessionTest, goes_on_counting_whatever_numbers_are_in_its_tables) {

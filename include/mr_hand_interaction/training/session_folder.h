@@ -69,8 +69,9 @@ struct HandRow {
 class SessionFolder {
  public:
   /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
-  /// Throws SessionError if it is that of another session or of another setup, in use by another program, or
-  /// cannot be read or written.
+  /// Throws SessionError if it is that of another session or of another setup, has other tables of these
+  /// names, is in use by another program, or cannot be read or written. All that is there is looked at before
+  /// anything is touched.
   SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
   ~SessionFolder();
 
@@ -83,14 +84,28 @@ class SessionFolder {
   /// What was taken away, for the log.
   const std::vector<std::string>& notes() const { return notes_; }
 
+  /// Throws SessionError once the files that are written to are no more what is found under their names.
+  void check_there() const;
+
+  /// These throw SessionError, too, if the disk does not take it.
   void log(const EventRow& row);
   void log(const TrialRow& row);
   void log(const HandRow& row);
 
  private:
+  /// A file that rows are added to, and which one it is.
+  struct Table {
+    std::string file;
+    std::ofstream out;
+    std::uint64_t device = 0, inode = 0;
+
+    void check_there() const;
+    void write(const std::string& text);
+  };
+
+  void check(const SessionHeader& header, const SessionSetup& setup) const;
   void open_header(const SessionHeader& header, const SessionSetup& setup);
-  std::string open_file(const char* name, const char* columns, std::ofstream& out);
-  std::vector<std::vector<std::string>> open_table(const char* name, const char* columns, std::ofstream& out);
+  std::string open_table(const char* name, const char* columns, Table& table);
 
   std::string path_, condition_;
   std::unique_ptr<FolderLock> lock_;
@@ -99,7 +114,7 @@ class SessionFolder {
   int last_trial_ = 0;
   double last_time_ = 0.0;
   std::vector<std::string> notes_;
-  std::ofstream trials_, events_, hands_, hands_raw_;
+  Table trials_, events_, hands_, hands_raw_;
 };
 
 }  // namespace mrhi
