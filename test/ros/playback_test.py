@@ -132,6 +132,15 @@ class PlaybackTest(unittest.TestCase):
         self.assertEqual(difference, "")
         self.assertTrue(self.pushed())
 
+    def test_a_bag_that_is_there_is_not_written_over(self):
+        with open(self.bag, "rb") as file:
+            before = file.read()
+        done = subprocess.run(["roslaunch", "mr_hand_interaction", "record.launch", "bag:=" + self.bag],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=300)
+        self.assertIn("%s: is there already; allowed: a file that is not" % self.bag, done.stdout)
+        with open(self.bag, "rb") as file:
+            self.assertEqual(file.read(), before)
+
     def test_a_bag_that_is_not_there_ends_the_launch_with_one_line(self):
         missing = os.path.join(self.folder, "no such.bag")
         told = subprocess.run(["roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + missing, "rviz:=false"],

@@ -197,7 +197,11 @@ class User:
         """All nodes of a launch file, but those that wait for a participant or a device before they begin."""
         _, package, file, *arguments = [word for word in self.words(command) if word != "--wait"]
         assert package == NAME, command
-        if file != "record.launch":
+        if file == "record.launch":  # never over a bag that is there
+            for argument in arguments:
+                if argument.startswith("bag:="):
+                    os.remove(argument[len("bag:="):])
+        else:
             arguments.append("rviz:=false")
         nodes = [node for node in self.nodes_of(file, arguments) if (node.launch_prefix or "").split()[2:3] not in
                  (["message"], ["bag_without"])]
