@@ -93,7 +93,7 @@ struct Groups {
     (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(outcome);
   }
   void tell(const std::string& name, std::ostream& csv, const Contender& contender) const {
-    for (const auto& [group, outcomes] :
+    for (const auto [group, outcomes] :
          {std::make_pair("_first", &first), {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}}) {
       if (outcomes->empty()) continue;
       std::cout << line(name + group, *outcomes) << std::endl;

@@ -37,7 +37,7 @@ void expect_moments(const Body& body, const Vector3& moments) {
   EXPECT_LT((body.inertia * body.inverse_inertia - Matrix3::Identity()).norm(), 1e-12) << body.name;
 }
 
-const Body& only_body(const Scene& scene, const std::string& name, double mass) {
+const Body& only_body(const Scene& scene, const char* name, double mass) {
   EXPECT_EQ(1u, scene.bodies.size());
   const Body& body = scene.bodies.at(0);
   EXPECT_EQ(name, body.name);
@@ -48,7 +48,7 @@ const Body& only_body(const Scene& scene, const std::string& name, double mass) 
   return body;
 }
 
-const Body& body_of(const Scene& scene, const std::string& name) {
+const Body& body_of(const Scene& scene, const char* name) {
   return scene.bodies.at(find_body(scene, name).value());
 }
 
