@@ -93,8 +93,9 @@ struct Groups {
     (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(outcome);
   }
   void tell(const std::string& name, std::ostream& csv, const Contender& contender) const {
-    for (const auto [group, outcomes] :
-         {std::make_pair("_first", &first), {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}}) {
+    const std::pair<const char*, const std::vector<WindowOutcome>*> groups[] = {
+        {"_first", &first}, {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}};
+    for (const auto& [group, outcomes] : groups) {
       if (outcomes->empty()) continue;
       std::cout << line(name + group, *outcomes) << std::endl;
       write_arctic(csv, contender, name + group, *outcomes);
