@@ -19,7 +19,7 @@ from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, 
 TIME_LIMIT = 900  # s, of a command; a picture on a slow machine takes minutes
 NOT_TRIED = (  # what the command begins with, and why it is not run here; beyond what EXCEPTED says
     ("scripts/demo$", "has been run to come here"),
-    ("scripts/test$", "runs by itself: scripts/test_on"),
+    (r"scripts/test( --no-\w+)*$", "runs by itself: scripts/test_on"),
     ("scripts/test_on", "brings us here"),
     ("scripts/benchmark --(full|real|jolt)|scripts/fuzz|scripts/calibrate_study", "takes long"),
     ("scripts/sanitize", "builds the core anew with sanitizers, over a quarter of an hour on two processors"),
