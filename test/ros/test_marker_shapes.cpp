@@ -55,7 +55,7 @@ TEST_F(MarkerShapes, an_arrow_goes_from_its_beginning_to_its_tip_and_is_closed) 
   for (int i = 0; i < 30; ++i) {
     const Vector3 begin = random.gaussian_vector(0.3), along = random.gaussian_vector(1.0).normalized();
     const Arrow arrow{begin, begin + 0.08 * along, 0.003, 0.006, 0.02};
-    const Marker& marker = add_arrow(arrow, color(1, 0, 0), i, layer_);
+    const Marker marker = add_arrow(arrow, color(1, 0, 0), i, layer_);
     EXPECT_EQ(marker.type, Marker::TRIANGLE_LIST);
     EXPECT_EQ(marker.points.size(), marker.colors.size());
     double lowest = 1.0, highest = -1.0;
@@ -76,7 +76,7 @@ TEST_F(MarkerShapes, an_arrow_goes_from_its_beginning_to_its_tip_and_is_closed) 
 }
 
 TEST_F(MarkerShapes, an_arrow_may_be_all_head) {
-  const Marker& marker = add_arrow({{0, 0, 0}, {0, 0, 0.01}, 0.003, 0.006, 0.01}, color(1, 0, 0), 0, layer_);
+  const Marker marker = add_arrow({{0, 0, 0}, {0, 0, 0.01}, 0.003, 0.006, 0.01}, color(1, 0, 0), 0, layer_);
   EXPECT_NEAR(Solid(marker.points).volume, 1.5 * std::sqrt(3.0) * 36e-6 * 0.01 / 3.0, 1e-12);
 }
 
