@@ -115,7 +115,8 @@ def _tidy(data):
     values = trials.melt(keys, [m for m in OF if m in trials.columns], 'measure').dropna(subset=['value'])
     answers = data.ratings.rename(columns={'question': 'measure', 'score': 'value'})
     answers = answers.reindex(columns=[c for c in keys if c in answers.columns and c != 'order'] + ['measure', 'value'])
-    return pandas.concat([values, answers], ignore_index=True)[keys + ['measure', 'value']]
+    # Not by pandas.concat, which from 2.1 on warns of a table without rows, or with columns that are empty.
+    return pandas.DataFrame(values.to_dict('records') + answers.to_dict('records'), columns=keys + ['measure', 'value'])
 
 
 def _draw_part(figures, folder, part, data, results):

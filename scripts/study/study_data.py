@@ -47,7 +47,7 @@ def _with_scales(ratings):
         head = some.iloc[0].to_dict()
         rows += [dict(head, question=question, score=score) for question, score in derived(scores).items()]
     single = ratings[~ratings['question'].isin(list(NASA_TLX) + list(SUS))]
-    return pandas.concat([single, pandas.DataFrame(rows, columns=ratings.columns)], ignore_index=True)
+    return pandas.DataFrame(single.to_dict('records') + rows, columns=ratings.columns)
 
 
 def _with_seeds(sessions):
@@ -134,8 +134,7 @@ def _cells(trials):
 
 def parts(data):
     """People and simulated operators, and each gravity, are analysed apart: (source, gravity) pairs."""
-    both = pandas.concat([data.trials[['source', 'gravity_g']], data.ratings[['source', 'gravity_g']]])
-    return sorted(set(map(tuple, both.values)))
+    return sorted({tuple(row) for table in (data.trials, data.ratings) for row in table[['source', 'gravity_g']].values})
 
 
 def of_part(table, part):

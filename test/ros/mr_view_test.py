@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """mr_view.launch: an object stands in the camera's picture where a pinhole camera would see it. The picture has the
 silhouette of the cube painted into it by room_picture.py, which knows nothing of rviz; rviz must cover that."""
+import glob
 import os
 import shutil
 import signal
@@ -106,6 +107,7 @@ class MrViewTest(unittest.TestCase):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
         self.start_screen()
+        self.let_plugins_be_found()
         still = os.path.join(self.folder, "marked.png")
         pose = " ".join(str(number) for number in POSE)
         subprocess.run([sys.executable, room_picture.__file__, "--camera", CAMERA, "--pose", pose, "--mark",
@@ -113,6 +115,14 @@ class MrViewTest(unittest.TestCase):
         self.command = ["roslaunch", "mr_hand_interaction", "mr_view.launch", "hands:=none", "still:=" + still,
                         "camera_pose:=" + pose]
         self.view = self.start(self.command)
+
+    def let_plugins_be_found(self):
+        """Debian 11 has image_publisher where its pluginlib does not look; docs/mixed_reality.md says what helps a user."""
+        plugins = os.path.join(self.folder, "lib")
+        os.mkdir(plugins)
+        for library in glob.glob("/usr/lib/*/libimage_publisher.so"):
+            os.symlink(library, os.path.join(plugins, os.path.basename(library)))
+        os.environ["CMAKE_PREFIX_PATH"] = self.folder + os.pathsep + os.environ["CMAKE_PREFIX_PATH"]
 
     def start(self, command, **options):
         process = subprocess.Popen(command, start_new_session=True, **options)

@@ -76,8 +76,8 @@ class AgreesWithOthers(unittest.TestCase):
         rows = [(i, j, values[i, j]) for i in range(9) for j in range(4)]
         table = AnovaRM(pandas.DataFrame(rows, columns=['who', 'level', 'y']), 'y', 'who', ['level']).fit().anova_table
         within = effects_of(values, [0] * 9)[0]['within']
-        self.assertAlmostEqual(within.f, table['F Value'][0], places=9)
-        self.assertAlmostEqual(within.p_uncorrected, table['Pr > F'][0], places=9)
+        self.assertAlmostEqual(within.f, table['F Value'].iloc[0], places=9)
+        self.assertAlmostEqual(within.p_uncorrected, table['Pr > F'].iloc[0], places=9)
 
     def test_with_scipy_where_there_is_one_level(self):
         values, groups = self.random.normal(size=(13, 1)), np.repeat(['a', 'b', 'c'], [5, 2, 6])
