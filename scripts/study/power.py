@@ -17,29 +17,37 @@ ALPHA = 0.05
 SIZES = {'group': ('5v5', '10v10', '15v15', '20v20', '30v30'), 'condition': ('5', '10', '15', '20', '30')}
 
 
-def table(given):
-    """(size, studies, found, percent, lower and upper limit of its exact 95 % interval) for each size."""
-    cells = _cells(given)
-    levels = in_order(cells[given.effect], GROUPS if given.effect == 'group' else CONDITIONS)
-    if len(levels) != 2:
-        raise ValueError('the pilot has %d levels of %s (%s); allowed: 2' % (
-            len(levels), given.effect, ', '.join(levels)))
-    if not 1 <= given.studies <= 100000:
-        raise ValueError('--studies %d is not allowed; allowed: 1 to 100000' % given.studies)
-    if given.ratio is not None:
-        cells = _with_ratio(cells, given.effect, levels, given.ratio)
-    rows = []
-    before, permutation.DRAWN = permutation.DRAWN, DRAWN
-    try:
-        for size in given.size or SIZES[given.effect]:
-            counts = _counts(size, given.effect)
-            found = sum(_p(_drawn(cells, given.effect, levels, counts, np.random.RandomState([given.seed, i])),
-                           given.effect, levels, OF[given.measure]) < ALPHA for i in range(given.studies))
-            share = exact.share([True] * found + [False] * (given.studies - found))
-            rows.append((size, given.studies, found, *[100 * x for x in (share.share, share.low, share.high)]))
-    finally:
-        permutation.DRAWN = before
-    return rows
+class Pilot:
+    """The participants from whom studies are drawn; what cannot be done with them is a ValueError."""
+
+    def __init__(self, given):
+        self.given, self.cells = given, _cells(given)
+        self.levels = in_order(self.cells[given.effect], GROUPS if given.effect == 'group' else CONDITIONS)
+        if len(self.levels) != 2:
+            raise ValueError('the pilot has %d levels of %s (%s); allowed: 2' % (
+                len(self.levels), given.effect, ', '.join(self.levels)))
+        if not 1 <= given.studies <= 100000:
+            raise ValueError('--studies %d is not allowed; allowed: 1 to 100000' % given.studies)
+        if given.ratio is not None:
+            self.cells = _with_ratio(self.cells, given.effect, self.levels, given.ratio)
+        self.sizes = [(size, _counts(size, given.effect)) for size in given.size or SIZES[given.effect]]
+
+    def rows(self):
+        """(size, studies, found, percent, lower and upper limit of its exact 95 % interval), each as it is known."""
+        studies = self.given.studies
+        for size, counts in self.sizes:
+            found = sum(self._p(counts, i) < ALPHA for i in range(studies))
+            share = exact.share([True] * found + [False] * (studies - found))
+            yield (size, studies, found, *[100 * x for x in (share.share, share.low, share.high)])
+
+    def _p(self, counts, i):
+        random = np.random.RandomState([self.given.seed, i])
+        drawn = _drawn(self.cells, self.given.effect, self.levels, counts, random)
+        before, permutation.DRAWN = permutation.DRAWN, DRAWN
+        try:
+            return _p(drawn, self.given.effect, self.levels, OF[self.given.measure])
+        finally:
+            permutation.DRAWN = before
 
 
 def _cells(given):
