@@ -86,18 +86,14 @@ std::string list(const Vector3& v) {
 }  // namespace
 
 std::vector<TouchedPoint> read_points(const std::string& file) {
-  try {
+  return read_yaml<PointsError>(file, [&] {
     const YAML::Node root = load_yaml_file(file);
     const YAML::Node list = root.IsMap() ? root["points"] : YAML::Node();
     if (!list || !list.IsSequence()) throw PointsError(file + ": no list named points");
     std::vector<TouchedPoint> points;
     for (const auto& node : list) points.push_back(PointReader(file, node).read(points.size() + 1));
     return points;
-  } catch (const YamlError& error) {
-    throw PointsError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw PointsError(yaml_place(file, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  });
 }
 
 void write_points(const std::string& file, const std::vector<TouchedPoint>& points) {

@@ -73,7 +73,7 @@ void set_parameter(Configuration& configuration, const std::string& name, const 
 }
 
 void load_parameters(Configuration& configuration, const std::string& yaml_file) {
-  try {
+  read_yaml<ParameterError>(yaml_file, [&] {
     const YAML::Node root = load_yaml_file(yaml_file);
     if (!root.IsMap() && !root.IsNull()) {
       throw ParameterError(yaml_file + ": " + yaml_text(root) +
@@ -82,11 +82,7 @@ void load_parameters(Configuration& configuration, const std::string& yaml_file)
     Configuration changed = configuration;
     FileReader(yaml_file, changed).read(root, "");
     configuration = changed;
-  } catch (const YamlError& error) {
-    throw ParameterError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw ParameterError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  });
 }
 
 void validate(const Configuration& configuration) {

@@ -60,14 +60,6 @@ void LinkageFlight::read(const std::vector<JointState>& joints, const std::vecto
   root_ = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose.orientation;
 }
 
-void LinkageFlight::place(const std::vector<JointState>& joints, std::vector<BodyState>& bodies) {
-  read(joints, bodies);
-  motion_.place(bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose, now_.positions);
-  for (int i = 0; i < motion_.size(); ++i)
-    bodies[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].body)].pose =
-        motion_.at(i).pose;
-}
-
 /// Of the unknowns, in the frame of the centre of mass if it floats.
 ///
 ///     M(q) u = p,      p = (0, L, p_joints) of one that floats

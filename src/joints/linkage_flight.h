@@ -21,9 +21,6 @@ class LinkageFlight {
   void fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
            std::vector<BodyState>& bodies);
 
-  /// Poses of all bodies for the joints' positions.
-  void place(const std::vector<JointState>& joints, std::vector<BodyState>& bodies);
-
  private:
   using Vector = Eigen::VectorXd;
   /// Joints' places and momenta, and how far the root has turned since the part began.

@@ -70,7 +70,7 @@ void read_twists(const Element& element, Scene& scene) {
 }  // namespace
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
-  try {
+  read_yaml<SceneError>(yaml_file, [&] {
     const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
     for (const std::string& key :
@@ -82,31 +82,15 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
       if (key == "twists") read_twists(element, scene);
       if (key == "joints") read_joint_settings(element, scene);
     }
-  } catch (const YamlError& error) {
-    throw SceneError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw SceneError(yaml_place(yaml_file, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  });
 }
 
 void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene& scene) {
-  try {
-    read_joint_settings({source, "", load_yaml(source, yaml)}, scene);
-  } catch (const YamlError& error) {
-    throw SceneError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw SceneError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  read_yaml<SceneError>(source, [&] { read_joint_settings({source, "", load_yaml(source, yaml)}, scene); });
 }
 
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body) {
-  try {
-    read_material({source, "", load_yaml(source, yaml)}, body);
-  } catch (const YamlError& error) {
-    throw SceneError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw SceneError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  read_yaml<SceneError>(source, [&] { read_material({source, "", load_yaml(source, yaml)}, body); });
 }
 
 }  // namespace mrhi

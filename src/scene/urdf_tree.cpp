@@ -6,25 +6,6 @@
 namespace mrhi {
 namespace {
 
-std::string type_name(const urdf::Joint& joint) {
-  switch (joint.type) {
-    case urdf::Joint::REVOLUTE:
-      return "revolute";
-    case urdf::Joint::CONTINUOUS:
-      return "continuous";
-    case urdf::Joint::PRISMATIC:
-      return "prismatic";
-    case urdf::Joint::PLANAR:
-      return "planar";
-    case urdf::Joint::FLOATING:
-      return "floating";
-    case urdf::Joint::FIXED:
-      return "fixed";
-    default:
-      return "of unknown type";
-  }
-}
-
 class Tree {
  public:
   Tree(const std::string& file, const UrdfDocument& document)
@@ -55,8 +36,9 @@ class Tree {
     const std::string what = "joint '" + joint.name + "' ";
     const bool fixed = joint.type == urdf::Joint::FIXED;
     if (!fixed && joint.type != urdf::Joint::FLOATING && !moves(joint)) {
-      fail(what + "is " + type_name(joint) +
-           "; allowed: floating (a free body), fixed (a fixture), revolute, continuous, prismatic");
+      // Other types urdfdom does not take.
+      fail(what +
+           "is planar; allowed: floating (a free body), fixed (a fixture), revolute, continuous, prismatic");
     }
     if (joint.mimic) fail(what + "mimics '" + joint.mimic->joint_name + "'; allowed: joints without mimic");
     if (model_.getLink(joint.child_link_name)->parent_joint.get() != &joint) {

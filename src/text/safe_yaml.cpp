@@ -59,6 +59,10 @@ std::string ended(const std::string& yaml) {
 
 }  // namespace
 
+std::string yaml_complaint(const std::string& source, const YAML::Exception& error) {
+  return yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg);
+}
+
 YAML::Node load_yaml(const std::string& source, const std::string& yaml) {
   return load_yaml(source, yaml, kMostBytes);
 }
@@ -74,7 +78,7 @@ YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::si
     parser.HandleNextDocument(guard);
     return YAML::Load(whole);
   } catch (const YAML::Exception& error) {
-    throw YamlError(yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg));
+    throw YamlError(yaml_complaint(source, error));
   }
 }
 

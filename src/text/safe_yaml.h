@@ -24,4 +24,19 @@ YAML::Node load_yaml(const std::string& source, const std::string& yaml);
 /// Or of at most that many bytes.
 YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most);
 
+/// yaml-cpp's word as one line with the place.
+std::string yaml_complaint(const std::string& source, const YAML::Exception& error);
+
+/// What `read` gives; what it throws of YAML is an Error.
+template <typename Error, typename Read>
+auto read_yaml(const std::string& source, const Read& read) {
+  try {
+    return read();
+  } catch (const YamlError& error) {
+    throw Error(error.what());
+  } catch (const YAML::Exception& error) {
+    throw Error(yaml_complaint(source, error));
+  }
+}
+
 }  // namespace mrhi

@@ -81,7 +81,7 @@ std::string header_text(const SessionHeader& header) {
 }
 
 void check_same_session(const std::string& file, const SessionHeader& header) {
-  try {
+  read_yaml<SessionError>(file, [&] {
     const YAML::Node there = load_yaml_file(file);
     if (!there.IsMap())
       throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
@@ -93,11 +93,7 @@ void check_same_session(const std::string& file, const SessionHeader& header) {
     const std::optional<Vector3> gravity = yaml_vector(there["gravity"]);
     if (!gravity || *gravity != header.gravity)
       refuse(file, "gravity", field_text(there["gravity"]), text::vector(header.gravity));
-  } catch (const YamlError& error) {
-    throw SessionError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw SessionError(yaml_place(file, error.mark) + ": cannot be read: " + text::one_line(error.msg));
-  }
+  });
 }
 
 }  // namespace mrhi

@@ -102,7 +102,7 @@ std::string find_task_file(const std::string& task, const std::vector<std::strin
 
 Task load_task(const std::string& file) {
   Task task;
-  try {
+  read_yaml<SceneError>(file, [&] {
     const Element root{file, "", load_yaml_file(file)};
     std::vector<std::string> known;
     for (const auto& key : task_keys()) known.push_back(key.first);
@@ -111,11 +111,7 @@ Task load_task(const std::string& file) {
       if (!root.node[key]) throw SceneError(file + ": no key '" + key + "'; needed: name, objects, goals");
     }
     check_names(root, task);
-  } catch (const YamlError& error) {
-    throw SceneError(error.what());
-  } catch (const YAML::Exception& error) {
-    throw SceneError(yaml_place(file, error.mark) + ": not YAML: " + text::one_line(error.msg));
-  }
+  });
   return task;
 }
 

@@ -194,5 +194,39 @@ TEST(ManifoldSearch, mesh_of_a_box_is_the_box_across_a_gap_and_nearly_in_overlap
   EXPECT_GT(right, 0.9 * overlaps);
 }
 
+/// A disc's mesh that lies on a box, 0.5 mm deep: every corner of its lower face touches.
+Manifold disc_on_a_box(int corners) {
+  std::vector<Eigen::Vector2d> outline;
+  std::vector<std::array<int, 3>> fan;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2.0 * M_PI * i / corners;
+    outline.emplace_back(0.03 * std::cos(angle), 0.03 * std::sin(angle));
+    if (i > 1) fan.push_back({{0, i - 1, i}});
+  }
+  const auto triangles = std::make_shared<TriangleMesh>(prism(outline, fan, 0.01));
+  const MeshCollider collider(*triangles);
+  const Shape disc = Mesh{triangles, "", Vector3::Ones()}, box = Box{{0.05, 0.05, 0.01}};
+  return body_manifold({disc, &collider}, {{0.0, 0.0, 0.0195}, Quaternion::Identity()}, box, Pose(), 0.001);
+}
+
+TEST(ManifoldSearch, mesh_with_more_touches_than_are_remembered_stands_like_one_with_few) {
+  for (const int corners : {100, 500}) {
+    SCOPED_TRACE(corners);
+    const Manifold m = disc_on_a_box(corners);
+    ASSERT_EQ(m.count, 4);
+    EXPECT_NEAR(m.normal.z(), 1.0, 1e-9);
+    EXPECT_NEAR(deepest(m), 0.0005, 1e-9);
+    Vector3 middle = Vector3::Zero();
+    for (int i = 0; i < m.count; ++i) {
+      const ManifoldPoint& p = m.points[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(p.depth, 0.0005, 1e-9);
+      EXPECT_NEAR(p.point.head<2>().norm(), 0.03, 1e-6);
+      middle += 0.25 * p.point;
+    }
+    // It stands: the points go around its middle.
+    EXPECT_LT(middle.head<2>().norm(), 0.006);
+  }
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -74,6 +74,14 @@ TEST(OperatorTrial, says_what_it_cannot_do) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("button_1_slide"), std::string::npos);
   }
+  task = testing::task_with("cube");
+  task.goals.back().kind = GoalKind::strike;
+  try {
+    make_person(OperatorSkill{}, task, Body{}, 1);
+    FAIL() << "takes it";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("either carries or strikes"), std::string::npos) << error.what();
+  }
 }
 
 TEST(OperatorTrial, same_seed_same_bits) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
@@ -348,6 +349,35 @@ TEST(LiveSimulation, a_stack_keeps_standing_when_something_else_goes) {
   expect_same(changed.simulation().state().bodies[1], unchanged.simulation().state().bodies[2]);
   expect_same(changed.simulation().state().bodies[2], unchanged.simulation().state().bodies[3]);
   EXPECT_NEAR(changed.simulation().state().bodies[2].pose.position.z(), 0.075, 1e-3);
+}
+
+TEST(LiveSimulation, what_hangs_on_a_joint_is_not_placed_and_the_joint_is_named) {
+  const Scene scene = load_scene(find_scene_file("hatch", {"config/scenes"}), {});
+  LiveSimulation live(scene, Configuration());
+  ASSERT_FALSE(scene.joints.empty());
+  const Joint& joint = scene.joints.front();
+  const std::string name = scene.bodies[static_cast<std::size_t>(joint.child)].name;
+  const auto before = hash(live.simulation().state());
+  try {
+    live.place(name, Pose());
+    FAIL() << "placed";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("'" + name + "'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("'" + joint.name + "'"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(hash(live.simulation().state()), before);
+}
+
+TEST(Simulation, each_stage_and_each_reason_for_leaving_a_frame_out_has_a_name_of_its_own) {
+  std::set<std::string> names;
+  for (const Stage stage :
+       {Stage::neighbours, Stage::hand_contacts, Stage::body_contacts, Stage::response, Stage::flight})
+    names.insert(to_string(stage));
+  EXPECT_EQ(names.size(), 5u);
+  for (const Rejection rejection :
+       {Rejection::none, Rejection::stamp_not_increasing, Rejection::stamp_ahead, Rejection::no_stamp})
+    names.insert(to_string(rejection));
+  EXPECT_EQ(names.size(), 9u);
 }
 
 }  // namespace

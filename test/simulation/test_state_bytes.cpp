@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 
+#include "mr_hand_interaction/live_simulation.h"
 #include "support/pinch_scene.h"
 
 namespace mrhi {
@@ -121,6 +123,27 @@ TEST(StateBytes, that_name_what_is_not_there_are_refused) {
       [&](auto& state) { state.grips.push_back(grip), state.grips.back().body = 2; },
       [&](auto& state) { state.grips.push_back(grip), state.grips.back().hand = kMaxHands; }};
   for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_NE(spoiled(ways[i]), "") << "way " << i;
+}
+
+// A filter that takes over from another hands its place over within some frames: what it remembers of that is
+// state.
+TEST(StateBytes, go_on_with_the_same_bits_while_one_filter_hands_over_to_another) {
+  const testing::PinchScene pinch;
+  constexpr int kFrames = 90;
+  LiveSimulation live(scene_of(pinch), Configuration());
+  for (int i = 0; i < kFrames; ++i) live.simulation().advance(frame_of(pinch, i));
+  live.set_parameters({{"filter/type", "one_euro"}});
+  live.simulation().advance(frame_of(pinch, kFrames));
+  Simulation& one = live.simulation();
+  ASSERT_TRUE(std::any_of(one.state().hands.begin(), one.state().hands.end(),
+                          [](const HandTrack& track) { return track.filter_change.has_value(); }));
+  Simulation other(scene_of(pinch), one.configuration());
+  other.set_state(state_from_bytes(to_bytes(one.state()), other.scene()));
+  for (int i = kFrames + 1; i < kFrames + 60; ++i) {
+    ASSERT_EQ(hash(one.state()), hash(other.state())) << "frame " << i;
+    one.advance(frame_of(pinch, i));
+    other.advance(frame_of(pinch, i));
+  }
 }
 
 }  // namespace

@@ -148,5 +148,23 @@ TEST(YamlElement, keys_are_known_and_given_once) {
             "f.yaml:1: [1] is not allowed; allowed: a map with the keys mass, size, name");
 }
 
+TEST(ReadYaml, tells_whatever_is_wrong_as_the_readers_own_error_of_one_line) {
+  class Wrong : public std::runtime_error {
+   public:
+    using std::runtime_error::runtime_error;
+  };
+  const auto told = [](const char* yaml) -> std::string {
+    try {
+      return read_yaml<Wrong>("here", [&] { return load_yaml("here", yaml)["a"]["b"].as<std::string>(); });
+    } catch (const Wrong& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(told("a: {b: c}"), "c");
+  EXPECT_EQ(told("a: &x 1\nb: *x"), refusal("a: &x 1\nb: *x"));
+  EXPECT_EQ(told("\na: 1").rfind("here:2: not YAML: ", 0), 0u) << told("\na: 1");
+  EXPECT_EQ(told("a: {}").rfind("here", 0), 0u) << told("a: {}");
+}
+
 }  // namespace
 }  // namespace mrhi

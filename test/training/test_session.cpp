@@ -502,5 +502,21 @@ TEST(ParticipantPlace, is_the_number_at_the_end_of_the_name) {
   EXPECT_THROW(participant_place("P07b"), SessionError);
 }
 
+TEST_F(SessionTest, notes_what_was_changed_meanwhile_in_one_field) {
+  Session session = open();
+  session.begin(0);
+  session.note_parameter("gravity", "[0, 0,\n-1]", false, stamp_);
+  session.note_parameter("gravity", "[0, 0, 0]", true, stamp_);
+  const auto rows = lines(events_);
+  ASSERT_GE(rows.size(), 3u);
+  const std::string changed = rows[rows.size() - 2], restored = rows.back();
+  EXPECT_NE(changed.find("parameter_changed"), std::string::npos) << changed;
+  EXPECT_NE(restored.find("parameter_restored"), std::string::npos) << restored;
+  EXPECT_NE(restored.find("gravity: [0  0  0]"), std::string::npos) << restored;
+  const auto fields = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
+  EXPECT_EQ(fields(changed), fields(rows.front()));
+  EXPECT_EQ(fields(restored), fields(rows.front()));
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -3,6 +3,7 @@
 
 #include "scene/scene_files.h"
 #include "training/object_model.h"
+#include "training/trials.h"
 
 namespace mrhi {
 namespace {
@@ -216,6 +217,25 @@ TEST(ShippedTasks, pick_and_place_is_the_papers) {
   }
   EXPECT_EQ(GoalKind::release, task.goals.back().kind);
   EXPECT_EQ("Hold the cube at place 2 of 3 for 3 s", instruction(task, 2, "cube"));
+}
+
+TEST(Instructions, say_of_each_goal_what_is_to_be_done_and_with_what) {
+  Task task = test::two_places();
+  const auto said = [&](GoalKind kind) {
+    Goal& goal = task.goals[1];
+    goal.kind = kind, goal.hold = 2.0, goal.min_speed = 0.5, goal.max_speed = 1.5, goal.joint = "hatch_hinge";
+    return instruction(task, 1, "long_cuboid");
+  };
+  test::expect_words(said(GoalKind::pick), {"Pick up", "the long cuboid"});
+  test::expect_words(said(GoalKind::place), {"Hold", "the long cuboid", "place 1 of 2", "2 s"});
+  test::expect_words(said(GoalKind::insert), {"Put", "the long cuboid", "2 s"});
+  test::expect_words(said(GoalKind::catch_it), {"Catch", "the long cuboid", "2 s"});
+  test::expect_words(said(GoalKind::nudge_into), {"Nudge", "the long cuboid", "without grasping"});
+  test::expect_words(said(GoalKind::strike), {"Strike", "the long cuboid", "0.5 to 1.5 m/s"});
+  test::expect_words(said(GoalKind::joint), {"the hatch hinge"});
+  test::expect_words(said(GoalKind::release), {"Let go", "the long cuboid"});
+  task.goals[1].instruction = "Do as you like";
+  EXPECT_EQ(said(GoalKind::strike), "Do as you like");
 }
 
 }  // namespace
