@@ -1,6 +1,8 @@
 #include "mr_hand_interaction/scene/save_scene.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -256,6 +258,38 @@ TEST_F(SavedScene, leaves_every_file_alone_that_is_there) {
   std::ifstream(file("wedge_1.obj")) >> mine;
   EXPECT_EQ(mine, "mine");
   EXPECT_FALSE(fs::exists(file("wedge.urdf")) || fs::exists(file("wedge.yaml")));
+}
+
+/// No file may grow beyond so many bytes, as on a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(SavedScene, that_does_not_fit_on_the_disk_is_told_and_nothing_of_it_is_left) {
+  const Scene scene = load_scene(find_scene_file("mixed", {"config/scenes"}), options());
+  std::string told;
+  {
+    const FullDisk full(64);
+    try {
+      save_scene(scene, file("whole.urdf"));
+    } catch (const std::runtime_error& error) {
+      told = error.what();
+    }
+  }
+  EXPECT_EQ(told.rfind("cannot write '" + file("whole.urdf") + "': ", 0), 0u) << told;
+  EXPECT_TRUE(fs::is_empty(folder_));
+  save_scene(scene, file("whole.urdf"));
+  EXPECT_EQ(load_scene(file("whole.urdf"), options()).bodies.size(), scene.bodies.size());
 }
 
 }  // namespace
