@@ -141,6 +141,37 @@ std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface&
   return links;
 }
 
+/// Parents and children by the joints' tags.
+std::multimap<std::string, std::string> children_of_links(const std::string& plain) {
+  std::multimap<std::string, std::string> children;
+  for (std::size_t at = plain.find("<joint"); at != std::string::npos; at = plain.find("<joint", at + 1)) {
+    const std::string joint = plain.substr(at, plain.find("</joint", at) - at);
+    const std::size_t parent = joint.find("<parent"), child = joint.find("<child");
+    if (parent == std::string::npos || child == std::string::npos) continue;
+    children.emplace(attribute(joint.substr(parent), "link"), attribute(joint.substr(child), "link"));
+  }
+  return children;
+}
+
+/// Links of urdfdom's that hang on each other in a loop are never freed, and it may take them. What is left
+/// once all that hangs on nothing is taken away, again and again, is in a loop or hangs on one.
+std::optional<std::string> link_of_a_loop(const std::string& plain) {
+  const auto children = children_of_links(plain);
+  std::map<std::string, int> held;  // by how many joints
+  for (const auto& [parent, child] : children) held.emplace(parent, 0), ++held[child];
+  std::vector<std::string> free;
+  for (const auto& [link, joints] : held)
+    if (joints == 0) free.push_back(link);
+  while (!free.empty()) {
+    const auto [first, last] = children.equal_range(free.back());
+    free.pop_back();
+    for (auto it = first; it != last; ++it)
+      if (--held[it->second] == 0) free.push_back(it->second);
+  }
+  const auto left = std::find_if(held.begin(), held.end(), [](const auto& link) { return link.second > 0; });
+  return left == held.end() ? std::nullopt : std::optional(left->first);
+}
+
 }  // namespace
 
 UrdfDocument parse_urdf_file(const std::string& file) {
@@ -153,6 +184,8 @@ UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
   UrdfDocument document;
   std::string problem;
   try {
+    if (const auto link = link_of_a_loop(without_comments(xml)))
+      throw std::runtime_error("link '" + *link + "' is in a loop of joints, or hangs on one");
     document.model = urdf::parseURDF(with_known_shapes(with_inertias(xml)));
     problem = complaints.text();  // urdfdom goes on with half a link after some errors
     if (!document.model && problem.empty()) problem = "urdfdom refuses it";

@@ -206,7 +206,12 @@ TEST(UrdfScene, RefusesJointsThatMakeNoScene) {
 TEST(UrdfScene, RefusesLoopsOfJoints) {
   const std::string loop =
       link("a", kBox) + link("b", kBox) + joint("fixed", "a", "b") + joint("fixed", "b", "a");
-  test::expect_words(error(robot(loop)), {"loop"});
+  test::expect_words(error(robot(loop)), {"'a'", "loop", "joined to one root link"});
+  const std::string beside = link("a", kBox) + link("b", kBox) + joint("fixed", "world", "a");
+  test::expect_words(error(robot(beside + joint("fixed", "b", "b"))), {"'b'", "loop"});
+  // Not a loop, whatever else is wrong with it.
+  EXPECT_EQ(error(robot(beside + joint("fixed", "a", "b") + joint("fixed", "a", "b"))).find("loop"),
+            std::string::npos);
 }
 
 TEST(UrdfScene, RefusesARootWithGeometry) {
