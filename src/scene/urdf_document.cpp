@@ -73,8 +73,7 @@ std::string without_comments(std::string xml) {
 }
 
 /// A mass without an inertia gets one of zeros, which urdfdom does not refuse: the shapes' own is meant.
-std::string with_inertias(const std::string& xml) {
-  std::string plain = without_comments(xml);
+std::string with_inertias(std::string plain) {
   for (std::size_t at = plain.find("<inertial>"); at != std::string::npos;
        at = plain.find("<inertial>", at + 1)) {
     const std::size_t end = plain.find("</inertial>", at);
@@ -128,8 +127,7 @@ std::string with_known_shapes(std::string xml) {
 }
 
 std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface& model,
-                                                     const std::string& xml) {
-  const std::string plain = without_comments(xml);
+                                                     const std::string& plain) {
   std::map<std::string, std::size_t> place;
   for (std::size_t at = plain.find("<link"); at != std::string::npos; at = plain.find("<link", at + 1)) {
     place.emplace(attribute(plain.substr(at, plain.find('>', at) - at), "name"), at);
@@ -141,14 +139,20 @@ std::vector<urdf::LinkConstSharedPtr> links_in_order(const urdf::ModelInterface&
   return links;
 }
 
-/// Parents and children by the joints' tags.
+/// What the first tag of that name says of `link`, or "".
+std::string link_of(const std::string& text, const std::string& tag) {
+  const std::size_t at = text.find(tag);
+  return at == std::string::npos ? "" : attribute(text.substr(at, text.find('>', at) - at), "link");
+}
+
+/// Parents and children by the joints' tags; a joint ends where the next begins.
 std::multimap<std::string, std::string> children_of_links(const std::string& plain) {
   std::multimap<std::string, std::string> children;
-  for (std::size_t at = plain.find("<joint"); at != std::string::npos; at = plain.find("<joint", at + 1)) {
-    const std::string joint = plain.substr(at, plain.find("</joint", at) - at);
-    const std::size_t parent = joint.find("<parent"), child = joint.find("<child");
-    if (parent == std::string::npos || child == std::string::npos) continue;
-    children.emplace(attribute(joint.substr(parent), "link"), attribute(joint.substr(child), "link"));
+  for (std::size_t at = plain.find("<joint"), next = at; at != std::string::npos; at = next) {
+    next = plain.find("<joint", at + 1);
+    const std::string joint = plain.substr(at, next - at);
+    const std::string parent = link_of(joint, "<parent"), child = link_of(joint, "<child");
+    if (!parent.empty() && !child.empty()) children.emplace(parent, child);
   }
   return children;
 }
@@ -182,11 +186,12 @@ UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
   if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   const Complaints complaints;
   UrdfDocument document;
-  std::string problem;
+  std::string problem, plain;
   try {
-    if (const auto link = link_of_a_loop(without_comments(xml)))
+    plain = without_comments(xml);
+    if (const auto link = link_of_a_loop(plain))
       throw std::runtime_error("link '" + *link + "' is in a loop of joints, or hangs on one");
-    document.model = urdf::parseURDF(with_known_shapes(with_inertias(xml)));
+    document.model = urdf::parseURDF(with_known_shapes(with_inertias(plain)));
     problem = complaints.text();  // urdfdom goes on with half a link after some errors
     if (!document.model && problem.empty()) problem = "urdfdom refuses it";
   } catch (const std::exception& error) {
@@ -196,7 +201,7 @@ UrdfDocument parse_urdf(const std::string& source, const std::string& xml) {
     throw SceneError(source + ": bad URDF: " + text::one_line(problem) + "; allowed: a robot of links (" +
                      shape_kind_names() + ", mesh) joined to one root link");
   }
-  document.links = links_in_order(*document.model, xml);
+  document.links = links_in_order(*document.model, plain);
   return document;
 }
 

@@ -209,6 +209,10 @@ TEST(UrdfScene, RefusesLoopsOfJoints) {
   test::expect_words(error(robot(loop)), {"'a'", "loop", "joined to one root link"});
   const std::string beside = link("a", kBox) + link("b", kBox) + joint("fixed", "world", "a");
   test::expect_words(error(robot(beside + joint("fixed", "b", "b"))), {"'b'", "loop"});
+  // As many joints as there is room for, none of which ends: in no more than their number's time.
+  std::string joints;
+  for (int i = 0; i < 20000; ++i) joints += "<joint/>";
+  test::expect_words(error(robot(joints)), {"bad URDF"});
   // Not a loop, whatever else is wrong with it.
   EXPECT_EQ(error(robot(beside + joint("fixed", "a", "b") + joint("fixed", "a", "b"))).find("loop"),
             std::string::npos);
