@@ -140,8 +140,8 @@ struct OddOne {
 /// The point without which the others fit best. It draws the fit towards itself, so that the largest residual
 /// may be at another one. Nothing for fewer than five points: four of them would tell too little.
 std::optional<OddOne> odd_one_out(const std::vector<TouchedPoint>& points) {
-  constexpr std::size_t kFewest = 5;
-  if (points.size() < kFewest) return {};
+  constexpr std::size_t kFewestLeft = 5;
+  if (points.size() < kFewestLeft) return {};
   std::optional<OddOne> odd;
   for (const TouchedPoint& point : points) {
     std::vector<TouchedPoint> others;

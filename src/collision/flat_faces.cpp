@@ -8,10 +8,6 @@
 namespace mrhi {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// A plane fitted to triangles by their areas, as they are added. With A_i the doubled area vectors (edge x
 /// edge, along the normal) and x_i the middles:
 ///     n = sum A_i / |sum A_i|,   height = n.(sum |A_i| x_i) / sum |A_i|.
@@ -50,24 +46,25 @@ class FaceFinder {
     std::vector<int> order(mesh.triangles.size());
     std::iota(order.begin(), order.end(), 0);
     for (std::size_t t = 0; t < areas_.size(); ++t) {
-      const auto corner = [&](std::size_t i) { return mesh.vertices[at(mesh.triangles[t][i])]; };
+      const auto corner = [&](std::size_t i) { return mesh.vertices[slot(mesh.triangles[t][i])]; };
       areas_[t] = (corner(1) - corner(0)).cross(Vector3(corner(2) - corner(0)));
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int a, int b) { return areas_[at(a)].squaredNorm() > areas_[at(b)].squaredNorm(); });
-    if (order.empty() || areas_[at(order.front())].norm() == 0.0)
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      return areas_[slot(a)].squaredNorm() > areas_[slot(b)].squaredNorm();
+    });
+    if (order.empty() || areas_[slot(order.front())].norm() == 0.0)
       throw std::invalid_argument("mesh has no triangle with an area");
     for (const int triangle : order) {
-      if (face_of_[at(triangle)] < 0) grow(triangle);
+      if (face_of_[slot(triangle)] < 0) grow(triangle);
     }
   }
 
   const std::vector<Plane>& planes() const { return planes_; }
-  int face_of(int triangle) const { return face_of_[at(triangle)]; }
+  int face_of(int triangle) const { return face_of_[slot(triangle)]; }
 
  private:
   const Vector3& corner(int triangle, int i) const {
-    return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(i % 3)])];
+    return mesh_.vertices[slot(mesh_.triangles[slot(triangle)][slot(i % 3)])];
   }
 
   /// Over the neighbours that are flat beside what is there, as long as they lie on the plane of all: the
@@ -82,7 +79,7 @@ class FaceFinder {
     for (std::size_t next = 0; next < open.size(); ++next) {
       for (int side = 0; side < 3; ++side) {
         const Neighbourhood::Side beyond = neighbourhood_.beyond(open[next], side);
-        if (!beyond.exists() || face_of_[at(beyond.triangle)] >= 0) continue;
+        if (!beyond.exists() || face_of_[slot(beyond.triangle)] >= 0) continue;
         if (!goes_on(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
         take(beyond.triangle, face);
         open.push_back(beyond.triangle);
@@ -90,9 +87,9 @@ class FaceFinder {
     }
   }
   void take(int triangle, int face) {
-    face_of_[at(triangle)] = face;
+    face_of_[slot(triangle)] = face;
     const Vector3 centre = (corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2)) / 3.0;
-    planes_.back().add(areas_[at(triangle)], centre);
+    planes_.back().add(areas_[slot(triangle)], centre);
   }
 
   /// The one is flat beside the other, or so thin that it has no direction of its own. By the height of the
@@ -101,7 +98,7 @@ class FaceFinder {
   /// that face each other (A.B <= 0) are a fold, however flat.
   bool goes_on(int triangle, int side, const Neighbourhood::Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
-    const Vector3 &area = areas_[at(triangle)], &other = areas_[at(beyond.triangle)];
+    const Vector3 &area = areas_[slot(triangle)], &other = areas_[slot(beyond.triangle)];
     if (area.dot(other) <= 0.0) return false;
     const Vector3 apex = corner(triangle, side + 2), other_apex = corner(beyond.triangle, beyond.side + 2);
     const Vector3 across = other_apex - apex;
@@ -113,7 +110,7 @@ class FaceFinder {
   /// Doubled area / side = height of the apex above it: a thousandth of the tolerance is no height.
   bool is_needle(int triangle, int side) const {
     const double length = (corner(triangle, side + 1) - corner(triangle, side)).norm();
-    return areas_[at(triangle)].norm() <= tolerance_ * 1e-3 * length;
+    return areas_[slot(triangle)].norm() <= tolerance_ * 1e-3 * length;
   }
   bool on_plane(int triangle, const Plane& plane) const {
     for (int i = 0; i < 3; ++i)
@@ -148,10 +145,10 @@ class SeamFinder {
         const bool twice =
             beyond.exists() && std::make_pair(beyond.triangle, beyond.side) < std::make_pair(t, k);
         if (face == other || twice) continue;
-        const std::array<int, 3>& triangle = mesh.triangles[at(t)];
-        pieces_.push_back({triangle[at(k)], triangle[at((k + 1) % 3)], face, other, false});
+        const std::array<int, 3>& triangle = mesh.triangles[slot(t)];
+        pieces_.push_back({triangle[slot(k)], triangle[slot((k + 1) % 3)], face, other, false});
         for (const int end : {pieces_.back().from, pieces_.back().to})
-          around_[at(end)].push_back(static_cast<int>(pieces_.size()) - 1);
+          around_[slot(end)].push_back(static_cast<int>(pieces_.size()) - 1);
       }
     }
     for (int v = 0; v < static_cast<int>(around_.size()); ++v)
@@ -170,29 +167,29 @@ class SeamFinder {
 
   /// Two pieces meet here and part the same two faces; or there is no piece, and the vertex is within a face.
   bool is_on_the_way(int vertex) const {
-    const std::vector<int>& pieces = around_[at(vertex)];
+    const std::vector<int>& pieces = around_[slot(vertex)];
     if (pieces.size() != 2) return pieces.empty();
-    const Piece &a = pieces_[at(pieces[0])], &b = pieces_[at(pieces[1])];
+    const Piece &a = pieces_[slot(pieces[0])], &b = pieces_[slot(pieces[1])];
     return std::minmax(a.face, a.other) == std::minmax(b.face, b.other);
   }
   void follow_from(int corner) {
-    for (const int piece : around_[at(corner)])
-      if (!pieces_[at(piece)].followed) follow(piece, corner);
+    for (const int piece : around_[slot(corner)])
+      if (!pieces_[slot(piece)].followed) follow(piece, corner);
   }
   /// From corner to corner, in either direction; the seam is turned round at the end if it began against its
   /// first piece, so that its first face is on its left.
   void follow(int piece, int start) {
-    Seam seam{pieces_[at(piece)].face, pieces_[at(piece)].other, {start}};
-    const bool along = pieces_[at(piece)].from == start;
+    Seam seam{pieces_[slot(piece)].face, pieces_[slot(piece)].other, {start}};
+    const bool along = pieces_[slot(piece)].from == start;
     for (int vertex = start; piece >= 0;) {
-      Piece& now = pieces_[at(piece)];
+      Piece& now = pieces_[slot(piece)];
       now.followed = true;
       vertex = now.from == vertex ? now.to : now.from;
       seam.vertices.push_back(vertex);
       piece = -1;
       if (!is_on_the_way(vertex)) break;
-      for (const int next : around_[at(vertex)])
-        if (!pieces_[at(next)].followed) piece = next;
+      for (const int next : around_[slot(vertex)])
+        if (!pieces_[slot(next)].followed) piece = next;
     }
     if (!along) std::reverse(seam.vertices.begin(), seam.vertices.end());
     straighten(seam.vertices);
@@ -232,11 +229,11 @@ class SeamFinder {
   /// back would seem straight.
   std::pair<std::size_t, double> farthest(const std::vector<int>& line, std::size_t from,
                                           std::size_t to) const {
-    const Vector3& start = mesh_.vertices[at(line[from])];
-    const Vector3 along = (mesh_.vertices[at(line[to])] - start).normalized();
+    const Vector3& start = mesh_.vertices[slot(line[from])];
+    const Vector3 along = (mesh_.vertices[slot(line[to])] - start).normalized();
     std::pair<std::size_t, double> found{from, 0.0};
     for (std::size_t i = from + 1; i < to; ++i) {
-      const Vector3 offset = mesh_.vertices[at(line[i])] - start;
+      const Vector3 offset = mesh_.vertices[slot(line[i])] - start;
       const double part = std::max(0.0, along.dot(offset));
       const double distance = (offset - part * along).norm();
       if (distance > found.second) found = {i, distance};
@@ -262,13 +259,13 @@ double corner_angle(const Vector3& a, const Vector3& b) {
 std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& faces) {
   std::vector<Vector3> normals(mesh.vertices.size(), Vector3::Zero());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const std::array<int, 3>& triangle = mesh.triangles[at(t)];
-    const Vector3& normal = faces.planes()[at(faces.face_of(t))].normal();
+    const std::array<int, 3>& triangle = mesh.triangles[slot(t)];
+    const Vector3& normal = faces.planes()[slot(faces.face_of(t))].normal();
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3& corner = mesh.vertices[at(triangle[i])];
-      normals[at(triangle[i])] += corner_angle(mesh.vertices[at(triangle[(i + 1) % 3])] - corner,
-                                               mesh.vertices[at(triangle[(i + 2) % 3])] - corner) *
-                                  normal;
+      const Vector3& corner = mesh.vertices[slot(triangle[i])];
+      normals[slot(triangle[i])] += corner_angle(mesh.vertices[slot(triangle[(i + 1) % 3])] - corner,
+                                                 mesh.vertices[slot(triangle[(i + 2) % 3])] - corner) *
+                                    normal;
     }
   }
   return normals;
@@ -296,7 +293,7 @@ FlatFaces flat_faces(const TriangleMesh& unsorted) {
   for (const Plane& plane : faces.planes()) result.faces.push_back({plane.normal(), plane.height()});
   std::vector<int> corner_of(mesh.vertices.size(), -1);
   for (const Seam& seam : lines.seams())
-    for (const int v : seam.vertices) corner_of[at(v)] = 0;
+    for (const int v : seam.vertices) corner_of[slot(v)] = 0;
   const std::vector<Vector3> normals = vertex_normals(mesh, faces);
   for (std::size_t v = 0; v < corner_of.size(); ++v) {
     if (corner_of[v] < 0) continue;
@@ -307,7 +304,7 @@ FlatFaces flat_faces(const TriangleMesh& unsorted) {
   for (const Seam& seam : lines.seams()) {
     for (std::size_t i = 1; i < seam.vertices.size(); ++i) {
       result.edges.push_back(
-          {corner_of[at(seam.vertices[i - 1])], corner_of[at(seam.vertices[i])], seam.face, seam.other});
+          {corner_of[slot(seam.vertices[i - 1])], corner_of[slot(seam.vertices[i])], seam.face, seam.other});
     }
   }
   return result;

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {
+
+/// Of what is told by its number, in a list.
+inline std::size_t slot(int number) {
+  return static_cast<std::size_t>(number);
+}
 
 /// The mesh with its vertices in the order of their places, those at one place joined, and its triangles in
 /// the order of their vertices: the same for any order in a file. Vertices that no triangle has are left out.

@@ -13,7 +13,7 @@ constexpr double kSameFace = 0.5;
 constexpr double kRestingSpeed = 1e-9;
 
 /// The plane of the face that the phalanx pushes on, in the body's frame.
-struct Plane {
+struct ContactPlane {
   const Vector3& point;
   const Vector3& normal;
   bool entry;  // the face that the phalanx entered by, which is not the nearest any more
@@ -21,7 +21,7 @@ struct Plane {
 
 /// On the entry face the god object itself stands for the plane's point: the nearest features are those of
 /// another face, and say nothing of this one.
-Plane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
+ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
   if (memory == nullptr || !pair.refinements.entry_face ||
       memory->entry_normal.dot(features.normal) >= kSameFace)
     return {features.point, features.normal, false};
@@ -48,7 +48,7 @@ struct PairMemory {
 /// linear in s. It is measured in the body's frame, where the plane stands still, but velocities are those in
 /// world.
 struct Press {
-  Press(const TouchingPair& of, const Plane& on)
+  Press(const TouchingPair& of, const ContactPlane& on)
       : pair(of),
         plane(on),
         along(of.in_body.end - of.in_body.start),
@@ -64,7 +64,7 @@ struct Press {
   double deepest_end() const { return fall < 0.0 ? 1.0 : 0.0; }
 
   const TouchingPair& pair;
-  const Plane& plane;
+  const ContactPlane& plane;
   // Body's frame.
   Vector3 along;
   double start_depth, fall;  // towards the surface: of the start, from the start to the end [m]
@@ -186,7 +186,7 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
                        const Contact* before, int count, Contact* now) {
   const PairMemory memory(before, count, features.axis_parameter);
   const Contact* nearest = memory.nearest;
-  const Plane plane = contact_plane(pair, features, nearest);
+  const ContactPlane plane = contact_plane(pair, features, nearest);
   const Press press(pair, plane);
   const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 && press.reaches_surface(span.s0) &&
                          press.reaches_surface(span.s1);

@@ -11,10 +11,6 @@ constexpr double kFlat = 1e-6;
 /// of a plane if it is off it by more than this part of its own.
 constexpr double kClear = 1e-5;
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 double nearest_to(const Vector3& place, const Segment& segment) {
   const double squared = segment.along.squaredNorm();
   return squared == 0.0 ? 0.5 : clamp_unit(segment.along.dot(place - segment.start) / squared);
@@ -44,10 +40,10 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
   for (const Vector3& corner : corners_) min_ = min_.cwiseMin(corner), max_ = max_.cwiseMax(corner);
   for (const FlatFaces::Face& face : flat.faces) faces_.push_back({face.normal, face.height, 0, 0, true});
   for (const FlatFaces::Edge& edge : flat.edges) {
-    const Vector3& start = corners_[at(edge.from)];
+    const Vector3& start = corners_[slot(edge.from)];
     const int other = edge.other < 0 ? edge.face : edge.other;
     edges_.push_back(
-        {start, corners_[at(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
+        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
   }
   add_sides(flat.edges);
   find_bends(flat.one_piece);
@@ -59,26 +55,26 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
 void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
   first_edge_.assign(corners_.size() + 1, 0);
   for (const FlatFaces::Edge& edge : edges) {
-    ++faces_[at(edge.face)].count;
-    if (edge.other >= 0) ++faces_[at(edge.other)].count;
-    ++first_edge_[at(edge.from) + 1], ++first_edge_[at(edge.to) + 1];
+    ++faces_[slot(edge.face)].count;
+    if (edge.other >= 0) ++faces_[slot(edge.other)].count;
+    ++first_edge_[slot(edge.from) + 1], ++first_edge_[slot(edge.to) + 1];
   }
   int first = 0;
   for (Face& face : faces_) face.first = first, first += face.count, face.count = 0;
   for (std::size_t c = 0; c < corners_.size(); ++c) first_edge_[c + 1] += first_edge_[c];
-  sides_.resize(at(first));
+  sides_.resize(slot(first));
   edges_at_.resize(2 * edges.size());
   std::vector<std::size_t> next(first_edge_);
   for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
     const auto add = [&](int of, const Vector3& along) {
-      Face& face = faces_[at(of)];
+      Face& face = faces_[slot(of)];
       const Vector3 outward = along.cross(face.normal);
-      sides_[at(face.first + face.count++)] = {outward, outward.dot(edges_[at(e)].start), e};
+      sides_[slot(face.first + face.count++)] = {outward, outward.dot(edges_[slot(e)].start), e};
     };
-    const FlatFaces::Edge& edge = edges[at(e)];
-    add(edge.face, edges_[at(e)].along);
-    if (edge.other >= 0) add(edge.other, -edges_[at(e)].along);
-    for (const int corner : {edge.from, edge.to}) edges_at_[next[at(corner)]++] = e;
+    const FlatFaces::Edge& edge = edges[slot(e)];
+    add(edge.face, edges_[slot(e)].along);
+    if (edge.other >= 0) add(edge.other, -edges_[slot(e)].along);
+    for (const int corner : {edge.from, edge.to}) edges_at_[next[slot(corner)]++] = e;
   }
   for (Face& face : faces_) face.convex = is_convex(face);
 }
@@ -100,7 +96,7 @@ void MeshSurface::find_bends(bool one_piece) {
 bool MeshSurface::is_convex(const Face& face) const {
   if (face.count <= 3) return true;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const Side& side = sides_[at(i)];
+    const Side& side = sides_[slot(i)];
     const double slack = 2.0 * kFlatness * (max_ - min_).maxCoeff() * side.outward.norm();
     bool behind = true;
     each_corner(face,
@@ -116,7 +112,7 @@ bool MeshSurface::inside(const Face& face, const Vector3& place) const {
   const Segment ray(Capsule{place, place + any_normal(face.normal), 0.0});
   bool inside = false;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double s = crossing(ray, face.normal, edges_[at(sides_[at(i)].edge)]);
+    const double s = crossing(ray, face.normal, edges_[slot(sides_[slot(i)].edge)]);
     if (s != 2.0 && s > 0.0) inside = !inside;
   }
   return inside;
@@ -128,7 +124,7 @@ Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) 
   Stretch stretch;
   if (segment.along.isZero(0.0)) return stretch;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double crosses = crossing(segment, face.normal, edges_[at(sides_[at(i)].edge)]);
+    const double crosses = crossing(segment, face.normal, edges_[slot(sides_[slot(i)].edge)]);
     if (crosses <= s) stretch.s0 = std::max(stretch.s0, crosses);
     if (crosses > s) stretch.s1 = std::min(stretch.s1, crosses);
   }
@@ -140,7 +136,7 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
   if (!face.convex) return around(face, segment, s);
   Stretch stretch;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const Side& side = sides_[at(i)];
+    const Side& side = sides_[slot(i)];
     const double x0 = side.outward.dot(segment.start) - side.reach, dx = side.outward.dot(segment.along);
     stretch.clip(x0, dx, 0.0);
     if ((dx == 0.0 && x0 > 0.0) || stretch.s0 > stretch.s1) return {1.0, 0.0};
@@ -152,7 +148,7 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
 /// segment's place nearest to the plane. If it is straight above the face it is the nearest of all; if not,
 /// an edge or a corner is nearer to the segment, and found by itself.
 SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) const {
-  const Face& face = faces_[at(index)];
+  const Face& face = faces_[slot(index)];
   SurfaceNearest found;
   const double height = face.normal.dot(segment.start) - face.height, rise = face.normal.dot(segment.along);
   const bool parallel = std::abs(rise) < kParallel;
@@ -177,14 +173,14 @@ SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) c
 }
 
 SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) const {
-  const Edge& edge = edges_[at(index)];
+  const Edge& edge = edges_[slot(index)];
   const SegmentPair nearest = nearest_stretch(segment, edge.start, edge.along);
   SurfaceNearest found;
   if (nearest.t <= 0.0 || nearest.t >= 1.0) {
     // The same for all edges that end here.
     found.part = SurfacePart::corner;
     found.index = edge.corners[nearest.t >= 1.0 ? 1 : 0];
-    found.point = corners_[at(found.index)];
+    found.point = corners_[slot(found.index)];
     const double s = nearest_to(found.point, segment);
     found.stretch = {s, s};
   } else {
@@ -198,9 +194,9 @@ SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) c
 }
 
 Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
-  if (nearest.part == SurfacePart::face) return faces_[at(nearest.index)].normal;
-  if (nearest.part == SurfacePart::corner) return corner_normals_[at(nearest.index)];
-  const std::array<Vector3, 2> normal = normals(edges_[at(nearest.index)]);
+  if (nearest.part == SurfacePart::face) return faces_[slot(nearest.index)].normal;
+  if (nearest.part == SurfacePart::corner) return corner_normals_[slot(nearest.index)];
+  const std::array<Vector3, 2> normal = normals(edges_[slot(nearest.index)]);
   return normal[0] + normal[1];
 }
 
@@ -212,25 +208,25 @@ Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
 bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) const {
   const double clear = kClear * nearest.distance;
   if (nearest.part == SurfacePart::face) {
-    const Face& face = faces_[at(nearest.index)];
+    const Face& face = faces_[slot(nearest.index)];
     if (face.normal.dot(gap) <= 0.0) return false;
     for (int i = face.first; i < face.first + face.count; ++i) {
-      const Side& side = sides_[at(i)];
+      const Side& side = sides_[slot(i)];
       if (side.outward.dot(nearest.point) - side.reach > -kClear * side.outward.squaredNorm()) return false;
     }
     return true;
   }
   if (nearest.part == SurfacePart::edge) {
-    const Edge& edge = edges_[at(nearest.index)];
+    const Edge& edge = edges_[slot(nearest.index)];
     const double length = edge.along.norm();
     const double t = edge.along.dot(nearest.point - edge.start) / (length * length);
     const std::array<Vector3, 2> normal = normals(edge);
     return t > kClear && t < 1.0 - kClear && edge.along.cross(normal[0]).dot(gap) > clear * length &&
            normal[1].cross(edge.along).dot(gap) > clear * length;
   }
-  const std::size_t corner = at(nearest.index);
+  const std::size_t corner = slot(nearest.index);
   for (std::size_t i = first_edge_[corner]; i < first_edge_[corner + 1]; ++i) {
-    const Edge& edge = edges_[at(edges_at_[i])];
+    const Edge& edge = edges_[slot(edges_at_[i])];
     const double down = edge.corners[0] == nearest.index ? -edge.along.dot(gap) : edge.along.dot(gap);
     if (down < clear * edge.along.norm()) return false;
   }

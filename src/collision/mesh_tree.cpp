@@ -8,21 +8,17 @@ namespace {
 
 constexpr int kLeaf = 4;
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Calls `place(p)` for what spans a part, `normal(n)` for the directions that it faces.
 template <typename Place, typename Normal>
 void span(const MeshSurface& surface, int part, const Place& place, const Normal& normal) {
   const int faces = static_cast<int>(surface.faces().size());
   if (part < faces) {
-    const MeshSurface::Face& face = surface.faces()[at(part)];
+    const MeshSurface::Face& face = surface.faces()[slot(part)];
     surface.each_corner(face, place);
     normal(face.normal);
   } else {
-    const MeshSurface::Edge& edge = surface.edges()[at(part - faces)];
-    for (const int corner : edge.corners) place(surface.corners()[at(corner)]);
+    const MeshSurface::Edge& edge = surface.edges()[slot(part - faces)];
+    for (const int corner : edge.corners) place(surface.corners()[slot(corner)]);
     for (const Vector3& n : surface.normals(edge)) normal(n);
   }
 }
@@ -102,23 +98,23 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
   bound(surface, built, first, last);
   if (last - first <= kLeaf) {
     built.first = first, built.count = last - first;
-    nodes_[at(node)] = built;
+    nodes_[slot(node)] = built;
     return;
   }
   Vector3 min = Vector3::Constant(1e300), max = -min;
   for (int i = first; i < last; ++i) {
-    min = min.cwiseMin(centres[at(parts_[at(i)])]), max = max.cwiseMax(centres[at(parts_[at(i)])]);
+    min = min.cwiseMin(centres[slot(parts_[slot(i)])]), max = max.cwiseMax(centres[slot(parts_[slot(i)])]);
   }
   int axis = 0;
   (max - min).maxCoeff(&axis);
   const int middle = (first + last) / 2;
   const auto before = [&](int a, int b) {
-    const double x = centres[at(a)][axis], y = centres[at(b)][axis];
+    const double x = centres[slot(a)][axis], y = centres[slot(b)][axis];
     return x != y ? x < y : a < b;
   };
   std::nth_element(parts_.begin() + first, parts_.begin() + middle, parts_.begin() + last, before);
   built.first = static_cast<int>(nodes_.size());
-  nodes_[at(node)] = built;
+  nodes_[slot(node)] = built;
   nodes_.resize(nodes_.size() + 2);
   build(surface, built.first, centres, first, middle);
   build(surface, built.first + 1, centres, middle, last);
@@ -129,7 +125,7 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
 /// out wide.
 void MeshTree::bound(const MeshSurface& surface, Node& node, int first, int last) const {
   const auto each = [&](const auto& place, const auto& normal) {
-    for (int i = first; i < last; ++i) span(surface, parts_[at(i)], place, normal);
+    for (int i = first; i < last; ++i) span(surface, parts_[slot(i)], place, normal);
   };
   Vector3 min = Vector3::Constant(1e300), max = -min, sum = Vector3::Zero();
   each([&](const Vector3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); },

@@ -59,7 +59,7 @@ std::pair<double, double> cosine_and_sine(double x) {
 }
 
 /// How far the momentum goes in the body, and by what the body turns about it.
-struct Way {
+struct Travel {
   Vector3 of_momentum;
   double angle;  // [rad]
 };
@@ -71,7 +71,7 @@ struct Way {
 // m1 is put as (m1 (c - D) + ...) / D, c - D = (1 - D) - (1 - c): what is small is summed of small parts. A
 // and B are not negative, as j1 and j3 have one sign and j2 the other; two equal moments (a j of 0) and the
 // separatrix (A = B) are no cases of their own.
-Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step) {
+Travel travel_of(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double m1 = momentum[0], m2 = momentum[1], m3 = momentum[2];
   const double j1 = inverse_moments[2] - inverse_moments[1], j2 = inverse_moments[0] - inverse_moments[2],
                j3 = inverse_moments[1] - inverse_moments[0];
@@ -96,11 +96,11 @@ Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step)
   const Array about = (2.0 * twice_energy + rate[0] * n1 + rate[1] * n2 + rate[2] * n3) /
                       (2.0 * squared + m1 * n1 + m2 * n2 + m3 * n3);
 
-  Way way;
+  Travel travel;
   const Eigen::Index last = n1.size() - 1;
-  way.of_momentum = Vector3(n1[last], n2[last], n3[last]);
-  way.angle = size * step * ((weights() * about).sum() + weights()[last] * (twice_energy / squared));
-  return way;
+  travel.of_momentum = Vector3(n1[last], n2[last], n3[last]);
+  travel.angle = size * step * ((weights() * about).sum() + weights()[last] * (twice_energy / squared));
+  return travel;
 }
 
 }  // namespace
@@ -112,12 +112,12 @@ Way way_of(const Vector3& inverse_moments, const Vector3& momentum, double step)
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double squared = momentum.squaredNorm(), size = std::sqrt(squared);
   const bool equal = inverse_moments.maxCoeff() == inverse_moments.minCoeff();
-  const Way way = equal ? Way{Vector3::Zero(), inverse_moments[0] * size * step}
-                        : way_of(inverse_moments, momentum, step);
-  // Takes the momentum's new place in the body to its old one the shortest way, and turns about it.
-  const Vector3 cross = way.of_momentum.cross(momentum);
-  const double dot = 2.0 * squared + momentum.dot(way.of_momentum);
-  const auto [cosine, sine] = cosine_and_sine(0.5 * way.angle);
+  const Travel travel = equal ? Travel{Vector3::Zero(), inverse_moments[0] * size * step}
+                              : travel_of(inverse_moments, momentum, step);
+  // Takes the momentum's new place in the body to its old one the shortest travel, and turns about it.
+  const Vector3 cross = travel.of_momentum.cross(momentum);
+  const double dot = 2.0 * squared + momentum.dot(travel.of_momentum);
+  const auto [cosine, sine] = cosine_and_sine(0.5 * travel.angle);
   Quaternion turned;
   turned.w() = cosine * dot;  // the cross product is across the momentum
   turned.vec() = cosine * cross + (sine / size) * (dot * momentum + momentum.cross(cross));

@@ -100,7 +100,7 @@ void grip_edges(ContactStep& step) {
 
 namespace {
 
-constexpr int kParts = kFingers + 1;  // of a hand: its fingers and the palm
+constexpr int kHandParts = kFingers + 1;  // of a hand: its fingers and the palm
 
 bool is_palm(const ContactKey& key) {
   return key.capsule == kPalm;
@@ -119,7 +119,7 @@ double pressed_by(const Contact& contact) {
 // of all points of the finger on all bodies. A point that does not press has all of S, should it come to
 // press within the step.
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
-  std::array<std::array<double, kParts>, kMaxHands> depths{};
+  std::array<std::array<double, kHandParts>, kMaxHands> depths{};
   const auto of = [&depths](const ContactKey& key) -> double& {
     return depths[key.hand][static_cast<std::size_t>(finger_of(key.capsule))];
   };

@@ -23,14 +23,14 @@ void check(const Joint& joint, const std::string& what, double value, const Rang
 }
 
 void check_limits(const Joint& joint) {
-  if (joint.lower > -Joint::kUnlimited) check(joint, "lower limit", joint.lower, kPlace);
-  if (joint.upper < Joint::kUnlimited) check(joint, "upper limit", joint.upper, kPlace);
+  if (joint.lower > -Joint::kUnlimited) check(joint, "lower limit", joint.lower, kCoordinate);
+  if (joint.upper < Joint::kUnlimited) check(joint, "upper limit", joint.upper, kCoordinate);
   if (!(joint.lower < joint.upper)) {
     refuse(joint,
            "lower limit " + text::number(joint.lower) + " and upper limit " + text::number(joint.upper),
            "lower below upper");
   }
-  check(joint, "start", joint.start, kPlace);
+  check(joint, "start", joint.start, kCoordinate);
   if (joint.start < joint.lower || joint.start > joint.upper)
     refuse(joint, "start " + text::number(joint.start), "a place between its limits");
   check(joint, "restitution", joint.restitution, kRestitution);
@@ -41,7 +41,7 @@ void check_detents(const Joint& joint) {
   const std::vector<double>& at = joint.detents->at;
   if (at.size() < 2 || at.size() > kMostDetents)
     refuse(joint, std::to_string(at.size()) + " detents", "2 to " + std::to_string(kMostDetents));
-  for (const double place : at) check(joint, "detent at", place, kPlace);
+  for (const double place : at) check(joint, "detent at", place, kCoordinate);
   for (std::size_t i = 1; i < at.size(); ++i) {
     if (!(at[i] - at[i - 1] >= kLeastDetent))
       refuse(joint, "detents that do not ascend", "each at least " + text::number(kLeastDetent) + " further");
@@ -54,10 +54,10 @@ void check_forces(const Joint& joint) {
   check(joint, "friction", joint.friction, kForce);
   if (joint.spring) {
     check(joint, "spring's stiffness", joint.spring->stiffness, kStiffness);
-    check(joint, "spring's rest", joint.spring->rest, kPlace);
+    check(joint, "spring's rest", joint.spring->rest, kCoordinate);
   }
   if (!joint.latch) return;
-  check(joint, "latch at", joint.latch->at, kPlace);
+  check(joint, "latch at", joint.latch->at, kCoordinate);
   check(joint, "latch's force", joint.latch->force, kForce);
   check(joint, "latch's reach", joint.latch->reach, kReach);
 }

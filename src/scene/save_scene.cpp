@@ -179,7 +179,8 @@ class Writer {
     const char* type = !turns ? "prismatic" : joint.is_limited() ? "revolute" : "continuous";
     std::string more = "    <axis xyz=\"" + numbers(joint.axis) + "\"/>\n";
     const auto finite = [](double limit) {
-      return text::exact(std::min(std::max(limit, joint_ranges::kPlace.min), joint_ranges::kPlace.max));
+      return text::exact(
+          std::min(std::max(limit, joint_ranges::kCoordinate.min), joint_ranges::kCoordinate.max));
     };
     if (joint.is_limited() || !turns)
       more += "    <limit lower=\"" + finite(joint.lower) + "\" upper=\"" + finite(joint.upper) +

@@ -5,7 +5,7 @@
 
 #include "../math/minimum_jerk.h"
 #include "box_symmetries.h"
-#include "motions.h"
+#include "script.h"
 
 namespace mrhi {
 namespace {
@@ -19,7 +19,7 @@ constexpr double kOutOfHand = 0.04;                       // from where the obje
 constexpr double kPatience = 10.0;  // with an object that is held where it is wanted, and nothing happens [s]
 constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
-                 kAside = 0.8;  // times at pace 1 [s]
+                 kGoAside = 0.8;  // times at pace 1 [s]
 
 constexpr double kWidest = 0.61;         // of the way to the object, when the hand begins to close
 constexpr double kTouch = 0.07;          // until what is felt is acted on [s]
@@ -33,10 +33,6 @@ constexpr double kClosingSpeed = 0.05;  // most, of the depth [m/s]
 constexpr double kSwing = 1.0;          // [Hz]
 
 const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, from where it begins to approach [m]
-
-Pose shifted(const Pose& pose, const Vector3& by) {
-  return {pose.position + by, pose.orientation};
-}
 
 Quaternion rotation(const Vector3& vector) {
   const double angle = vector.norm();
@@ -242,7 +238,7 @@ void SimulatedOperator::let_go() {
   then(kOpen * skill_.pace, wrist, postures_->open);
   then(kRetreat * skill_.pace, shifted(wrist, kApproach * retreat_), postures_->open);
   way_.back().velocity = 0.1 * retreat_;
-  then(kAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
+  then(kGoAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
 }
 
 /// What it has let go still clings to its hand: turns the flat hand over.

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kSlow = 0.05;     // what is faster is left to go [m/s]
 constexpr double kGetReady = 0.9;  // at pace 1, before a motion [s]
-constexpr double kAside = 0.35;    // where the hand waits, behind what it works on [m]
+constexpr double kBehind = 0.35;   // where the hand waits, behind what it works on [m]
 
 HandPlace waiting(const Vector3& object) {
-  return {hand_pose(object + Vector3(0.05, -kAside, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
+  return {hand_pose(object + Vector3(0.05, -kBehind, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
           relaxed_posture()};
 }
 

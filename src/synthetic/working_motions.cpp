@@ -104,7 +104,7 @@ class Grip {
   Pose at_;
 };
 
-const Vector3 kAside(0.03, -0.08, 0.03);  // where the hand comes from, and goes to [m]
+const Vector3 kBeside(0.03, -0.08, 0.03);  // where the hand comes from, and goes to [m]
 
 /// A fingertip that touches at `place`, moves on by `way` in that time, and comes back.
 ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
@@ -112,9 +112,9 @@ ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& 
   const Pose at = touching(place, normal), off = shifted(at, ready);
   const HandPosture posture = pointing_posture();
   Script script("panel");
-  script.then(0.0, shifted(off, kAside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
+  script.then(0.0, shifted(off, kBeside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
   script.then(duration, shifted(at, way), posture).hold(0.4).then(0.8 * duration, off, posture);
-  script.then(0.9, shifted(off, kAside), relaxed_posture());
+  script.then(0.9, shifted(off, kBeside), relaxed_posture());
   return script.motion();
 }
 
@@ -138,7 +138,7 @@ ScriptedMotion turn_valve() {
   const Vector3 axle(0.01, 0.12, 0.34);
   Script script("panel");
   Grip grip(script, bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
-  grip.take(kAside).turn_about(1.6, axle, turn(60.0, Vector3::UnitY())).let_go(kAside);
+  grip.take(kBeside).turn_about(1.6, axle, turn(60.0, Vector3::UnitY())).let_go(kBeside);
   return script.motion();
 }
 
@@ -153,7 +153,7 @@ ScriptedMotion open_door() {
   const Vector3 hinge(0.2, 0.14, 0.17);
   Script script("panel");
   Grip grip(script, bar_grasp(0.012), {0.075, 0.10, 0.17});
-  grip.take(kAside).turn_about(2.0, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
+  grip.take(kBeside).turn_about(2.0, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
   return script.motion();
 }
 
@@ -210,11 +210,11 @@ Grasp tongs_grasp(double angle) {
 ScriptedMotion open_hatch() {
   const Vector3 hinge(0.12, 0.14, 0.25);
   Script script("hatch");
-  script.then(0.0, shifted(touching({-0.09, 0.02, 0.30}, -Vector3::UnitY()), kAside), relaxed_posture());
+  script.then(0.0, shifted(touching({-0.09, 0.02, 0.30}, -Vector3::UnitY()), kBeside), relaxed_posture());
   turn_latch(script, {-0.13, 0.123, 0.33}, 1.0);
   turn_latch(script, {-0.13, 0.123, 0.17}, -1.0);
   Grip grip(script, bar_grasp(0.012), {-0.07, 0.10, 0.25});
-  grip.take(kAside).turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
+  grip.take(kBeside).turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
   return script.motion();
 }
 

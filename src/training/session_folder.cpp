@@ -49,7 +49,7 @@ class Line {
   CsvRows row_{stream_};
 };
 
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a table
+constexpr std::size_t kLargestTable = std::size_t{256} << 20;  // of a table
 
 bool is_there(const fs::path& file) {
   std::error_code ignored;
@@ -65,8 +65,8 @@ struct Contents {
 /// Nothing is touched. Throws for what has other columns.
 Contents contents_of(const std::string& file, const std::string& columns) {
   if (!is_there(file)) return {};
-  const std::optional<std::string> text = file_text(file, kMostBytes + 1);
-  if (!text || text->size() > kMostBytes)
+  const std::optional<std::string> text = file_text(file, kLargestTable + 1);
+  if (!text || text->size() > kLargestTable)
     throw SessionError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
   const std::size_t whole = text->rfind('\n') + 1;  // 0 where there is none
   const std::string first = text->substr(0, text->find('\n'));

@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a mesh
-constexpr std::size_t kShown = 60, kBefore = 30;            // of a line that differs
+constexpr std::size_t kLargestMesh = std::size_t{256} << 20;  // of a mesh
+constexpr std::size_t kShown = 60, kBefore = 30;              // of a line that differs
 const char* const kSums = "SHA256SUMS";
 const char* const kAllowed = "; allowed: the same, or another folder";
 
 std::string bytes_of(const std::string& file) {
-  std::optional<std::string> text = file_text(file, kMostBytes + 1);
-  if (!text || text->size() > kMostBytes)
+  std::optional<std::string> text = file_text(file, kLargestMesh + 1);
+  if (!text || text->size() > kLargestMesh)
     throw SceneError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
   return *std::move(text);
 }
@@ -172,7 +172,7 @@ void check_same_setup(const std::string& folder, const SessionSetup& setup) {
                        "parameters and software (setup)" + kAllowed);
   for (const std::string& name : in_order(setup)) {
     const auto here = setup.files.find(name);
-    const std::string there = file_text(kept + name, kMostBytes).value_or("");
+    const std::string there = file_text(kept + name, kLargestMesh).value_or("");
     const std::string wanted = here == setup.files.end() ? "" : here->second;
     if (there != wanted) refuse(kept + name, there, wanted);
   }
