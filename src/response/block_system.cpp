@@ -1,37 +1,16 @@
 #include "block_system.h"
 
-#include <algorithm>
-#include <tuple>
-
 namespace mrhi {
-
-bool BlockSystem::before(const Coupling& x, const Coupling& y) {
-  return std::tie(x.column, x.row) < std::tie(y.column, y.row);
-}
 
 void BlockSystem::begin(int bodies) {
   diagonal_.resize(static_cast<std::size_t>(bodies));
   couplings_.clear();
 }
 
-void BlockSystem::couple(int a, int b) {
-  const int row = std::max(a, b), column = std::min(a, b);
-  // The contacts of a pair follow each other.
-  if (!couplings_.empty() && couplings_.back().row == row && couplings_.back().column == column) return;
-  couplings_.push_back({row, column, Matrix6::Zero()});
-}
-
-void BlockSystem::arrange() {
-  const auto same = [](const Coupling& x, const Coupling& y) { return !before(x, y) && !before(y, x); };
-  if (!std::is_sorted(couplings_.begin(), couplings_.end(), before))
-    std::sort(couplings_.begin(), couplings_.end(), before);
-  couplings_.erase(std::unique(couplings_.begin(), couplings_.end(), same), couplings_.end());
-}
-
-std::size_t BlockSystem::coupling(int a, int b) const {
-  const Coupling wanted{std::max(a, b), std::min(a, b), Matrix6::Zero()};
-  return static_cast<std::size_t>(std::lower_bound(couplings_.begin(), couplings_.end(), wanted, before) -
-                                  couplings_.begin());
+std::size_t BlockSystem::couple(int a, int b) {
+  if (couplings_.empty() || couplings_.back().column != a || couplings_.back().row != b)
+    couplings_.push_back({b, a, Matrix6::Zero()});
+  return couplings_.size() - 1;
 }
 
 void BlockSystem::clear() {

@@ -13,11 +13,9 @@ class BlockSystem {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   /// Begins anew with so many bodies, none of them coupled.
   void begin(int bodies);
-  /// Says that the two are coupled; may say so again. Then arrange(), before any coupling() is asked for.
-  void couple(int a, int b);
-  void arrange();
-  /// Number of the block that two coupled bodies share.
-  std::size_t coupling(int a, int b) const;
+  /// The number of the block that two bodies share from now on, `a` before `b`. Asked again right away it is
+  /// the same.
+  std::size_t couple(int a, int b);
 
   /// All entries zero.
   void clear();
@@ -39,12 +37,11 @@ class BlockSystem {
     int row, column;  // row > column
     Matrix6 value;
   };
-  static bool before(const Coupling& x, const Coupling& y);
 
   int bodies() const { return static_cast<int>(diagonal_.size()); }
 
   std::vector<Matrix6> diagonal_;
-  std::vector<Coupling> couplings_;  // sorted
+  std::vector<Coupling> couplings_;
   Eigen::MatrixXd dense_;
   Eigen::LLT<Eigen::MatrixXd> factors_;
 };

@@ -116,17 +116,9 @@ void IslandProblem::begin_body(const Body& body, const BodyState& state, const V
 /// Which blocks of six by six the Hessian has beside its diagonal: one for each pair that touches.
 void IslandProblem::couple() {
   system_.begin(static_cast<int>(masses_.size()));
-  for (const IslandContact& contact : contacts_) {
-    if (contact.a != IslandContact::kAlone) system_.couple(contact.a, contact.b);
-  }
-  system_.arrange();
-  // The contacts of a pair follow each other.
-  const IslandContact* last = nullptr;
+  // The contacts of a pair follow each other, and the pairs' bodies come in order, as the island's do.
   for (IslandContact& contact : contacts_) {
-    if (contact.a == IslandContact::kAlone) continue;
-    const bool same = last != nullptr && last->a == contact.a && last->b == contact.b;
-    contact.coupling = same ? last->coupling : system_.coupling(contact.a, contact.b);
-    last = &contact;
+    if (contact.a != IslandContact::kAlone) contact.coupling = system_.couple(contact.a, contact.b);
   }
 }
 
@@ -242,12 +234,7 @@ void IslandProblem::add_slope(const IslandContact& contact) {
   const Vector3& a = contact.arm_a;
   const Matrix3 a_slope = crossed(a, slope);
   add(1.0, slope, a_slope, a_slope, a, twist, system_.diagonal(contact.a));
-  BlockSystem::Matrix6& block = system_.between(contact.coupling);
-  if (contact.b > contact.a) {
-    add(-1.0, slope, b_slope, a_slope, b, twist, block);
-  } else {
-    add(-1.0, slope, a_slope, b_slope, a, twist, block);
-  }
+  add(-1.0, slope, b_slope, a_slope, b, twist, system_.between(contact.coupling));
 }
 
 /// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
