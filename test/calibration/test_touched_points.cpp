@@ -129,6 +129,24 @@ TEST(TouchedPoints, APointThatIsWrongIsNamedThoughAnothersResidualIsLarger) {
   }
 }
 
+// Without the fifth the others are on a line: whether it is the wrong one cannot be told by leaving it out.
+TEST(TouchedPoints, APointWithoutWhichTheOthersAreOnALineIsNotSaidToBeWrong) {
+  std::vector<TouchedPoint> points(5);
+  const Vector3 places[] = {{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {0.3, 0, 0}, {0.1, 0.2, 0}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].name = std::string(1, static_cast<char>('a' + i));
+    points[i].world = places[i];
+    points[i].device = places[i];
+  }
+  points[1].device->z() += 0.05;
+  try {
+    mrhi::check_residual(points, mrhi::fit_mount(points), 1e-4);
+    ADD_FAILURE() << "taken";
+  } catch (const mrhi::FitError& error) {
+    EXPECT_NE(std::string(error.what()).find("but 0.0 mm without b"), std::string::npos) << error.what();
+  }
+}
+
 TEST(TouchedPoints, PlacesOnALineAreRefusedBeforeAnyIsTouched) {
   std::vector<TouchedPoint> points(3);
   points[1].world = {0.1, 0.0, 0.0};

@@ -108,6 +108,21 @@ TEST(MeshCollision, balls_in_a_hollow_solid_leave_by_the_nearest_surface) {
   }
 }
 
+TEST(MeshCollision, what_is_before_a_corner_that_points_inwards_leaves_by_it) {
+  Random random(7);
+  const MeshCollider collider(notched_cube(0.03));
+  for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+    const Vector3 place = -Vector3::Constant(0.006) + random.in_box(Vector3::Constant(0.004));
+    const Vector3 to_corner = -place;  // no nearer to the outer sides, which are 20 mm away
+    const auto ball = collider.closest({place, place, 0.004}, kFar);
+    SCOPED_TRACE(i);
+    ASSERT_TRUE(ball);
+    EXPECT_NEAR(ball->distance, -to_corner.norm() - 0.004, kRounding);
+    EXPECT_LT((ball->normal - to_corner.normalized()).norm(), 1e-9);
+    EXPECT_LT(ball->point.norm(), kRounding);
+  }
+}
+
 TEST(MeshCollision, finger_in_an_arm_of_a_hollow_solid_leaves_across_the_arm) {
   const MeshCollider collider(angle_mesh());
   // Through the arm along x, nearer to its upper side than to its lower; the arm ends beyond the finger.
@@ -121,6 +136,16 @@ TEST(MeshCollision, finger_in_an_arm_of_a_hollow_solid_leaves_across_the_arm) {
   ASSERT_TRUE(tip);
   EXPECT_NEAR(tip->distance, -0.003 - 0.006, kRounding);
   EXPECT_LT((tip->normal - Vector3::UnitZ()).norm(), kRounding);
+}
+
+TEST(MeshCollision, a_mesh_that_no_collider_has_read_is_touched_at_the_nearest_point_alone) {
+  Mesh mesh;
+  mesh.triangles = std::make_shared<TriangleMesh>(box_mesh({0.02, 0.02, 0.02}));
+  ClosestFeatures features;
+  features.axis_parameter = 0.3;
+  const AxisSpan span = contact_span({{-0.01, 0, 0.03}, {0.01, 0, 0.03}, 0.008}, mesh, features);
+  EXPECT_EQ(span.s0, 0.3);
+  EXPECT_EQ(span.s1, 0.3);
 }
 
 TEST(MeshCollision, nothing_beyond_the_margin) {

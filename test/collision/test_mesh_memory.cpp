@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <thread>
 
 #include "collision/mesh_collision.h"
@@ -66,6 +67,36 @@ TEST(MeshMemory, changes_no_bit_of_any_answer) {
         }
       }
     }
+  }
+}
+
+/// A cone on its point with a pit of the same outline in it, of so many faces each.
+TriangleMesh funnel(int faces) {
+  TriangleMesh mesh;
+  for (int i = 0; i < faces; ++i) {
+    const double angle = 2.0 * M_PI * i / faces;
+    mesh.vertices.push_back(0.03 * Vector3(std::cos(angle), std::sin(angle), 1.0));
+  }
+  mesh.vertices.push_back(Vector3::Zero());
+  mesh.vertices.push_back(-0.02 * Vector3::UnitZ());
+  for (int i = 0; i < faces; ++i) {
+    const int next = (i + 1) % faces;
+    mesh.triangles.push_back({{i, next, faces}});
+    mesh.triangles.push_back({{next, i, faces + 1}});
+  }
+  return mesh;
+}
+
+// Before the pit's axis all of its faces are as near.
+TEST(MeshMemory, changes_no_bit_where_more_faces_are_near_than_are_remembered) {
+  Random random(33);
+  const TriangleMesh mesh = funnel(60);
+  const MeshCollider asked(mesh);
+  const Forgetful forgetful(mesh);
+  for (int i = 0; i < 200 && !HasFailure(); ++i) {
+    const Vector3 place(0.0, 0.0, 0.015);
+    const Capsule capsule = moved({place, place, 0.004}, 2e-5, random);
+    expect_same(asked.closest(capsule, 0.05), forgetful.closest(capsule, 0.05));
   }
 }
 

@@ -63,6 +63,20 @@ TEST(JointScene, has_the_joints_of_its_urdf) {
   EXPECT_LT((place("arm") - Vector3(-0.5, 0, 0.3)).norm(), 1e-15);
 }
 
+TEST(JointScene, a_link_without_a_shape_passes_on_what_hangs_on_it) {
+  const std::string frame =
+      test::link("frame", test::kBox) + joint("f", "fixed", "world", "frame", "", R"(xyz="1 0 0")") +
+      test::link("bracket", "") + joint("b", "fixed", "frame", "bracket", "", R"(xyz="0 0.2 0")");
+  const Scene scene =
+      load(test::robot(frame + test::link("door", kPart) +
+                       joint("hinge", "revolute", "bracket", "door", kLimit, R"(xyz="0 0 0.3")")));
+  ASSERT_EQ(scene.joints.size(), 1u);
+  EXPECT_EQ(scene.joints[0].parent, *find_body(scene, "frame"));
+  const Body& door = scene.bodies[static_cast<std::size_t>(*find_body(scene, "door"))];
+  const Vector3 link = (door.start * door.link_in_body).position;
+  EXPECT_LT((link - Vector3(1.0, 0.2, 0.3)).norm(), 1e-12);
+}
+
 TEST(JointScene, begins_where_its_yaml_has_it) {
   const Scene scene = load(workshop(), "joints: {hinge: {start: 1.0}, rail: {start: 0.1}}");
   const Vector3 lever = scene.bodies[static_cast<std::size_t>(*find_body(scene, "lever"))].start.position;
@@ -136,6 +150,21 @@ TEST(JointScene, refuses_a_chain_of_more_than_32_in_a_file_and_in_what_is_spawne
   }
 }
 
+TEST(JointScene, what_is_spawned_is_refused_where_its_joints_begin_beyond_their_limits) {
+  ObjectRequest request;
+  request.whole = true;
+  request.urdf = workshop();
+  request.joints = "hinge: {start: 1.0}";
+  EXPECT_NO_THROW(requested_scene(request, {}));
+  request.joints = "hinge: {start: 1.6}";
+  try {
+    requested_scene(request, {});
+    FAIL() << "it was taken";
+  } catch (const SceneError& refusal) {
+    test::expect_words(refusal.what(), {"spawn", "'hinge'", "1.6"});
+  }
+}
+
 TEST(JointScene, refuses_a_loop_of_joints) {
   Scene scene = testing::pendulum(2, 0.0, 0.0);
   scene.joints[0].parent = 1;
@@ -145,6 +174,17 @@ TEST(JointScene, refuses_a_loop_of_joints) {
   } catch (const std::invalid_argument& error) {
     test::expect_words(error.what(), {"'joint_0'", "loop"});
   }
+}
+
+TEST(JointScene, a_state_that_knows_no_joints_has_them_where_they_begin) {
+  Simulation simulation(testing::pendulum(2, 0.3, 9.81), testing::unfiltered(ContactModelKind::implicit));
+  SimulationState state = simulation.state();
+  testing::let_go_on(simulation, 0.0, 0.2, 100.0, [](const Simulation&) {});
+  ASSERT_NE(simulation.state().joints[0].position, 0.3);
+  state.joints.clear();
+  simulation.set_state(state);
+  ASSERT_EQ(simulation.state().joints.size(), 2u);
+  EXPECT_EQ(simulation.state().joints[0].position, 0.3);
 }
 
 TEST(JointScene, a_body_that_leaves_is_put_back_with_all_that_hangs_on_it) {

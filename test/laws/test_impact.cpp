@@ -42,6 +42,23 @@ Twist struck(Body body, double speed, const Vector3& offset) {
   return object_twist(simulation);
 }
 
+/// What is left of Newton's blow [N s] against 0.5 kg that come at 1 m/s, if another law gives `least`: of
+/// either more than 1 N s gives back more than was there.
+double kept_of(double newtons, double least) {
+  const Vector3 approach = Vector3::UnitX();
+  const auto after = [&](double impulse) -> Vector3 { return (1.0 - 2.0 * impulse) * approach; };
+  std::vector<TwoBlows> strikes{
+      {approach, newtons * approach, after(newtons), least * approach, after(least)}};
+  keep_from_gaining(strikes);
+  return strikes[0].newtons.x();
+}
+
+TEST(Impact, keeps_of_newtons_blow_what_makes_no_energy) {
+  EXPECT_NEAR(kept_of(0.8, 0.5), 0.8, 1e-12);
+  EXPECT_NEAR(kept_of(1.4, 0.5), 1.0, 1e-12);
+  EXPECT_NEAR(kept_of(2.0, 1.5), 1.0, 1e-12) << "the blow without restitution makes some, too";
+}
+
 // Newton's law with a heavy hand: v = (1 + e) u. The tolerance is that of arithmetic: the blow is one
 // impulse.
 TEST(Impact, leaves_at_one_plus_restitution_times_the_hands_speed) {

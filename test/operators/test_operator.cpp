@@ -86,6 +86,47 @@ TEST(Operator, same_seed_same_bits_and_another_seed_others) {
   EXPECT_TRUE(differs);
 }
 
+/// Takes a cube that stays where it is, and lets it go at once.
+struct LetsGo {
+  const Body cube = testing::shipped_body("cube");
+  SimulatedOperator person{OperatorSkill(), cube, 1};
+  Sight sight = at_rest(cube);
+  double time = 0.0;
+
+  LetsGo() {
+    sight.place = cube.start.position;
+    goes_on_until(Phase::carrying);
+    sight.place.reset();
+  }
+
+  /// The hand's orientation then.
+  Quaternion goes_on_until(Phase phase) {
+    HandPlace hand;
+    do {
+      hand = person.move(time += kFrame, sight);
+    } while (person.phase() != phase && time < 30.0);
+    EXPECT_EQ(person.phase(), phase);
+    return hand.wrist.orientation;
+  }
+};
+
+TEST(Operator, turns_its_hand_over_when_what_it_has_let_go_clings_to_it) {
+  LetsGo run;
+  const Quaternion let_go = run.goes_on_until(Phase::done);
+  for (int i = 0; i < 100; ++i) run.person.move(run.time += kFrame, run.sight);
+  EXPECT_EQ(run.person.phase(), Phase::done);
+  run.sight.held = true;
+  run.goes_on_until(Phase::letting_go);
+  EXPECT_NEAR(let_go.angularDistance(run.goes_on_until(Phase::done)), 2.0 * M_PI / 3.0, 1e-6);
+}
+
+TEST(Operator, takes_it_again_when_it_is_wanted_somewhere_once_it_is_done) {
+  LetsGo run;
+  run.goes_on_until(Phase::done);
+  run.sight.place = kPlace;
+  run.goes_on_until(Phase::reaching);
+}
+
 TEST(Operator, knows_no_grasp_of_an_unknown_object) {
   Body body = testing::shipped_body("cube");
   body.name = "teapot";

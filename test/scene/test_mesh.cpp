@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
+
 #include "scene/scene_files.h"
 
 namespace mrhi {
@@ -110,6 +113,26 @@ TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
   folder_.write("wedge.obj", std::string(kVertices) + kOutward);
   test::expect_words(error("filename=\"wedge.obj\" scale=\"1 0 1\""),
                      {"'thing' collision 1", "scale", "[1, 0, 1]"});
+}
+
+TEST_F(MeshScene, RefusesAVertexThatIsNoNumber) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float corners[4][3] = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0, 0, nan}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string stl(80, ' ');
+  const std::uint32_t count = 4;
+  const float normal[3] = {0, 0, 0};
+  const auto append = [&](const void* data, std::size_t size) {
+    stl.append(static_cast<const char*>(data), size);
+  };
+  append(&count, sizeof count);
+  for (const auto& face : faces) {
+    append(normal, sizeof normal);
+    for (const int corner : face) append(corners[corner], sizeof corners[corner]);
+    stl.append(2, '\0');
+  }
+  folder_.write("wedge.stl", stl);
+  test::expect_words(error("filename=\"wedge.stl\""), {"'thing' collision 1", "'wedge.stl'", "allowed"});
 }
 
 TEST_F(MeshScene, IsHeldToTheSizesOfEveryOtherShape) {

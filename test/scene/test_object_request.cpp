@@ -119,6 +119,11 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   bad = primitive("sphere", {0.1});
   bad.pose.orientation.coeffs().setZero();
   test::expect_words(error_of(bad), {"pose"});
+  for (const bool turns : {false, true}) {
+    bad = primitive("sphere", {0.1});
+    (turns ? bad.twist.angular : bad.twist.linear).y() = nan;
+    test::expect_words(error_of(bad), {"twist", "finite"});
+  }
   bad = primitive("sphere", {0.1});
   bad.material = "{dynamic_friction: 3}";
   test::expect_words(error_of(bad), {"dynamic_friction"});
@@ -127,6 +132,9 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   const std::string two = test::robot(test::link("a", test::kBox) + test::joint("fixed", "world", "a") +
                                       test::link("b", test::kBox) + test::joint("fixed", "world", "b"));
   test::expect_words(error_of(urdf(two)), {"several"});
+  const std::string door = test::link("door", test::kInertial + std::string(test::kBox));
+  test::expect_words(error_of(urdf(test::robot(door + test::joint("continuous", "world", "door")))),
+                     {"turns or slides", "floating, fixed"});
 }
 
 TEST(ObjectRequest, a_colour_has_parts_from_0_to_1_and_no_others) {

@@ -1,6 +1,7 @@
 // What goes wrong around a simulation, and what holds all the same: docs/reliability.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -115,6 +116,44 @@ TEST(Faults, a_body_that_is_not_finite_is_put_back_and_named) {
   EXPECT_EQ(simulation.state().bodies[0].pose.position, Vector3::Zero());
   simulation.advance({at(0.02), {}});
   EXPECT_TRUE(simulation.result().not_finite.empty());
+}
+
+TEST(Faults, a_hand_whose_drawn_place_is_not_finite_is_drawn_where_it_is_tracked_and_named) {
+  Simulation simulation(cube(), unfiltered());
+  int i = 0;
+  for (; i < 30; ++i) simulation.advance({at(0.01 * i), {pushing(0.01 * i)}});
+  SimulationState state = simulation.state();
+  state.offsets[0].shift.y() = kNan;
+  simulation.set_state(state);
+  simulation.advance({at(0.01 * i), {pushing(0.01 * i)}});
+  EXPECT_TRUE(all_finite(simulation));
+  ASSERT_FALSE(simulation.result().not_finite.empty());
+  EXPECT_EQ(simulation.result().not_finite[0], "rendered hand 1");
+  ASSERT_EQ(simulation.result().rendered.size(), 1u);
+  const std::size_t tip = capsule_index(1, 3);
+  EXPECT_EQ(simulation.result().rendered[0].hand.capsules[tip].start,
+            simulation.result().tracked[0].capsules[tip].start);
+  ++i;
+  simulation.advance({at(0.01 * i), {pushing(0.01 * i)}});
+  EXPECT_TRUE(simulation.result().not_finite.empty());
+}
+
+TEST(Faults, a_contact_that_is_not_finite_is_left_out_and_its_object_named) {
+  Simulation simulation(cube(), unfiltered(ContactModelKind::soft_pad));
+  int i = 0;
+  while (i < 100 && simulation.result().contacts.empty()) {
+    simulation.advance({at(0.01 * i), {pushing(0.01 * i)}});
+    ++i;
+  }
+  SimulationState state = simulation.state();
+  ASSERT_FALSE(state.contacts.empty()) << "it is never touched";
+  for (Contact& contact : state.contacts) contact.god_object.z() = kNan;
+  simulation.set_state(state);
+  simulation.advance({at(0.01 * i), {pushing(0.01 * i)}});
+  EXPECT_TRUE(all_finite(simulation));
+  const std::vector<std::string>& named = simulation.result().not_finite;
+  EXPECT_NE(std::find(named.begin(), named.end(), "contact with 'object'"), named.end());
+  for (const Contact& contact : simulation.result().contacts) EXPECT_TRUE(contact.force.allFinite());
 }
 
 /// Each number at either of its ends, alone: a hand that moves and pushes stays finite.

@@ -298,6 +298,23 @@ TEST(LiveSimulation, only_bodies_without_a_material_of_their_own_follow_the_para
   EXPECT_EQ(live.simulation().scene().bodies[0].material.stiffness, 100.0);
 }
 
+TEST(LiveSimulation, a_material_that_does_not_go_with_a_bodys_own_numbers_is_refused_with_its_name) {
+  Scene scene = testing::scene_of(ball_at({0, 0, 0}, "slick"));
+  scene.bodies[0].material.dynamic_friction = 0.4;
+  scene.bodies[0].own_material.dynamic_friction = true;
+  LiveSimulation live(scene, testing::unfiltered(ContactModelKind::implicit));
+  try {
+    live.set_parameters({{"material/static_friction", "0.3"}, {"material/dynamic_friction", "0.2"}});
+    FAIL() << "the body's dynamic friction would be above its static friction";
+  } catch (const ParameterError& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("'slick'"), std::string::npos) << said;
+    EXPECT_NE(said.find("0.4"), std::string::npos) << said;
+  }
+  EXPECT_EQ(live.simulation().scene().bodies[0].material.static_friction,
+            scene.bodies[0].material.static_friction);
+}
+
 TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_there_are_to_their_start) {
   Held held;
   held.play(0.7);

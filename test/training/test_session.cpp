@@ -289,6 +289,39 @@ TEST_F(SessionTest, refuses_the_folder_of_another_session_and_leaves_it_alone) {
   EXPECT_EQ("", refusal(other)) << "it has been started anew";
 }
 
+TEST_F(SessionTest, refuses_a_header_that_is_none_or_has_another_order_or_gravity) {
+  open();
+  const std::string file = path_ + "/session.yaml", kept = text(file);
+  const std::size_t order = kept.find("order:");
+  ASSERT_NE(order, std::string::npos);
+  std::ofstream(file) << kept.substr(0, order) << "order: [flat, cube]\n";
+  test::expect_words(refusal(header()), {file, "order", "'[flat, cube]'"});
+  const std::string weightless = "gravity: [0, 0, 0]";
+  std::string on_earth = kept;
+  ASSERT_NE(kept.find(weightless), std::string::npos) << kept;
+  on_earth.replace(kept.find(weightless), weightless.size(), "gravity: [0, 0, -9.81]");
+  std::ofstream(file) << on_earth;
+  test::expect_words(refusal(header()), {file, "gravity", "[0, 0, -9.81]", "[0, 0, 0]"});
+  std::ofstream(file) << "- participant\n";
+  test::expect_words(refusal(header()), {file, "is not a list of keys with values"});
+  std::ofstream(file) << kept;
+  EXPECT_EQ("", refusal(header()));
+}
+
+TEST_F(SessionTest, does_a_trial_again_whose_result_it_does_not_know) {
+  {
+    Session session = open();
+    do_trial(session);
+  }
+  std::string rows = text(trials_);
+  const std::string result = "completed";
+  ASSERT_NE(rows.find(result + ","), std::string::npos) << rows;
+  EXPECT_EQ(1u, open().position());
+  rows.replace(rows.find(result + ","), result.size(), "perfect");
+  std::ofstream(trials_) << rows;
+  EXPECT_EQ(0u, open().position());
+}
+
 TEST_F(SessionTest, is_refused_while_another_program_has_its_folder_and_names_that) {
   int ready[2], done[2];
   ASSERT_EQ(0, pipe(ready));
@@ -416,6 +449,9 @@ TEST_F(SessionTest, refuses_pipes_and_devices_in_place_of_its_files) {
     EXPECT_NE(refusal(header()).find(file), std::string::npos);
     std::filesystem::remove(file);
   }
+  std::filesystem::create_directory(path_ + "/session.lock");
+  test::expect_words(refusal(header()), {path_ + "/session.lock", "cannot be written"});
+  std::filesystem::remove(path_ + "/session.lock");
   EXPECT_EQ("", refusal(header()));
 }
 

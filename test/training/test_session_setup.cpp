@@ -125,6 +125,18 @@ TEST_F(SessionSetupTest, a_record_without_a_session_is_of_a_start_that_was_cut_o
   EXPECT_EQ("", refusal(setup()));
 }
 
+TEST_F(SessionSetupTest, a_record_that_cannot_be_written_is_told_in_one_line) {
+  const std::string file = folder_.write("no_folder", "");
+  for (const std::string& folder : {file, std::string("/proc")}) {
+    try {
+      write_setup(folder, setup());
+      ADD_FAILURE() << "written in " << folder;
+    } catch (const SessionError& error) {
+      test::expect_words(error.what(), {folder, "cannot be written"});
+    }
+  }
+}
+
 TEST_F(SessionSetupTest, refused_sessions_are_left_as_they_were) {
   open(setup());
   const auto size = fs::file_size(session_ + "/events.csv");

@@ -113,6 +113,11 @@ TEST_F(TaskFile, refuses_wrong_types_and_what_is_out_of_range) {
   test::expect_words(
       error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0], twist: [1, 2, 3]}\n" + kGoals),
       {"objects/1/twist", "six"});
+  for (const std::string twist : {"[0, 200, 0, 0, 0, 0]", "[0, 0, 0, 0, 2000, 0]"}) {
+    test::expect_words(
+        error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0], twist: " + twist + "}\n" + kGoals),
+        {"objects/1/twist", "100 m/s", "1000 rad/s"});
+  }
   test::expect_words(
       error("name: t\nobjects:\n  - {name: a, position: [0, 0, 0], orientation: [0, 0, 0, 2]}\n" + kGoals),
       {"orientation", "unit quaternion"});

@@ -11,6 +11,24 @@
 namespace mrhi {
 namespace {
 
+TEST(RecordingWriter, a_frame_without_hands_is_read_back_as_one) {
+  std::vector<JointsFrame> written = record_motion({});
+  written.resize(3);
+  ASSERT_FALSE(written[0].hands.empty() || written[2].hands.empty());
+  written[1].hands.clear();
+  const std::string file = ::testing::TempDir() + "mr_hand_interaction_without_hands.csv";
+  {
+    std::ofstream out(file);
+    write_recording_csv(out, written);
+  }
+  const auto read = read_recording_csv(file);
+  std::remove(file.c_str());
+  ASSERT_EQ(read.size(), 3u);
+  EXPECT_EQ(read[0].hands.size(), 1u);
+  EXPECT_TRUE(read[1].hands.empty());
+  EXPECT_EQ(read[2].hands.size(), 1u);
+}
+
 TEST(RecordingWriter, the_reader_gets_back_what_was_written_to_the_micrometre) {
   SyntheticHandOptions options;
   options.motion = "slap";
