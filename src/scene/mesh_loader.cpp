@@ -53,6 +53,9 @@ class Collector {
   }
 
   int vertex(const aiVector3D& place) {
+    // What is no number is as good as equal to any other, and would be taken for a vertex that is known.
+    if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z))
+      throw std::runtime_error("has a vertex that is not finite; allowed: finite numbers");
     const auto inserted = known_.emplace(std::array<ai_real, 3>{{place.x, place.y, place.z}},
                                          static_cast<int>(mesh_.vertices.size()));
     if (inserted.second) mesh_.vertices.push_back(scale_.cwiseProduct(Vector3(place.x, place.y, place.z)));
@@ -199,10 +202,6 @@ TriangleMesh load_mesh(const std::string& file, const Vector3& scale) {
   mesh.vertices = taken<Vector3>(bytes, at);
   mesh.triangles = taken<std::array<int, 3>>(bytes, at);
   if (mesh.triangles.empty()) throw std::runtime_error("has no triangles; allowed: at least one");
-  for (const Vector3& vertex : mesh.vertices) {
-    if (!vertex.allFinite())
-      throw std::runtime_error("has a vertex that is not finite; allowed: finite numbers");
-  }
   return mesh;
 }
 

@@ -132,7 +132,7 @@ TEST_F(MeshScene, RefusesAVertexThatIsNoNumber) {
     stl.append(2, '\0');
   }
   folder_.write("wedge.stl", stl);
-  test::expect_words(error("filename=\"wedge.stl\""), {"'thing' collision 1", "'wedge.stl'", "allowed"});
+  test::expect_words(error("filename=\"wedge.stl\""), {"'thing' collision 1", "'wedge.stl'", "not finite"});
 }
 
 TEST_F(MeshScene, IsHeldToTheSizesOfEveryOtherShape) {

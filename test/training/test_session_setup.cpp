@@ -137,6 +137,23 @@ TEST_F(SessionSetupTest, a_record_that_cannot_be_written_is_told_in_one_line) {
   }
 }
 
+TEST_F(SessionSetupTest, a_file_that_cannot_be_written_or_read_is_named) {
+  const std::string unwritable(300, 'x');
+  try {
+    write_setup(session_, {{{unwritable, ""}}});
+    ADD_FAILURE() << "written";
+  } catch (const SessionError& error) {
+    test::expect_words(error.what(), {unwritable, "cannot be written"});
+  }
+  fs::remove(folder_.path() + "/task.yaml");
+  try {
+    setup();
+    ADD_FAILURE() << "read";
+  } catch (const SceneError& error) {
+    test::expect_words(error.what(), {folder_.path() + "/task.yaml", "cannot be read"});
+  }
+}
+
 TEST_F(SessionSetupTest, refused_sessions_are_left_as_they_were) {
   open(setup());
   const auto size = fs::file_size(session_ + "/events.csv");
