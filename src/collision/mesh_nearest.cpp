@@ -75,14 +75,14 @@ void MeshNearest::search(const MeshTree& tree, double range) {
 /// nearest is no farther than d + s, and all left out no nearer than b - s, so that slack = (b - d) / 2.
 /// Faces beyond the first 28 and edges beyond the nearest 12 bring b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
-  constexpr std::size_t kEdges = 12, kFaces = NearParts::kMost - kEdges;
+  constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kMost - kEdgesKept;
   constexpr double kMostSlack = 1e-4, kRounding = 1e-9;
   struct Near {
     double distance;
     int part;
   };
-  std::array<Near, kEdges + 1> edges;
-  std::array<Near, kFaces> faces;
+  std::array<Near, kEdgesKept + 1> edges;
+  std::array<Near, kFacesKept> faces;
   std::size_t edge_count = 0, face_count = 0;
   double bound = nearest().distance + 2.0 * kMostSlack;
   const auto before = [](const Near& a, const Near& b) {
@@ -97,7 +97,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
                                            : surface_.nearest_on_edge(part - faces_, segment_);
         if (now.distance >= bound) return;
         if (is_face) {
-          if (face_count == kFaces) {
+          if (face_count == kFacesKept) {
             bound = std::min(bound, now.distance);
             return;
           }
@@ -108,7 +108,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
         for (; place > 0 && before({now.distance, part}, edges[place - 1]); --place)
           edges[place] = edges[place - 1];
         edges[place] = {now.distance, part};
-        if (edge_count > kEdges) bound = edges[--edge_count].distance;
+        if (edge_count > kEdgesKept) bound = edges[--edge_count].distance;
       });
   NearParts near;
   const auto add = [&](int part) {

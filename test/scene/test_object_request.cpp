@@ -137,6 +137,24 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
                      {"turns or slides", "floating, fixed"});
 }
 
+TEST(ObjectRequest, a_whole_scene_whose_bodies_begin_inside_each_other_is_refused_with_their_names) {
+  const std::string content = test::kInertial + std::string(test::kBox);
+  const auto two = [&](const std::string& apart) {
+    ObjectRequest request =
+        urdf(test::robot(test::link("one", content) + test::joint("floating", "world", "one") +
+                         test::link("other", content) + test::joint("floating", "world", "other", apart)));
+    request.whole = true;
+    return request;
+  };
+  EXPECT_EQ(requested_scene(two("xyz=\"1 0 0\""), {}).bodies.size(), 2u);
+  try {
+    requested_scene(two("xyz=\"0.01 0 0\""), {});
+    FAIL() << "it was taken";
+  } catch (const SceneError& refusal) {
+    test::expect_words(refusal.what(), {"spawn", "'one'", "'other'", "0.001 m"});
+  }
+}
+
 TEST(ObjectRequest, a_colour_has_parts_from_0_to_1_and_no_others) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const std::array<float, 4>& rgba : {std::array<float, 4>{{nan, 0, 0, 1}},
