@@ -162,7 +162,10 @@ TEST(ReadYaml, tells_whatever_is_wrong_as_the_readers_own_error_of_one_line) {
   };
   EXPECT_EQ(told("a: {b: c}"), "c");
   EXPECT_EQ(told("a: &x 1\nb: *x"), refusal("a: &x 1\nb: *x"));
-  EXPECT_EQ(told("\na: 1").rfind("here:2: not YAML: ", 0), 0u) << told("\na: 1");
+  // yaml-cpp 0.6, as on Debian 11, does not say where.
+  const std::string scalar = told("\na: 1");
+  EXPECT_TRUE(scalar.rfind("here:2: not YAML: ", 0) == 0 || scalar.rfind("here: not YAML: ", 0) == 0)
+      << scalar;
   EXPECT_EQ(told("a: {}").rfind("here", 0), 0u) << told("a: {}");
 }
 
