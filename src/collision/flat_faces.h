@@ -7,7 +7,7 @@
 
 namespace mrhi {
 
-/// Of what is told by its number, in a list.
+/// Where a list has what is told by its number.
 inline std::size_t slot(int number) {
   return static_cast<std::size_t>(number);
 }

@@ -14,7 +14,7 @@ class BlockSystem {
   /// Begins anew with so many bodies, none of them coupled.
   void begin(int bodies);
   /// The number of the block that two bodies share from now on, `a` before `b`. Asked again right away it is
-  /// the same.
+  /// the same; later it would be another, so that what a pair has is asked for together.
   std::size_t couple(int a, int b);
 
   /// All entries zero.
