@@ -115,6 +115,14 @@ def page_packages(page, section):
     return sorted({name for listed in re.findall(r"apt-get install ([a-z0-9.+\s-]+)", text) for name in listed.split()})
 
 
+def printed_scenes():
+    """Name and text of each URDF that a page prints."""
+    for page in PAGES:
+        with open(page, encoding="utf-8") as file:
+            for urdf, name in re.findall(r'^```xml\n(<robot name="(\w+)">\n.*?)^```$', file.read(), re.MULTILINE | re.DOTALL):
+                yield name, urdf
+
+
 COMMANDS = commands()
 
 
@@ -149,6 +157,9 @@ class User:
             file.write("points:\n")
             for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
                 file.write("  - {name: p%d, world: [%g, %g, %g], device: [%g, %g, %g]}\n" % (index, x, y, z, x, z, -y))
+        for name, urdf in printed_scenes():
+            with open(os.path.join(self.folder, name + ".urdf"), "w", encoding="utf-8") as file:
+                file.write(urdf)
 
     def write_bag(self, name, of_a_live_run):
         """Three seconds of the scripted hand; a live run's says what the simulation took, here frames without a hand."""
