@@ -26,6 +26,7 @@ Columns joined(const std::vector<Columns>& parts) {
 const Column kTime{"time", "s", "stamp of the frame relative to the first"};
 const Column kHand{"hand_id", "", "the tracker's number of the hand"};
 const Column kFinger{"finger", "", "0 thumb, 1 index, 2 middle, 3 ring, 4 little, 5 palm"};
+const Column kFrame{"frame", "", "number of the frame, from 0, by which the tables' rows belong together"};
 const Column kBone{"bone", "", "0 metacarpal, 1 proximal, 2 intermediate, 3 distal; of the palm 0"};
 
 Table objects() {
@@ -34,7 +35,12 @@ Table objects() {
                   vector_columns({"px", "py", "pz"}, "m", "place of the centre of mass in world"),
                   vector_columns({"qx", "qy", "qz", "qw"}, "", "orientation, unit quaternion"),
                   vector_columns({"vx", "vy", "vz"}, "m/s", "velocity of the centre of mass"),
-                  vector_columns({"wx", "wy", "wz"}, "rad/s", "spin, world axes")})};
+                  vector_columns({"wx", "wy", "wz"}, "rad/s", "spin, world axes"),
+                  {{"level", "", "highest of any hand: 0 none, 1 hover, 2 contact, 3 grasp"},
+                   {"held", "", "1 if a hand grasps it"},
+                   {"assisted", "", "1 if contact/grasp_assist supports it"}},
+                  vector_columns({"assist_fx", "assist_fy", "assist_fz"}, "N", "force of the grasp assist"),
+                  {kFrame}})};
 }
 
 Table contacts() {
@@ -57,20 +63,60 @@ Table contacts() {
                    {"tangential_force", "N", "size of the force along the surface"},
                    {"friction_limit", "N",
                     "what friction bears: the object's coefficient, static while it sticks, times the push"},
-                   {"friction_share", "", "tangential_force over friction_limit; 0 where that is 0"}}})};
+                   {"friction_share", "", "tangential_force over friction_limit; 0 where that is 0"},
+                   {"touching", "", "0 if it has struck the object in the frame and has left it again"},
+                   {"slipping", "", "1 if the contact's friction slides"},
+                   {"patch", "m", "radius of the contact patch"},
+                   kFrame}})};
 }
 
 Table hands() {
-  return {"hands.csv", "each phalanx that there is, tracked and rendered, and frame",
-          joined({{kTime,
-                   kHand,
-                   {"side", "", "0 left, 1 right"},
-                   kFinger,
-                   kBone,
-                   {"rendered", "", "0 tracked and filtered, 1 rendered"}},
-                  vector_columns({"sx", "sy", "sz"}, "m", "start of its axis in world"),
-                  vector_columns({"ex", "ey", "ez"}, "m", "end of its axis in world"),
-                  {{"radius", "m", "of the phalanx"}, {"touching", "", "1 if it touches an object"}}})};
+  return {
+      "hands.csv", "each phalanx that there is, tracked and rendered, and frame",
+      joined({{kTime,
+               kHand,
+               {"side", "", "0 left, 1 right"},
+               kFinger,
+               kBone,
+               {"rendered", "", "0 tracked and filtered, 1 rendered"}},
+              vector_columns({"sx", "sy", "sz"}, "m", "start of its axis in world"),
+              vector_columns({"ex", "ey", "ez"}, "m", "end of its axis in world"),
+              {{"radius", "m", "of the phalanx"}, {"touching", "", "1 if it touches an object"}, kFrame}})};
+}
+
+Table palms() {
+  return {"palms.csv", "each tracked and filtered hand, and frame",
+          joined({{kTime, kHand, {"side", "", "0 left, 1 right"}},
+                  vector_columns({"px", "py", "pz"}, "m", "centre of the palm in world"),
+                  vector_columns({"qx", "qy", "qz", "qw"}, "",
+                                 "orientation, unit quaternion: x to the fingers, z out of the hand's back"),
+                  {{"confidence", "", "the tracker's, 0 to 1"},
+                   {"lost", "", "1 if the tracker does not see the hand, which keeps its pose"},
+                   kFrame}})};
+}
+
+Table frames() {
+  return {"frames.csv", "each frame",
+          joined({{kTime, kFrame, {"stamp", "ns", "of the frame"}},
+                  vector_columns({"gx", "gy", "gz"}, "m/s^2", "gravity in world")})};
+}
+
+Table bodies() {
+  return {
+      "bodies.csv", "each object that moves, as the run begins and after each change of the scene",
+      joined({{kTime,
+               {"name", "", "of the object"},
+               {"mass", "kg", ""},
+               {"static_friction", "", "coefficient while it sticks"},
+               {"dynamic_friction", "", "coefficient while it slides"},
+               {"restitution", "", "of Newton's impact law"},
+               {"radius", "m", "bounding radius about the centre of mass"}},
+              vector_columns({"hx", "hy", "hz"}, "m", "half extents of an object that is one box, else 0"),
+              {{"joint", "", "name of the joint by which it hangs on another body, or empty"},
+               {"joint_kind", "", "turning or sliding"},
+               {"lower", "rad", "the joint's lower limit, -inf if none; m of one that slides"},
+               {"upper", "rad", "the joint's upper limit, inf if none; m of one that slides"},
+               kFrame}})};
 }
 
 Table joints() {
@@ -80,7 +126,8 @@ Table joints() {
            {"name", "", "of the joint"},
            {"position", "rad", "from where its link is in the URDF"},
            {"velocity", "rad/s", ""},
-           {"effort", "N m", "of its own spring, friction, limits and the like in the last step"}}};
+           {"effort", "N m", "of its own spring, friction, limits and the like in the last step"},
+           kFrame}};
 }
 
 Table events() {
@@ -89,7 +136,8 @@ Table events() {
           {{"time", "s", "stamp of the event relative to the first frame"},
            {"kind", "", "as in InteractionEvent.msg: GRASP_BEGIN"},
            {"object", "", "its name; empty for events of hands"},
-           kHand}};
+           kHand,
+           kFrame}};
 }
 
 Table hashes() {
@@ -116,7 +164,8 @@ std::string Table::header() const {
 }
 
 const std::vector<Table>& tables() {
-  static const std::vector<Table> all{objects(), joints(), contacts(), hands(), events(), hashes()};
+  static const std::vector<Table> all{objects(), joints(), contacts(), hands(), palms(),
+                                      events(),  frames(), bodies(),   hashes()};
   return all;
 }
 

@@ -73,7 +73,7 @@ void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& write
     }
     const FrameResult& result = simulation.end();
     for (const std::string& what : result.not_finite) reject("not finite", what, progress, summary);
-    writer.write(result, simulation.state());
+    writer.write(result, simulation.state(), gravity_of(simulation));
     if (watcher) watcher(simulation);
     add_result(simulation, last_stamp, summary);
     ++summary.frames;

@@ -232,7 +232,7 @@ class LogRun {
   }
 
   void note_result() {
-    writer_->write(simulation().result(), simulation().state());
+    writer_->write(simulation().result(), simulation().state(), gravity_of(simulation()));
     if (watcher_) watcher_(simulation());
     add_result(simulation(), last_stamp_, summary_);
     last_stamp_ = simulation().result().stamp;

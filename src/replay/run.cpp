@@ -23,6 +23,10 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
+Vector3 gravity_of(const Simulation& simulation) {
+  return simulation.configuration().gravity.value_or(simulation.scene().gravity);
+}
+
 void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
                 ReplaySummary& summary) {
   const FrameResult& result = simulation.result();
@@ -42,7 +46,7 @@ void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
   const Configuration& configuration = simulation.configuration();
   summary.contact_model = configuration.contact_model.name;
   summary.version = MR_HAND_INTERACTION_VERSION;
-  summary.gravity = configuration.gravity.value_or(simulation.scene().gravity);
+  summary.gravity = gravity_of(simulation);
   for (const std::string& name : parameter_names()) {
     const std::string text = parameter_text(configuration, name);
     if (text != parameter_text(Configuration(), name)) summary.parameters[name] = text;

@@ -20,6 +20,8 @@ namespace mrhi {
 
 /// One step, its time noted; false if there is none to make.
 bool timed_step(Simulation& simulation, ReplaySummary& summary);
+/// As the configuration has it, else the scene [m/s^2].
+Vector3 gravity_of(const Simulation& simulation);
 /// A frame that has been run, or what came of time without any. `since`: the stamp of the one before.
 void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
                 ReplaySummary& summary);
