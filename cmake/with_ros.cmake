@@ -30,15 +30,15 @@ install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthe
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
-set(scripts analyse_study ask_participant ask_ratings calibrate_study doctor explain plan_study power_study run_when set
-  training_keys)
+set(scripts analyse_study ask_participant ask_ratings calibrate_study compare doctor explain export plan_study
+  power_study run_when set training_keys)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
 install(PROGRAMS scripts/explain_pictures.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY scripts/runs scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/panel.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -1,8 +1,7 @@
 # What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
 set(replay_parts
-  arguments change change_yaml compare csv_columns demonstration dictionary explain_chart explain_drawing explain_html explain_json explain_losses explain_moments explain_stay explain_watch grip_margin
-  frame_source json_text prepare_simulation progress_bar
-  recording_csv replay replay_log result_writer run summary urdf_meshes world)
+  arguments change change_yaml csv_columns dictionary frame_source json_text prepare_simulation progress_bar
+  recording_csv replay replay_log result_writer run run_script summary urdf_meshes world)
 file(GLOB without_ros src/without_ros/*.cpp)
 set(replay_library_sources src/ros/package_paths.cpp ${without_ros})
 foreach(part ${replay_parts})
@@ -24,6 +23,8 @@ install(TARGETS ${PROJECT_NAME}_core EXPORT ${PROJECT_NAME}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS replay RUNTIME DESTINATION lib/${PROJECT_NAME})
+install(PROGRAMS scripts/compare scripts/explain scripts/export DESTINATION lib/${PROJECT_NAME})
+install(DIRECTORY scripts/runs scripts/study DESTINATION lib/${PROJECT_NAME} PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY include/${PROJECT_NAME} DESTINATION include PATTERN ros EXCLUDE PATTERN replay EXCLUDE)
 install(DIRECTORY config DESTINATION share/${PROJECT_NAME})
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/${PROJECT_NAME})

@@ -95,13 +95,13 @@ void replay(const ReplayArguments& arguments) {
   summary.scene = simulation.scene().name;
   summary.input = arguments.input;
   summary.topic = input.topic;
+  summary.arguments = arguments.repeatable;
   tell_setting(simulation, summary);
   summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
   ProgressBar progress;
-  Explaining explaining(arguments);
   if (!is_csv(arguments.input)) progress.line("replay: not known: " + summary.not_known.front());
   try {
-    run_frames(*input.frames, simulation, writer, progress, summary, explaining.watcher());
+    run_frames(*input.frames, simulation, writer, progress, summary, marker_watcher(arguments));
     if (summary.frames == 0) throw std::runtime_error(arguments.input + ": no frame that can be used");
     writer.flush();
   } catch (const std::exception& error) {
@@ -112,7 +112,6 @@ void replay(const ReplayArguments& arguments) {
   }
   tell_end(simulation, summary);
   write_summary(arguments.output, summary);
-  explaining.write(summary);
 }
 
 }  // namespace mrhi

@@ -113,12 +113,10 @@ class Overrides {
 class LogRun {
  public:
   LogRun(const ReplayArguments& arguments, const std::string& topic)
-      : arguments_(arguments),
-        overrides_(arguments),
-        explaining_(arguments),
-        watcher_(explaining_.watcher()) {
+      : arguments_(arguments), overrides_(arguments), watcher_(marker_watcher(arguments)) {
     summary_.input = arguments.input;
     summary_.topic = topic;
+    summary_.arguments = arguments.repeatable;
     summary_.live.emplace();
   }
 
@@ -138,7 +136,6 @@ class LogRun {
     if (!simulation_) return;
     tell_end(simulation(), summary_);
     write_summary(arguments_.output, summary_);
-    explaining_.write(summary_);
     const LiveRun& live = *summary_.live;
     if (live.parts_at)
       progress_.line("replay: parts from the live run at " + text::number(*live.parts_at) + " s");
@@ -278,7 +275,6 @@ class LogRun {
 
   const ReplayArguments& arguments_;
   Overrides overrides_;
-  Explaining explaining_;
   FrameWatcher watcher_;
   ScratchFolder scratch_;
   ProgressBar progress_;

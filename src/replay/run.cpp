@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 
 #include "../text/file_text.h"
+#include "marker_bag.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
@@ -62,92 +63,17 @@ void tell_end(const Simulation& simulation, ReplaySummary& summary) {
   summary.state_hash = hash(simulation.state());
 }
 
-namespace {
-
-void write_text(const std::string& path, const std::string& text) {
+void write_summary(const std::string& folder, const ReplaySummary& summary) {
+  const std::string path = folder + "/summary.json";
   std::ofstream file = file_to_write(path);
-  file << text << std::flush;
+  file << to_json(summary) << std::flush;
   if (!file) throw std::runtime_error("cannot write " + path);
 }
 
-std::string counted(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", seconds);
-  return text;
-}
-
-std::string rejected_text(const ReplaySummary& summary) {
-  std::string text = "Frames lost: " + std::to_string(summary.live ? summary.live->lost_by_queue : 0) +
-                     " by a queue on the way to the simulation";
-  for (const auto& [reason, count] : summary.rejected) text += ", " + std::to_string(count) + ": " + reason;
-  return text + ".";
-}
-
-std::string live_text(const LiveRun& live) {
-  if (!live.overridden.empty()) {
-    std::string text = "Not as recorded: ";
-    for (const std::string& what : live.overridden) text += what + "; ";
-    return text + "the rest is.";
-  }
-  if (live.parts_at) return "This run parts from the live one at " + seconds_text(*live.parts_at) + ".";
-  return "The live run to the bit: " + std::to_string(live.same) + " of " +
-         counted(live.compared, "recorded state") + " the same.";
-}
-
-std::vector<std::string> facts_of(const ReplaySummary& summary) {
-  char gravity[64];
-  std::snprintf(gravity, sizeof gravity, "[%g, %g, %g] m/s^2", summary.gravity.x(), summary.gravity.y(),
-                summary.gravity.z());
-  std::vector<std::string> facts{"Scene '" + summary.scene + "', gravity " + gravity + ", contact model " +
-                                     summary.contact_model + ", version " + summary.version + "; " +
-                                     counted(summary.frames, "frame") + ", " +
-                                     seconds_text(summary.simulated_seconds) + ".",
-                                 rejected_text(summary)};
-  if (summary.live) facts.push_back(live_text(*summary.live));
-  std::string other;
-  for (const auto& [name, value] : summary.parameters)
-    other += (other.empty() ? "" : ", ") + name + ": " + value;
-  if (!other.empty()) facts.push_back("Parameters that are not the default: " + other + ".");
-  for (const std::string& what : summary.not_known) facts.push_back("Not known: " + what + ".");
-  if (summary.live)
-    for (const std::string& change : summary.live->changes) facts.push_back("Changed at " + change + ".");
-  return facts;
-}
-
-}  // namespace
-
-void write_summary(const std::string& folder, const ReplaySummary& summary) {
-  write_text(folder + "/summary.json", to_json(summary));
-}
-
-FrameWatcher Explaining::watcher() {
-  if (!arguments_.explain && !arguments_.demonstration) return {};
-  return [this](const Simulation& simulation) {
-    if (arguments_.explain) {
-      explainer_.watch(simulation);
-      markers_.watch(simulation);
-    }
-    if (arguments_.demonstration) demonstration_.watch(simulation);
-  };
-}
-
-void Explaining::write(const ReplaySummary& summary) {
-  if (arguments_.demonstration) {
-    const double rate = *arguments_.demonstration;
-    const Demonstration even = rate > 0.0 ? demonstration_.at_rate(rate) : demonstration_;
-    write_demonstration_csv(even, arguments_.output + "/demonstration.csv");
-    write_demonstration_bag(even, arguments_.output + "/demonstration.bag");
-  }
-  if (!arguments_.explain) return;
-  Explanation explanation = explainer_.explain(arguments_.input);
-  explanation.facts = facts_of(summary);
-  markers_.write(explanation.moments, arguments_.output + "/moments.bag");
-  write_text(arguments_.output + "/explain.json", to_json(explanation));
-  write_text(arguments_.output + "/explain.html", to_html(explanation));
+FrameWatcher marker_watcher(const ReplayArguments& arguments) {
+  if (arguments.markers.empty()) return {};
+  const auto bag = std::make_shared<MarkerBag>(arguments.output + "/markers.bag", arguments.markers);
+  return [bag](const Simulation& simulation) { bag->watch(simulation); };
 }
 
 ScratchFolder::ScratchFolder() {

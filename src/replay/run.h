@@ -4,11 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "demonstration.h"
-#include "explain.h"
 #include "frame_source.h"
 #include "log_source.h"
-#include "moment_markers.h"
 #include "mr_hand_interaction/replay/replay.h"
 #include "progress_bar.h"
 #include "result_writer.h"
@@ -43,22 +40,8 @@ using FrameWatcher = std::function<void(const Simulation&)>;
 void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
                 ReplaySummary& summary, const FrameWatcher& watcher = {});
 
-/// Explains and exports a run, as far as that is asked for.
-class Explaining {
- public:
-  explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
-  /// Nothing, if neither is.
-  FrameWatcher watcher();
-  /// explain.json, explain.html and moments.bag, demonstration.csv and demonstration.bag. Throws
-  /// std::runtime_error naming what cannot be written.
-  void write(const ReplaySummary& summary);
-
- private:
-  const ReplayArguments& arguments_;
-  Explainer explainer_;
-  MomentMarkers markers_;
-  Demonstration demonstration_;
-};
+/// Writes markers.bag, if that is asked for; else nothing.
+FrameWatcher marker_watcher(const ReplayArguments& arguments);
 
 /// A folder that is gone with all that is in it when this is.
 class ScratchFolder {
