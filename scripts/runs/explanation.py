@@ -34,11 +34,10 @@ def facts_of(summary):
 
 def _live_fact(live):
     if live['overridden']:
-        return 'Not as recorded: %sthe rest is.' % ''.join(what + '; ' for what in live['overridden'])
+        return 'Differs from the recording: %s.' % '; '.join(live['overridden'])
     if live['parts_at'] is not None:
-        return 'This run parts from the live one at %.2f s.' % live['parts_at']
-    return 'The live run to the bit: %d of %d recorded state%s the same.' % (
-        live['same'], live['compared'], '' if live['compared'] == 1 else 's')
+        return 'Parts from the live run at %.2f s.' % live['parts_at']
+    return 'Identical to the live run: %d of %d recorded states are the same.' % (live['same'], live['compared'])
 
 
 def as_json(story):
@@ -72,7 +71,7 @@ def _loss(loss):
         told['opened'] = loss.opened
     if loss.by:
         told['by'] = loss.by
-    return dict(told, text=loss.text)
+    return dict(told, text=loss.text, grasp_end=loss.grasp_end)
 
 
 def _object(thing):

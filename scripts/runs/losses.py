@@ -8,13 +8,13 @@ import numpy
 from . import stay as evidence
 from .grip import finger_text
 from .stay import Stay
-from .story import GRASP, KIND_OF_GRASP
+from .story import GRASP, KIND_OF_GRASP, KIND_OF_GRASP_END
 
 MIN_ATTEMPT = 0.1  # s; shorter touches are no attempts to grasp
 MIN_SLIDE = 0.02  # s; what all fingers do for a shorter time is their leaving
 SLIPPERY = 0.4  # static friction below that of skin (docs/contact.md)
 MAX_FRICTION = 2.0  # that is worth naming
-SKIN_FRICTION = 0.8  # usual static friction of skin; what it would not have borne lacked push
+SKIN_FRICTION = 0.8  # usual static friction of skin; what it would not have borne lacked normal force
 ASSIST_END = 0.15  # s; an assist that was active until so long before the end gave way
 MIN_SPEED_GAIN = 0.02  # m/s, of a touch that is told
 MAX_BREAK = 0.06  # s; touches that are apart by less are one stay
@@ -24,7 +24,7 @@ SLIDE_MARGIN = 0.03  # s, by which an opening may begin after all fingers slide
 # An object that was held, or pressed by fingers, and is no longer. Times in s, forces in N.
 Loss = collections.namedtuple(
     'Loss', 'object hand_id grasped start until cause push load friction friction_needed push_needed bearable opened by text '
-    'frame')
+    'grasp_end frame')
 # An object that was touched, never held, and left faster than it came.
 Touched = collections.namedtuple('Touched', 'object hand_id start until fingers speed')
 # Where a picture shows most.
@@ -88,7 +88,7 @@ def _loss_of(stay, grasped, story):
         cause=None, push=push, load=load, friction=thing.static_friction,
         friction_needed=load / push if push > 0.0 else 0.0,
         push_needed=max(0.0, load / max(thing.static_friction, 1e-3) - push),
-        bearable=thing.bearable[stay.window:stay.touched + 1].min(), opened=None, by='', text='',
+        bearable=thing.bearable[stay.window:stay.touched + 1].min(), opened=None, by='', text='', grasp_end=_grasp_end(stay, story),
         frame=int(thing.frame[stay.touched]))
     cause, why, more = _cause_of(stay, loss, thing.time[slid], story)
     loss = loss._replace(cause=cause, **more)
@@ -99,25 +99,25 @@ def _cause_of(stay, loss, slid, story):
     """Cause, sentence, and further fields of the loss."""
     thing, end = stay.thing, stay.time(stay.touched)
     if evidence.tracking_was_lost(stay):
-        return 'tracking_lost', 'the tracker lost the hand, and what it held was let go', {}
+        return 'tracking_lost', 'the tracker lost the hand, which released it', {}
     blow = evidence.worst_blow(stay, story)
     if blow:
-        return 'blow', "'%s' struck it at %.2f s, worth %.3g m/s. %s" % (blow.by, blow.time, blow.speed, _remedy(loss)), {
-            'by': blow.by}
+        return 'blow', "'%s' struck it at %.2f s, with a momentum that changes its speed by %.3g m/s. %s" % (
+            blow.by, blow.time, blow.speed, _remedy(loss)), {'by': blow.by}
     opening = evidence.opening_of(stay)
     if opening and opening.begun <= slid + SLIDE_MARGIN:
-        return 'hand_opened', 'the hand opened, by %.3g mm at its fingertips from %.2f s on' % (
+        return 'hand_opened', 'the hand opened: its fingertips moved apart by %.3g mm, from %.2f s on' % (
             1e3 * opening.distance, opening.clear), {'opened': opening.clear}
     assisted = evidence.assisted_in(stay)
     if assisted and assisted[1] > end - ASSIST_END:
-        return 'help_gave_way', 'contact alone did not hold it, and the help that bore it gave way', {}
+        return 'help_gave_way', 'contact alone did not hold it, and the grasp assist that supported it ended', {}
     if thing.joint:
         return 'too_little_force' if slid < end else 'not_known', (
-            "it hangs on joint '%s', of which the fingers bore %.3g N along the surfaces with a push of %.3g N"
+            "it hangs on joint '%s', and the fingers carried %.3g N along the surfaces with a normal force of %.3g N"
             % (thing.joint, loss.load, loss.push)), {}
     if evidence.faces_were_wrong(stay):
-        return 'wrong_faces', ('no two fingers pressed against each other within friction (%s), so that no force could have held '
-                               'it' % _faces_text(stay)), {}
+        return 'wrong_faces', 'no two fingers opposed each other within friction (%s), so that no force could hold it' % (
+            _faces_text(stay)), {}
     return _weakness(stay, loss, slid) + ({},)
 
 
@@ -127,34 +127,54 @@ def _weakness(stay, loss, slid):
     all_slid = stay.time(stay.touched) - slid >= MIN_SLIDE
     sliding = stay.thing.dynamic_friction * loss.push
     if all_slid and loss.push_needed <= 0.0 and sliding < loss.load:
-        return weak, ('all fingers slid, from %.2f s on: friction then bore %.3g N, and %.3g N while it stuck, of the %.3g N that '
-                      'a straight pull took, and of what turned it besides' % (slid, sliding, loss.friction * loss.push, loss.load))
+        return weak, ('all fingers slid, from %.2f s on. Friction then carried %.3g N, and up to %.3g N while it stuck. A straight '
+                      'pull took %.3g N, and rotation took more' % (slid, sliding, loss.friction * loss.push, loss.load))
     if loss.push_needed <= 0.0:
         return 'not_known', _remedy(loss)
     if not all_slid or loss.push <= 0.0:
-        return 'not_known', ('it did not slide along its fingers, which did not open either: it turned, or was pushed out between '
-                             'them')
-    return weak, '%s. %s' % ('it is too slippery for that push' if slippery else 'it was held too weakly', _remedy(loss))
+        return 'not_known', ('it did not slide along the fingers, and the fingers did not open: it rotated, or was pushed out '
+                             'between them')
+    return weak, '%s. %s' % ('it is too slippery for that normal force' if slippery else 'it was held too weakly', _remedy(loss))
 
 
 def _remedy(loss):
-    text = ('The fingers pushed with %.3g N together, and had to bear %.3g N along the surfaces, of which friction of %.3g bears '
+    text = ('The fingers pressed with %.3g N in total and had to carry %.3g N along the surfaces; friction of %.3g carries up to '
             '%.3g N. ' % (loss.push, loss.load, loss.friction, loss.friction * loss.push))
     if loss.push_needed <= 0.0:
-        return text + ('By these sums friction bears a straight pull: it turned, or was pushed out (of force and torque together '
-                       'friction bore %.3g times the load at the least)' % loss.bearable)
+        return text + ('That is enough for a straight pull: it rotated, or was pushed out (friction could carry force and torque '
+                       'together %.3g times at the least)' % loss.bearable)
     if loss.friction_needed > MAX_FRICTION:
-        return text + 'Against that it takes %.3g N more push' % loss.push_needed
-    return text + 'Against that it takes friction of %.3g, or %.3g N more push' % (loss.friction_needed, loss.push_needed)
+        return text + 'To hold it takes %.3g N more normal force' % loss.push_needed
+    return text + 'To hold it takes friction of %.3g, or %.3g N more normal force' % (loss.friction_needed, loss.push_needed)
 
 
 def _story_of(loss, stay, why):
-    assisted = evidence.assisted_in(stay)
-    return '%s (%s from %.2f s) was %s at %.2f s: %s. Before that %s.%s%s' % (
+    text = '%s (%s from %.2f s) was %s at %.2f s: %s. %s%s' % (
         loss.object, 'held' if loss.grasped else 'pressed', loss.start, 'let go' if loss.cause == 'hand_opened' else 'lost',
-        loss.until, why, _slides_text(stay), _leaves_text(stay),
-        ' Help for bare hands (contact/grasp_assist) bore it from %.2f s to %.2f s, beyond what friction bears.' % assisted
-        if assisted else '')
+        loss.until, why, _slides_text(stay), _leaves_text(stay))
+    assisted = evidence.assisted_in(stay)
+    if assisted:
+        text += ' Grasp assist (contact/grasp_assist) supported it from %.2f s to %.2f s, beyond what friction carries.' % assisted
+    if loss.grasp_end is not None:
+        text += ' GRASP_END came at %.2f s, %s.' % (loss.grasp_end, _beside(loss.grasp_end - loss.until))
+    return text
+
+
+def _beside(delay):
+    """How the event lies to the last touch."""
+    if abs(delay) < 0.005:
+        return 'with the last touch'
+    if delay < 0.0:
+        return '%.2f s before the last touch: the fingers touched it, but no longer held it' % -delay
+    return '%.2f s after the last touch: a grasp ends once it has been gone for a little' % delay
+
+
+def _grasp_end(stay, story):
+    """Time of the stay's last GRASP_END, or None."""
+    until = stay.time(stay.last) + MAX_BREAK
+    times = [event.time for event in story.events if event.kind == KIND_OF_GRASP_END and event.object == stay.thing.name
+             and stay.time(stay.first) <= event.time <= until]
+    return times[-1] if times else None
 
 
 def _slides_text(stay):
@@ -163,8 +183,8 @@ def _slides_text(stay):
     for i in range(stay.window, stay.touched + 1):
         for touch in stay.touches(i):
             if touch.slips and touch.finger not in first:
-                first[touch.finger] = '%s slid from %.2f s' % (finger_text(touch.finger), stay.time(i))
-    return ', '.join(first.values()) or 'no finger slid'
+                first[touch.finger] = '%s from %.2f s' % (finger_text(touch.finger), stay.time(i))
+    return 'Fingers that slid before: %s.' % ', '.join(first.values()) if first else 'No finger slid before.'
 
 
 def _leaves_text(stay):

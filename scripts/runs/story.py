@@ -9,7 +9,7 @@ from .tables import vectors
 
 LEVELS = ('none', 'hover', 'contact', 'grasp')
 CONTACT, GRASP = 2, 3
-KIND_OF_GRASP = 'GRASP_BEGIN'
+KIND_OF_GRASP, KIND_OF_GRASP_END = 'GRASP_BEGIN', 'GRASP_END'
 
 JointStory = collections.namedtuple('JointStory', 'name body turns lower upper time position')
 Event = collections.namedtuple('Event', 'time kind object hand_id frame')

@@ -141,6 +141,15 @@ class ExplainTest(Folders):
         # A tenth of the way that has let go, in a smooth motion of 0.3 s.
         self.assertTrue(OPENING['opens_at'] < loss.opened < OPENING['opens_at'] + 0.1, loss.opened)
 
+    def test_the_text_says_why_the_event_has_another_time_than_the_last_touch(self):
+        story = self.story(**OPENING)
+        (end,) = [event.time for event in story.events if event.kind == 'GRASP_END']
+        loss = story.losses[0]
+        self.assertEqual(loss.grasp_end, end)
+        self.assertGreater(end, loss.until)
+        self.assertIn('GRASP_END came at %.2f s, %.2f s after the last touch: ' % (end, end - loss.until), loss.text)
+        self.assertIsNone(self.loss(adjacent=True, rise=0.0).grasp_end)  # which never was a grasp
+
     def test_fingers_have_their_forces_utilisations_and_faces(self):
         thing = self.story(until=0.59).objects['object']
         self.assertEqual(len(thing.touches[-1]), 2)
