@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "../record/log.h"
 #include "frame_source.h"
-#include "log_source.h"
 #include "mr_hand_interaction/replay/replay.h"
 
 namespace mrhi {

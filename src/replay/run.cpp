@@ -1,20 +1,24 @@
 #include "run.h"
 
-#include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
+#include <cstdio>
 #include <fstream>
-#include <memory>
 #include <stdexcept>
 
 #include "../text/file_text.h"
-#include "marker_bag.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
+namespace {
 
+Vector3 gravity_of(const Simulation& simulation) {
+  return simulation.configuration().gravity.value_or(simulation.scene().gravity);
+}
+
+/// False if there is no step left in the frame.
 bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   const auto begin = std::chrono::steady_clock::now();
   if (!simulation.step()) return false;
@@ -24,27 +28,21 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-Vector3 gravity_of(const Simulation& simulation) {
-  return simulation.configuration().gravity.value_or(simulation.scene().gravity);
+}  // namespace
+
+ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic) : output_(arguments.output) {
+  summary.input = arguments.input;
+  summary.topic = topic;
+  summary.arguments = arguments.repeatable;
+  if (!arguments.markers.empty())
+    markers_ = std::make_unique<MarkerBag>(output_ + "/markers.bag", arguments.markers);
 }
 
-void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
-                ReplaySummary& summary) {
-  const FrameResult& result = simulation.result();
-  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
-  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
-  if (result.restarted) ++summary.restarts;
-  if (since && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *since);
-}
-
-void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
-            ReplaySummary& summary) {
-  if (++summary.rejected[reason] > 1) return;
-  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
-}
-
-void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
+void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {
   const Configuration& configuration = simulation.configuration();
+  if (!writer_) writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
+  writer_->follow(simulation.scene());
+  summary.scene = scene;
   summary.contact_model = configuration.contact_model.name;
   summary.version = MR_HAND_INTERACTION_VERSION;
   summary.gravity = gravity_of(simulation);
@@ -55,35 +53,83 @@ void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
   for (const Body& body : simulation.scene().bodies) summary.materials[body.name] = body.material;
 }
 
-void tell_end(const Simulation& simulation, ReplaySummary& summary) {
-  const Scene& scene = simulation.scene();
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& expected,
+                      const std::string& which, Simulation& simulation) {
+  const Rejection rejection = simulation.begin(hands, expected);
+  if (rejection != Rejection::none) {
+    reject(to_string(rejection), which);
+    return false;
   }
-  summary.state_hash = hash(simulation.state());
+  while (timed_step(simulation, summary)) {
+  }
+  for (const std::string& what : simulation.end().not_finite) reject("not finite", what);
+  ++summary.frames;
+  result(simulation);
+  return true;
 }
 
-void write_summary(const std::string& folder, const ReplaySummary& summary) {
-  const std::string path = folder + "/summary.json";
+void ReplayRun::result(const Simulation& simulation) {
+  const FrameResult& result = simulation.result();
+  writer_->write(result, simulation.state(), gravity_of(simulation));
+  if (markers_) markers_->watch(simulation);
+  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
+  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
+  if (result.restarted) ++summary.restarts;
+  if (last_stamp_ && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *last_stamp_);
+  last_stamp_ = result.stamp;
+  if (!first_stamp_) first_stamp_ = last_stamp_;
+}
+
+void ReplayRun::reject(const std::string& reason, const std::string& detail) {
+  if (++summary.rejected[reason] > 1) return;
+  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
+}
+
+void ReplayRun::check_end() {
+  if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
+  writer_->flush();
+}
+
+void ReplayRun::end(const Simulation& simulation, const std::string& error) {
+  const Scene& scene = simulation.scene();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+  summary.state_hash = hash(simulation.state());
+  summary.error = error;
+  const std::string path = output_ + "/summary.json";
   std::ofstream file = file_to_write(path);
   file << to_json(summary) << std::flush;
   if (!file) throw std::runtime_error("cannot write " + path);
 }
 
-FrameWatcher marker_watcher(const ReplayArguments& arguments) {
-  if (arguments.markers.empty()) return {};
-  const auto bag = std::make_shared<MarkerBag>(arguments.output + "/markers.bag", arguments.markers);
-  return [bag](const Simulation& simulation) { bag->watch(simulation); };
+double ReplayRun::seconds() const {
+  return last_stamp_ ? to_seconds(*last_stamp_ - *first_stamp_) : 0.0;
 }
 
-ScratchFolder::ScratchFolder() {
-  path_ = (std::filesystem::temp_directory_path() / "replay_XXXXXX").string();
-  if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
+ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  wipe();
 }
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+void ProgressBar::show(std::size_t position, std::size_t size) {
+  constexpr int kWidth = 50;  // characters
+  const int percent = size == 0 ? 100 : static_cast<int>(100 * position / size);
+  if (!is_terminal_ || percent == percent_) return;
+  percent_ = percent;
+  const auto done = static_cast<std::size_t>(percent * kWidth / 100);
+  const std::string bar = std::string(done, '#') + std::string(kWidth - done, '.');
+  std::fprintf(stderr, "\r[%s] %3d %%", bar.c_str(), percent);
+}
+
+void ProgressBar::line(const std::string& text) {
+  wipe();
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void ProgressBar::wipe() {
+  if (percent_ >= 0) std::fputs("\r\033[K", stderr);
+  percent_ = -1;
 }
 
 }  // namespace mrhi

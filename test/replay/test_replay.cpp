@@ -133,14 +133,14 @@ struct BreakingSource : FrameSource {
 TEST(Replay, what_was_written_before_an_error_stays) {
   Replayed replayed("nudge");
   Simulation simulation = prepare_simulation(replayed.arguments);
-  ReplaySummary summary;
+  replayed.arguments.output = replayed.folder / "out";
   {
-    ResultWriter writer(replayed.folder / "out", simulation.scene());
+    ReplayRun run(replayed.arguments, "");
+    run.begin(simulation, "nudge");
     BreakingSource source;
-    ProgressBar progress;
-    EXPECT_THROW(run_frames(source, simulation, writer, progress, summary), std::runtime_error);
+    EXPECT_THROW(run_frames(source, simulation, run), std::runtime_error);
+    EXPECT_EQ(run.summary.frames, 5u);
   }
-  EXPECT_EQ(summary.frames, 5u);
   EXPECT_EQ(test::lines_of(replayed.folder / "out/objects.csv").size(), 6u);
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,8 @@ Simulation simulation_of(const Setting& setting, const Closing& closing) {
 }
 
 /// Calls `watch` after each frame.
-void play(const std::vector<JointsFrame>& frames, Simulation& simulation, const FrameWatcher& watch) {
+void play(const std::vector<JointsFrame>& frames, Simulation& simulation,
+          const std::function<void(const Simulation&)>& watch) {
   std::vector<std::string> left_out;
   for (const JointsFrame& joints : frames) {
     const auto frame = complete_frame(joints, device_mount(), left_out);
@@ -56,15 +58,16 @@ class Runs {
  public:
   void add(const std::vector<JointsFrame>& frames, const Closing& closing, const Setting& setting) {
     Simulation simulation = simulation_of(setting, closing);
-    const std::string folder = name(count_++);
-    ResultWriter writer(folder, simulation.scene());
-    ReplaySummary summary;
-    tell_setting(simulation, summary);
-    play(frames, simulation,
-         [&](const Simulation& now) { writer.write(now.result(), now.state(), gravity_of(now)); });
-    writer.flush();
-    tell_end(simulation, summary);
-    write_summary(folder, summary);
+    ReplayArguments arguments;
+    arguments.output = name(count_++);
+    ReplayRun run(arguments, "");
+    run.begin(simulation, "placed");
+    play(frames, simulation, [&](const Simulation& now) {
+      run.result(now);
+      ++run.summary.frames;
+    });
+    run.check_end();
+    run.end(simulation, "");
   }
 
   /// The losses of each run, as in explain.json.

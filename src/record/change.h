@@ -16,6 +16,13 @@ struct RecordedFile {
 };
 using RecordedFiles = std::vector<RecordedFile>;
 
+/// The files that a URDF names as filename="...", as far as they can be read; relative paths start at
+/// `folder`.
+RecordedFiles mesh_files(const std::string& xml, const std::string& folder);
+
+/// Writes those of `files` that a URDF names into `folder`, and returns the URDF with their paths there.
+std::string with_meshes_in(const std::string& folder, std::string xml, const RecordedFiles& files);
+
 // What a running simulation may be asked for besides hands.
 struct Spawn {
   ObjectRequest request;  ///< with its name

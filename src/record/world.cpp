@@ -7,10 +7,9 @@
 
 #include "../scene/scene_edit.h"
 #include "../text/file_text.h"
-#include "change_yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "urdf_meshes.h"
+#include "record_yaml.h"
 
 namespace mrhi {
 namespace {

@@ -9,8 +9,8 @@
 
 namespace mrhi {
 
-// Parts of recorded YAML that changes and worlds have in common. Numbers keep their bits. Readers throw
-// std::invalid_argument.
+// Parts of recorded YAML that changes and worlds share. Numbers keep their bits. Readers throw
+// std::invalid_argument with one line.
 YAML::Node numbers_node(const std::vector<double>& values);
 YAML::Node pose_node(const Pose& pose);
 YAML::Node twist_node(const Twist& twist);
