@@ -7,14 +7,13 @@ import matplotlib
 matplotlib.use('Agg')
 from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.ticker import StrMethodFormatter  # noqa: E402
 import numpy  # noqa: E402
 
 from .grip import FINGERS, PALM, utilisation  # noqa: E402
 
-matplotlib.rcParams.update({'font.size': 8, 'axes.titlesize': 8, 'axes.titleweight': 'bold', 'axes.titlelocation': 'left'}
-                           if 'axes.titlelocation' in matplotlib.rcParams else {'font.size': 8, 'axes.titlesize': 8})
-matplotlib.rcParams.update({'axes.spines.top': False, 'axes.spines.right': False, 'svg.fonttype': 'none',
-                            'svg.hashsalt': 'mr_hand_interaction'})
+matplotlib.rcParams.update({'font.size': 8, 'axes.titlesize': 8, 'axes.titleweight': 'bold', 'axes.spines.top': False,
+                            'axes.spines.right': False, 'svg.fonttype': 'none', 'svg.hashsalt': 'mr_hand_interaction'})
 
 WIDTH = 9.6  # inches
 CHART, STRIP, EDGE = 1.15, 0.2, 0.42  # heights of a chart, a strip's row, and what is around each
@@ -90,14 +89,9 @@ def drawn(charts, start, until, marks=(), shades=()):
             if start <= time <= until:
                 axes.axvline(time, color=colour, linewidth=1.2, linestyle='--')
         axes.set_xlim(start, until)
-        axes.set_title(chart.title, pad=3)
-        axes.xaxis.set_major_formatter('{x:.3g} s' if matplotlib.__version__ >= '3.3' else _seconds())
+        axes.set_title(chart.title, loc='left', pad=3)
+        axes.xaxis.set_major_formatter(StrMethodFormatter('{x:.3g} s'))
     return _svg(figure)
-
-
-def _seconds():
-    from matplotlib.ticker import StrMethodFormatter
-    return StrMethodFormatter('{x:.3g} s')
 
 
 def _svg(figure):

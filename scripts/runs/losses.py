@@ -54,6 +54,8 @@ def _end_stay(thing, first, last, story):
     if not thing.touches[touched] and not thing.struck[touched]:
         return
     hand_id = thing.touches[touched][0].hand_id if thing.touches[touched] else thing.struck_by[touched]
+    if hand_id not in story.hands:
+        return
     stay = Stay(thing, story.hands[hand_id], hand_id, first, touched, last)
     grasped = bool((thing.level[first:last + 1] == GRASP).any())
     attempt = (thing.time[touched] - thing.time[first] >= MIN_ATTEMPT

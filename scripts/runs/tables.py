@@ -47,21 +47,37 @@ def read_table(folder, name, columns=None, as_text=False):
     path, columns = os.path.join(folder, name), columns or COLUMNS[name]
     if name in OPTIONAL and not os.path.lexists(path):
         return pandas.DataFrame({column: [] for column in columns})
+    if not as_text:
+        try:
+            return _read(path, columns, {column: _kind(column) for column in columns})
+        except (ValueError, OverflowError):
+            pass  # read once more, to say what is no number and where
+    cells = _read(path, columns, str)
+    if as_text:
+        return cells
+    return pandas.DataFrame({column: cells[column] if column in TEXTS else _numbers(path, cells[column]) for column in columns})
+
+
+def _kind(column):
+    return str if column in TEXTS else 'int64' if column in WHOLE else 'float64'
+
+
+def _read(path, columns, kinds):
+    """Raises ValueError for what is no number, RunError for what is no table."""
     try:
         with program.open_regular(path, LARGEST_TABLE) as file:
-            cells = pandas.read_csv(file, dtype=str, keep_default_na=False, usecols=lambda column: column in columns)
+            cells = pandas.read_csv(file, dtype=kinds, keep_default_na=False, float_precision='round_trip',
+                                    usecols=lambda column: column in columns)
     except pandas.errors.EmptyDataError:
         raise RunError('%s: is empty%s' % (path, ALLOWED)) from None
     except OSError as error:
         raise RunError('%s: %s%s' % (path, error.strerror, '' if 'allowed' in error.strerror else ALLOWED)) from None
-    except (ValueError, pandas.errors.ParserError) as error:
+    except (pandas.errors.ParserError, UnicodeDecodeError) as error:
         raise RunError('%s: is no table: %s%s' % (path, program.one_line(str(error)), ALLOWED)) from None
     missing = [column for column in columns if column not in cells]
     if missing:
         raise RunError("%s: has no column '%s', as of another version%s by this version" % (path, missing[0], ALLOWED))
-    if as_text:
-        return cells
-    return pandas.DataFrame({column: cells[column] if column in TEXTS else _numbers(path, cells[column]) for column in columns})
+    return cells[list(columns)]
 
 
 def _numbers(path, cells):
@@ -70,7 +86,7 @@ def _numbers(path, cells):
     if name in MAY_BE_EMPTY:
         cells = cells.where(cells != '', 'nan')
     try:
-        return cells.astype('int64' if name in WHOLE else float)
+        return cells.astype(_kind(name))
     except (ValueError, OverflowError):
         pass
     for line, cell in enumerate(cells, 2):
@@ -122,13 +138,24 @@ class Run:
         self.frames, self.bodies, self.objects, self.joints, self.contacts, self.palms, self.events = (
             read_table(folder, name + '.csv')
             for name in ('frames', 'bodies', 'objects', 'joints', 'contacts', 'palms', 'events'))
+        if not len(self.frames):
+            raise RunError('%s: has no frame%s' % (os.path.join(folder, 'frames.csv'), ALLOWED))
+        for name in ('objects', 'contacts', 'palms', 'events'):
+            self._check_frames(name + '.csv', getattr(self, name))
         self._phalanges = None
+
+    def _check_frames(self, name, table):
+        wrong = table['frame'][(table['frame'] < 0) | (table['frame'] >= len(self.frames))]
+        if len(wrong):
+            raise RunError('%s: has a row of frame %d; allowed: 0 to %d, those of frames.csv' % (
+                os.path.join(self.folder, name), wrong.iloc[0], len(self.frames) - 1))
 
     @property
     def phalanges(self):
         """Of the tracked hands."""
         if self._phalanges is None:
             hands = read_table(self.folder, 'hands.csv')
+            self._check_frames('hands.csv', hands)
             self._phalanges = hands[hands['rendered'] == 0]
         return self._phalanges
 

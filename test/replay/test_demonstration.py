@@ -13,7 +13,7 @@ import numpy
 from pinching import SUMMARY, Attempt, replay_is_built, script, write_tables
 
 from runs.demonstration import Body, demonstration_of, joint_angles
-from runs.tables import Run
+from runs.tables import Run, RunError
 
 
 class TablesTest(unittest.TestCase):
@@ -65,6 +65,12 @@ class TablesTest(unittest.TestCase):
             objects=[{'name': 'cube', 'px': i, 'qw': 1, 'frame': i} for i in range(4)])
         self.assertEqual(demonstration.stamps.tolist(), [10, 20])
         self.assertEqual(demonstration.objects['cube'].pose[:, 0].tolist(), [2.0, 3.0])
+
+    def test_rows_of_frames_that_are_not_there_are_named(self):
+        with self.assertRaisesRegex(RunError, r'frames.csv: has no frame; allowed: '):
+            self.demonstration()
+        with self.assertRaisesRegex(RunError, r'objects.csv: has a row of frame 7; allowed: 0 to 0, those of frames.csv'):
+            self.demonstration(frames=[{'frame': 0}], objects=[{'name': 'cube', 'frame': 7}])
 
     def test_joints_are_bent_by_the_angle_between_their_bones(self):
         bones = Body(1).bones[0]
