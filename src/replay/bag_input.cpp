@@ -18,7 +18,6 @@
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "mr_hand_interaction/tracking/joint_gaps.h"
-#include "open_bag.h"
 
 namespace mrhi {
 namespace {

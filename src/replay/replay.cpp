@@ -7,7 +7,6 @@
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "open_bag.h"
 #include "run.h"
 
 namespace mrhi {

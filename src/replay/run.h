@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "../record/log.h"
 #include "frame_source.h"
 #include "marker_bag.h"
 #include "mr_hand_interaction/replay/replay.h"

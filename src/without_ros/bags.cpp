@@ -1,8 +1,17 @@
+#include "../replay/frame_source.h"
 #include "../replay/marker_bag.h"
 
-#include "mr_hand_interaction/usage_error.h"
-
 namespace mrhi {
+
+ReplayInput open_bag(const ReplayArguments& arguments) {
+  throw UsageError("--input " + arguments.input +
+                   ": this replay was built without ROS and reads no bags; allowed: a recording in CSV");
+}
+
+OpenLog open_log(const ReplayArguments& arguments) {
+  open_bag(arguments);
+  return {};
+}
 
 struct MarkerBag::Impl {};
 
