@@ -18,7 +18,7 @@ MIN_LOAD = 1e-9  # N
 MIN_SPAN = 1e-3  # m, between thumb and fingers, for a line through the grip
 
 # What a finger, or the palm, does to an object in a frame. Forces in N, depth in m; outward: unit, object to finger.
-Touch = collections.namedtuple('Touch', 'hand_id finger normal tangential limit depth slips outward face')
+FingerContact = collections.namedtuple('FingerContact', 'hand_id finger normal tangential limit depth slips outward face')
 
 
 def utilisation(touch):
@@ -47,7 +47,7 @@ def touches_of(contacts, rows, orientation):
         local = rotated_back(orientation[sample], outward[i])
         axis = int(numpy.argmax(numpy.abs(local)))
         face = ('-' if local[axis] < 0.0 else '+') + 'xyz'[axis]
-        touches[sample].append(Touch(int(hand_id), int(finger), *map(float, forces[i]), float(depth[i]), not sticks[i],
+        touches[sample].append(FingerContact(int(hand_id), int(finger), *map(float, forces[i]), float(depth[i]), not sticks[i],
                                      outward[i], face))
     return touches
 

@@ -26,7 +26,7 @@ Loss = collections.namedtuple(
     'Loss', 'object hand_id grasped start until cause push load friction friction_needed push_needed bearable opened by text '
     'grasp_end frame')
 # An object that was touched, never held, and left faster than it came.
-Touched = collections.namedtuple('Touched', 'object hand_id start until fingers speed')
+PassingTouch = collections.namedtuple('PassingTouch', 'object hand_id start until fingers speed')
 # Where a picture shows most.
 Moment = collections.namedtuple('Moment', 'what object time loss place palm across radius frame')
 
@@ -77,14 +77,14 @@ def _add_touch(stay, story):
         for finger in [touch.finger for touch in thing.touches[i]] + thing.struck[i]:
             if finger not in fingers:
                 fingers.append(finger)
-    story.touches.append(Touched(thing.name, stay.hand_id, thing.time[stay.first], thing.time[stay.touched], fingers, gained))
+    story.touches.append(PassingTouch(thing.name, stay.hand_id, thing.time[stay.first], thing.time[stay.touched], fingers, gained))
 
 
 def _loss_of(stay, grasped, story):
     thing = stay.thing
     slid = evidence.slides_from(stay)
-    push = evidence.push_of(stay.touches(slid))
-    load = evidence.borne_in(stay) if thing.joint else evidence.load_of(stay, story.gravity, max(slid - 5, stay.first))
+    push = evidence.total_normal_force(stay.touches(slid))
+    load = evidence.carried_load(stay) if thing.joint else evidence.load_of(stay, story.gravity, max(slid - 5, stay.first))
     loss = Loss(
         object=thing.name, hand_id=stay.hand_id, grasped=grasped, start=thing.time[stay.first], until=thing.time[stay.touched],
         cause=None, push=push, load=load, friction=thing.static_friction,
@@ -102,10 +102,10 @@ def _cause_of(stay, loss, slid, story):
     thing, end = stay.thing, stay.time(stay.touched)
     if evidence.tracking_was_lost(stay):
         return 'tracking_lost', 'the tracker lost the hand, which released it', {}
-    blow = evidence.worst_blow(stay, story)
-    if blow:
+    impact = evidence.strongest_impact(stay, story)
+    if impact:
         return 'blow', "'%s' struck it at %.2f s, with a momentum that changes its speed by %.3g m/s. %s" % (
-            blow.by, blow.time, blow.speed, _remedy(loss)), {'by': blow.by}
+            impact.by, impact.time, impact.speed, _remedy(loss)), {'by': impact.by}
     opening = evidence.opening_of(stay)
     if opening and opening.begun <= slid + SLIDE_MARGIN:
         return 'hand_opened', 'the hand opened: its fingertips moved apart by %.3g mm, from %.2f s on' % (

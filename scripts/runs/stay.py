@@ -7,16 +7,16 @@ import numpy
 
 WINDOW = 0.6  # s before an object is let go, in which the cause is sought
 TRACKING_WINDOW = 0.5  # s; a hand may be kept that long after it was seen last
-BLOW_WINDOW, BLOW_MARGIN = 0.4, 0.02  # s before and after the last touch
-MIN_BLOW = 0.05  # m/s; change of the object's speed by another that counts
-BLOW_REACH = 0.02  # m between bounding spheres; s of the change of speed
+IMPACT_WINDOW, IMPACT_MARGIN = 0.4, 0.02  # s before and after the last touch
+MIN_IMPACT = 0.05  # m/s; change of the object's speed by another that counts
+IMPACT_REACH = 0.02  # m between bounding spheres; s of the change of speed
 MIN_OPENING = 0.003  # m; mean distance of the fingertips from their centre, over the stay
 MIN_BEGUN = 0.001  # m; of that, as the fingers still touch
 CLEAR = 0.1  # of the opening, since when the hand is open
 CATCH = 0.03  # s; fingers that stick for a shorter time still slide
 SPAN = 0.02  # s before and after, for the palm's acceleration
 
-Blow = collections.namedtuple('Blow', 'by time speed')
+Impact = collections.namedtuple('Impact', 'by time speed')
 Opening = collections.namedtuple('Opening', 'begun clear distance')
 
 
@@ -38,7 +38,7 @@ class Stay:
         return [touch for touch in self.thing.touches[i] if touch.hand_id == self.hand_id]
 
 
-def push_of(touches):
+def total_normal_force(touches):
     """Sum of the normal forces [N]."""
     return sum(max(touch.normal, 0.0) for touch in touches)
 
@@ -49,31 +49,31 @@ def tracking_was_lost(stay):
     return bool(hand.lost[seen].any()) or hand.time[-1] < until - 1e-9
 
 
-def worst_blow(stay, story):
+def strongest_impact(stay, story):
     """Another object that no hand touches changed its velocity near this one; the one worth most, if any counts."""
-    worst = Blow('', 0.0, 0.0)
+    worst = Impact('', 0.0, 0.0)
     for name in sorted(story.objects):
         if name != stay.thing.name:
-            blow = _blow_by(stay, story.objects[name], story.gravity)
-            worst = blow if blow.speed > worst.speed else worst
-    return worst if worst.speed >= MIN_BLOW else None
+            impact = _impact_by(stay, story.objects[name], story.gravity)
+            worst = impact if impact.speed > worst.speed else worst
+    return worst if worst.speed >= MIN_IMPACT else None
 
 
-def _blow_by(stay, other, gravity):
-    ours, worst = stay.thing, Blow(other.name, 0.0, 0.0)
+def _impact_by(stay, other, gravity):
+    ours, worst = stay.thing, Impact(other.name, 0.0, 0.0)
     end = stay.time(stay.touched)
-    for i in numpy.flatnonzero((other.time >= end - BLOW_WINDOW) & (other.time <= end + BLOW_MARGIN)):
+    for i in numpy.flatnonzero((other.time >= end - IMPACT_WINDOW) & (other.time <= end + IMPACT_MARGIN)):
         if i == 0 or other.touches[i] or other.touches[i - 1]:
             continue
         our = int(numpy.searchsorted(ours.time, other.time[i]))
         if our == len(ours.time):
             continue
         change = other.velocity[i] - other.velocity[i - 1]
-        reach = ours.radius + other.radius + BLOW_REACH + _norm(change) * BLOW_REACH
+        reach = ours.radius + other.radius + IMPACT_REACH + _norm(change) * IMPACT_REACH
         if _norm(ours.position[our] - other.position[i]) > reach:
             continue
         speed = other.mass * _norm(change - gravity * (other.time[i] - other.time[i - 1])) / ours.mass
-        worst = Blow(other.name, other.time[i], speed) if speed > worst.speed else worst
+        worst = Impact(other.name, other.time[i], speed) if speed > worst.speed else worst
     return worst
 
 
@@ -129,7 +129,7 @@ def slides_from(stay):
     return start
 
 
-def borne_in(stay):
+def carried_load(stay):
     """The most that the fingers bore along the surfaces [N]: what hangs on a joint is not carried."""
     return max(sum(touch.tangential for touch in stay.touches(i)) for i in range(stay.window, stay.touched + 1))
 
