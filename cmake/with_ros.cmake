@@ -1,5 +1,5 @@
 # The ROS library, the nodes and what is installed beside them.
-file(GLOB ros_sources src/ros/*.cpp src/replay/*.cpp)
+file(GLOB ros_sources src/record/*.cpp src/ros/*.cpp src/replay/*.cpp)
 set(SANITIZED_SOURCES "" CACHE STRING "What scripts/sanitize adds to the ROS library")
 add_library(${PROJECT_NAME}_ros ${ros_sources} ${SANITIZED_SOURCES})
 write_tracker_registry(src/ros)
@@ -9,7 +9,7 @@ target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_L
 precompile(${PROJECT_NAME}_ros <ros/ros.h> <visualization_msgs/MarkerArray.h>)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
-set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/replay/run.cpp src/replay/world.cpp PROPERTIES
+set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/record/world.cpp src/replay/run.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 # Scenes are found from a devel space even where no environment has been sourced.
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
@@ -30,15 +30,15 @@ install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthe
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
-set(scripts analyse_study ask_participant ask_ratings calibrate_study doctor explain plan_study power_study run_when set
-  training_keys)
+set(scripts analyse_study ask_participant ask_ratings calibrate_study compare doctor explain export plan_study
+  power_study run_when set training_keys)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
 install(PROGRAMS scripts/explain_pictures.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY scripts/runs scripts/study DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/panel.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

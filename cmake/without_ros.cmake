@@ -1,17 +1,11 @@
 # What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
-set(replay_parts
-  arguments change change_yaml compare csv_columns demonstration dictionary explain_chart explain_drawing explain_html explain_json explain_losses explain_moments explain_stay explain_watch grip_margin
-  frame_source json_text prepare_simulation progress_bar
-  recording_csv replay replay_log result_writer run summary urdf_meshes world)
-file(GLOB without_ros src/without_ros/*.cpp)
-set(replay_library_sources src/ros/package_paths.cpp ${without_ros})
-foreach(part ${replay_parts})
-  list(APPEND replay_library_sources src/replay/${part}.cpp)
-endforeach()
+file(GLOB replay_library_sources src/record/*.cpp src/replay/*.cpp src/without_ros/*.cpp)
+list(FILTER replay_library_sources EXCLUDE REGEX "/src/replay/(bag|marker)_[a-z]*.cpp$")
+list(APPEND replay_library_sources src/ros/package_paths.cpp)
 add_library(${PROJECT_NAME}_replay STATIC ${replay_library_sources})
 target_link_libraries(${PROJECT_NAME}_replay PUBLIC ${PROJECT_NAME}_core PRIVATE yaml-cpp)
 # Scenes are found from where it was built, too.
-set_source_files_properties(src/replay/run.cpp src/replay/world.cpp PROPERTIES
+set_source_files_properties(src/record/world.cpp src/replay/run.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
@@ -24,6 +18,8 @@ install(TARGETS ${PROJECT_NAME}_core EXPORT ${PROJECT_NAME}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS replay RUNTIME DESTINATION lib/${PROJECT_NAME})
+install(PROGRAMS scripts/compare scripts/explain scripts/export DESTINATION lib/${PROJECT_NAME})
+install(DIRECTORY scripts/runs scripts/study DESTINATION lib/${PROJECT_NAME} PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY include/${PROJECT_NAME} DESTINATION include PATTERN ros EXCLUDE PATTERN replay EXCLUDE)
 install(DIRECTORY config DESTINATION share/${PROJECT_NAME})
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/${PROJECT_NAME})

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Draws the moments of an explanation with rviz on a virtual screen, and puts the pictures into its page. scripts/explain
-starts it on a folder with explain.html, explain.json and moments.bag. Exits with 0 if they were drawn, 1 with a line
-if not."""
+starts it on a folder with explain.html and explain.json, and a bag of replay --markers. Exits with 0 if they were drawn, 1
+with a line if not."""
 import base64
 import contextlib
+import copy
 import html
 import json
 import math
@@ -29,16 +30,6 @@ MOST = 60  # pictures of a page
 PITCH, DISTANCE = 0.42, 0.42  # of rviz's camera, which stays; what it sees is moved [rad, m]
 LAYERS = ("hand", "ghost", "objects", "fixtures", "friction", "forces", "newtons", "shadows")
 WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "the last touch"}
-
-
-def find_modules():
-    """Of the devel space that this lies in, where no workspace has been sourced."""
-    modules = os.path.join(HERE, "..", "devel", "lib", "python3", "dist-packages")
-    if os.path.isdir(modules):
-        sys.path.append(os.path.abspath(modules))
-    package = os.path.abspath(os.path.join(HERE, ".."))
-    if os.path.exists(os.path.join(package, "package.xml")):
-        os.environ.setdefault("ROS_PACKAGE_PATH", package + os.pathsep + "/usr/share")
 
 
 def missing_tools():
@@ -158,18 +149,19 @@ def placed(marker, moment, yaw):
     return marker
 
 
-def read_moments(folder):
+def read_moments(folder, markers):
     """[(number, moment, markers)]"""
     import rosbag
     moments = json.loads(program.read_text(os.path.join(folder, "explain.json")))["moments"]
-    number, read = None, []
-    with rosbag.Bag(os.path.join(folder, "moments.bag")) as bag:
+    frame, shown = None, {}
+    with rosbag.Bag(markers) as bag:
         for topic, message, _ in bag.read_messages():
-            if topic == "/moment":
-                number = message.data
+            if topic == "/frame":
+                frame = message.data
             else:
-                read.append((number, moments[number], message.markers))
-    return sorted(read, key=lambda one: one[0])
+                shown[frame] = message
+    return [(number, moment, copy.deepcopy(shown[moment["frame"]].markers)) for number, moment in enumerate(moments)
+            if moment["frame"] in shown]
 
 
 def draw(moments, folder):
@@ -224,12 +216,12 @@ def put_into_page(moments, files, page):
         file.write(text)
 
 
-def pictures(folder):
+def pictures(folder, markers):
     """How many were drawn."""
     missing = missing_tools()
     if missing:
         raise RuntimeError("rviz draws them on a virtual screen, for which these packages are missing: " + " ".join(missing))
-    moments = read_moments(folder)
+    moments = read_moments(folder, markers)
     if not moments:
         return 0
     with Started() as started, tempfile.TemporaryDirectory() as scratch:
@@ -244,12 +236,12 @@ def pictures(folder):
 
 
 def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
-        print(__doc__ + "\nusage: explain_pictures.py FOLDER", file=sys.stdout if "--help" in sys.argv else sys.stderr)
+    if len(sys.argv) != 3:
+        print(__doc__ + "\nusage: explain_pictures.py FOLDER MARKERS.bag", file=sys.stdout if "--help" in sys.argv else sys.stderr)
         return 0 if "--help" in sys.argv else 2
-    find_modules()
+    program.find_built_modules()
     try:
-        pictures(sys.argv[1])
+        pictures(*sys.argv[1:])
     except ImportError as error:
         print("explain: no pictures: rviz draws them, and its Python modules are missing: %s" % error, file=sys.stderr)
     except Exception as error:  # what is in the folder may be anything

@@ -26,6 +26,7 @@ SUITES = {
     "training": "training operators",
     "calibration": "calibration",
     "ros": "ros wire",
+    "record": "replay ros",
     "replay": "replay",
 }
 SWAPS = [

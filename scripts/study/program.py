@@ -1,6 +1,7 @@
 """What the scripts for users have in common: whatever befalls them, they end with at most one line that names the thing, and
 never with a traceback. To be imported before what takes long to import, where Ctrl-C is answered too."""
 
+import argparse
 import errno
 import io
 import os
@@ -16,6 +17,13 @@ READER_GONE = 128 + signal.SIGPIPE
 PATIENCE = 5.0  # s, for a master's answer
 MEBIBYTE = 1 << 20
 BEGINNING, END = 300, 200  # letters that are told of a line with more
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Bad usage is told in one line."""
+
+    def error(self, message):
+        self.exit(2, '%s: %s; --help shows the usage\n' % (self.prog, one_line(message)))
 
 
 def name():
@@ -113,6 +121,16 @@ def _hook(kind, error, _):
 
 
 sys.excepthook = _hook
+
+
+def find_built_modules():
+    """Those of the devel space that the scripts lie in, where no workspace has been sourced."""
+    package = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
+    modules = os.path.join(package, 'devel', 'lib', 'python3', 'dist-packages')
+    if os.path.isdir(modules):
+        sys.path.append(modules)
+    if os.path.exists(os.path.join(package, 'package.xml')):
+        os.environ.setdefault('ROS_PACKAGE_PATH', package + os.pathsep + '/usr/share')
 
 
 def read_text(path, most=64 * MEBIBYTE, encoding='utf-8'):

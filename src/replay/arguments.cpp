@@ -10,6 +10,8 @@ namespace mrhi {
 namespace {
 
 constexpr double kShortestQuaternion = 1e-6;
+constexpr const char* kCompareUsage =
+    "--compare takes the folders of two runs, then --tolerance METRES,RADIANS or nothing";
 
 Pose pose(const Given& given, std::size_t first) {
   const std::vector<double> v = given.numbers(first, 7);
@@ -42,6 +44,14 @@ double rate(const Given& given) {
   return rate;
 }
 
+std::set<std::size_t> frame_numbers(const Given& given) {
+  constexpr long kMaxFrame = 1000000000;
+  std::set<std::size_t> frames;
+  for (const std::string& number : text::split(given.text))
+    frames.insert(static_cast<std::size_t>(Given{given.option, given.form, number}.whole(0, kMaxFrame)));
+  return frames;
+}
+
 CommandLine command_line(ReplayArguments& a, bool& compare) {
   CommandLine line;
   line.flag("--compare", compare).flag("--explain", a.explain);
@@ -50,7 +60,8 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
   line.once("--topic", "TOPIC", [&a](const Given& given) { a.topic = given.text; });
   line.once("--params", "FILE.yaml", [&a](const Given& given) { a.parameter_file = given.text; });
   line.each("--set", "KEY=VALUE", [&a](const Given& given) { a.settings.push_back(given.setting()); });
-  line.once("--export", "HZ", [&a](const Given& given) { a.demonstration = rate(given); });
+  line.once("--export", "HZ", [&a](const Given& given) { a.export_rate = rate(given); });
+  line.once("--markers", "FRAME,FRAME,...", [&a](const Given& given) { a.markers = frame_numbers(given); });
   line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw",
             [&a](const Given& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
   line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz",
@@ -82,19 +93,18 @@ void check(ReplayArguments& arguments) {
     arguments.output = arguments.input.substr(0, arguments.input.size() - 4) + "_replay";
 }
 
-constexpr const char* kCompareUsage =
-    "--compare takes the folders of two runs, then --tolerance METRES,RADIANS or nothing";
-
-void read_comparison(const std::vector<std::string>& arguments, ReplayArguments& parsed) {
-  const bool tolerant = arguments.size() == 5 && arguments[3] == "--tolerance";
-  if (arguments.size() != 3 && !tolerant) throw UsageError(kCompareUsage);
-  parsed.compare = {arguments[1], arguments[2]};
-  if (!tolerant) return;
-  const Given given{"--tolerance", "METRES,RADIANS, each from 0 to 1", arguments[4]};
-  const std::vector<double> values = given.numbers(0, 2);
-  for (const double value : values)
-    if (!(value >= 0.0 && value <= 1.0)) given.fail("out of range");
-  parsed.tolerance = {values[0], values[1]};
+/// Without where the results go, and what is made of them.
+std::vector<std::string> repeatable(const std::vector<std::string>& words) {
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--explain") continue;
+    if (words[i] == "--output" || words[i] == "--export" || words[i] == "--markers") {
+      ++i;
+    } else {
+      kept.push_back(words[i]);
+    }
+  }
+  return kept;
 }
 
 }  // namespace
@@ -103,13 +113,15 @@ ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments
   ReplayArguments parsed;
   bool compare = false;
   if (!arguments.empty() && arguments[0] == "--compare") {
-    read_comparison(arguments, parsed);
+    parsed.compare.assign(arguments.begin() + 1, arguments.end());
+    if (parsed.compare.size() < 2) throw UsageError(kCompareUsage);
   } else if (!command_line(parsed, compare).read(arguments)) {
     parsed.help = true;
   } else if (compare) {
     throw UsageError(kCompareUsage);
   } else {
     check(parsed);
+    parsed.repeatable = repeatable(arguments);
   }
   return parsed;
 }
@@ -136,11 +148,13 @@ fast as the machine goes; needs no ROS master.
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else the bag's /tf_static, else at the origin
                             and turned by +90 degrees about x
-  --export HZ               demonstration.csv and demonstration.bag too, of standard messages alone; 0: a row for
-                            each frame
-  --explain                 explain.html and explain.json too: when each object was held, how, and why it was lost
-  --compare DIR DIR         when and where the objects of two runs part, and by how much, and whether the bits are the
-                            same
+  --export HZ               scripts/export afterwards: demonstration.csv and demonstration.bag, of standard messages
+                            alone; 0: a row for each frame
+  --explain                 scripts/explain afterwards: explain.html and explain.json, when each object was held, how, and
+                            why it was lost
+  --markers FRAME,...       markers.bag too: what rviz shows of these frames, by their numbers in frames.csv
+  --compare DIR DIR         scripts/compare: when and where the objects of two runs part, and by how much, and whether the
+                            bits are the same
   --tolerance METRES,RADIANS
                             what --compare takes as the same place; else 1e-9,1e-9; 0,0: the same to the last digit
   --help                    this text

@@ -3,6 +3,8 @@
 #include <mr_hand_interaction/HandFrame.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
 #include <iterator>
@@ -11,12 +13,11 @@
 #include <vector>
 
 #include "../ros/tracker_messages.h"
-#include "device_frames.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "mr_hand_interaction/tracking/joint_gaps.h"
-#include "open_bag.h"
 
 namespace mrhi {
 namespace {
@@ -79,6 +80,58 @@ SourceFrame refused(const std::string& reason, const std::string& detail) {
 const std::string& readable(const std::string& file) {
   check_readable(file);
   return file;
+}
+
+const char* const kWorld = "world";
+
+std::string without_slash(const std::string& frame_id) {
+  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
+}
+
+/// Where trackers stand in world: everywhere the same, if that was given; else as a bag's /tf_static says,
+/// else at the default mount.
+class DeviceFrames {
+ public:
+  DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world);
+
+  const Pose& pose(const std::string& frame_id);
+
+ private:
+  void read_static_transforms(const rosbag::Bag& bag);
+
+  std::optional<Pose> given_;
+  tf2::BufferCore transforms_;
+  std::map<std::string, Pose> known_;
+};
+
+DeviceFrames::DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
+    : given_(device_in_world) {
+  if (!given_) read_static_transforms(bag);
+}
+
+void DeviceFrames::read_static_transforms(const rosbag::Bag& bag) {
+  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
+  for (const rosbag::MessageInstance& message : view) {
+    const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
+    if (!transforms) continue;
+    for (geometry_msgs::TransformStamped transform : transforms->transforms) {
+      transform.header.frame_id = without_slash(transform.header.frame_id);
+      transform.child_frame_id = without_slash(transform.child_frame_id);
+      transforms_.setTransform(transform, "bag", true);
+    }
+  }
+}
+
+const Pose& DeviceFrames::pose(const std::string& frame_id) {
+  if (given_) return *given_;
+  const auto found = known_.find(frame_id);
+  if (found != known_.end()) return found->second;
+  const std::string frame = without_slash(frame_id);
+  const bool connected = !frame.empty() && transforms_.canTransform(kWorld, frame, ros::Time(0));
+  const Pose pose = connected
+                        ? from_message(transforms_.lookupTransform(kWorld, frame, ros::Time(0)).transform)
+                        : default_device_mount();
+  return known_.emplace(frame_id, pose).first->second;
 }
 
 }  // namespace

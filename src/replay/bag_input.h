@@ -37,13 +37,8 @@ class BagInput : public FrameSource {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Walks over the records of a bag (format 2.0) before the bag library does, which takes every length in it
-/// on trust: lengths and places must be inside the file, those of messages inside their chunk. What is inside
-/// a compressed chunk is not looked at. Throws BagError that names the place; a bag without an index is left
-/// to the library, which says so.
-void check_bag(const std::string& file);
-
-/// The same of a file that may not be there, or not to be read.
+/// Reads the whole bag in a child process first: the bag library takes every length in it on trust, and a
+/// corrupt one may end the process. Throws BagError.
 void check_readable(const std::string& file);
 
 /// Within a handler: what the bag library has thrown, as a BagError in one line that names the file. Other

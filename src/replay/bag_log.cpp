@@ -9,7 +9,6 @@
 
 #include "bag_input.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "open_bag.h"
 
 namespace mrhi {
 namespace {

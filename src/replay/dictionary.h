@@ -19,7 +19,7 @@ struct Table {
   std::string header() const;
 };
 
-/// Of objects.csv, contacts.csv, hands.csv, events.csv and hashes.csv.
+/// All tables, in the order of schema.json.
 const std::vector<Table>& tables();
 /// Throws std::out_of_range for a name that is none of these.
 const Table& table_of(const std::string& file);

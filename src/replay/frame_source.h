@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "../record/log.h"
+#include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
@@ -48,5 +51,23 @@ class CsvInput : public FrameSource {
   Pose device_in_world_;
   std::size_t position_ = 0;
 };
+
+/// A recording that is open, and the topic that is read of it.
+struct ReplayInput {
+  std::unique_ptr<FrameSource> frames;
+  std::string topic;
+};
+
+/// Throws BagError; where this was built without ROS, UsageError.
+ReplayInput open_bag(const ReplayArguments& arguments);
+
+/// The log of a live simulation, if the recording has one; else why not.
+struct OpenLog {
+  std::unique_ptr<LogSource> source;
+  std::string topic, why_not;
+};
+
+/// Throws BagError.
+OpenLog open_log(const ReplayArguments& arguments);
 
 }  // namespace mrhi

@@ -1,20 +1,52 @@
 #include "mr_hand_interaction/replay/replay.h"
 
 #include <algorithm>
+#include <stdexcept>
 
+#include "../collision/overlap.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "open_bag.h"
 #include "run.h"
 
 namespace mrhi {
 namespace {
 
-void leave_out(const std::vector<std::string>& hands, ProgressBar& progress, ReplaySummary& summary) {
-  if (hands.empty()) return;
-  if (summary.hands_left_out == 0) {
-    progress.line("replay: left out: " + hands.front() + " (more of the kind are counted only)");
+Configuration configured(const ReplayArguments& arguments) {
+  Configuration configuration;
+  if (arguments.parameter_file) load_parameters(configuration, *arguments.parameter_file);
+  try {
+    for (const auto& [name, value] : arguments.settings) set_parameter(configuration, name, value);
+    validate(configuration);
+  } catch (const ParameterError& error) {
+    throw UsageError(error.what());
   }
-  summary.hands_left_out += hands.size();
+  return configuration;
+}
+
+Body& object_of(Scene& scene, const std::string& option, const std::string& name) {
+  try {
+    return free_body(scene, name);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(option + ": " + error.what());
+  }
+}
+
+void place(Scene& scene, const std::string& name, const Pose& pose) {
+  Body& body = object_of(scene, "--object-pose", name);
+  const Bounds& bounds = scene.bounds;
+  if ((pose.position.array() < bounds.min.array()).any() ||
+      (pose.position.array() > bounds.max.array()).any()) {
+    throw UsageError("--object-pose " + name + ": is out of the scene's bounds");
+  }
+  body.start = pose;
+}
+
+void leave_out(const std::vector<std::string>& hands, ReplayRun& run) {
+  if (hands.empty()) return;
+  if (run.summary.hands_left_out == 0)
+    run.progress.line("replay: left out: " + hands.front() + " (more of the kind are counted only)");
+  run.summary.hands_left_out += hands.size();
 }
 
 /// What the recorder's clock says of the stamps to come, as the node's does of those of live frames.
@@ -40,7 +72,7 @@ ReplayInput open_input(const ReplayArguments& arguments) {
   return open_bag(arguments);
 }
 
-/// What a log would tell; it is not asked where the hands are others than those that the simulation took.
+/// The log of the live simulation; it is not read if other hands are asked for than the simulation took.
 OpenLog open_log_of(const ReplayArguments& arguments) {
   OpenLog log;
   log.why_not = "it has hands alone";
@@ -52,33 +84,36 @@ OpenLog open_log_of(const ReplayArguments& arguments) {
 
 }  // namespace
 
-void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
-                ReplaySummary& summary, const FrameWatcher& watcher) {
-  std::optional<Nanoseconds> last_stamp;
+Simulation prepare_simulation(const ReplayArguments& arguments) {
+  const Configuration configuration = configured(arguments);
+  std::string file;
+  try {
+    file = find_scene_file(arguments.scene, scene_folders());
+  } catch (const SceneError& error) {
+    throw UsageError(std::string("--scene: ") + error.what());
+  }
+  Scene scene = load_scene(file, scene_options(configuration));
+  for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
+  const std::string overlaps = arguments.object_poses.empty() ? "" : overlaps_at_start(scene);
+  if (!overlaps.empty()) throw UsageError("--object-pose: " + overlaps + "; allowed: places that are free");
+  for (const auto& [name, twist] : arguments.object_twists) {
+    object_of(scene, "--object-twist", name).start_twist = twist;
+  }
+  return Simulation(std::move(scene), configuration);
+}
+
+void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
   RecordersClock clock;
   while (const std::optional<SourceFrame> input = source.next()) {
-    progress.show(source.position(), source.size());
+    run.progress.show(source.position(), source.size());
     if (!input->frame) {
-      reject(input->reason, input->detail, progress, summary);
+      run.reject(input->reason, input->detail);
       continue;
     }
-    const Rejection rejection = simulation.begin(*input->frame, clock.expected(input->arrival));
-    if (rejection != Rejection::none) {
-      reject(to_string(rejection), "frame " + std::to_string(source.position()) + " of the input", progress,
-             summary);
-      continue;
-    }
-    leave_out(input->left_out, progress, summary);
-    while (timed_step(simulation, summary)) {
-    }
-    const FrameResult& result = simulation.end();
-    for (const std::string& what : result.not_finite) reject("not finite", what, progress, summary);
-    writer.write(result, simulation.state());
-    if (watcher) watcher(simulation);
-    add_result(simulation, last_stamp, summary);
-    ++summary.frames;
-    last_stamp = result.stamp;
-    clock = {result.stamp, input->arrival};
+    const std::string which = "frame " + std::to_string(source.position()) + " of the input";
+    if (!run.frame(*input->frame, clock.expected(input->arrival), which, simulation)) continue;
+    leave_out(input->left_out, run);
+    clock = {simulation.result().stamp, input->arrival};
   }
 }
 
@@ -90,29 +125,18 @@ void replay(const ReplayArguments& arguments) {
                      "; --help shows the usage");
   Simulation simulation = prepare_simulation(arguments);
   const ReplayInput input = open_input(arguments);
-  ResultWriter writer(arguments.output, simulation.scene());
-  ReplaySummary summary;
-  summary.scene = simulation.scene().name;
-  summary.input = arguments.input;
-  summary.topic = input.topic;
-  tell_setting(simulation, summary);
-  summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
-  ProgressBar progress;
-  Explaining explaining(arguments);
-  if (!is_csv(arguments.input)) progress.line("replay: not known: " + summary.not_known.front());
+  ReplayRun run(arguments, input.topic);
+  run.begin(simulation, simulation.scene().name);
+  run.summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
+  if (!is_csv(arguments.input)) run.progress.line("replay: not known: " + run.summary.not_known.front());
   try {
-    run_frames(*input.frames, simulation, writer, progress, summary, explaining.watcher());
-    if (summary.frames == 0) throw std::runtime_error(arguments.input + ": no frame that can be used");
-    writer.flush();
+    run_frames(*input.frames, simulation, run);
+    run.check_end();
   } catch (const std::exception& error) {
-    summary.error = error.what();
-    tell_end(simulation, summary);
-    write_summary(arguments.output, summary);
+    run.end(simulation, error.what());
     throw;
   }
-  tell_end(simulation, summary);
-  write_summary(arguments.output, summary);
-  explaining.write(summary);
+  run.end(simulation, "");
 }
 
 }  // namespace mrhi

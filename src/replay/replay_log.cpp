@@ -1,9 +1,13 @@
+#include <stdlib.h>
+
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
+#include "../record/world.h"
 #include "../simulation/state_bytes.h"
 #include "../text/csv.h"
 #include "../text/text.h"
@@ -11,8 +15,6 @@
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "run.h"
-#include "urdf_meshes.h"
-#include "world.h"
 
 namespace mrhi {
 namespace {
@@ -110,62 +112,70 @@ class Overrides {
   std::vector<std::string> differing_;
 };
 
+/// A folder that is removed with its contents at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_((std::filesystem::temp_directory_path() / "replay_XXXXXX").string()) {
+    if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 class LogRun {
  public:
   LogRun(const ReplayArguments& arguments, const std::string& topic)
-      : arguments_(arguments),
-        overrides_(arguments),
-        explaining_(arguments),
-        watcher_(explaining_.watcher()) {
-    summary_.input = arguments.input;
-    summary_.topic = topic;
-    summary_.live.emplace();
+      : arguments_(arguments), overrides_(arguments), run_(arguments, topic) {
+    run_.summary.live.emplace();
   }
 
   void all(LogSource& log) {
     while (const std::optional<LogEntry> entry = log.next()) {
-      progress_.show(log.position(), log.size());
+      run_.progress.show(log.position(), log.size());
       take(*entry);
     }
     if (!simulation_) throw std::runtime_error(arguments_.input + ": the recording has no beginning");
-    if (summary_.frames == 0) throw std::runtime_error(arguments_.input + ": no frame that can be used");
-    writer_->flush();
+    run_.check_end();
   }
 
   /// Also of a run that ended early.
   void end(const std::string& error) {
-    summary_.error = error;
     if (!simulation_) return;
-    tell_end(simulation(), summary_);
-    write_summary(arguments_.output, summary_);
-    explaining_.write(summary_);
-    const LiveRun& live = *summary_.live;
-    if (live.parts_at)
-      progress_.line("replay: parts from the live run at " + text::number(*live.parts_at) + " s");
-    for (const std::string& what : live.overridden) progress_.line("replay: not as recorded: " + what);
-    for (const std::string& what : summary_.not_known) progress_.line("replay: not known: " + what);
-    if (live.missing > 0)
-      progress_.line("replay: the recording has lost " + std::to_string(live.missing) + " entries");
+    run_.end(simulation(), error);
+    const auto line = [&](const std::string& text) { run_.progress.line("replay: " + text); };
+    if (live().parts_at) line("parts from the live run at " + text::number(*live().parts_at) + " s");
+    for (const std::string& what : live().overridden) line("not as recorded: " + what);
+    for (const std::string& what : run_.summary.not_known) line("not known: " + what);
+    if (live().missing > 0) line("the recording has lost " + std::to_string(live().missing) + " entries");
   }
 
  private:
   Simulation& simulation() { return simulation_->simulation(); }
+  LiveRun& live() { return *run_.summary.live; }
 
   void take(const LogEntry& entry) {
     if (entry.kind == LogEntry::Kind::begin) return begin(entry);
     if (!simulation_) return;  // of who was there before it began
-    if (entry.run != run_) {
+    if (entry.run != live_run_) {
       broken_ = true;  // until it begins
       return;
     }
     if (entry.sequence <= sequence_) return;
     if (entry.sequence != sequence_ + 1) {
-      summary_.live->missing += entry.sequence - sequence_ - 1;
+      live().missing += entry.sequence - sequence_ - 1;
       broken_ = true;
     }
     sequence_ = entry.sequence;
-    summary_.live->lost_by_queue = entry.lost - lost_before_;
-    ++summary_.live->entries;
+    live().lost_by_queue = entry.lost - lost_before_;
+    ++live().entries;
     if (entry.kind == LogEntry::Kind::frame) frame(entry);
     if (entry.kind == LogEntry::Kind::without_hands) without_hands(entry);
     if (entry.kind == LogEntry::Kind::change) change(entry);
@@ -173,16 +183,16 @@ class LogRun {
   }
 
   void begin(const LogEntry& entry) {
-    const bool known = simulation_ && entry.run == run_;
-    if (known && entry.sequence > sequence_) summary_.live->missing += entry.sequence - sequence_;
+    const bool known = simulation_ && entry.run == live_run_;
+    if (known && entry.sequence > sequence_) live().missing += entry.sequence - sequence_;
     if (known && !broken_ && entry.sequence <= sequence_) return;
     if (!known) lost_before_ = entry.lost;
-    run_ = entry.run;
+    live_run_ = entry.run;
     sequence_ = entry.sequence;
     broken_ = false;
     World world = world_from_yaml(entry.text, entry.files);
     overrides_.apply(world);
-    const Configuration configuration = configuration_of(world, summary_.not_known);
+    const Configuration configuration = configuration_of(world, run_.summary.not_known);
     simulation_ =
         std::make_unique<LiveSimulation>(scene_of(world, configuration, scratch_.path()), configuration);
     if (!overrides_.other_scene()) take_state(entry);
@@ -195,64 +205,45 @@ class LogRun {
     try {
       simulation().set_state(state_from_bytes(entry.state, simulation().scene()));
     } catch (const std::invalid_argument& error) {
-      summary_.not_known.push_back(std::string("where things were as the recording began: ") + error.what());
+      run_.summary.not_known.push_back(std::string("where things were as the recording began: ") +
+                                       error.what());
     }
   }
 
   void tell_begin(const World& world) {
-    if (!writer_) writer_ = std::make_unique<ResultWriter>(arguments_.output, simulation().scene());
+    run_.begin(simulation(), world.scene);
     if (!hashes_)
       hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", table_of("hashes.csv").header());
-    writer_->follow(simulation().scene());
-    summary_.scene = world.scene;
-    summary_.live->version = world.version;
-    summary_.live->overridden = overrides_.differing();
-    tell_setting(simulation(), summary_);
-    if (world.version != summary_.version)
-      summary_.not_known.push_back("what version " + world.version + " did otherwise than this one, " +
-                                   summary_.version);
+    live().version = world.version;
+    live().overridden = overrides_.differing();
+    if (world.version != run_.summary.version)
+      run_.summary.not_known.push_back("what version " + world.version + " did otherwise than this one, " +
+                                       run_.summary.version);
   }
 
   void frame(const LogEntry& entry) {
-    if (!entry.hands) return reject("unusable hand", entry.text, progress_, summary_);
-    const Rejection rejection = simulation().begin(*entry.hands, entry.expected);
-    if (rejection != Rejection::none) {
-      return reject(to_string(rejection), "entry " + std::to_string(entry.sequence), progress_, summary_);
-    }
-    while (timed_step(simulation(), summary_)) {
-    }
-    const FrameResult& result = simulation().end();
-    for (const std::string& what : result.not_finite) reject("not finite", what, progress_, summary_);
-    ++summary_.frames;
-    note_result();
+    if (!entry.hands) return run_.reject("unusable hand", entry.text);
+    run_.frame(*entry.hands, entry.expected, "entry " + std::to_string(entry.sequence), simulation());
   }
 
   void without_hands(const LogEntry& entry) {
-    if (simulation().advance_without_hands(entry.time)) note_result();
-  }
-
-  void note_result() {
-    writer_->write(simulation().result(), simulation().state());
-    if (watcher_) watcher_(simulation());
-    add_result(simulation(), last_stamp_, summary_);
-    last_stamp_ = simulation().result().stamp;
-    if (!first_stamp_) first_stamp_ = last_stamp_;
+    if (simulation().advance_without_hands(entry.time)) run_.result(simulation());
   }
 
   void change(const LogEntry& entry) {
     Change change = change_from_yaml(entry.text, entry.files);
     char time[32];
-    std::snprintf(time, sizeof time, "%.3f s: ", seconds());
-    summary_.live->changes.push_back(time + text::one_line(to_text(change), 200));
+    std::snprintf(time, sizeof time, "%.3f s: ", run_.seconds());
+    live().changes.push_back(time + text::one_line(to_text(change), 200));
     if (auto* spawn = std::get_if<Spawn>(&change))
       spawn->request.urdf = with_meshes_in(scratch_.path(), spawn->request.urdf, entry.files);
     if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
     try {
       make(change, *simulation_);
     } catch (const std::exception& error) {
-      reject("change", error.what(), progress_, summary_);
+      run_.reject("change", error.what());
     }
-    writer_->follow(simulation().scene());
+    run_.follow(simulation().scene());
   }
 
   void drop_overridden(SetParameters& set) const {
@@ -261,8 +252,6 @@ class LogRun {
                      set.values.end());
   }
 
-  double seconds() const { return last_stamp_ ? to_seconds(*last_stamp_ - *first_stamp_) : 0.0; }
-
   void compare(const LogEntry& entry) {
     const std::uint64_t here = hash(simulation().state());
     char text[20];
@@ -270,25 +259,19 @@ class LogRun {
     *hashes_ << std::to_string(entry.sequence) << std::to_string(entry.stamp) << std::string(text);
     hashes_->end_row();
     if (broken_ || !overrides_.differing().empty()) return;
-    LiveRun& live = *summary_.live;
-    ++live.compared;
-    if (here == entry.state_hash) ++live.same;
-    if (here != entry.state_hash && !live.parts_at) live.parts_at = seconds();
+    ++live().compared;
+    if (here == entry.state_hash) ++live().same;
+    if (here != entry.state_hash && !live().parts_at) live().parts_at = run_.seconds();
   }
 
   const ReplayArguments& arguments_;
   Overrides overrides_;
-  Explaining explaining_;
-  FrameWatcher watcher_;
   ScratchFolder scratch_;
-  ProgressBar progress_;
-  ReplaySummary summary_;
+  ReplayRun run_;
   std::unique_ptr<LiveSimulation> simulation_;
-  std::unique_ptr<ResultWriter> writer_;
   std::unique_ptr<CsvFile> hashes_;
-  std::uint64_t run_ = 0, sequence_ = 0, lost_before_ = 0;
+  std::uint64_t live_run_ = 0, sequence_ = 0, lost_before_ = 0;
   bool broken_ = false;  ///< entries are missing, so that nothing is as it was
-  std::optional<Nanoseconds> first_stamp_, last_stamp_;
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "run.h"
 
-#include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -13,7 +12,13 @@
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
+namespace {
 
+Vector3 gravity_of(const Simulation& simulation) {
+  return simulation.configuration().gravity.value_or(simulation.scene().gravity);
+}
+
+/// False if there is no step left in the frame.
 bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   const auto begin = std::chrono::steady_clock::now();
   if (!simulation.step()) return false;
@@ -23,26 +28,24 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
-                ReplaySummary& summary) {
-  const FrameResult& result = simulation.result();
-  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
-  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
-  if (result.restarted) ++summary.restarts;
-  if (since && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *since);
+}  // namespace
+
+ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic) : output_(arguments.output) {
+  summary.input = arguments.input;
+  summary.topic = topic;
+  summary.arguments = arguments.repeatable;
+  if (!arguments.markers.empty())
+    markers_ = std::make_unique<MarkerBag>(output_ + "/markers.bag", arguments.markers);
 }
 
-void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
-            ReplaySummary& summary) {
-  if (++summary.rejected[reason] > 1) return;
-  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
-}
-
-void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
+void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {
   const Configuration& configuration = simulation.configuration();
+  if (!writer_) writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
+  writer_->follow(simulation.scene());
+  summary.scene = scene;
   summary.contact_model = configuration.contact_model.name;
   summary.version = MR_HAND_INTERACTION_VERSION;
-  summary.gravity = configuration.gravity.value_or(simulation.scene().gravity);
+  summary.gravity = gravity_of(simulation);
   for (const std::string& name : parameter_names()) {
     const std::string text = parameter_text(configuration, name);
     if (text != parameter_text(Configuration(), name)) summary.parameters[name] = text;
@@ -50,110 +53,83 @@ void tell_setting(const Simulation& simulation, ReplaySummary& summary) {
   for (const Body& body : simulation.scene().bodies) summary.materials[body.name] = body.material;
 }
 
-void tell_end(const Simulation& simulation, ReplaySummary& summary) {
-  const Scene& scene = simulation.scene();
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& expected,
+                      const std::string& which, Simulation& simulation) {
+  const Rejection rejection = simulation.begin(hands, expected);
+  if (rejection != Rejection::none) {
+    reject(to_string(rejection), which);
+    return false;
   }
-  summary.state_hash = hash(simulation.state());
+  while (timed_step(simulation, summary)) {
+  }
+  for (const std::string& what : simulation.end().not_finite) reject("not finite", what);
+  ++summary.frames;
+  result(simulation);
+  return true;
 }
 
-namespace {
+void ReplayRun::result(const Simulation& simulation) {
+  const FrameResult& result = simulation.result();
+  writer_->write(result, simulation.state(), gravity_of(simulation));
+  if (markers_) markers_->watch(simulation);
+  summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
+  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
+  if (result.restarted) ++summary.restarts;
+  if (last_stamp_ && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *last_stamp_);
+  last_stamp_ = result.stamp;
+  if (!first_stamp_) first_stamp_ = last_stamp_;
+}
 
-void write_text(const std::string& path, const std::string& text) {
+void ReplayRun::reject(const std::string& reason, const std::string& detail) {
+  if (++summary.rejected[reason] > 1) return;
+  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
+}
+
+void ReplayRun::check_end() {
+  if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
+  writer_->flush();
+}
+
+void ReplayRun::end(const Simulation& simulation, const std::string& error) {
+  const Scene& scene = simulation.scene();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
+  summary.state_hash = hash(simulation.state());
+  summary.error = error;
+  const std::string path = output_ + "/summary.json";
   std::ofstream file = file_to_write(path);
-  file << text << std::flush;
+  file << to_json(summary) << std::flush;
   if (!file) throw std::runtime_error("cannot write " + path);
 }
 
-std::string counted(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+double ReplayRun::seconds() const {
+  return last_stamp_ ? to_seconds(*last_stamp_ - *first_stamp_) : 0.0;
 }
 
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", seconds);
-  return text;
+ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  wipe();
 }
 
-std::string rejected_text(const ReplaySummary& summary) {
-  std::string text = "Frames lost: " + std::to_string(summary.live ? summary.live->lost_by_queue : 0) +
-                     " by a queue on the way to the simulation";
-  for (const auto& [reason, count] : summary.rejected) text += ", " + std::to_string(count) + ": " + reason;
-  return text + ".";
+void ProgressBar::show(std::size_t position, std::size_t size) {
+  constexpr int kWidth = 50;  // characters
+  const int percent = size == 0 ? 100 : static_cast<int>(100 * position / size);
+  if (!is_terminal_ || percent == percent_) return;
+  percent_ = percent;
+  const auto done = static_cast<std::size_t>(percent * kWidth / 100);
+  const std::string bar = std::string(done, '#') + std::string(kWidth - done, '.');
+  std::fprintf(stderr, "\r[%s] %3d %%", bar.c_str(), percent);
 }
 
-std::string live_text(const LiveRun& live) {
-  if (!live.overridden.empty()) {
-    std::string text = "Not as recorded: ";
-    for (const std::string& what : live.overridden) text += what + "; ";
-    return text + "the rest is.";
-  }
-  if (live.parts_at) return "This run parts from the live one at " + seconds_text(*live.parts_at) + ".";
-  return "The live run to the bit: " + std::to_string(live.same) + " of " +
-         counted(live.compared, "recorded state") + " the same.";
+void ProgressBar::line(const std::string& text) {
+  wipe();
+  std::fprintf(stderr, "%s\n", text.c_str());
 }
 
-std::vector<std::string> facts_of(const ReplaySummary& summary) {
-  char gravity[64];
-  std::snprintf(gravity, sizeof gravity, "[%g, %g, %g] m/s^2", summary.gravity.x(), summary.gravity.y(),
-                summary.gravity.z());
-  std::vector<std::string> facts{"Scene '" + summary.scene + "', gravity " + gravity + ", contact model " +
-                                     summary.contact_model + ", version " + summary.version + "; " +
-                                     counted(summary.frames, "frame") + ", " +
-                                     seconds_text(summary.simulated_seconds) + ".",
-                                 rejected_text(summary)};
-  if (summary.live) facts.push_back(live_text(*summary.live));
-  std::string other;
-  for (const auto& [name, value] : summary.parameters)
-    other += (other.empty() ? "" : ", ") + name + ": " + value;
-  if (!other.empty()) facts.push_back("Parameters that are not the default: " + other + ".");
-  for (const std::string& what : summary.not_known) facts.push_back("Not known: " + what + ".");
-  if (summary.live)
-    for (const std::string& change : summary.live->changes) facts.push_back("Changed at " + change + ".");
-  return facts;
-}
-
-}  // namespace
-
-void write_summary(const std::string& folder, const ReplaySummary& summary) {
-  write_text(folder + "/summary.json", to_json(summary));
-}
-
-FrameWatcher Explaining::watcher() {
-  if (!arguments_.explain && !arguments_.demonstration) return {};
-  return [this](const Simulation& simulation) {
-    if (arguments_.explain) {
-      explainer_.watch(simulation);
-      markers_.watch(simulation);
-    }
-    if (arguments_.demonstration) demonstration_.watch(simulation);
-  };
-}
-
-void Explaining::write(const ReplaySummary& summary) {
-  if (arguments_.demonstration) {
-    const double rate = *arguments_.demonstration;
-    const Demonstration even = rate > 0.0 ? demonstration_.at_rate(rate) : demonstration_;
-    write_demonstration_csv(even, arguments_.output + "/demonstration.csv");
-    write_demonstration_bag(even, arguments_.output + "/demonstration.bag");
-  }
-  if (!arguments_.explain) return;
-  Explanation explanation = explainer_.explain(arguments_.input);
-  explanation.facts = facts_of(summary);
-  markers_.write(explanation.moments, arguments_.output + "/moments.bag");
-  write_text(arguments_.output + "/explain.json", to_json(explanation));
-  write_text(arguments_.output + "/explain.html", to_html(explanation));
-}
-
-ScratchFolder::ScratchFolder() {
-  path_ = (std::filesystem::temp_directory_path() / "replay_XXXXXX").string();
-  if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+void ProgressBar::wipe() {
+  if (percent_ >= 0) std::fputs("\r\033[K", stderr);
+  percent_ = -1;
 }
 
 }  // namespace mrhi

@@ -1,77 +1,76 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "demonstration.h"
-#include "explain.h"
 #include "frame_source.h"
-#include "log_source.h"
-#include "moment_markers.h"
+#include "marker_bag.h"
 #include "mr_hand_interaction/replay/replay.h"
-#include "progress_bar.h"
 #include "result_writer.h"
 #include "summary.h"
 
 namespace mrhi {
 
-// What replays of frames and of logs have in common: they run frames, and count.
-
-/// One step, its time noted; false if there is none to make.
-bool timed_step(Simulation& simulation, ReplaySummary& summary);
-/// A frame that has been run, or what came of time without any. `since`: the stamp of the one before.
-void add_result(const Simulation& simulation, const std::optional<Nanoseconds>& since,
-                ReplaySummary& summary);
-/// Counts; the first of each kind is told.
-void reject(const std::string& reason, const std::string& detail, ProgressBar& progress,
-            ReplaySummary& summary);
-/// What the outcome hangs on beside the hands.
-void tell_setting(const Simulation& simulation, ReplaySummary& summary);
-/// What is held, and the state's hash.
-void tell_end(const Simulation& simulation, ReplaySummary& summary);
-/// Throws std::runtime_error naming the file if it cannot be written.
-void write_summary(const std::string& folder, const ReplaySummary& summary);
-
-/// Who looks at each result.
-using FrameWatcher = std::function<void(const Simulation&)>;
-
-/// Runs all frames through the simulation; each result is written. The summary grows as it goes on, so that
-/// it holds if this throws.
-void run_frames(FrameSource& source, Simulation& simulation, ResultWriter& writer, ProgressBar& progress,
-                ReplaySummary& summary, const FrameWatcher& watcher = {});
-
-/// Explains and exports a run, as far as that is asked for.
-class Explaining {
+/// A progress bar on stderr if that is a terminal; lines written through it stay readable.
+class ProgressBar {
  public:
-  explicit Explaining(const ReplayArguments& arguments) : arguments_(arguments) {}
-  /// Nothing, if neither is.
-  FrameWatcher watcher();
-  /// explain.json, explain.html and moments.bag, demonstration.csv and demonstration.bag. Throws
-  /// std::runtime_error naming what cannot be written.
-  void write(const ReplaySummary& summary);
+  ProgressBar();
+  ~ProgressBar();
+
+  void show(std::size_t position, std::size_t size);
+  void line(const std::string& text);
 
  private:
-  const ReplayArguments& arguments_;
-  Explainer explainer_;
-  MomentMarkers markers_;
-  Demonstration demonstration_;
+  void wipe();
+
+  bool is_terminal_;
+  int percent_ = -1;
 };
 
-/// A folder that is gone with all that is in it when this is.
-class ScratchFolder {
+/// What replays of frames and of logs share: they take frames, write results and count. The summary is
+/// complete at any time, so that it can be written if the recording cannot be read any further.
+class ReplayRun {
  public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::string& path() const { return path_; }
+  ReplayRun(const ReplayArguments& arguments, const std::string& topic);
+
+  /// The simulation starts, or starts again: makes the folder's tables, and sets what the summary says of
+  /// scene and parameters. Throws std::runtime_error naming what cannot be written.
+  void begin(const Simulation& simulation, const std::string& scene);
+  /// The scene has changed.
+  void follow(const Scene& scene) { writer_->follow(scene); }
+  /// Runs all steps of a frame and writes its result. Counts it as rejected if it is refused; `which`: its
+  /// place in the recording, for people.
+  bool frame(const HandFrame& hands, const std::optional<Nanoseconds>& expected, const std::string& which,
+             Simulation& simulation);
+  /// Writes a result: of a frame, or of time without hands.
+  void result(const Simulation& simulation);
+  /// Counts a rejected frame or change; the first of each kind is printed.
+  void reject(const std::string& reason, const std::string& detail);
+  /// Throws std::runtime_error if no frame was taken, or if the disk does not take the tables.
+  void check_end();
+  /// Writes summary.json; `error`: why the run ended early, or empty.
+  void end(const Simulation& simulation, const std::string& error);
+
+  /// Since the first result [s].
+  double seconds() const;
+
+  ReplaySummary summary;
+  ProgressBar progress;
 
  private:
-  std::string path_;
+  std::string output_;
+  std::unique_ptr<ResultWriter> writer_;
+  std::unique_ptr<MarkerBag> markers_;
+  std::optional<Nanoseconds> first_stamp_, last_stamp_;
 };
 
-/// Does again what a live simulation did. Throws as replay() does.
+/// Runs all frames through the simulation.
+void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run);
+
+/// Repeats what a live simulation did. Throws as replay() does.
 void replay_log(const ReplayArguments& arguments, LogSource& log, const std::string& topic);
 
 }  // namespace mrhi

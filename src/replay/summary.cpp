@@ -2,6 +2,7 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 
 #include "json_text.h"
 
@@ -56,6 +57,12 @@ std::string live_run(const LiveRun& live) {
          ", \"changes\": " + list(live.changes) + ", \"overridden\": " + list(live.overridden) + "}";
 }
 
+/// To which relative paths in the arguments are; empty if it is gone.
+std::string working_folder() {
+  std::error_code error;
+  return std::filesystem::current_path(error).string();
+}
+
 /// By a queue on the way to the live simulation; and by stamps, which this run has judged itself.
 std::string lost(const ReplaySummary& summary) {
   const auto count = [&](const char* reason) {
@@ -95,6 +102,8 @@ std::string to_json(const ReplaySummary& summary) {
       {"state_hash", quoted(hash)},
       {"not_known", list(summary.not_known)}};
   if (summary.live) fields.emplace_back("live_run", live_run(*summary.live));
+  fields.emplace_back("arguments", list(summary.arguments));
+  fields.emplace_back("working_folder", quoted(working_folder()));
   if (!summary.error.empty()) fields.emplace_back("error", quoted(summary.error));
   std::string text = "{";
   for (const auto& [name, value] : fields)

@@ -28,6 +28,7 @@ struct LiveRun {
 /// What summary.json says of a replay.
 struct ReplaySummary {
   std::string scene, input, topic, contact_model, version;
+  std::vector<std::string> arguments;             ///< that make the same run again
   Vector3 gravity = Vector3::Zero();              ///< [m/s^2]
   std::map<std::string, std::string> parameters;  ///< that are not the default, as YAML
   std::map<std::string, Material> materials;      ///< of the objects, by name

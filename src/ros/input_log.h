@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "../replay/world.h"
+#include "../record/world.h"
 #include "stamp_clock.h"
 
 namespace mrhi {

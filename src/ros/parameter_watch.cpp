@@ -1,6 +1,6 @@
 #include "parameter_watch.h"
 
-#include "../replay/world.h"
+#include "../record/world.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {

@@ -126,5 +126,26 @@ TEST(ReplayArguments, a_bag_alone_is_enough) {
   EXPECT_EQ(parsed.output, "folder/a_replay");
 }
 
+TEST(ReplayArguments, what_is_made_of_the_tables_is_read) {
+  const ReplayArguments parsed = parse_replay_arguments(
+      with({"--explain", "--export", "60", "--markers", "7,3,7", "--set", "step=0.002"}));
+  EXPECT_TRUE(parsed.explain);
+  EXPECT_EQ(parsed.export_rate, 60.0);
+  EXPECT_EQ(parsed.markers, (std::set<std::size_t>{3, 7}));
+  EXPECT_EQ(parsed.repeatable, (Arguments{"--scene", "cube", "--input", "a.bag", "--set", "step=0.002"}));
+  for (const char* rate : {"0.5", "1001", "nan", "fast"})
+    expect_refused(with({"--export", rate}), "--export");
+  for (const char* frames : {"x", "-1", "1.5", "1,,2"})
+    expect_refused(with({"--markers", frames}), "--markers");
+}
+
+TEST(ReplayArguments, a_comparison_stands_alone) {
+  EXPECT_EQ(parse_replay_arguments({"--compare", "a", "b", "--tolerance", "1e-3,0.1"}).compare,
+            (Arguments{"a", "b", "--tolerance", "1e-3,0.1"}));
+  for (const Arguments& wrong :
+       {Arguments{"--compare"}, {"--compare", "a"}, {"--scene", "cube", "--compare"}})
+    expect_refused(wrong, "--compare takes the folders of two runs");
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -267,8 +267,9 @@ TEST(BagInput, a_missing_bag_and_what_cannot_be_one_are_told_in_a_line) {
 
 /// Wherever four bytes of a bag are another length, number or place, it is read or refused: the bag library,
 /// which takes them all on trust, does not end the program.
-TEST(BagInput, corrupt_bags_are_read_or_refused) {
+void expect_corrupt_bags_are_read_or_refused(rosbag::CompressionType compression) {
   TestBag bag("whole.bag");
+  bag.bag.setCompression(compression);
   for (std::size_t i = 0; i < 8; ++i) bag.add_leap("/leap_motion/leap_device", frames()[i]);
   bag.add_static("world", "leap_hands", {});
   bag.bag.close();
@@ -277,7 +278,7 @@ TEST(BagInput, corrupt_bags_are_read_or_refused) {
   ASSERT_EQ(message_of(bag.file), "");
   const std::string corrupt = bag.folder / "corrupt.bag";
   int refused = 0;
-  for (std::size_t at = 0; at + 4 <= whole.size(); at += at < 4200 ? 151 : 31) {
+  for (std::size_t at = 0; at + 4 <= whole.size(); at += at < 4200 ? 151 : 61) {
     for (const char* bytes : {"\xFF\xFF\xFF\xFF", "\xFF\xFF\xFF\x7F", "\x10\x27\x00"}) {
       std::string changed = whole;
       changed.replace(at, 4, std::string(bytes, 4));
@@ -285,11 +286,20 @@ TEST(BagInput, corrupt_bags_are_read_or_refused) {
       refused += !message_of(corrupt).empty();
     }
   }
-  for (std::size_t size = 0; size < whole.size(); size += 97) {
+  for (std::size_t size = 0; size < whole.size(); size += 197) {
     std::ofstream(corrupt, std::ios::binary) << whole.substr(0, size);
     EXPECT_NE(message_of(corrupt), "") << size;
   }
   EXPECT_GT(refused, 20);
+}
+
+TEST(BagInput, corrupt_bags_are_read_or_refused) {
+  expect_corrupt_bags_are_read_or_refused(rosbag::compression::Uncompressed);
+}
+
+TEST(BagInput, corrupt_compressed_bags_are_read_or_refused) {
+  expect_corrupt_bags_are_read_or_refused(rosbag::compression::LZ4);
+  expect_corrupt_bags_are_read_or_refused(rosbag::compression::BZ2);
 }
 
 TEST(BagInput, what_is_no_bag_is_named) {

@@ -94,7 +94,7 @@ TEST(Replay, objects_start_where_and_as_they_are_told) {
   replayed.arguments.object_twists = {{scene.bodies[0].name, {{0.1, 0, 0}, {0, 0, 0}}}};
   replayed.run("out");
   const auto lines = test::lines_of(replayed.folder / "out/objects.csv");
-  EXPECT_EQ(lines[1], "0," + scene.bodies[0].name + ",0.5,0.4,0.3,1,0,0,0,0.1,0,0,0,0,0");
+  EXPECT_EQ(lines[1], "0," + scene.bodies[0].name + ",0.5,0.4,0.3,1,0,0,0,0.1,0,0,0,0,0,0,0,0,0,0,0,0");
 }
 
 TEST(Replay, objects_scenes_and_parameters_on_the_command_line_must_exist) {
@@ -133,14 +133,14 @@ struct BreakingSource : FrameSource {
 TEST(Replay, what_was_written_before_an_error_stays) {
   Replayed replayed("nudge");
   Simulation simulation = prepare_simulation(replayed.arguments);
-  ReplaySummary summary;
+  replayed.arguments.output = replayed.folder / "out";
   {
-    ResultWriter writer(replayed.folder / "out", simulation.scene());
+    ReplayRun run(replayed.arguments, "");
+    run.begin(simulation, "nudge");
     BreakingSource source;
-    ProgressBar progress;
-    EXPECT_THROW(run_frames(source, simulation, writer, progress, summary), std::runtime_error);
+    EXPECT_THROW(run_frames(source, simulation, run), std::runtime_error);
+    EXPECT_EQ(run.summary.frames, 5u);
   }
-  EXPECT_EQ(summary.frames, 5u);
   EXPECT_EQ(test::lines_of(replayed.folder / "out/objects.csv").size(), 6u);
 }
 

@@ -6,9 +6,9 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "record/world.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
-#include "replay/world.h"
 #include "simulation/state_bytes.h"
 #include "text/file_text.h"
 #include "text/text.h"

@@ -26,7 +26,7 @@ struct Written {
     ResultWriter writer(folder / "new/out", scene);
     for (const Nanoseconds stamp : {first, second}) {
       result.stamp = stamp;
-      writer.write(result, state);
+      writer.write(result, state, Vector3::Zero());
     }
     writer.flush();
   }
@@ -46,8 +46,11 @@ TEST(ResultWriter, objects_have_a_row_for_each_free_body_and_frame) {
   written.write(5'000'000'000, 5'008'333'333);
   const auto lines = written.lines("objects.csv");
   ASSERT_EQ(lines.size(), 3u);
-  EXPECT_EQ(lines[0], "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz");
-  EXPECT_EQ(lines[1], "0,object,0.1,-0.2,0.333333333333,0,0,0,1,0.1,0,0,0,0,0");
+  EXPECT_EQ(
+      lines[0],
+      "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,level,held,assisted,assist_fx,assist_fy,assist_fz,"
+      "frame");
+  EXPECT_EQ(lines[1], "0,object,0.1,-0.2,0.333333333333,0,0,0,1,0.1,0,0,0,0,0,0,0,0,0,0,0,0");
   EXPECT_EQ(lines[2].substr(0, lines[2].find(",0.1")), "0.008333333,object");
 }
 
@@ -61,21 +64,24 @@ TEST(ResultWriter, contacts_name_object_hand_and_phase) {
   contact.depth = 0.002;
   contact.force = {0.3, 0, -0.5};
   contact.friction = Friction::slipping;
+  contact.patch = 0.004;
   written.result.contacts = {contact, contact};
   written.result.contacts[1].impulse = {0, 0, -0.25};
   written.result.contacts[1].key.capsule = kPalm;
+  written.result.contacts[1].depth = 0.0;
   written.write(0, 1);
   const auto lines = written.lines("contacts.csv");
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[0],
             "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
-            "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit,friction_share");
-  EXPECT_EQ(
-      lines[1],
-      "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0.3,0,-0.5,index,distal,slipping,0.5,0.3,0.3,1");
-  EXPECT_EQ(
-      lines[2],
-      "0,object,4000000000,5,0,0,1,2,3,0,0,1,0.002,0,0,-0.25,0.3,0,-0.5,palm,palm,impulse,0.5,0.3,0.3,1");
+            "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit,friction_share,"
+            "touching,slipping,patch,frame");
+  EXPECT_EQ(lines[1],
+            "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0.3,0,-0.5,index,distal,slipping,0.5,0.3,0.3,"
+            "1,1,1,0.004,0");
+  EXPECT_EQ(lines[2],
+            "0,object,4000000000,5,0,0,1,2,3,0,0,1,0,0,0,-0.25,0.3,0,-0.5,palm,palm,impulse,0.5,0.3,0.3,1,0,"
+            "1,0.004,0");
 }
 
 TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {
@@ -88,11 +94,11 @@ TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {
   written.write(0, 1);
   const auto lines = written.lines("hands.csv");
   ASSERT_EQ(lines.size(), 9u);
-  EXPECT_EQ(lines[0], "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching");
-  EXPECT_EQ(lines[1], "0,1,1,1,3,0,0,0,0,0.02,0,0,0.009,0");
-  EXPECT_EQ(lines[2], "0,1,1,5,0,0,0,0,0,0,0,0.03,0.0125,0");
-  EXPECT_EQ(lines[3], "0,1,1,1,3,1,0,0,0,0.02,0,0,0.009,1");
-  EXPECT_EQ(lines[4], "0,1,1,5,0,1,0,0,0,0,0,0.03,0.0125,0");
+  EXPECT_EQ(lines[0], "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching,frame");
+  EXPECT_EQ(lines[1], "0,1,1,1,3,0,0,0,0,0.02,0,0,0.009,0,0");
+  EXPECT_EQ(lines[2], "0,1,1,5,0,0,0,0,0,0,0,0.03,0.0125,0,0");
+  EXPECT_EQ(lines[3], "0,1,1,1,3,1,0,0,0,0.02,0,0,0.009,1,0");
+  EXPECT_EQ(lines[4], "0,1,1,5,0,1,0,0,0,0,0,0.03,0.0125,0,0");
 }
 
 TEST(ResultWriter, events_have_names_and_the_time_at_which_they_happened) {
@@ -102,9 +108,46 @@ TEST(ResultWriter, events_have_names_and_the_time_at_which_they_happened) {
   written.write(1'000'000'000, 2'000'000'000);
   const auto lines = written.lines("events.csv");
   ASSERT_EQ(lines.size(), 5u);
-  EXPECT_EQ(lines[0], "time,kind,object,hand_id");
-  EXPECT_EQ(lines[1], "0,HAND_FOUND,,7");
-  EXPECT_EQ(lines[2], "0.5,GRASP_BEGIN,object,7");
+  EXPECT_EQ(lines[0], "time,kind,object,hand_id,frame");
+  EXPECT_EQ(lines[1], "0,HAND_FOUND,,7,0");
+  EXPECT_EQ(lines[2], "0.5,GRASP_BEGIN,object,7,0");
+}
+
+TEST(ResultWriter, frames_have_their_stamp_and_gravity_and_bodies_what_they_are) {
+  Written written;
+  written.write(5'000'000'000, 5'500'000'000);
+  const auto frames = written.lines("frames.csv");
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[2], "0.5,1,5500000000,0,0,0");
+  const auto bodies = written.lines("bodies.csv");
+  ASSERT_EQ(bodies.size(), 2u);  // nothing has changed since, and the table does not move
+  EXPECT_EQ(bodies[1].substr(0, 13), "0,object,0.1,");
+  EXPECT_EQ(bodies[1].substr(bodies[1].size() - 6), ",,,,,0");  // on no joint
+}
+
+TEST(ResultWriter, palms_say_whether_the_tracker_sees_the_hand) {
+  Written written;
+  Hand hand = testing::finger({0, 0, 0}, {0.02, 0, 0}, 0.009);
+  hand.palm.position = {1, 2, 3};
+  hand.confidence = 0.5;
+  written.result.tracked = {hand};
+  written.state.hands[0].active = true;
+  written.state.hands[0].current = hand;
+  written.state.hands[0].held = true;
+  written.write(0, 1);
+  EXPECT_EQ(written.lines("palms.csv").at(1), "0,1,1,1,2,3,0,0,0,1,0.5,1,0");
+}
+
+TEST(ResultWriter, an_object_that_grasp_assist_supports_is_marked_with_its_force) {
+  Written written;
+  written.state.interactions.assign(kMaxHands * written.state.bodies.size(), Interaction());
+  written.state.interactions[2].level = InteractionLevel::grasp;  // of the second hand
+  written.state.grips.resize(1);
+  written.state.grips[0].bears = true;
+  written.state.grips[0].force = {0, 0, 0.25};
+  written.write(0, 1);
+  const std::string row = written.lines("objects.csv").at(1);
+  EXPECT_EQ(row.substr(row.size() - 17), ",3,1,1,0,0,0.25,0");
 }
 
 TEST(ResultWriter, a_folder_that_cannot_be_made_is_named) {

@@ -41,7 +41,6 @@ EXCEPTED = (  # what the command begins with, and why it is not run here
     ("make ", "builds"),
     ("simulated_study", "as rosrun, below"),
     ("replay", "as rosrun, below"),
-    ("rosbag decompress", "the user's own bag"),
 )
 
 

@@ -2,8 +2,12 @@
 // then stays in the hand for longer.
 #include <gtest/gtest.h>
 
+#include <yaml-cpp/yaml.h>
 #include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cstdlib>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +15,8 @@
 #include "../closing.h"
 #include "../trial.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "replay/explain.h"
+#include "replay/replay_files.h"
+#include "replay/run.h"
 #include "support/recordings.h"
 
 namespace mrhi::real_grasps {
@@ -38,17 +43,49 @@ Simulation simulation_of(const Setting& setting, const Closing& closing) {
   return Simulation(std::move(scene), configuration);
 }
 
-Explanation explained(const std::vector<JointsFrame>& frames, const Closing& closing,
-                      const Setting& setting) {
-  Simulation simulation = simulation_of(setting, closing);
-  Explainer explainer;
+/// Calls `watch` after each frame.
+void play(const std::vector<JointsFrame>& frames, Simulation& simulation,
+          const std::function<void(const Simulation&)>& watch) {
   std::vector<std::string> left_out;
   for (const JointsFrame& joints : frames) {
     const auto frame = complete_frame(joints, device_mount(), left_out);
-    if (frame && simulation.advance(*frame) == Rejection::none) explainer.watch(simulation);
+    if (frame && simulation.advance(*frame) == Rejection::none) watch(simulation);
   }
-  return explainer.explain("");
 }
+
+/// Runs in folders of their own, as replay writes them, explained all at once.
+class Runs {
+ public:
+  void add(const std::vector<JointsFrame>& frames, const Closing& closing, const Setting& setting) {
+    Simulation simulation = simulation_of(setting, closing);
+    ReplayArguments arguments;
+    arguments.output = name(count_++);
+    ReplayRun run(arguments, "");
+    run.begin(simulation, "placed");
+    play(frames, simulation, [&](const Simulation& now) {
+      run.result(now);
+      ++run.summary.frames;
+    });
+    run.check_end();
+    run.end(simulation, "");
+  }
+
+  /// The losses of each run, as in explain.json.
+  std::vector<YAML::Node> losses() const {
+    const std::string command =
+        "/usr/bin/python3 benchmark/real_grasps/test/explain_all.py " + (folder_ / "runs");
+    EXPECT_EQ(0, std::system(command.c_str()));
+    std::vector<YAML::Node> losses;
+    for (std::size_t i = 0; i < count_; ++i) losses.push_back(YAML::LoadFile(name(i) + "/losses.json"));
+    return losses;
+  }
+
+ private:
+  std::string name(std::size_t i) const { return folder_ / ("runs/" + std::to_string(i)); }
+
+  test::TemporaryFolder folder_;
+  std::size_t count_ = 0;
+};
 
 HandJoints* hand_in(JointsFrame& frame, std::uint32_t id) {
   for (HandJoints& hand : frame.hands)
@@ -87,10 +124,20 @@ std::vector<JointsFrame> with_fingers_kept(std::vector<JointsFrame> frames, std:
   return frames;
 }
 
-bool touched_at(const Explanation& story, double time) {
-  for (const ObjectSample& sample : story.objects.at("placed").samples)
-    if (sample.time >= time) return !sample.fingers.empty();
-  return true;
+/// Whether the body is touched at the first frame from that time on; true if the recording ends before.
+bool touched_at(double time, const std::vector<JointsFrame>& frames, const Closing& closing,
+                const Setting& setting) {
+  Simulation simulation = simulation_of(setting, closing);
+  std::optional<Nanoseconds> first;
+  std::optional<bool> touched;
+  play(frames, simulation, [&](const Simulation& now) {
+    const FrameResult& result = now.result();
+    if (!first) first = result.stamp;
+    if (!touched && to_seconds(result.stamp - *first) >= time)
+      touched = std::any_of(result.contacts.begin(), result.contacts.end(),
+                            [](const Contact& contact) { return contact.touching(); });
+  });
+  return touched.value_or(true);
 }
 
 struct Tally {
@@ -98,22 +145,45 @@ struct Tally {
   std::string not_so;
 };
 
+/// A closing hand, and the frames around it.
+struct Case {
+  Closing closing;
+  std::vector<JointsFrame> frames;
+  std::string recording;
+};
+
+std::vector<Case> cases_of(const Row& row) {
+  std::vector<Case> cases;
+  for (const std::string& file : recording_files({testing::recordings_folder()})) {
+    const Recording recording = load_recording(file);
+    for (const Closing& closing : closings(recording, row))
+      cases.push_back(
+          {closing, disturbed(recording.frames, closing.begin, closing.last, {}), recording.name});
+  }
+  return cases;
+}
+
+std::vector<YAML::Node> losses_of(const std::vector<Case>& cases, const Setting& setting) {
+  Runs runs;
+  for (const Case& one : cases) runs.add(one.frames, one.closing, setting);
+  return runs.losses();
+}
+
 /// Of each first loss that a hand is said to have brought about by opening: whether the body stays where its
 /// fingers do not open.
 void keep_fingers_closed(const Setting& setting, Tally& tally) {
-  for (const std::string& file : recording_files({testing::recordings_folder()})) {
-    const Recording recording = load_recording(file);
-    for (const Closing& closing : closings(recording, setting.row)) {
-      const auto frames = disturbed(recording.frames, closing.begin, closing.last, {});
-      const Explanation story = explained(frames, closing, setting);
-      if (story.losses.empty() || story.losses.front().cause != LossCause::hand_opened) continue;
-      const Loss& loss = story.losses.front();
-      ++tally.said;
-      const auto kept = with_fingers_kept(frames, closing.hand, loss.opened - kFilterLag);
-      const bool so = touched_at(explained(kept, closing, setting), loss.until + kLonger);
-      tally.so += so;
-      if (!so) tally.not_so += recording.name + ": " + loss.text + "\n";
-    }
+  const std::vector<Case> cases = cases_of(setting.row);
+  const std::vector<YAML::Node> losses = losses_of(cases, setting);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& one = cases[i];
+    if (losses[i].size() == 0 || losses[i][0]["cause"].as<std::string>() != "hand_opened") continue;
+    const YAML::Node loss = losses[i][0];
+    ++tally.said;
+    const auto kept =
+        with_fingers_kept(one.frames, one.closing.hand, loss["opened"].as<double>() - kFilterLag);
+    const bool so = touched_at(loss["until"].as<double>() + kLonger, kept, one.closing, setting);
+    tally.so += so;
+    if (!so) tally.not_so += one.recording + ": " + loss["text"].as<std::string>() + "\n";
   }
 }
 
@@ -131,27 +201,27 @@ TEST(ExplainedGrasps, WhatIsLetGoByAHandThatOpensStaysInOneThatDoesNot) {
   }
 }
 
-bool slid(const Loss& loss) {
-  return loss.cause == LossCause::too_little_friction || loss.cause == LossCause::too_little_force;
+bool slid(const YAML::Node& loss) {
+  const auto cause = loss["cause"].as<std::string>();
+  return cause == "too_little_friction" || cause == "too_little_force";
 }
 
 /// The losses of a setting; of those in which the body slid, whether it stays at 1.2 times the friction told.
-void try_friction(const Setting& setting, int& losses, Tally& tally) {
-  for (const std::string& file : recording_files({testing::recordings_folder()})) {
-    const Recording recording = load_recording(file);
-    for (const Closing& closing : closings(recording, setting.row)) {
-      const auto frames = disturbed(recording.frames, closing.begin, closing.last, {});
-      for (const Loss& loss : explained(frames, closing, setting).losses) {
-        ++losses;
-        EXPECT_EQ(loss.text.find("inf"), std::string::npos) << loss.text;
-        EXPECT_EQ(loss.text.find("nan"), std::string::npos) << loss.text;
-        EXPECT_NE(loss.text.find("Last touches: "), std::string::npos) << loss.text;
-        if (!slid(loss)) continue;
-        ++tally.said;
-        Setting other = setting;
-        other.friction = 1.2 * std::max(setting.friction, loss.friction_needed);
-        tally.so += touched_at(explained(frames, closing, other), loss.until + kLonger);
-      }
+void try_friction(const Setting& setting, int& count, Tally& tally) {
+  const std::vector<Case> cases = cases_of(setting.row);
+  const std::vector<YAML::Node> losses = losses_of(cases, setting);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    for (const YAML::Node& loss : losses[i]) {
+      ++count;
+      const auto text = loss["text"].as<std::string>();
+      EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+      EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+      EXPECT_NE(text.find("Last touches: "), std::string::npos) << text;
+      if (!slid(loss)) continue;
+      ++tally.said;
+      Setting other = setting;
+      other.friction = 1.2 * std::max(setting.friction, loss["friction_needed"].as<double>());
+      tally.so += touched_at(loss["until"].as<double>() + kLonger, cases[i].frames, cases[i].closing, other);
     }
   }
 }

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/replay/compare.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/usage_error.h"
 
@@ -15,15 +15,14 @@ namespace mrhi {
 /// The command line of `replay`.
 struct ReplayArguments {
   bool help = false;
-  std::optional<double>
-      demonstration;     ///< demonstration.csv and .bag too, at this rate [Hz]; 0: the frames' own
-  bool explain = false;  ///< explain.json and explain.html too
-  std::optional<std::pair<std::string, std::string>>
-      compare;          ///< folders of two runs; nothing is played then
-  Tolerance tolerance;  ///< of --compare
-  std::string scene;    ///< name or URDF file
-  std::string input;    ///< .bag or .csv
-  std::string output;   ///< folder
+  std::vector<std::string> compare;     ///< what scripts/compare is called with; nothing is played then
+  std::optional<double> export_rate;    ///< scripts/export is called with it afterwards [Hz]
+  bool explain = false;                 ///< scripts/explain is called afterwards
+  std::set<std::size_t> markers;        ///< numbers of the frames in markers.bag
+  std::vector<std::string> repeatable;  ///< the words that make the same run again, in whatever folder
+  std::string scene;                    ///< name or URDF file
+  std::string input;                    ///< .bag or .csv
+  std::string output;                   ///< folder
   std::optional<std::string> topic;
   std::optional<std::string> parameter_file;
   std::vector<std::pair<std::string, std::string>> settings;  ///< name, YAML value

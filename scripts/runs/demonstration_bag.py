@@ -1,0 +1,49 @@
+"""Writes a demonstration as a bag of standard messages alone. To be imported where ROS's Python modules are."""
+
+import genpy
+import rosbag
+from geometry_msgs.msg import Point, PoseStamped, Quaternion, TransformStamped, Vector3, WrenchStamped
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header, String
+from tf2_msgs.msg import TFMessage
+
+from .demonstration import joint_angles
+
+
+def write_bag(demonstration, path):
+    with rosbag.Bag(path, 'w') as bag:
+        for i, stamp in enumerate(demonstration.stamps):
+            _write_frame(demonstration, i, int(stamp), bag)
+
+
+def _write_frame(demonstration, i, stamp, bag):
+    time = genpy.Time(*divmod(stamp, 1000000000))
+    recorded = genpy.Time(*divmod(max(stamp, 1), 1000000000))  # no bag takes 0, with which a recording may begin
+    header, transforms = Header(stamp=time, frame_id='world'), []
+
+    def write_pose(topic, name, pose):
+        place, orientation = pose[:3], Quaternion(*pose[3:])
+        message = PoseStamped(header=header)
+        message.pose.position, message.pose.orientation = Point(*place), orientation
+        bag.write(topic, message, recorded)
+        transform = TransformStamped(header=header, child_frame_id=name)
+        transform.transform.translation, transform.transform.rotation = Vector3(*place), orientation
+        transforms.append(transform)
+
+    for name, body in demonstration.objects.items():
+        if not body.is_there()[i]:
+            continue
+        write_pose('/demonstration/%s/pose' % name, name, body.pose[i].tolist())
+        wrench = WrenchStamped(header=header)
+        wrench.wrench.force, wrench.wrench.torque = Vector3(*body.wrench[i, :3]), Vector3(*body.wrench[i, 3:])
+        bag.write('/demonstration/%s/wrench' % name, wrench, recorded)
+    for side, body in demonstration.hands.items():
+        if not body.is_there()[i]:
+            continue
+        write_pose('/demonstration/%s_palm/pose' % side, side + '_palm', body.pose[i].tolist())
+        angles = joint_angles(body.bones[i])
+        bag.write('/demonstration/%s_hand/joint_states' % side, JointState(
+            header=header, name=['%s_%s' % (side, name) for name in angles], position=list(angles.values())), recorded)
+    for event in demonstration.events[i]:
+        bag.write('/events', String(data=event), recorded)
+    bag.write('/tf', TFMessage(transforms=transforms), recorded)

@@ -1,0 +1,169 @@
+"""What an object's stay with a hand shows: the evidence from which losses.py tells why it ended."""
+
+import collections
+import math
+
+import numpy
+
+WINDOW = 0.6  # s before an object is let go, in which the cause is sought
+TRACKING_WINDOW = 0.5  # s; a hand may be kept that long after it was seen last
+IMPACT_WINDOW, IMPACT_MARGIN = 0.4, 0.02  # s before and after the last touch
+MIN_IMPACT = 0.05  # m/s; change of the object's speed by another that counts
+IMPACT_REACH = 0.02  # m between bounding spheres; s of the change of speed
+MIN_OPENING = 0.003  # m; mean distance of the fingertips from their centre, over the stay
+MIN_BEGUN = 0.001  # m; of that, as the fingers still touch
+CLEAR = 0.1  # of the opening, since when the hand is open
+CATCH = 0.03  # s; fingers that stick for a shorter time still slide
+SPAN = 0.02  # s before and after, for the palm's acceleration
+
+Impact = collections.namedtuple('Impact', 'by time speed')
+Opening = collections.namedtuple('Opening', 'begun clear distance')
+
+
+class Stay:
+    """Samples first to last of an object with a hand; they touch in `touched` for the last time."""
+
+    def __init__(self, thing, hand, hand_id, first, touched, last):
+        self.thing, self.hand, self.hand_id = thing, hand, hand_id
+        self.first, self.touched, self.last = first, touched, last
+        self.window = touched  # where the search for a cause begins
+        while self.window > first and self.time(touched) - self.time(self.window - 1) <= WINDOW:
+            self.window -= 1
+
+    def time(self, i):
+        return self.thing.time[i]
+
+    def touches(self, i):
+        """Of this hand."""
+        return [touch for touch in self.thing.touches[i] if touch.hand_id == self.hand_id]
+
+
+def total_normal_force(touches):
+    """Sum of the normal forces [N]."""
+    return sum(max(touch.normal, 0.0) for touch in touches)
+
+
+def tracking_was_lost(stay):
+    hand, until = stay.hand, stay.time(stay.last)
+    seen = (hand.time >= stay.time(stay.touched) - TRACKING_WINDOW) & (hand.time <= until + 1e-9)
+    return bool(hand.lost[seen].any()) or hand.time[-1] < until - 1e-9
+
+
+def strongest_impact(stay, story):
+    """Another object that no hand touches changed its velocity near this one; the one worth most, if any counts."""
+    worst = Impact('', 0.0, 0.0)
+    for name in sorted(story.objects):
+        if name != stay.thing.name:
+            impact = _impact_by(stay, story.objects[name], story.gravity)
+            worst = impact if impact.speed > worst.speed else worst
+    return worst if worst.speed >= MIN_IMPACT else None
+
+
+def _impact_by(stay, other, gravity):
+    ours, worst = stay.thing, Impact(other.name, 0.0, 0.0)
+    end = stay.time(stay.touched)
+    for i in numpy.flatnonzero((other.time >= end - IMPACT_WINDOW) & (other.time <= end + IMPACT_MARGIN)):
+        if i == 0 or other.touches[i] or other.touches[i - 1]:
+            continue
+        our = int(numpy.searchsorted(ours.time, other.time[i]))
+        if our == len(ours.time):
+            continue
+        change = other.velocity[i] - other.velocity[i - 1]
+        reach = ours.radius + other.radius + IMPACT_REACH + _norm(change) * IMPACT_REACH
+        if _norm(ours.position[our] - other.position[i]) > reach:
+            continue
+        speed = other.mass * _norm(change - gravity * (other.time[i] - other.time[i - 1])) / ours.mass
+        worst = Impact(other.name, other.time[i], speed) if speed > worst.speed else worst
+    return worst
+
+
+def opening_of(stay):
+    """Of a hand that had begun to open as it touched last, and went on."""
+    hand, used = stay.hand, []
+    for i in range(stay.window, stay.touched + 1):
+        used += [touch.finger for touch in stay.touches(i) if touch.finger not in used]
+    spreads = [(hand.time[i], hand.spread(i, used)) for i in numpy.flatnonzero(
+        (hand.time >= stay.time(stay.window) - 1e-9) & (hand.time <= stay.time(stay.last) + 1e-9))]
+    until = stay.time(min(stay.touched + 1, len(stay.thing.time) - 1)) + 1e-9
+    before = []
+    for time, spread in spreads:
+        if time > until:
+            break
+        before.append((time, spread))
+    if not before:
+        return None
+    least = 0
+    for i, (_, spread) in enumerate(before):
+        least = i if spread <= before[least][1] + 1e-5 else least
+    begun, smallest = before[least]
+    distance = before[-1][1] - smallest
+    clear = begun
+    for time, spread in before[least:]:
+        clear = time if spread <= smallest + CLEAR * distance else clear
+    if distance < MIN_BEGUN or spreads[-1][1] - smallest < MIN_OPENING:
+        return None
+    return Opening(begun, clear, distance)
+
+
+def faces_were_wrong(stay):
+    """Whether in most frames no two fingers could hold a body between them: each within the other's friction cone."""
+    limit, good, bad = -math.cos(2.0 * math.atan(stay.thing.static_friction)), 0, 0
+    for i in range(stay.window, stay.touched + 1):
+        outward = [touch.outward for touch in stay.touches(i)]
+        if len(outward) < 2:
+            continue
+        opposed = any(a @ b <= limit for n, a in enumerate(outward) for b in outward[n + 1:])
+        good, bad = good + opposed, bad + (not opposed)
+    return bad > good
+
+
+def slides_from(stay):
+    """First sample from which on all fingers slide to the end, short catches left out; the end if they do not."""
+    start = stay.touched
+    for i in range(stay.touched, stay.window - 1, -1):
+        # The friction utilisation does not tell: assist, and edges, bear more than the limit.
+        if all(touch.slips for touch in stay.touches(i)):
+            start = i
+        if stay.time(start) - stay.time(i) > CATCH:
+            break
+    return start
+
+
+def carried_load(stay):
+    """The most that the fingers bore along the surfaces [N]: what hangs on a joint is not carried."""
+    return max(sum(touch.tangential for touch in stay.touches(i)) for i in range(stay.window, stay.touched + 1))
+
+
+def load_of(stay, gravity, start):
+    """The most that the fingers had to bear along the surfaces [N]: weight, and what it takes to accelerate the object."""
+    most = 0.0
+    for i in range(start, stay.touched + 1):
+        touches = stay.touches(i)
+        if touches:
+            outward = max(touches, key=lambda touch: touch.normal).outward
+            load = stay.thing.mass * (_acceleration(stay.hand, stay.time(i)) - gravity)
+            most = max(most, _norm(load - (load @ outward) * outward))
+    return most
+
+
+def _acceleration(hand, time):
+    """Of the palm, over twice SPAN [m/s^2]; 0 where that is not seen."""
+    before = numpy.flatnonzero(hand.time <= time - SPAN + 1e-6)
+    at, after = (numpy.flatnonzero(hand.time >= start - 1e-6) for start in (time, time + SPAN))
+    if not (len(before) and len(at) and len(after)):
+        return numpy.zeros(3)
+    before, at, after = before[-1], at[0], after[0]
+    a, b = hand.time[at] - hand.time[before], hand.time[after] - hand.time[at]
+    if a <= 0.0 or b <= 0.0:
+        return numpy.zeros(3)
+    return ((hand.palm[after] - hand.palm[at]) / b - (hand.palm[at] - hand.palm[before]) / a) / (0.5 * (a + b))
+
+
+def assisted_in(stay):
+    """First and last time at which grasp assist supported the object, or None [s]."""
+    active = numpy.flatnonzero(stay.thing.assisted[stay.first:stay.touched + 1])
+    return (stay.time(stay.first + active[0]), stay.time(stay.first + active[-1])) if len(active) else None
+
+
+def _norm(vector):
+    return math.sqrt(vector @ vector)

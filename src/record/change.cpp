@@ -1,0 +1,287 @@
+#include "change.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <stdexcept>
+
+#include "../text/file_text.h"
+#include "../text/safe_yaml.h"
+#include "../text/text.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "record_yaml.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxMeshBytes = 64u << 20;  // of a mesh
+
+bool begins_with(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+std::string place_of(const std::string& uri, const std::string& folder) {
+  if (begins_with(uri, "file://")) return uri.substr(7);
+  if (begins_with(uri, "package://")) return resolve_package_uri(uri);
+  return (fs::path(folder) / uri).string();
+}
+
+void replace_all(const std::string& from, const std::string& to, std::string& text) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+constexpr std::size_t kMaxYamlBytes = 4u << 20;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("recorded change: " + what + "; allowed: what this package has recorded");
+}
+
+struct Making {
+  LiveSimulation& simulation;
+
+  void operator()(const Spawn& spawn) const {
+    simulation.add(requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
+  }
+  void operator()(const Delete& remove) const { simulation.remove(remove.name); }
+  void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
+  void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
+  void operator()(const Reset&) const { simulation.reset(); }
+  void operator()(const Pause&) const {}
+};
+
+struct InWords {
+  std::string operator()(const Spawn& spawn) const { return "spawn '" + spawn.request.name + "'"; }
+  std::string operator()(const Delete& remove) const { return "delete '" + remove.name + "'"; }
+  std::string operator()(const SetParameters& set) const {
+    std::string text = "set";
+    for (const auto& [name, value] : set.values) text += " " + name + "=" + value;
+    return text;
+  }
+  std::string operator()(const PlaceObject& place) const { return "place '" + place.name + "'"; }
+  std::string operator()(const Reset&) const { return "reset"; }
+  std::string operator()(const Pause& pause) const { return pause.on ? "pause" : "go on"; }
+};
+
+struct AsNode {
+  YAML::Node node;
+
+  void operator()(const Spawn& spawn) { node["spawn"] = request_node(spawn.request); }
+  void operator()(const Delete& remove) { node["delete"] = remove.name; }
+  void operator()(const SetParameters& set) {
+    for (const auto& [name, value] : set.values) {
+      YAML::Node pair(std::vector<std::string>{name, value});
+      node["set"].push_back(pair);
+    }
+  }
+  void operator()(const PlaceObject& place) {
+    node["place"] = place.name;
+    node["pose"] = pose_node(place.pose);
+  }
+  void operator()(const Reset&) { node["reset"] = "all"; }
+  void operator()(const Pause& pause) { node["pause"] = pause.on ? "on" : "off"; }
+};
+
+SetParameters values_in(const YAML::Node& node) {
+  SetParameters set;
+  for (const YAML::Node& pair : node) {
+    if (!pair.IsSequence() || pair.size() != 2 || !pair[0].IsScalar() || !pair[1].IsScalar())
+      throw std::invalid_argument("recorded change: 'set' has no names and values; allowed: [[NAME, VALUE]]");
+    set.values.emplace_back(pair[0].Scalar(), pair[1].Scalar());
+  }
+  return set;
+}
+
+}  // namespace
+
+RecordedFiles mesh_files(const std::string& xml, const std::string& folder) {
+  static const std::regex kFilename("filename\\s*=\\s*[\"']([^\"']*)[\"']");
+  RecordedFiles files;
+  for (std::sregex_iterator found(xml.begin(), xml.end(), kFilename), end; found != end; ++found) {
+    const std::string uri = (*found)[1];
+    const bool known =
+        std::any_of(files.begin(), files.end(), [&](const RecordedFile& file) { return file.name == uri; });
+    const auto bytes = known ? std::nullopt : file_text(place_of(uri, folder), kMaxMeshBytes + 1);
+    if (bytes && bytes->size() <= kMaxMeshBytes) files.push_back({uri, *bytes});
+  }
+  return files;
+}
+
+std::string with_meshes_in(const std::string& folder, std::string xml, const RecordedFiles& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& uri = files[i].name;
+    if (xml.find('"' + uri + '"') == std::string::npos && xml.find('\'' + uri + '\'') == std::string::npos)
+      continue;
+    const fs::path path =
+        fs::path(folder) / ("mesh_" + std::to_string(i) + fs::path(uri).extension().string());
+    std::ofstream out = file_to_write(path.string());
+    out << files[i].bytes << std::flush;
+    if (!out) throw std::runtime_error("cannot write " + path.string());
+    for (const char quote : {'"', '\''})
+      replace_all(quote + uri + quote, quote + ("file://" + path.string()) + quote, xml);
+  }
+  return xml;
+}
+
+YAML::Node recorded_yaml(const std::string& yaml) {
+  try {
+    return load_yaml("recorded change", yaml, kMaxYamlBytes);
+  } catch (const YamlError& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+std::string text_in(const YAML::Node& node, const char* key) {
+  const YAML::Node value = node.IsMap() ? node[key] : YAML::Node(YAML::NodeType::Undefined);
+  if (!value || !value.IsScalar()) refuse(std::string("no '") + key + "'");
+  return value.Scalar();
+}
+
+const RecordedFile* find_file(const RecordedFiles& files, const std::string& name) {
+  for (const RecordedFile& file : files)
+    if (file.name == name) return &file;
+  return nullptr;
+}
+
+/// What is spawned whole may have no name: its text names it (FNV-1a).
+std::string spawned_file(const ObjectRequest& request) {
+  std::string name = request.name;
+  if (name.empty()) {
+    std::uint64_t sum = 0xcbf29ce484222325u;
+    for (const char c : request.urdf) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    name = std::to_string(sum);
+  }
+  return "spawn/" + name + ".urdf";
+}
+
+YAML::Node numbers_node(const std::vector<double>& values) {
+  YAML::Node node(YAML::NodeType::Sequence);
+  for (const double value : values) node.push_back(text::exact(value));
+  node.SetStyle(YAML::EmitterStyle::Flow);
+  return node;
+}
+
+YAML::Node pose_node(const Pose& pose) {
+  const Vector3& p = pose.position;
+  const Quaternion& q = pose.orientation;
+  return numbers_node({p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+YAML::Node twist_node(const Twist& twist) {
+  const Vector3 &v = twist.linear, &w = twist.angular;
+  return numbers_node({v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+}
+
+YAML::Node request_node(const ObjectRequest& request) {
+  YAML::Node node;
+  node["name"] = request.name;
+  if (!request.urdf.empty()) node["urdf"] = spawned_file(request);
+  if (request.urdf.empty()) {
+    node["shape"] = request.shape;
+    node["size"] = numbers_node(request.size);
+    node["mass"] = text::exact(request.mass);
+  }
+  if (request.whole) {
+    node["whole"] = "yes";
+    node["joints"] = request.joints;
+  }
+  node["pose"] = pose_node(request.pose);
+  node["twist"] = twist_node(request.twist);
+  if (!request.material.empty()) node["material"] = request.material;
+  if (request.rgba) {
+    const auto& c = *request.rgba;
+    node["rgba"] = numbers_node({double(c[0]), double(c[1]), double(c[2]), double(c[3])});
+  }
+  return node;
+}
+
+std::vector<double> numbers_in(const YAML::Node& node, std::size_t count) {
+  if (!node || !node.IsSequence() || (count > 0 && node.size() != count) || node.size() > 100)
+    refuse("not " + std::to_string(count) + " numbers");
+  std::vector<double> values;
+  for (const YAML::Node& item : node) {
+    const std::string text = item.IsScalar() ? item.Scalar() : "";
+    char* end = nullptr;
+    values.push_back(std::strtod(text.c_str(), &end));
+    if (text.empty() || *end != '\0') refuse("'" + text::one_line(text, 40) + "' is no number");
+  }
+  return values;
+}
+
+Pose pose_in(const YAML::Node& node) {
+  const std::vector<double> v = numbers_in(node, 7);
+  return {{v[0], v[1], v[2]}, Quaternion(v[6], v[3], v[4], v[5])};
+}
+
+Twist twist_in(const YAML::Node& node) {
+  const std::vector<double> v = numbers_in(node, 6);
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+
+ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
+  ObjectRequest request;
+  request.name = text_in(node, "name");
+  if (node["urdf"]) {
+    const RecordedFile* file = find_file(files, text_in(node, "urdf"));
+    if (file == nullptr) refuse("the URDF of '" + text::one_line(request.name, 60) + "' is missing");
+    request.urdf = file->bytes;
+  } else {
+    request.shape = text_in(node, "shape");
+    request.size = numbers_in(node["size"], 0);
+    request.mass = numbers_in(YAML::Node(std::vector<std::string>{text_in(node, "mass")}), 1)[0];
+  }
+  if (node["whole"]) {
+    request.whole = true;
+    request.joints = text_in(node, "joints");
+  }
+  request.pose = pose_in(node["pose"]);
+  request.twist = twist_in(node["twist"]);
+  if (node["material"]) request.material = text_in(node, "material");
+  if (node["rgba"]) {
+    const std::vector<double> c = numbers_in(node["rgba"], 4);
+    request.rgba = {{float(c[0]), float(c[1]), float(c[2]), float(c[3])}};
+  }
+  return request;
+}
+
+void make(const Change& change, LiveSimulation& simulation) {
+  std::visit(Making{simulation}, change);
+}
+
+std::string to_text(const Change& change) {
+  return std::visit(InWords{}, change);
+}
+
+std::string to_yaml(const Change& change) {
+  AsNode as_node;
+  std::visit(as_node, change);
+  return YAML::Dump(as_node.node);
+}
+
+RecordedFiles files_of(const Change& change) {
+  const Spawn* spawn = std::get_if<Spawn>(&change);
+  if (spawn == nullptr || spawn->request.urdf.empty()) return {};
+  RecordedFiles files = mesh_files(spawn->request.urdf, "");
+  files.push_back({spawned_file(spawn->request), spawn->request.urdf});
+  return files;
+}
+
+Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
+  const YAML::Node node = recorded_yaml(yaml);
+  if (!node.IsMap()) throw std::invalid_argument("recorded change: is no map; allowed: one");
+  if (node["spawn"]) return Spawn{request_in(node["spawn"], files)};
+  if (node["delete"]) return Delete{text_in(node, "delete")};
+  if (node["set"]) return values_in(node["set"]);
+  if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
+  if (node["reset"]) return Reset{};
+  if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
+  throw std::invalid_argument(
+      "recorded change: is not known; allowed: spawn, delete, set, place, reset, pause");
+}
+
+}  // namespace mrhi

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""A demonstration says the same as the tables that it is made of, at any rate."""
+
+import csv
+import json
+import math
+import os
+import tempfile
+import unittest
+
+import numpy
+
+from pinching import SUMMARY, Attempt, replay_is_built, script, write_tables
+
+from runs.demonstration import Body, demonstration_of, joint_angles
+from runs.tables import Run, RunError
+
+
+class TablesTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = holder.name
+
+    def demonstration(self, **tables):
+        write_tables(self.folder, **tables)
+        with open(os.path.join(self.folder, 'summary.json'), 'w') as file:
+            json.dump(dict(SUMMARY, input='a.csv'), file)
+        return demonstration_of(Run(self.folder))
+
+    def test_positions_go_on_straight_lines_and_rotations_the_shortest_way(self):
+        quarter = math.sin(math.pi / 4.0)
+        demonstration = self.demonstration(
+            frames=[{'frame': 0, 'stamp': 0}, {'frame': 1, 'stamp': 20000000}],
+            objects=[{'name': 'cube', 'qw': 1, 'frame': 0, 'held': 1},
+                     {'name': 'cube', 'px': 0.4, 'qz': -quarter, 'qw': -quarter, 'frame': 1}]).at_rate(100.0)
+        self.assertEqual(demonstration.stamps.tolist(), [0, 10000000, 20000000])
+        cube = demonstration.objects['cube']
+        self.assertAlmostEqual(cube.pose[1, 0], 0.2, 15)
+        self.assertAlmostEqual(2.0 * math.atan2(cube.pose[1, 5], cube.pose[1, 6]), math.pi / 4.0, 12)
+        self.assertEqual(cube.held.tolist(), [1, 1, 0])  # what acts is that of the frame before
+
+    def test_the_wrench_is_of_all_contacts_about_the_centre_of_mass(self):
+        demonstration = self.demonstration(
+            frames=[{'frame': 0, 'stamp': 5}],
+            objects=[{'name': name, 'px': 1, 'qw': 1, 'frame': 0} for name in ('ball', 'cube')],
+            contacts=[{'object': 'cube', 'x': 1, 'y': 0.1, 'fz': 2, 'frame': 0}, {'object': 'cube', 'x': 1.2, 'fy': 3, 'frame': 0}])
+        numpy.testing.assert_allclose(demonstration.objects['cube'].wrench, [[0, 3, 2, 0.2, 0, 0.6]], atol=1e-15)
+        self.assertFalse(demonstration.objects['ball'].wrench.any())
+
+    def test_an_event_is_told_at_the_first_time_after_it_and_cells_of_what_is_not_there_are_empty(self):
+        demonstration = self.demonstration(
+            frames=[{'frame': i, 'stamp': 9000000 * i} for i in range(4)],
+            objects=[{'name': 'cube', 'qw': 1, 'frame': 2}],
+            events=[{'kind': 'HAND_FOUND', 'frame': 0}, {'kind': 'GRASP_BEGIN', 'object': 'cube', 'frame': 1},
+                    {'kind': 'GRASP_END', 'object': 'cube', 'frame': 3}])
+        self.assertEqual(demonstration.at_rate(100.0).table()['events'].tolist(), ['HAND_FOUND', 'GRASP_BEGIN cube', ''])
+        rows = list(csv.DictReader(demonstration.table().to_csv(index=False).splitlines()))
+        self.assertEqual([row['cube.px'] for row in rows], ['', '', '0.0', ''])
+        self.assertEqual(rows[1]['cube.held'], '')
+
+    def test_of_a_recording_that_begins_anew_the_last_part_counts(self):
+        demonstration = self.demonstration(
+            frames=[{'frame': 0, 'stamp': 50}, {'frame': 1, 'stamp': 60}, {'frame': 2, 'stamp': 10}, {'frame': 3, 'stamp': 20}],
+            objects=[{'name': 'cube', 'px': i, 'qw': 1, 'frame': i} for i in range(4)])
+        self.assertEqual(demonstration.stamps.tolist(), [10, 20])
+        self.assertEqual(demonstration.objects['cube'].pose[:, 0].tolist(), [2.0, 3.0])
+
+    def test_rows_of_frames_that_are_not_there_are_named(self):
+        with self.assertRaisesRegex(RunError, r'frames.csv: has no frame; allowed: '):
+            self.demonstration()
+        with self.assertRaisesRegex(RunError, r'objects.csv: has a row of frame 7; allowed: 0 to 0, those of frames.csv'):
+            self.demonstration(frames=[{'frame': 0}], objects=[{'name': 'cube', 'frame': 7}])
+
+    def test_joints_are_bent_by_the_angle_between_their_bones(self):
+        bones = Body(1).bones[0]
+        bones[4:7] = [[0, 0, 0, 0.06, 0, 0], [0.06, 0, 0, 0.1, 0, 0], [0.1, 0, 0, 0.1, 0, -0.03]]
+        angles = joint_angles(bones)
+        self.assertEqual(sorted(angles), ['index_1', 'index_2'])
+        self.assertAlmostEqual(angles['index_1'], 0.0, 12)
+        self.assertAlmostEqual(angles['index_2'], 0.5 * math.pi, 12)
+
+
+@unittest.skipUnless(replay_is_built(), 'replay is not built')
+class ReplayTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.output = Attempt(opens_at=0.9).replay(holder.name)
+
+    def test_events_and_the_path_stay_the_same_at_another_rate(self):
+        own = demonstration_of(Run(self.output))
+        even = own.at_rate(100.0)
+        told = [[event for frame in demonstration.events for event in frame] for demonstration in (own, even)]
+        self.assertIn('GRASP_BEGIN object', told[0])
+        self.assertEqual(told[0][:len(told[1])], told[1])
+        self.assertEqual(set(numpy.diff(even.stamps)), {10000000})
+        for stamp, pose in zip(even.stamps, even.objects['object'].pose):
+            nearest = int(numpy.argmin(numpy.abs(own.stamps - stamp)))
+            apart = numpy.linalg.norm(pose[:3] - own.objects['object'].pose[nearest, :3])
+            self.assertLessEqual(apart, 1e-9 * abs(own.stamps[nearest] - stamp) + 1e-6)  # no faster than 1 m/s
+
+    def test_table_and_bag_hold_what_carries_the_object(self):
+        import rosbag
+        done = script('export', self.output, '--rate', '100')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(os.path.join(self.output, 'demonstration.csv')) as file:
+            rows = list(csv.DictReader(file))
+        self.assertIn('right.index_3.x', rows[0])
+        self.assertNotIn('left.palm.px', rows[0])
+        self.assertEqual({row['object.held'] for row in rows}, {'0', '1'})
+        with rosbag.Bag(os.path.join(self.output, 'demonstration.bag')) as bag:
+            self.assertEqual({topic.msg_type for topic in bag.get_type_and_topic_info()[1].values()}, {
+                'geometry_msgs/PoseStamped', 'geometry_msgs/WrenchStamped', 'sensor_msgs/JointState', 'std_msgs/String',
+                'tf2_msgs/TFMessage'})
+            self.assertEqual(bag.get_message_count('/demonstration/object/pose'), len(rows))
+        for rate in ('0.5', '1001', 'x', 'nan'):
+            refused = script('export', self.output, '--rate', rate)
+            self.assertEqual((refused.returncode, refused.stderr.count('\n')), (2, 1), refused.stderr)
+
+
+if __name__ == '__main__':
+    unittest.main()
