@@ -119,6 +119,7 @@ Human deserialised(std::vector<std::uint8_t>& bytes) {
   Human human;
   ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   try {
+    if (bytes.empty()) ros::serialization::throwStreamOverrun();  // roscpp would add to a null pointer
     ros::serialization::deserialize(stream, human);
   } catch (const ros::serialization::StreamOverrunException&) {
     refuse("ends before all of its fields");
