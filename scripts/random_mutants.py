@@ -24,7 +24,6 @@ SUITES = {
     "rendering": "rendering ros",
     "synthetic": "synthetic operators",
     "training": "training operators",
-    "calibration": "calibration",
     "ros": "ros wire",
     "record": "replay ros",
     "replay": "replay",

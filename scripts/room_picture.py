@@ -6,13 +6,12 @@ square."""
 import argparse
 import os
 import re
-import struct
 import sys
-import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from study import program  # noqa: E402
 
+import matplotlib.image
 import numpy
 
 TABLE = (0.45, 0.30)  # half of its length and width [m]
@@ -129,18 +128,6 @@ def corner_squares(picture):
             picture[rows, columns] = SQUARE
 
 
-def write_png(file, picture):
-    height, width, _ = picture.shape
-    # Each row less the one above, which compresses best (PNG's filter 2).
-    above = numpy.vstack([numpy.zeros_like(picture[:1]), picture[:-1]])
-    lines = b"".join(b"\2" + row.tobytes() for row in picture - above)
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-               chunk(b"IDAT", zlib.compress(lines, 9)) + chunk(b"IEND", b""))
-
-
 def numbers(count):
     def parse(text):
         values = [float(value) for value in text.replace(",", " ").split()]
@@ -166,8 +153,7 @@ def main():
     if options.mark:
         picture[silhouette(camera, options.mark[:3], options.mark[3:])] = MARK
         corner_squares(picture)
-    with open(options.output, "wb") as file:
-        write_png(file, picture)
+    matplotlib.image.imsave(options.output, picture, format="png")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
-#include "ros/leap_human_encoder.h"
+#include "ros/leap_human_publisher.h"
 
 namespace {
 
@@ -100,8 +100,7 @@ class Measurement {
   Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options,
               const std::vector<std::string>& topics)
       : node_(node), hand_(options) {
-    message_.morph(mrhi::LeapHumanEncoder::md5(), mrhi::LeapHumanEncoder::type(),
-                   mrhi::LeapHumanEncoder::definition(), "");
+    prepare({});  // advertised with its type
     to_node_ = message_.advertise(node_, "/leap_motion/leap_device", kQueue);
     to_relay_ = message_.advertise(node_, "relay_in", kQueue);
     const auto listen = [&](const std::string& topic, Track& track, std::size_t offset) {
@@ -153,10 +152,7 @@ class Measurement {
  private:
   void prepare(mrhi::JointsFrame frame) {
     frame.stamp = mrhi::from_ros_time(ros::Time::now());
-    std::vector<std::uint8_t> bytes =
-        mrhi::LeapHumanEncoder::encode(frame, "leap_hands", sequence_++, static_cast<float>(kRate));
-    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    message_.read(stream);
+    mrhi::write_leap(frame, "leap_hands", sequence_++, static_cast<float>(kRate), message_);
     frame_stamp_ = static_cast<std::uint64_t>(frame.stamp);
   }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <set>
 #include <vector>
 
@@ -147,25 +146,9 @@ struct BagInput::Impl {
         devices(bag, device),
         at(view.begin()) {}
 
-  /// Bags are made of many recorders' connections; each has a definition of its own.
-  const LeapHumanDecoder& decoder(const std::string& definition) {
-    auto& found = decoders[definition];
-    if (!found) found = std::make_unique<const LeapHumanDecoder>(definition);
-    return *found;
-  }
-
   SourceFrame place(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
     if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
     return placed(joints, devices.pose(frame_id));
-  }
-
-  SourceFrame read_leap(const rosbag::MessageInstance& message) {
-    buffer.resize(message.size());
-    ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(buffer.size()));
-    message.write(stream);
-    LeapHumanDecoder::Frame frame =
-        decoder(message.getMessageDefinition()).decode(buffer.data(), buffer.size());
-    return place(std::move(frame.joints), frame.frame_id, message.getTime());
   }
 
   template <class Tracker>
@@ -206,7 +189,10 @@ struct BagInput::Impl {
 
   SourceFrame read_hands(const rosbag::MessageInstance& message) {
     try {
-      if (message.getDataType() == "leap_motion/Human") return read_leap(message);
+      if (message.getDataType() == "leap_motion/Human") {
+        LeapFrame frame = read_leap(message);
+        return place(std::move(frame.joints), frame.frame_id, message.getTime());
+      }
       if (message.getDataType() == "mr_hand_interaction/HandFrame") return read_hand_frame(message);
       SourceFrame frame =
           refused("unknown version", "type " + message.getDataType() + "; allowed: " + joined(kTypes));
@@ -235,8 +221,6 @@ struct BagInput::Impl {
   DeviceFrames devices;
   rosbag::View::iterator at;
   std::size_t position = 0;
-  std::map<std::string, std::unique_ptr<const LeapHumanDecoder>> decoders;
-  std::vector<std::uint8_t> buffer;
 };
 
 BagInput::BagInput(const std::string& file, const std::optional<std::string>& topic,

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "input_statistics.h"
-#include "leap_reader.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "mr_hand_interaction/tracking/joint_gaps.h"
@@ -75,7 +75,6 @@ struct HandTracking::Impl {
   JointGaps gaps_;
   HandPairs pairs_;
   bool leap_seen_ = false;  ///< a driver, by the present subscription
-  LeapReader leap_reader_;
   InputStatistics statistics_;
   SequenceWatch sequences_;
 
@@ -143,7 +142,7 @@ void HandTracking::Impl::take_leap(const LeapEvent& event) {
   const topic_tools::ShapeShifter& message = *event.getConstMessage();
   leap_seen_ = true;
   try {
-    LeapHumanDecoder::Frame frame = leap_reader_.read(message);
+    LeapFrame frame = read_leap(message);
     statistics_.lost(sequences_.missing(event.getPublisherName(), frame.sequence));
     take(place(std::move(frame.joints), frame.frame_id, event.getReceiptTime()), event.getReceiptTime());
   } catch (const DecodeError& error) {

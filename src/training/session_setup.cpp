@@ -1,6 +1,9 @@
 #include "mr_hand_interaction/training/session_setup.h"
 
+#include <openssl/sha.h>
+
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -9,7 +12,6 @@
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/training/session_folder.h"
-#include "sha256.h"
 
 namespace mrhi {
 namespace {
@@ -26,6 +28,18 @@ std::string bytes_of(const std::string& file) {
   if (!text || text->size() > kLargestMesh)
     throw SceneError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
   return *std::move(text);
+}
+
+/// As `sha256sum` prints it.
+std::string sha256(const std::string& bytes) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest.data());
+  std::string digits;
+  for (const unsigned char byte : digest) {
+    digits += "0123456789abcdef"[byte >> 4];
+    digits += "0123456789abcdef"[byte & 0xf];
+  }
+  return digits;
 }
 
 std::string parameters_text(const Configuration& configuration) {

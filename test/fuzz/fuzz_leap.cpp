@@ -1,34 +1,32 @@
-// A leap_motion/Human whose definition may say what the message is not: two bytes for the length of the
-// definition (0: the one that we know), the definition, the message.
+// A leap_motion/Human: a byte for its version, then the message.
+#include <mr_hand_interaction/LeapAugust2019Human.h>
+#include <mr_hand_interaction/LeapFebruary2020Human.h>
+#include <mr_hand_interaction/LeapHuman.h>
+#include <mr_hand_interaction/LeapMelodicHuman.h>
+
 #include "fuzz/target.h"
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "wire/leap_messages.h"
 
 namespace {
 
 using namespace mrhi;
+namespace msg = mr_hand_interaction;
 
-void decode(const LeapHumanDecoder& decoder, const std::uint8_t* data, std::size_t size) {
-  try {
-    const LeapHumanDecoder::Frame frame = decoder.decode(data, size);
-    fuzzing::require(frame.joints.hands.size() <= 2, "a message has at most two hands");
-    std::vector<std::string> defects;
-    complete_frame(frame.joints, Pose(), defects);
-    for (const std::string& defect : defects) fuzzing::require_one_line(defect);
-  } catch (const DecodeError& error) {
-    fuzzing::require_one_line(error.what());
-  }
-}
+const char* const kVersions[] = {ros::message_traits::md5sum<msg::LeapHuman>(),
+                                 ros::message_traits::md5sum<msg::LeapFebruary2020Human>(),
+                                 ros::message_traits::md5sum<msg::LeapAugust2019Human>(),
+                                 ros::message_traits::md5sum<msg::LeapMelodicHuman>()};
 
 }  // namespace
 
 FUZZ_TARGET(leap) {
-  if (size < 2) return;
-  const std::size_t length = std::min<std::size_t>(size - 2, data[0] + 256u * data[1]);
-  const std::string definition(reinterpret_cast<const char*>(data + 2), length);
+  if (size < 1) return;
   try {
-    const LeapHumanDecoder decoder(length > 0 ? definition : leap_definition(LeapVersion::head));
-    decode(decoder, data + 2 + length, size - 2 - length);
+    const LeapFrame frame = read_leap(kVersions[data[0] % 4], {data + 1, data + size});
+    fuzzing::require(frame.joints.hands.size() <= 2, "a message has at most two hands");
+    std::vector<std::string> defects;
+    complete_frame(frame.joints, Pose(), defects);
+    for (const std::string& defect : defects) fuzzing::require_one_line(defect);
   } catch (const DecodeError& error) {
     fuzzing::require_one_line(error.what());
   }

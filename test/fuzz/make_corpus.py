@@ -3,7 +3,6 @@
 import io
 import os
 import random
-import struct
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -24,16 +23,10 @@ def write(target, name, content):
 
 
 def leap():
-    for version in leap_messages.MD5:
+    for number, version in enumerate(leap_messages.MD5):
         message = io.BytesIO()
         leap_messages.human(leap_messages.classes(version), 1.5, ("right", "left")).serialize(message)
-        definition = leap_messages.definition(version).encode()
-        write("leap", version, struct.pack("<H", len(definition)) + definition + message.getvalue())
-    message = io.BytesIO()
-    leap_messages.human(leap_messages.classes("head"), 1.5).serialize(message)
-    write("leap", "known_definition", b"\0\0" + message.getvalue())
-    lying = "Header header\nHand[3] right_hand\n" + "=" * 80 + "\nMSG: leap_motion/Hand\nHand[] left_hand\n"
-    write("leap", "lying_definition", struct.pack("<H", len(lying)) + lying.encode() + b"\xff" * 40)
+        write("leap", version, bytes([number]) + message.getvalue())
 
 
 def csv():

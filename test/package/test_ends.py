@@ -96,6 +96,11 @@ class EndsTest(unittest.TestCase):
             with self.subTest(what=what), self.there("summary.json", make) as path:
                 self.assert_refused("explain", run("explain", self.folder), path, why)
 
+    def test_a_file_of_points_that_is_none_is_named(self):
+        for what, make, why in NO_FILES + (("deep", lambda path: write(path, "[" * DEEP), "is nested too deep"),):
+            with self.subTest(what=what), self.there("points.yaml", make) as path:
+                self.assert_refused("calibrate_mount", run("calibrate_mount", path), path, why)
+
     def test_a_session_that_is_none_is_named(self):
         cases = NO_FILES + tuple((text[:60], lambda path, text=text: write(path, text), why) for text, why in (
             (HEADER + "started: 2026-13-45\n", "is not YAML: month must be in 1..12"),

@@ -14,7 +14,7 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "replay/replay_files.h"
-#include "ros/leap_human_encoder.h"
+#include "ros/leap_human_publisher.h"
 
 namespace mrhi {
 namespace {
@@ -37,12 +37,13 @@ struct TestBag {
   }
 
   void add_leap(const std::string& topic, const JointsFrame& frame, std::size_t cut = 0) {
-    auto bytes = LeapHumanEncoder::encode(frame, "leap_hands", 0, static_cast<float>(kRate));
-    bytes.resize(bytes.size() - cut);
     topic_tools::ShapeShifter message;
-    message.morph(LeapHumanEncoder::md5(), LeapHumanEncoder::type(), LeapHumanEncoder::definition(), "");
-    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    message.read(stream);
+    write_leap(frame, "leap_hands", 0, static_cast<float>(kRate), message);
+    std::vector<std::uint8_t> bytes(message.size());
+    ros::serialization::OStream out(bytes.data(), message.size());
+    message.write(out);
+    ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size() - cut));
+    message.read(in);
     add(topic, frame.stamp, message);
   }
 
@@ -213,11 +214,8 @@ TEST(BagInput, the_receipt_time_stands_in_for_a_stamp_that_was_not_set) {
   JointsFrame frame = frames()[0];
   frame.stamp = 0;
   TestBag bag("stamp.bag");
-  auto bytes = LeapHumanEncoder::encode(frame, "leap_hands", 0, 60.0f);
   topic_tools::ShapeShifter message;
-  message.morph(LeapHumanEncoder::md5(), LeapHumanEncoder::type(), LeapHumanEncoder::definition(), "");
-  ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  message.read(stream);
+  write_leap(frame, "leap_hands", 0, 60.0f, message);
   bag.add("/leap_motion/leap_device", kBegin, message);
   const auto read = bag.read();
   ASSERT_TRUE(read[0].frame);

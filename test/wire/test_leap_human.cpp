@@ -1,20 +1,159 @@
 #include "mr_hand_interaction/ros/leap_human.h"
 
 #include <gtest/gtest.h>
+#include <mr_hand_interaction/LeapAugust2019Human.h>
+#include <mr_hand_interaction/LeapFebruary2020Human.h>
+#include <mr_hand_interaction/LeapHuman.h>
+#include <mr_hand_interaction/LeapMelodicHuman.h>
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 
-#include "leap_messages.h"
+#include "ros/leap_human_publisher.h"
 #include "sample_hands.h"
 
 namespace mrhi {
 namespace {
 
-LeapHumanDecoder::Frame decode(LeapVersion version, const JointsFrame& frame) {
-  const auto bytes = LeapWriter(version).human(frame);
-  return LeapHumanDecoder(leap_definition(version)).decode(bytes.data(), bytes.size());
+namespace msg = mr_hand_interaction;
+using Bytes = std::vector<std::uint8_t>;
+
+template <class Human>
+Bytes serialised(const Human& human) {
+  Bytes bytes(ros::serialization::serializationLength(human));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, human);
+  return bytes;
+}
+
+msg::LeapHuman human_of(const JointsFrame& frame) {
+  topic_tools::ShapeShifter message;
+  write_leap(frame, "leap_hands", 42, 115.0f, message);
+  Bytes bytes(message.size());
+  ros::serialization::OStream out(bytes.data(), message.size());
+  message.write(out);
+  msg::LeapHuman human;
+  ros::serialization::IStream in(bytes.data(), message.size());
+  ros::serialization::deserialize(in, human);
+  return human;
+}
+
+template <class Hand>
+void add_axes(const msg::LeapHand& newest, Hand& hand) {
+  hand.direction = newest.direction;
+  hand.normal = newest.normal;
+}
+void add_axes(const msg::LeapHand& /*newest*/, msg::LeapMelodicHand& /*hand*/) {}
+
+template <class Hand>
+Hand older(const msg::LeapHand& newest) {
+  Hand hand;
+  hand.header = newest.header;
+  hand.lmc_hand_id = newest.lmc_hand_id;
+  hand.is_present = newest.is_present;
+  hand.confidence = newest.confidence;
+  hand.grab_strength = newest.grab_strength;
+  hand.pinch_strength = newest.pinch_strength;
+  hand.palm_velocity = {0.1f, 0.2f, 0.3f};
+  hand.palm_center = newest.palm_center;
+  hand.palm_width = newest.palm_width;
+  const auto& wrist = newest.arm.wrist.position;
+  if (wrist.x != 0.0)
+    hand.wrist_position = {static_cast<float>(wrist.x), static_cast<float>(wrist.y),
+                           static_cast<float>(wrist.z)};
+  hand.to_string = "a hand";
+  hand.finger_list = newest.finger_list;
+  hand.gesture_list.resize(1);
+  hand.gesture_list[0].pointable_ids = {8, 9};
+  add_axes(newest, hand);
+  return hand;
+}
+
+struct Message {
+  std::string md5;
+  Bytes bytes;
+};
+
+template <class Human>
+Message older(const msg::LeapHuman& newest) {
+  Human human;
+  human.header = newest.header;
+  human.to_string = "a frame";
+  human.right_hand = older<decltype(human.right_hand)>(newest.right_hand);
+  human.left_hand = older<decltype(human.left_hand)>(newest.left_hand);
+  return {ros::message_traits::md5sum<Human>(), serialised(human)};
+}
+
+Message newest(const msg::LeapHuman& human) {
+  return {ros::message_traits::md5sum<msg::LeapHuman>(), serialised(human)};
+}
+
+std::vector<Message> in_every_version(const JointsFrame& frame) {
+  const msg::LeapHuman human = human_of(frame);
+  return {newest(human), older<msg::LeapFebruary2020Human>(human), older<msg::LeapAugust2019Human>(human),
+          older<msg::LeapMelodicHuman>(human)};
+}
+
+LeapFrame read(const Message& message) {
+  return read_leap(message.md5, message.bytes);
+}
+
+/// "taken", or why not.
+std::string answer(const Message& message, DecodeError::Kind kind) {
+  try {
+    read(message);
+  } catch (const DecodeError& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "taken";
+}
+
+void expect_same(const HandJoints& sent, const HandJoints& got) {
+  EXPECT_EQ(sent.id, got.id);
+  EXPECT_EQ(sent.side, got.side);
+  EXPECT_EQ(sent.confidence, got.confidence);
+  EXPECT_EQ(sent.grab_strength, got.grab_strength);
+  EXPECT_EQ(sent.pinch_strength, got.pinch_strength);
+  EXPECT_EQ(sent.palm_centre, got.palm_centre);
+  EXPECT_EQ(sent.palm_width, got.palm_width);
+  EXPECT_EQ(sent.wrist, got.wrist);
+  EXPECT_EQ(sent.joints, got.joints);
+  EXPECT_EQ(sent.finger_width, got.finger_width);
+}
+
+TEST(LeapHuman, TheMessagesHaveTheMd5sThatTheDriverPublished) {
+  const auto messages = in_every_version({});
+  EXPECT_EQ(messages[0].md5, "2817a017ab58b244566892058c4f6e6d");
+  EXPECT_EQ(messages[1].md5, "3bd6af829f83963a7331d3ab3569550a");
+  EXPECT_EQ(messages[2].md5, "ca08153c68f1f03536845a545510cf3e");
+  EXPECT_EQ(messages[3].md5, "3e3d8dfe1324daa216cc0e23d891da6e");
+}
+
+TEST(LeapHuman, WhatIsWrittenIsOfTheDriversTypeAndNamesNoneOfOurs) {
+  topic_tools::ShapeShifter message;
+  write_leap({}, "leap_hands", 0, 115.0f, message);
+  EXPECT_EQ(message.getDataType(), "leap_motion/Human");
+  EXPECT_EQ(message.getMD5Sum(), "2817a017ab58b244566892058c4f6e6d");
+  const std::string& definition = message.getMessageDefinition();
+  EXPECT_EQ(definition.find("mr_hand_interaction"), std::string::npos);
+  for (const char* part : {"Hand", "Finger", "Bone", "Gesture", "Arm"})
+    EXPECT_NE(definition.find(std::string("\nMSG: leap_motion/") + part + "\n"), std::string::npos) << part;
+}
+
+TEST(LeapHuman, TwoHandsComeBackAsTheyWere) {
+  const JointsFrame sent{1600000000123456789, {sample_hand(Side::right), sample_hand(Side::left)}};
+  const LeapFrame got = read(newest(human_of(sent)));
+  EXPECT_EQ(got.frame_id, "leap_hands");
+  EXPECT_EQ(got.sequence, 42u);
+  EXPECT_EQ(got.joints.stamp, sent.stamp);
+  ASSERT_EQ(got.joints.hands.size(), 2u);
+  expect_same(sent.hands[0], got.joints.hands[0]);
+  expect_same(sent.hands[1], got.joints.hands[1]);
+}
+
+TEST(LeapHuman, TwoHandsOfOneSideAreNotWritten) {
+  EXPECT_THROW(human_of({1, {sample_hand(Side::right), sample_hand(Side::right)}}), std::invalid_argument);
 }
 
 TEST(LeapHuman, EveryVersionGivesTheSameBits) {
@@ -22,9 +161,8 @@ TEST(LeapHuman, EveryVersionGivesTheSameBits) {
   for (const JointsFrame& sent : sample_frames()) {
     std::vector<std::string> defects;
     const auto direct = complete_frame(sent, device, defects);
-    for (LeapVersion version : kLeapVersions) {
-      const auto received = decode(version, sent);
-      EXPECT_EQ(received.frame_id, "leap_hands");
+    for (const Message& message : in_every_version(sent)) {
+      const LeapFrame received = read(message);
       EXPECT_EQ(received.joints.stamp, sent.stamp);
       const auto frame = complete_frame(received.joints, device, defects);
       ASSERT_TRUE(direct && frame && defects.empty());
@@ -42,151 +180,86 @@ TEST(LeapHuman, FieldsThatTheDriverDoesNotKnowAreAbsent) {
   sent.hands[0].palm_width.reset();
   sent.hands[0].finger_width.fill(std::nullopt);
   sent.hands[0].joints[1][0].reset();
-  for (LeapVersion version : kLeapVersions) {
-    const HandJoints hand = decode(version, sent).joints.hands.at(0);
-    EXPECT_FALSE(hand.wrist || hand.palm_centre || hand.palm_width || hand.finger_width[2]);
-    EXPECT_FALSE(hand.joints[1][0]);
-    EXPECT_EQ(hand.joints[1][1], sent.hands[0].joints[1][1]);
-  }
+  sent.hands[0].joints[3].fill(std::nullopt);
+  for (const Message& message : in_every_version(sent))
+    expect_same(sent.hands[0], read(message).joints.hands.at(0));
 }
 
 TEST(LeapHuman, MessagesCutAnywhereAreMalformed) {
-  for (LeapVersion version : kLeapVersions) {
-    const LeapHumanDecoder decoder(leap_definition(version));
-    const auto bytes = LeapWriter(version).human(sample_frames().front());
-    for (std::size_t size = 0; size < bytes.size(); ++size) {
-      // A copy of just that size, so that a memory checker sees any byte read beyond it.
-      const std::unique_ptr<std::uint8_t[]> cut(new std::uint8_t[size]);
-      std::copy(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), cut.get());
-      try {
-        decoder.decode(cut.get(), size);
-        FAIL() << "taken with " << size << " of " << bytes.size() << " bytes";
-      } catch (const DecodeError& error) {
-        ASSERT_EQ(error.kind(), DecodeError::Kind::malformed);
-        ASSERT_NE(
-            std::string(error.what()).find("message ends inside leap_motion/Human.") == std::string::npos &&
-                std::string(error.what()).find("_") == std::string::npos,
-            true);
-      }
+  for (const Message& whole : in_every_version(sample_frames().front())) {
+    for (std::size_t size = 0; size < whole.bytes.size(); ++size) {
+      const Bytes cut(whole.bytes.begin(), whole.bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      ASSERT_EQ(answer({whole.md5, cut}, DecodeError::Kind::malformed),
+                "leap_motion/Human of " + std::to_string(size) + " bytes ends before all of its fields");
     }
-    auto longer = bytes;
-    longer.push_back(0);
-    EXPECT_THROW(decoder.decode(longer.data(), longer.size()), DecodeError);
+    Message longer = whole;
+    longer.bytes.push_back(0);
+    EXPECT_NE(answer(longer, DecodeError::Kind::malformed).find("bytes has 1 after all of its fields"),
+              std::string::npos);
   }
 }
 
+TEST(LeapHuman, AListThatClaimsAllMemoryIsRefused) {
+  msg::LeapHuman human = human_of({});
+  human.right_hand.palm_velocity = {7.25f};
+  Message message = newest(human);
+  const Bytes list = serialised(human.right_hand.palm_velocity);
+  const auto at = std::search(message.bytes.begin(), message.bytes.end(), list.begin(), list.end());
+  ASSERT_NE(at, message.bytes.end());
+  std::fill_n(at, 4, std::uint8_t{0xff});
+  EXPECT_NE(answer(message, DecodeError::Kind::malformed).find("a list or text of more than 65536 bytes"),
+            std::string::npos);
+}
+
 TEST(LeapHuman, AnyFourBytesMayBeAnAbsurdLength) {
-  const LeapHumanDecoder decoder(leap_definition(LeapVersion::head));
-  const auto bytes = LeapWriter(LeapVersion::head).human(sample_frames().front());
-  for (std::size_t at = 0; at + 4 <= bytes.size(); ++at) {
-    auto broken = bytes;
-    std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(at), 4, std::uint8_t{0xff});
+  const Message whole = newest(human_of(sample_frames().front()));
+  for (std::size_t at = 0; at + 4 <= whole.bytes.size(); ++at) {
+    Message broken = whole;
+    std::fill_n(broken.bytes.begin() + static_cast<std::ptrdiff_t>(at), 4, std::uint8_t{0xff});
     try {
-      decoder.decode(broken.data(), broken.size());
+      read(broken);
     } catch (const DecodeError&) {
     }
   }
 }
 
-std::string count_error(const std::vector<std::uint8_t>& fingers, const std::vector<std::uint8_t>& bones,
-                        bool drop_one) {
-  LeapWriter writer(LeapVersion::head);
-  writer.extra_finger = fingers;
-  writer.extra_bone = bones;
-  JointsFrame frame{1, {sample_hand(Side::right)}};
-  if (drop_one) frame.hands[0].joints[1][4].reset();
-  const auto bytes = writer.human(frame);
-  try {
-    LeapHumanDecoder(leap_definition(LeapVersion::head)).decode(bytes.data(), bytes.size());
-  } catch (const DecodeError& error) {
-    EXPECT_STREQ(error.reason(), "wrong finger or bone count");
-    return error.what();
-  }
-  return "taken";
-}
-
 TEST(LeapHuman, WrongCountsAreRefused) {
-  EXPECT_EQ(count_error({}, {}, false), "taken");
-  EXPECT_EQ(count_error({}, {}, true), "taken");
-  EXPECT_EQ(count_error({5}, {}, false), "leap_motion/Hand.finger_list has 6 entries; at most 5");
-  EXPECT_EQ(count_error({}, {3}, false), "leap_motion/Finger.bone_list has 5 entries; at most 4");
-  EXPECT_EQ(count_error({}, {1}, true), "leap_motion/Finger.bone_list has type 1 twice");
-  EXPECT_EQ(count_error({}, {4}, true), "leap_motion/Finger.bone_list has type 4; 0 to 3 are known");
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-std::string definition_error(const std::string& definition) {
-  try {
-    LeapHumanDecoder decoder(definition);
-  } catch (const DecodeError& error) {
-    EXPECT_EQ(error.kind(), DecodeError::Kind::unknown_version);
-    return error.what();
-  }
-  return "taken";
-}
-
-TEST(LeapHuman, UnknownVersionsAreRefusedByTheFieldThatDiffers) {
-  const std::string head = leap_definition(LeapVersion::head);
-  const std::string unknown = "unknown version of leap_motion/Human: ";
-  EXPECT_EQ(definition_error(head), "taken");
-  EXPECT_EQ(definition_error(replaced(head, "palm_center", "palm_centre")),
-            unknown + "no field leap_motion/Hand.palm_center");
-  EXPECT_EQ(definition_error(replaced(head, "float32 palm_width", "float64 palm_width")),
-            unknown + "field leap_motion/Hand.palm_width is float64; float32 is needed");
-  EXPECT_EQ(definition_error(replaced(head, "Bone[] bone_list", "Bone[4] bone_list")),
-            unknown + "field leap_motion/Finger.bone_list is leap_motion/Bone[N]; message[] is needed");
-  EXPECT_EQ(definition_error("string data"), unknown + "no field leap_motion/Human.header");
-  EXPECT_EQ(definition_error(""), unknown + "no field leap_motion/Human.header");
-  EXPECT_NE(definition_error(replaced(head, "MSG: leap_motion/Bone", "MSG: leap_motion/Bond")), "taken");
-  EXPECT_NE(definition_error(replaced(head, "int32 lmc_frame_id", "Hand[x] lmc_frame_id")), "taken");
-  EXPECT_NE(definition_error(replaced(head, "uint32 seq", "Header seq")), "taken")
-      << "a type that contains itself";
-}
-
-TEST(LeapHuman, DefinitionsThatAreNestedWithoutEndOrLieAboutSizesAreRefused) {
-  const auto nested = [](int levels, const std::string& count) {
-    std::string text = "T0" + count + " t\n";
-    for (int i = 0; i < levels; ++i)
-      text += std::string(80, '=') + "\nMSG: leap_motion/T" + std::to_string(i) + "\n" +
-              (i + 1 < levels ? "T" + std::to_string(i + 1) + count + " t\n" : "uint8 t\n");
-    return text;
+  const msg::LeapHuman whole = human_of({1, {sample_hand(Side::right)}});
+  const auto after = [&](auto change) {
+    msg::LeapHuman human = whole;
+    change(human.right_hand.finger_list);
+    return answer(newest(human), DecodeError::Kind::wrong_count);
   };
-  EXPECT_NE(definition_error(nested(100'000, "")).find("at most 262144"), std::string::npos);
-  EXPECT_EQ(definition_error(nested(2200, "")),
-            "unknown version of leap_motion/Human: no field leap_motion/Human.header");
-  EXPECT_EQ(definition_error(nested(9, "[999999999]")),
-            "unknown version of leap_motion/Human: no field leap_motion/Human.header");
+  using Fingers = decltype(whole.right_hand.finger_list);
+  EXPECT_EQ(after([](Fingers& fingers) { fingers.pop_back(); }), "taken");
+  EXPECT_EQ(after([](Fingers& fingers) { fingers[1].bone_list.pop_back(); }), "taken");
+  EXPECT_EQ(after([](Fingers& fingers) { fingers.push_back(fingers[0]); }),
+            "leap_motion/Hand.finger_list has 6 entries; at most 5");
+  EXPECT_EQ(after([](Fingers& fingers) { fingers[1].bone_list.push_back(fingers[1].bone_list[0]); }),
+            "leap_motion/Finger.bone_list has 5 entries; at most 4");
+  EXPECT_EQ(after([](Fingers& fingers) { fingers[1].bone_list[3].type = 1; }),
+            "leap_motion/Finger.bone_list has type 1 twice");
+  EXPECT_EQ(after([](Fingers& fingers) { fingers[1].bone_list[3].type = 4; }),
+            "leap_motion/Finger.bone_list has type 4; 0 to 3 are known");
 }
 
-TEST(LeapHuman, LaterVersionsThatKeepTheNamesAreRead) {
-  const JointsFrame sent{5, {sample_hand(Side::right)}};
-  const std::string definition =
-      replaced(leap_definition(LeapVersion::august_2019), "int32 nr_of_gestures", "uint32 nr_of_gestures");
-  const auto bytes = LeapWriter(LeapVersion::august_2019).human(sent);
-  EXPECT_EQ(LeapHumanDecoder(definition).decode(bytes.data(), bytes.size()).joints.hands.at(0).id,
-            sent.hands[0].id);
+TEST(LeapHuman, UnknownVersionsAreRefusedByTheirMd5) {
+  EXPECT_EQ(answer({"992ce8a1687cec8c8bd883ec73ca41d1", {}}, DecodeError::Kind::unknown_version),
+            "unknown version of leap_motion/Human: md5 992ce8a1687cec8c8bd883ec73ca41d1; allowed: "
+            "2817a017ab58b244566892058c4f6e6d, 3bd6af829f83963a7331d3ab3569550a, "
+            "3e3d8dfe1324daa216cc0e23d891da6e, ca08153c68f1f03536845a545510cf3e");
 }
 
 TEST(LeapHuman, NumbersThatAreNotFiniteArriveAsSuch) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   JointsFrame sent{5, {sample_hand(Side::right)}};
-  sent.hands[0].joints[2][3] = Vector3(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
-  EXPECT_EQ(defect(decode(LeapVersion::head, sent).joints.hands.at(0)),
-            "middle intermediate end is not finite");
+  sent.hands[0].joints[2][3] = Vector3(0.0, kNan, 0.0);
+  EXPECT_EQ(defect(read(newest(human_of(sent))).joints.hands.at(0)), "middle intermediate end is not finite");
 
   // Where two bones meet, the joint is in the message twice.
-  auto bytes = LeapWriter(LeapVersion::head).human({5, {sample_hand(Side::right)}});
-  const double tip_of_proximal = sample_hand(Side::right).joints[2][2].value().x();
-  const auto* pattern = reinterpret_cast<const std::uint8_t*>(&tip_of_proximal);
-  const auto at = std::search(bytes.begin(), bytes.end(), pattern, pattern + sizeof tip_of_proximal);
-  ASSERT_NE(at, bytes.end());
-  std::fill_n(at, sizeof tip_of_proximal, std::uint8_t{0xff});  // a NaN
-  const auto hand = LeapHumanDecoder(leap_definition(LeapVersion::head)).decode(bytes.data(), bytes.size());
-  EXPECT_NE(defect(hand.joints.hands.at(0)).find("is not finite"), std::string::npos);
+  msg::LeapHuman human = human_of({5, {sample_hand(Side::right)}});
+  human.right_hand.finger_list[2].bone_list[1].bone_end.position.x = kNan;
+  EXPECT_NE(defect(read(newest(human)).joints.hands.at(0)).find("is not finite"), std::string::npos);
 }
 
 }  // namespace

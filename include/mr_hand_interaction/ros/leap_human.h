@@ -1,10 +1,11 @@
 #pragma once
 
-#include <cstddef>
+#include <ros/serialization.h>
+
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "mr_hand_interaction/tracking/joints.h"
 
@@ -14,8 +15,8 @@ namespace mrhi {
 class DecodeError : public std::runtime_error {
  public:
   enum class Kind : std::uint8_t {
-    unknown_version,  ///< the definition lacks what is needed: no message of this type can be read
-    malformed,        ///< the bytes do not fit the definition
+    unknown_version,  ///< of no version of leap_motion/Human that we know
+    malformed,        ///< the bytes do not fit the type
     wrong_count       ///< fingers, bones or joints: too many, twice the same, or of no known kind
   };
 
@@ -28,26 +29,24 @@ class DecodeError : public std::runtime_error {
   Kind kind_;
 };
 
-/// Reads serialised leap_motion/Human messages by field name, from the message definition text that a
-/// subscriber's connection header or a bag's connection record carries; so all published versions and later
-/// ones that keep the names are understood.
-class LeapHumanDecoder {
- public:
-  /// Throws DecodeError naming the field that is missing or of another type.
-  explicit LeapHumanDecoder(const std::string& message_definition);
-  ~LeapHumanDecoder();
-
-  struct Frame {
-    std::string frame_id;        ///< of the header
-    std::uint32_t sequence = 0;  ///< likewise
-    JointsFrame joints;  ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
-  };
-  /// Throws DecodeError (truncated message, wrong finger or bone count, ...).
-  Frame decode(const std::uint8_t* data, std::size_t size) const;
-
- private:
-  struct Impl;
-  std::unique_ptr<const Impl> impl_;
+/// The part of a leap_motion/Human message that is used.
+struct LeapFrame {
+  std::string frame_id;        ///< of the header
+  std::uint32_t sequence = 0;  ///< of the header
+  JointsFrame joints;  ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
 };
+
+/// Reads a serialised leap_motion/Human of any of its four published versions, which `md5` identifies. Throws
+/// DecodeError.
+LeapFrame read_leap(const std::string& md5, std::vector<std::uint8_t> bytes);
+
+/// Reads it from a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+template <class Message>
+LeapFrame read_leap(const Message& message) {
+  std::vector<std::uint8_t> bytes(message.size());
+  ros::serialization::OStream stream(bytes.data(), message.size());
+  message.write(stream);
+  return read_leap(message.getMD5Sum(), std::move(bytes));
+}
 
 }  // namespace mrhi
