@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* const kRosFolders[] = {"ros", "nodes", "replay", "without_ros"};
+const char* const kRosFolders[] = {"record", "ros", "nodes", "replay", "without_ros"};
 
 std::vector<std::string> lines_of(const std::string& command) {
   std::vector<std::string> lines;
