@@ -9,7 +9,7 @@ namespace mrhi {
 namespace {
 
 void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
-  for (HandMotion& hand : end.hands) hand.move_to(1.0);
+  for (HandMotion& hand : end.hands) hand.move_to(1.0, 1.0);
   contacts.reserve(end.state.contacts.capacity());  // the finder keeps what it is given, for the next step
   contacts = end.state.contacts;
   end.neighbours.begin_step(end.state.bodies, 0.0);

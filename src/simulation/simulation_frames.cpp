@@ -72,6 +72,7 @@ void Simulation::Impl::pass_without_frames(Nanoseconds until) {
   for (HandTrack& track : state.hands) {
     track.held = track.active;
     track.previous = track.current;
+    track.path = HandPath();
     track.appeared = track.emerged = false;
   }
   alone.nobody();

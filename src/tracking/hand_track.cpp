@@ -61,4 +61,109 @@ Hand blend(const Hand& from, const Hand& to, double fraction) {
   return hand;
 }
 
+PathWeights PathWeights::between(double from, double to, double seconds) {
+  if (seconds <= 0.0) return {0.0, 0.0, 0.0};
+  const double rate = 1.0 / seconds, f = from;
+  if (to <= from) return {rate, rate * (1.0 - f) * (1.0 - 3.0 * f), -rate * f * (2.0 - 3.0 * f)};
+  const PathWeights a = at(from), b = at(to);
+  const double over = rate / (to - from);
+  return {rate, over * (b.start_bend - a.start_bend), over * (b.end_bend - a.end_bend)};
+}
+
+namespace {
+
+/// Past a stop from one frame to the next a path swings on by this distance at most [m].
+constexpr double kMaxOvershoot = 1e-4;
+/// Energy of white noise in the extrapolated part of the velocity over that in its last term: 21 to 70 / 16
+/// variances of a sample, at even intervals.
+constexpr double kNoiseRatio = 21.0 / (70.0 / 16.0);
+
+/// The extrapolated part grows from frame to frame by this factor at most, and begins with this over the
+/// frame's time: an acceleration that appears from nothing is a stop or a start, which does not go on [m].
+constexpr double kGrowth = 4.0, kOnset = 4.0 * kMaxOvershoot;
+
+/// And by this fraction of the extrapolated velocity's displacement: what goes on accelerating bends as much.
+constexpr double kOfTheBend = 0.125;
+
+double fastest_point(const HandVelocity& velocity) {
+  double squared = 0.0;
+  for (const Vector3& point : velocity.points) squared = std::max(squared, point.squaredNorm());
+  return std::sqrt(squared);
+}
+
+bool same_points(const Hand& a, const Hand& b) {
+  for (int c = 0; c < kCapsules; ++c)
+    if (a.has(c) != b.has(c)) return false;
+  return true;
+}
+
+Vector3 rotation_vector(const Quaternion& from, const Quaternion& to) {
+  const Eigen::AngleAxisd turn(to * from.conjugate());
+  return turn.angle() * turn.axis();
+}
+
+/// Calls change(item i of each) for every point of a hand, and for its turn.
+template <class Change, class... Velocities>
+void for_each_rate(const Change& change, Velocities&... velocities) {
+  for (std::size_t point = 0; point < kHandPoints; ++point) change(velocities.points[point]...);
+  change(velocities.turn...);
+}
+
+}  // namespace
+
+// Newton's form of the interpolating polynomial, with T1 the newest interval and D_k the backward divided
+// differences: p'(t) = D_1 + T1 D_2 + T1 (T1 + T2) D_3 + T1 (T1 + T2) (T1 + T2 + T3) D_4.
+void extend_path(double elapsed, HandTrack& track) {
+  HandPath& path = track.path;
+  if (!same_points(track.previous, track.current)) path = HandPath();
+  HandVelocity chord;  // mean velocity of the frame
+  for (std::size_t point = 0; point < kHandPoints; ++point) {
+    if (!has_point(track.current, point)) continue;
+    chord.points[point] = (hand_point(track.current, point) - hand_point(track.previous, point)) / elapsed;
+  }
+  chord.turn = rotation_vector(track.previous.palm.orientation, track.current.palm.orientation) / elapsed;
+
+  const double two = elapsed + path.intervals[0], three = two + path.intervals[1],
+               four = three + path.intervals[2];
+  HandVelocity& extrapolated = path.end_bend;
+  double noise = 0.0, all = 0.0;
+  for_each_rate(
+      [&](const Vector3& first, Vector3& d1, Vector3& d2, Vector3& d3, Vector3& sum) {
+        const Vector3 second = (first - d1) / two, third = (second - d2) / three;
+        const Vector3 last = elapsed * two * three * (third - d3) / four;
+        sum = elapsed * (second + two * third) + last;
+        noise += last.squaredNorm();
+        all += sum.squaredNorm();
+        d1 = first, d2 = second, d3 = third;
+      },
+      chord, path.differences[0], path.differences[1], path.differences[2], extrapolated);
+  path.intervals = {elapsed, path.intervals[0], path.intervals[1]};
+  const bool known = path.order > 2;
+  path.order = std::min(path.order + 1, 3);
+  double kept = known && all > 0.0 ? std::max(0.0, 1.0 - kNoiseRatio * noise / all) : 0.0;
+  const double limit = kGrowth * path.extrapolated + kOnset / elapsed;
+  const double fastest = fastest_point(extrapolated);
+  if (kept * fastest > limit) kept = limit / fastest;
+  path.extrapolated = kept * fastest;
+
+  // The velocity that the path has arrived with, less that of a smooth path: of it the first is kept as far
+  // as the detour, 4/27 of T times it, stays small.
+  for_each_rate(
+      [&](const Vector3& mean, const Vector3& arrived, Vector3& more, Vector3& off) {
+        more *= kept;
+        off = path.order > 1 ? Vector3(arrived - mean + more) : Vector3(Vector3::Zero());
+      },
+      chord, path.velocity, extrapolated, path.start_bend);
+  const double detour = 4.0 / 27.0 * elapsed * fastest_point(path.start_bend);
+  const double allowed = kMaxOvershoot + kOfTheBend * elapsed * path.extrapolated;
+  const double part = detour > allowed ? allowed / detour : 1.0;
+  for_each_rate(
+      [&](const Vector3& mean, Vector3& velocity, Vector3& start, Vector3& end) {
+        velocity = mean + end;
+        start = elapsed * (part * start - end);
+        end *= elapsed;
+      },
+      chord, path.velocity, path.start_bend, path.end_bend);
+}
+
 }  // namespace mrhi
