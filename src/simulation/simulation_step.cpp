@@ -45,7 +45,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   model->respond(contact_step);
   end_stage(Stage::response);
   assist.share_force(state);
-  note_strikes(state.contacts, strikes);
+  transfer.add(state.contacts, step);
   const bool last = steps_done + 1 >= steps;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
