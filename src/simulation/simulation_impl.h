@@ -13,7 +13,6 @@
 #include "../rendering/hand_renderer.h"
 #include "../response/contact_step.h"
 #include "flying_alone.h"
-#include "frame_report.h"
 #include "grasp_assist.h"
 #include "mr_hand_interaction/simulation.h"
 #include "sleeping.h"
@@ -74,7 +73,7 @@ struct Simulation::Impl {
   double frame_seconds() const { return to_seconds(frame_to - frame_from); }
 
   std::vector<HandMotion> hands;  // those that can touch
-  FrameTransfer transfer;
+  std::vector<Contact> strikes;
   StepChanges changes;
   std::function<void(Stage)> ended;
   void end_stage(Stage stage) const {

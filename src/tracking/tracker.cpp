@@ -80,7 +80,6 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.emerged = false;
   track.filter.restart(hand);
   track.previous = track.current = hand;
-  track.path = HandPath();
   track.last_seen = stamp;
   track.rejoin.duration = 0;
   track.filter_change.reset();
@@ -122,11 +121,9 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   track.previous = track.current;
   track.current = filtered_through_change(hand, stamp, configuration, track);
   track.last_seen = stamp;
-  if (track.rejoin.duration > 0) {
-    track.current = catching_up(track.rejoin, track.current, stamp);
-    if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
-  }
-  extend_path(away, track);
+  if (track.rejoin.duration == 0) return;
+  track.current = catching_up(track.rejoin, track.current, stamp);
+  if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
 }
 
 /// Its last two poses are one: the hand stands still.
@@ -135,7 +132,6 @@ void hold(HandTrack& track) {
   track.emerged = track.appeared;
   track.appeared = false;
   track.previous = track.current;
-  track.path = HandPath();
 }
 
 }  // namespace
