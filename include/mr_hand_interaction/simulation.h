@@ -30,7 +30,9 @@ struct FrameResult {
   Nanoseconds stamp = 0;
   std::vector<Hand> tracked;           ///< filtered
   std::vector<RenderedHand> rendered;  ///< same order
-  std::vector<Contact> contacts;       ///< touching at the frame's end, or struck since the frame before
+  /// Touching at the frame's end, or since the frame before. Their forces are means over the time since then:
+  /// the momentum transferred by it. Those that have ended have no depth.
+  std::vector<Contact> contacts;
   std::vector<Event> events;
   /// What came out as no number, and was left out or put back at its start: "object 'cube'". Empty, if all is
   /// well.

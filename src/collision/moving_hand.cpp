@@ -5,35 +5,55 @@
 
 namespace mrhi {
 
-/// Ends move by (to - from) / T, with T the frame's time; the palm turns at one rate about the axis of R_to
-/// R_from^-1, the shorter way. A capsule that has only just appeared has no way: it stands still where it is.
+/// The velocity of a cubic is a mean of D + b, D - b - e and D + e, over T (Bernstein): it is at most |D| and
+/// twice the longest bend, over T. A capsule that has only just appeared has no path: it stands still where
+/// it is.
 HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)
     : seconds_(seconds),
       emerged_(track.emerged),
       palm_from_(track.previous.palm.orientation.toRotationMatrix()),
-      palm_turn_(track.current.palm.orientation * track.previous.palm.orientation.conjugate()) {
+      turn_start_bend_(track.path.start_bend.turn),
+      turn_end_bend_(track.path.end_bend.turn) {
+  const Eigen::AngleAxisd turn(track.current.palm.orientation * track.previous.palm.orientation.conjugate());
+  palm_turn_ = turn.angle() * turn.axis();
   const double rate = seconds > 0.0 ? 1.0 / seconds : 0.0;
   hand_.slot = slot;
-  hand_.palm_spin = (rate * palm_turn_.angle()) * palm_turn_.axis();
+  const Vector3 none = Vector3::Zero();
   for (std::size_t c = 0; c < kCapsules; ++c) {
     const Capsule &before = track.previous.capsules[c], &to = track.current.capsules[c];
     const bool moves = to.radius > 0.0 && before.radius > 0.0;
-    Vector3 &start = hand_.start_velocity[c], &end = hand_.end_velocity[c];
-    hand_.from[c] = moves ? before : to;
-    hand_.from[c].radius = to.radius;
-    start = rate * (to.start - hand_.from[c].start);
-    end = rate * (to.end - hand_.from[c].end);
-    hand_.speed[c] = std::sqrt(std::max(start.squaredNorm(), end.squaredNorm()));
+    hand_.radius[c] = to.radius;
+    double longest = 0.0;
+    for (const bool at_end : {false, true}) {
+      EndPath& path = (at_end ? hand_.end : hand_.start)[c];
+      const Vector3 &from = at_end ? before.end : before.start, &until = at_end ? to.end : to.start;
+      const std::size_t point = 2 + 2 * c + (at_end ? 1 : 0);
+      path = {until, none, none, none};
+      if (!moves) continue;
+      path = {from, until - from, track.path.start_bend.points[point], track.path.end_bend.points[point]};
+      longest = std::max(longest, path.chord.squaredNorm());
+    }
+    hand_.speed[c] = moves ? rate * (std::sqrt(longest) + 2.0 * track.path.longest_bend) : 0.0;
   }
-  move_to(0.0);
+  move_to(0.0, 0.0);
 }
 
-///     R(f) = exp(f angle [axis]x) R_from
-void HandMotion::move_to(double fraction) {
-  hand_.time = fraction * seconds_;
+///     R(f) = exp([f t + f (1 - f)^2 b - f^2 (1 - f) e]x) R_from,     t the turn, b and e its bends
+Matrix3 HandMotion::palm_orientation(double fraction) const {
+  const Vector3 turn = PathWeights::at(fraction)(palm_turn_, turn_start_bend_, turn_end_bend_);
+  const double angle = turn.norm();
+  if (angle == 0.0) return palm_from_;
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * palm_from_;
+}
+
+/// The rate of a rotation vector is the angular velocity but for terms of second order in the turn of a
+/// frame.
+void HandMotion::move_to(double fraction, double until) {
+  hand_.place = PathWeights::at(fraction);
+  hand_.rate = PathWeights::between(fraction, until, seconds_);
   hand_.emerged = emerged_ && fraction == 0.0;
-  hand_.palm =
-      Eigen::AngleAxisd(fraction * palm_turn_.angle(), palm_turn_.axis()).toRotationMatrix() * palm_from_;
+  hand_.palm = palm_orientation(fraction);
+  hand_.palm_spin = hand_.rate(palm_turn_, turn_start_bend_, turn_end_bend_);
 }
 
 }  // namespace mrhi

@@ -27,26 +27,43 @@ struct PhalanxMotion {
   }
 };
 
-/// The capsules of one hand through a frame: all points move on straight lines at constant speed. A point of
-/// an axis moves by a mean of its ends' velocities, so that none is faster than the faster end.
+/// The path of one end of a capsule through a frame; see HandPath [m].
+struct EndPath {
+  Vector3 from, chord, start_bend, end_bend;
+
+  Vector3 displacement(const PathWeights& weights) const { return weights(chord, start_bend, end_bend); }
+};
+
+/// The capsules of one hand through a frame: their ends follow a HandPath from step to step, and move on the
+/// chord of that path within a step. A point of an axis moves by a mean of its ends' velocities, so that none
+/// is faster than the faster end.
 struct MovingHand {
-  int slot = 0;                                   ///< of the track
-  std::array<Capsule, kCapsules> from;            ///< at the frame's start
-  std::array<Vector3, kCapsules> start_velocity;  ///< [m/s]
-  std::array<Vector3, kCapsules> end_velocity;    ///< [m/s]
-  std::array<double, kCapsules> speed{};          ///< of the faster end [m/s]
-  Vector3 palm_spin = Vector3::Zero();            ///< angular velocity of the palm [rad/s]
+  int slot = 0;                          ///< of the track
+  std::array<EndPath, kCapsules> start;  ///< of each capsule
+  std::array<EndPath, kCapsules> end;
+  std::array<double, kCapsules> radius{};  ///< [m]
+  std::array<double, kCapsules> speed{};   ///< limit of the faster end in the frame [m/s]
 
   // At the step's start.
-  double time = 0.0;                   ///< since the frame's start [s]
-  bool emerged = false;                ///< first step since the hand appeared: what it overlaps is ignored
-  Matrix3 palm = Matrix3::Identity();  ///< orientation
+  PathWeights place{};                  ///< displacement since the frame's start
+  PathWeights rate{};                   ///< mean velocity in the step [1/s]
+  bool emerged = false;                 ///< first step since the hand appeared: what it overlaps is ignored
+  Matrix3 palm = Matrix3::Identity();   ///< orientation
+  Vector3 palm_spin = Vector3::Zero();  ///< angular velocity of the palm [rad/s]
 
-  /// `later` [s] than the step's start.
-  Capsule capsule(int c, double later = 0.0) const {
+  /// At the step's start.
+  Capsule capsule(int c) const {
     const auto i = static_cast<std::size_t>(c);
-    const double t = time + later;
-    return {from[i].start + t * start_velocity[i], from[i].end + t * end_velocity[i], from[i].radius};
+    return {start[i].from + start[i].displacement(place), end[i].from + end[i].displacement(place),
+            radius[i]};
+  }
+  /// `later` [s] than the step's start.
+  Capsule capsule(int c, double later) const {
+    const auto i = static_cast<std::size_t>(c);
+    Capsule result = capsule(c);
+    result.start += later * start[i].displacement(rate);
+    result.end += later * end[i].displacement(rate);
+    return result;
   }
   PhalanxMotion motion(int c, const Capsule& now) const;
 };
@@ -55,8 +72,8 @@ inline PhalanxMotion MovingHand::motion(int c, const Capsule& now) const {
   const auto i = static_cast<std::size_t>(c);
   PhalanxMotion motion;
   motion.axis = now.end - now.start;
-  motion.velocity = start_velocity[i];
-  motion.spread = end_velocity[i] - start_velocity[i];
+  motion.velocity = start[i].displacement(rate);
+  motion.spread = end[i].displacement(rate) - motion.velocity;
   motion.spin = palm_spin;
   const double length_squared = motion.axis.squaredNorm();
   if (length_squared > 0.0) {
@@ -73,16 +90,18 @@ class HandMotion {
   /// `seconds` may be 0 for a hand that keeps still.
   HandMotion(const HandTrack& track, int slot, double seconds);
 
-  /// Moves the hand on to `fraction` of the frame.
-  void move_to(double fraction);
+  /// Moves the hand on to a step from `fraction` of the frame to `until`.
+  void move_to(double fraction, double until);
   const MovingHand& hand() const { return hand_; }
 
  private:
   MovingHand hand_;
   double seconds_;
   bool emerged_;
+  Matrix3 palm_orientation(double fraction) const;
+
   Matrix3 palm_from_;
-  Eigen::AngleAxisd palm_turn_;
+  Vector3 palm_turn_, turn_start_bend_, turn_end_bend_;  // [rad]
 };
 
 }  // namespace mrhi

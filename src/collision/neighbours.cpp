@@ -37,7 +37,7 @@ void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vec
 }
 
 /// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place half-way at the part f of
-/// the frame: at most half the longer way of the two ends.
+/// the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
 void Neighbours::measure(const HandTrack& hand, Reach& reach) {
   reach.min.setConstant(std::numeric_limits<double>::max());
   reach.max = -reach.min;
@@ -51,7 +51,7 @@ void Neighbours::measure(const HandTrack& hand, Reach& reach) {
     const Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
     const double longer_way =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
-    const Way way{c, start, end - start, to.radius + 0.5 * longer_way};
+    const Way way{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
     reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
     reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));
     reach.ways.push_back(way);

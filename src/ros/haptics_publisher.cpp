@@ -37,7 +37,7 @@ class Feeling {
 };
 
 bool is_felt(const Contact& contact) {
-  return contact.touching() || contact.impulse != Vector3::Zero();
+  return contact.touching() || !contact.impulse.isZero(0.0) || !contact.force.isZero(0.0);
 }
 
 bool same_phalanx(const Contact& a, const Contact& b) {

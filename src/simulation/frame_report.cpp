@@ -9,34 +9,41 @@ namespace mrhi {
 namespace {
 
 void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
-  for (HandMotion& hand : end.hands) hand.move_to(1.0);
+  for (HandMotion& hand : end.hands) hand.move_to(1.0, 1.0);
   contacts.reserve(end.state.contacts.capacity());  // the finder keeps what it is given, for the next step
   contacts = end.state.contacts;
   end.neighbours.begin_step(end.state.bodies, 0.0);
   end.finder.find(end.hands, end.neighbours, end.state.bodies, 0.0, contacts);
-  for (Contact& contact : contacts) contact.impulse.setZero();
+  for (Contact& contact : contacts) contact.impulse.setZero(), contact.force.setZero();
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
 }
 
-std::vector<Contact>::iterator same_contact(std::vector<Contact>& contacts, const Contact& wanted) {
-  return std::find_if(contacts.begin(), contacts.end(),
-                      [&wanted](const Contact& contact) { return contact.key == wanted.key; });
+bool before(const Contact& contact, const ContactKey& key) {
+  return contact.key < key;
 }
 
-void add_strikes(const std::vector<Contact>& strikes, std::vector<Contact>& contacts) {
-  if (strikes.empty()) return;  // the contacts are sorted
-  for (const Contact& strike : strikes) {
-    const auto same = same_contact(contacts, strike);
-    if (same == contacts.end()) {
-      contacts.push_back(strike);
-    } else {
-      same->impulse = strike.impulse;
+/// The mean force is the momentum that was transferred over the frame's time. A contact that has ended is
+/// told where it was, and does not touch.
+void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts) {
+  const std::size_t touching = contacts.size();
+  const double rate = transfer.seconds > 0.0 ? 1.0 / transfer.seconds : 0.0;
+  for (const Contact& moved : transfer.contacts) {
+    const auto end = contacts.begin() + static_cast<std::ptrdiff_t>(touching);
+    auto same = std::lower_bound(contacts.begin(), end, moved.key, before);
+    if (same == end || !(same->key == moved.key)) {
+      contacts.push_back(moved);
+      same = contacts.end() - 1;
+      same->depth = std::min(same->depth, 0.0);
     }
+    same->impulse = moved.impulse;
+    same->force = rate * moved.force;
   }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  if (contacts.size() > touching) {
+    std::sort(contacts.begin(), contacts.end(),
+              [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  }
 }
 
 void update_interactions(const FrameEnd& end, FrameResult& result) {
@@ -51,7 +58,7 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       const bool is_near =
           hand.reaches(state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
-      const bool may_end = interaction.level != InteractionLevel::none || !end.strikes.empty();
+      const bool may_end = interaction.level != InteractionLevel::none || !end.transfer.contacts.empty();
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
       const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
         return grip.bears && grip.hand == slot && grip.body == b;
@@ -70,7 +77,7 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
 
 void report_frame(const FrameEnd& end, FrameResult& result) {
   find_contacts(end, result.contacts);
-  add_strikes(end.strikes, result.contacts);
+  add_transfer(end.transfer, result.contacts);
   update_interactions(end, result);
   for (const HandTrack& track : end.state.hands)
     if (track.active) result.tracked.push_back(track.current);
@@ -87,14 +94,17 @@ void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& r
   }
 }
 
-void note_strikes(const std::vector<Contact>& contacts, std::vector<Contact>& strikes) {
-  for (const Contact& contact : contacts) {
-    if (contact.impulse == Vector3::Zero()) continue;
-    const auto known = same_contact(strikes, contact);
-    if (known == strikes.end()) {
-      strikes.push_back(contact);
+void FrameTransfer::add(const std::vector<Contact>& of_step, double step) {
+  seconds += step;
+  for (const Contact& contact : of_step) {
+    if (contact.impulse.isZero(0.0) && contact.force.isZero(0.0)) continue;
+    auto known = std::lower_bound(contacts.begin(), contacts.end(), contact.key, before);
+    if (known == contacts.end() || !(known->key == contact.key)) {
+      known = contacts.insert(known, contact);
+      known->force *= step;
     } else {
       known->impulse += contact.impulse;
+      known->force += step * contact.force;
     }
   }
 }

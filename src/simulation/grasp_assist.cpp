@@ -292,13 +292,17 @@ void GraspAssist::give_way(const SimulationState& state, double step, Contact& c
 }
 
 /// Where the springs' ends on the hand are, and how fast.
-void GraspAssist::place(double fraction, const HandTrack& track, Grip& grip) const {
+void GraspAssist::place(double fraction, double until, const HandTrack& track, Grip& grip) const {
   const Pose from = track.previous.palm * grip.in_palm_before;
   const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
-    const Vector3 start = from * grip.in_hand[i], way = to * grip.in_hand[i] - start;
-    grip.point[i] = start + fraction * way;
-    grip.velocity[i] = seconds_ > 0.0 ? Vector3(way / seconds_) : Vector3::Zero();
+    const Vector3 start = from * grip.in_hand[i], chord = to * grip.in_hand[i] - start;
+    // The point bends with the palm that carries it.
+    const Vector3 arm = start - track.previous.palm.position;
+    const auto bend = [&arm](const HandVelocity& of) -> Vector3 { return of.points[0] + of.turn.cross(arm); };
+    const Vector3 start_bend = bend(track.path.start_bend), end_bend = bend(track.path.end_bend);
+    grip.point[i] = start + PathWeights::at(fraction)(chord, start_bend, end_bend);
+    grip.velocity[i] = PathWeights::between(fraction, until, seconds_)(chord, start_bend, end_bend);
   }
 }
 
@@ -313,12 +317,13 @@ double GraspAssist::off(const SimulationState& state, const Grip& grip) const {
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!configuration_.grasp_assist) return;
+  const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     grip.fresh = false;
     const HandTrack& track = state.hands[grip.hand];
     if (!grip.bears && (!slips(state.contacts, grip) || leaves(grip, track, seconds_))) continue;
     find(track, grip);
-    place(fraction, track, grip);
+    place(fraction, until, track, grip);
     if (grip.bears || off(state, grip) <= kSlipped) continue;
     grip.bears = grip.fresh = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)

@@ -42,7 +42,7 @@ class GraspAssist {
   void look_at(std::size_t slot, int body, SimulationState& state);
   void take(std::size_t slot, int body, const ClosingHand::Opposed& opposed, SimulationState& state) const;
   bool opens(const SimulationState& state, Grip& grip) const;
-  void place(double fraction, const HandTrack& track, Grip& grip) const;
+  void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
   double off(const SimulationState& state, const Grip& grip) const;
   void give_way(const SimulationState& state, double step, Contact& contact) const;
   bool gives_way(const Contact& contact, const SimulationState& state) const;

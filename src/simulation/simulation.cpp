@@ -80,8 +80,8 @@ void Simulation::Impl::reset() {
   state.body_contacts.reserve(16 * scene.bodies.size());
   state.sleeping_contacts.reserve(16 * scene.bodies.size());
   hands.reserve(kMaxHands);
-  strikes.clear();
-  strikes.reserve(64 * kMaxHands);
+  transfer.clear();
+  transfer.contacts.reserve(64 * kMaxHands);
   steps = steps_done = 0;
 }
 
@@ -93,7 +93,7 @@ void Simulation::Impl::clear_result() {
   result.events.clear();
   result.not_finite.clear();
   reported = false;
-  strikes.clear();
+  transfer.clear();
 }
 
 Simulation::Simulation(Scene scene, const Configuration& configuration)

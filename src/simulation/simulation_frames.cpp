@@ -72,6 +72,7 @@ void Simulation::Impl::pass_without_frames(Nanoseconds until) {
   for (HandTrack& track : state.hands) {
     track.held = track.active;
     track.previous = track.current;
+    track.path = HandPath();
     track.appeared = track.emerged = false;
   }
   alone.nobody();
@@ -95,7 +96,7 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
 
 void Simulation::Impl::report(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_frame({scene, hands, neighbours, finder, strikes, state}, result);
+  report_frame({scene, hands, neighbours, finder, transfer, state}, result);
   leave_out_contacts_that_are_not_finite();
   reported = true;
 }

@@ -13,6 +13,7 @@
 #include "../rendering/hand_renderer.h"
 #include "../response/contact_step.h"
 #include "flying_alone.h"
+#include "frame_report.h"
 #include "grasp_assist.h"
 #include "mr_hand_interaction/simulation.h"
 #include "sleeping.h"
@@ -73,7 +74,7 @@ struct Simulation::Impl {
   double frame_seconds() const { return to_seconds(frame_to - frame_from); }
 
   std::vector<HandMotion> hands;  // those that can touch
-  std::vector<Contact> strikes;
+  FrameTransfer transfer;
   StepChanges changes;
   std::function<void(Stage)> ended;
   void end_stage(Stage stage) const {

@@ -61,6 +61,12 @@ void add_noise(const SeenNoise& noise, Side side, Fnv1a& hash) {
   hash.add(variance);
 }
 
+void add_velocity(const HandVelocity& velocity, Fnv1a& hash) {
+  const auto& [points, turn] = velocity;
+  for (const Vector3& point : points) hash.add(point);
+  hash.add(turn);
+}
+
 void add_filter(const FilterMemory& memory, Fnv1a& hash) {
   const auto& [history, filtered, velocity, variance, noise] = memory;
   const auto& [samples, elapsed, size] = history;
@@ -69,16 +75,28 @@ void add_filter(const FilterMemory& memory, Fnv1a& hash) {
     hash.add(elapsed[i]);
   }
   add_hand(filtered, hash);
-  const auto& [points, turn] = velocity;
-  for (const Vector3& point : points) hash.add(point);
-  hash.add(turn);
+  add_velocity(velocity, hash);
   const auto& [position, mixed, speed] = variance;
   hash.all(position, mixed, speed);
   add_noise(noise, filtered.side, hash);
 }
 
+/// The bends are of the frame that is over.
+void add_path(const HandPath& path, Fnv1a& hash) {
+  const auto& [start_bend, end_bend, longest_bend, velocity, differences, intervals, order, noise, energy,
+               extrapolated] = path;
+  leave_out(start_bend, end_bend, longest_bend);
+  hash.add(order);
+  if (order == 0) return;
+  add_velocity(velocity, hash);
+  for (const HandVelocity& difference : differences) add_velocity(difference, hash);
+  for (const double interval : intervals) hash.add(interval);
+  hash.all(noise, energy, extrapolated);
+}
+
 void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
-  const auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change] = track;
+  const auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path] =
+      track;
   hash.add(active);
   if (!active) {
     add_noise(filter.noise, current.side, hash);
@@ -100,6 +118,7 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
     hash.add(now - begin);
     add_hand(from, hash);
   }
+  add_path(path, hash);
 }
 
 void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {

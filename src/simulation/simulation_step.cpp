@@ -28,7 +28,8 @@ double Simulation::Impl::driven(double step) const {
 
 /// One step, `fraction` of the way into the frame.
 void Simulation::Impl::advance_step(double fraction, double step) {
-  for (HandMotion& hand : hands) hand.move_to(fraction);
+  const double until = frame_seconds() > 0.0 ? std::min(1.0, fraction + step / frame_seconds()) : fraction;
+  for (HandMotion& hand : hands) hand.move_to(fraction, until);
   neighbours.begin_step(state.bodies, step);
   alone.join(neighbours, fraction * frame_seconds(), step, gravity, state);
   sleeping.wake(neighbours, step, state);
@@ -44,7 +45,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   model->respond(contact_step);
   end_stage(Stage::response);
   assist.share_force(state);
-  note_strikes(state.contacts, strikes);
+  transfer.add(state.contacts, step);
   const bool last = steps_done + 1 >= steps;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000003ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000004ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -209,9 +209,16 @@ class Parts {
     auto& [from, memory, begin] = part;
     all(from, memory, begin);
   }
+  void one(HandPath& part) {
+    auto& [start_bend, end_bend, longest_bend, velocity, differences, intervals, order, noise, energy,
+           extrapolated] = part;
+    all(start_bend, end_bend, longest_bend, velocity, differences, intervals, noise, energy, extrapolated);
+    up_to(order, 3);
+  }
   void one(HandTrack& part) {
-    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change] = part;
-    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change);
+    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path] =
+        part;
+    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path);
   }
   void one(ContactKey& part) {
     auto& [point, shape, capsule, hand, body] = part;

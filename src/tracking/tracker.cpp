@@ -80,6 +80,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.emerged = false;
   track.filter.restart(hand);
   track.previous = track.current = hand;
+  track.path = HandPath();
   track.last_seen = stamp;
   track.rejoin.duration = 0;
   track.filter_change.reset();
@@ -121,9 +122,11 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   track.previous = track.current;
   track.current = filtered_through_change(hand, stamp, configuration, track);
   track.last_seen = stamp;
-  if (track.rejoin.duration == 0) return;
-  track.current = catching_up(track.rejoin, track.current, stamp);
-  if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
+  if (track.rejoin.duration > 0) {
+    track.current = catching_up(track.rejoin, track.current, stamp);
+    if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
+  }
+  extend_path(away, track);
 }
 
 /// Its last two poses are one: the hand stands still.
@@ -132,6 +135,7 @@ void hold(HandTrack& track) {
   track.emerged = track.appeared;
   track.appeared = false;
   track.previous = track.current;
+  track.path = HandPath();
 }
 
 }  // namespace

@@ -115,9 +115,11 @@ TEST(ContactVelocity, of_an_objects_point_is_that_of_its_centre_plus_spin_cross_
 
 TEST(ContactVelocity, of_a_phalanx_is_its_ends_velocity_at_the_ends_and_turns_with_the_bone) {
   MovingHand hand;
-  hand.from[kTip] = {Vector3(0, 0, 0), Vector3(0.1, 0, 0), kRadius};
-  hand.start_velocity[kTip] = Vector3(0, 1, 0);
-  hand.end_velocity[kTip] = Vector3(0, 3, 0);  // 20 rad/s about z
+  const Vector3 none = Vector3::Zero();
+  hand.start[kTip] = {none, Vector3(0, 1, 0), none, none};
+  hand.end[kTip] = {Vector3(0.1, 0, 0), Vector3(0, 3, 0), none, none};  // 20 rad/s about z
+  hand.radius[kTip] = kRadius;
+  hand.rate = PathWeights::between(0.0, 1.0, 1.0);
   const int tip = static_cast<int>(kTip);
   const PhalanxMotion motion = hand.motion(tip, hand.capsule(tip));
   EXPECT_EQ(motion.of_surface(0.0, Vector3::Zero()), Vector3(0, 1, 0));

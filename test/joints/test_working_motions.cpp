@@ -54,19 +54,21 @@ TEST_P(WorkingMotion, takes_its_joint_along_and_leaves_it_where_it_stays) {
 /// below.)
 TEST_P(WorkingMotion, succeeds_under_noise_and_dropouts) {
   if (is_tongs(GetParam())) return;
-  int runs = 0, succeeded = 0;
   for (const double gravity : {0.0, kGravity}) {
     for (const Tracker& tracker : kTrackers) {
       for (std::uint64_t seed = 11; seed < 14; ++seed) {
         Staging staging = staged(GetParam(), gravity);
         staging.noise = tracker.noise, staging.rate = tracker.rate, staging.dropped = tracker.dropped;
         staging.seed = seed;
-        ++runs;
-        succeeded += succeeds(GetParam(), work_at(GetParam(), staging));
+        const Worked worked = work_at(GetParam(), staging);
+        EXPECT_TRUE(succeeds(GetParam(), worked))
+            << "gravity " << gravity << ", noise " << tracker.noise << ", rate " << tracker.rate
+            << ", dropped " << tracker.dropped << ", seed " << seed << ": held " << worked.held
+            << ", furthest " << worked.furthest << ", left " << worked.left << ", fastest " << worked.fastest
+            << ", crept " << worked.crept;
       }
     }
   }
-  EXPECT_EQ(succeeded, runs);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WorkingMotion, ::testing::ValuesIn(works()),

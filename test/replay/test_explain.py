@@ -166,8 +166,8 @@ class ExplainTest(Folders):
         for slides, changes in ((False, {'overlap': 0.004, 'until': 1.3}), (True, {'friction': 0.04, 'until': 0.8})):
             thing = self.story(**changes).objects['object']
             least = min(thing.bearable[(thing.level == 3) & (thing.time > MOVES)])
-            self.assertGreater(least, 0.95)  # in a straight line, and within what the iteration leaves
-            if slides:
+            if slides:  # in the step in which it begins to slide by static friction, 4/3 of the dynamic, then by that
+                self.assertGreater(least, 0.95 * 3 / 4)  # within what the iteration leaves
                 self.assertLess(least, 1.05)
             else:
                 self.assertGreater(least, 1.2)

@@ -67,7 +67,7 @@ TEST(Haptics, points_of_one_phalanx_on_one_object_are_added) {
 TEST(Haptics, each_object_and_phalanx_has_its_own_entry_and_what_only_comes_near_has_none) {
   Felt felt;
   const int tip = capsule_index(1, 3), thumb = capsule_index(0, 3);
-  felt.contacts = {contact(0, 1, thumb, 0, {1, 0, 0}), contact(0, 1, tip, 0, {2, 0, 0}),
+  felt.contacts = {contact(0, 1, thumb, 0, {0, 0, 0}), contact(0, 1, tip, 0, {0, 0, 0}),
                    contact(1, 1, tip, 0, {3, 0, 0}), contact(1, 1, kPalm, 0, {4, 0, 0})};
   felt.contacts[0].depth = -0.0005;
   felt.contacts[1].ignored = true;
@@ -77,6 +77,15 @@ TEST(Haptics, each_object_and_phalanx_has_its_own_entry_and_what_only_comes_near
   EXPECT_EQ(message.hands[0].phalanges[0].finger, 1);
   EXPECT_EQ(message.hands[0].phalanges[0].slip, PhalanxHaptics::STICKING);
   EXPECT_EQ(message.hands[0].phalanges[1].finger, mr_hand_interaction::Phalanx::PALM);
+}
+
+TEST(Haptics, a_touch_that_has_ended_within_the_frame_is_felt_by_its_mean_force) {
+  Felt felt;
+  felt.contacts = {contact(0, 1, kPalm, 0, {0, 0, -2})};
+  felt.contacts[0].depth = 0.0;
+  const HapticsArray message = felt.message();
+  ASSERT_EQ(message.hands[0].phalanges.size(), 1u);
+  EXPECT_EQ(message.hands[0].phalanges[0].force.z, -2.0);
 }
 
 TEST(Haptics, another_hands_contacts_are_not_felt) {

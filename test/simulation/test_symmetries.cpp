@@ -55,8 +55,9 @@ struct Story {
   double gravity = 0.0;  // along z [m/s^2]
   bool table = false;
   double until = 100.0;  // [s]
-  // Rounding alone differs: 3e-12 m as measured.
-  double tolerance = 1e-10;  // [m]
+  // Rounding alone differs. The velocity at a frame, extrapolated from five poses, multiplies it by some
+  // hundred: 3e-10 m as measured, in catch_ball.
+  double tolerance = 3e-9;  // [m]
 };
 
 /// What became of the object, frame by frame, there or elsewhere.

@@ -85,6 +85,18 @@ struct NoisyRide {
   }
 };
 
+/// Where the path of a filtered hand has its palm and its fingertips, at a fraction of the frame.
+inline Hand on_path(const HandTrack& track, double fraction) {
+  Hand hand = track.current;
+  for (std::size_t point = 0; point < kHandPoints; ++point) {
+    const Vector3 from = hand_point(track.previous, point);
+    const Vector3 chord = hand_point(track.current, point) - from;
+    hand_point(hand, point) = from + PathWeights::at(fraction)(chord, track.path.start_bend.points[point],
+                                                               track.path.end_bend.points[point]);
+  }
+  return hand;
+}
+
 /// The hand that counts is the filtered one: it is what touches and what is shown.
 inline NoisyRide noisy_ride(const NoisyPinch& noisy, const Configuration& configuration) {
   NoisyPinch pinch = noisy;
@@ -98,7 +110,7 @@ inline NoisyRide noisy_ride(const NoisyPinch& noisy, const Configuration& config
     const HandTrack& track = simulation.state().hands[0];
     const int steps = static_cast<int>(std::ceil(1000.0 / kNoisyRate));
     for (int i = 1; simulation.step(); ++i) {
-      const Hand now = blend(track.previous, track.current, static_cast<double>(i) / steps);
+      const Hand now = on_path(track, static_cast<double>(i) / steps);
       const Vector3 hand = now.palm.position;
       const Vector3 cube = simulation.state().bodies[0].pose.position;
       if (t < kNoisyFrom) before = cube - hand;

@@ -18,13 +18,14 @@ struct Work {
 };
 
 /// Peaks of minimum jerk are 1.875 times the mean: 60 degrees in 1.6 s, 2 s and 2.4 s, 120 mm in 1.6 s. A
-/// switch snaps, a button and tongs spring back, by themselves.
+/// switch snaps, a button and tongs spring back, by themselves. Within a frame the path of a hand whose
+/// samples tremble is up to 1.5 times as fast as its chord: the valve reaches 3.2 rad/s with 3 mm of noise.
 inline const std::vector<Work>& works() {
   static const std::vector<Work> all = {
       {"press_button", "button_slide", 0.006, 0.0, 1e-4, false, 0.3},
       {"flip_switch", "switch_hinge", 0.4, 0.35, 0.03, false, 40.0},
       {"pull_lever", "lever_hinge", 0.46, 0.46, 0.15, false, 6.0},
-      {"turn_valve", "valve_axle", M_PI / 3.0, M_PI / 3.0, 0.15, true, 3.0},
+      {"turn_valve", "valve_axle", M_PI / 3.0, M_PI / 3.0, 0.15, true, 3.5},
       {"open_drawer", "drawer_slide", 0.12, 0.12, 0.01, true, 0.5},
       {"open_door", "door_hinge", M_PI / 3.0, M_PI / 3.0, 0.1, true, 3.0},
       {"open_hatch", "hatch_hinge", M_PI / 3.0, M_PI / 3.0, 0.1, true, 3.0},

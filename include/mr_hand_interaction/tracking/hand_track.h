@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "mr_hand_interaction/configuration.h"
@@ -24,6 +25,36 @@ struct FilterChange {
   Nanoseconds begin = 0;
 };
 
+/// The path of a hand's points between two frames: a cubic whose velocity is continuous from frame to frame,
+/// so that a held body is not struck anew at every frame. With f the fraction of the frame, D the chord from
+/// the first pose to the second and b, e the bends,
+///     p(f) = p(0) + f D + f (1 - f)^2 b - f^2 (1 - f) e,     T p'(0) = D + b,     T p'(1) = D + e
+/// which is Hermite's. Without bends a point moves on a straight line at constant speed.
+struct HandPath {
+  HandVelocity start_bend, end_bend;  ///< b and e [m], of the palm's turn [rad]
+  double longest_bend = 0.0;          ///< limit of all points, at either frame [m]
+  HandVelocity velocity;              ///< at the second frame, as the path arrives there
+  /// Newton's backward divided differences of the poses, of order 1 to 3, at the second frame [m/s^order].
+  std::array<HandVelocity, 3> differences;
+  std::array<double, 3> intervals{};  ///< of the last frames, newest first [s]
+  int order = 0;                      ///< number of differences that are known
+  /// Of the fourth differences, and of all that is extrapolated: means over the last frames [m^2/s^2].
+  double noise = 0.0, energy = 0.0;
+  double extrapolated = 0.0;  ///< of `velocity`: what it has beyond the chord's, fastest point [m/s]
+};
+
+/// Weights of the chord and of both bends in a displacement along a HandPath, or in a velocity [1/s].
+struct PathWeights {
+  double chord, start_bend, end_bend;
+
+  static PathWeights at(double f) { return {f, f * (1.0 - f) * (1.0 - f), -f * f * (1.0 - f)}; }
+  /// Mean velocity from one fraction of a frame of `seconds` to another; at a single fraction the velocity.
+  static PathWeights between(double from, double to, double seconds);
+  Vector3 operator()(const Vector3& d, const Vector3& b, const Vector3& e) const {
+    return chord * d + start_bend * b + end_bend * e;
+  }
+};
+
 /// One hand followed through time.
 struct HandTrack {
   bool active = false;    ///< false: this slot is free
@@ -36,7 +67,16 @@ struct HandTrack {
   FilterMemory filter;
   Rejoin rejoin;
   std::optional<FilterChange> filter_change;
+  HandPath path;  ///< from `previous` to `current`
 };
+
+/// Continues the path of the track to its current pose, `elapsed` seconds (above 0) after the previous one.
+///
+/// The velocity at the new frame is the derivative of the polynomial through the last five poses. What that
+/// adds to the chord's velocity is reduced by the ratio of noise in it, as their fourth difference shows it,
+/// one factor for the whole hand: trembling samples are joined smoothly, and not extrapolated. Past a stop
+/// that nothing announced, the path swings no further than kMaxOvershoot.
+void extend_path(double elapsed, HandTrack& track);
 
 /// How long a hand takes to catch up with one that has gone `way` [m] in the `away` seconds of its loss and
 /// goes on as fast: what keeps it to 5 m/s^2, but 0.05 to 0.4 s.
