@@ -49,6 +49,8 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
 void update_interactions(const FrameEnd& end, FrameResult& result) {
   SimulationState& state = end.state;
   const std::size_t bodies = end.scene.bodies.size();
+  const bool struck = std::any_of(end.transfer.contacts.begin(), end.transfer.contacts.end(),
+                                  [](const Contact& contact) { return !contact.impulse.isZero(0.0); });
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
@@ -58,7 +60,7 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       const bool is_near =
           hand.reaches(state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
-      const bool may_end = interaction.level != InteractionLevel::none || !end.transfer.contacts.empty();
+      const bool may_end = interaction.level != InteractionLevel::none || struck;
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
       const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
         return grip.bears && grip.hand == slot && grip.body == b;
