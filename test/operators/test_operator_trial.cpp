@@ -1,5 +1,3 @@
-#include <tuple>
-
 #include "operators_at_work.h"
 
 namespace mrhi {
@@ -31,39 +29,44 @@ TEST(OperatorTrial, puts_the_bar_into_the_hole) {
   RecordProperty("completed", completed);
 }
 
-/// How many of eight veterans, who were not looked at as it was made, do a task's trial with each object.
-int completed(const char* name, const std::string& object, const OperatorSkill* undisturbed = nullptr) {
+/// How many of the veterans, who were not looked at as it was made, do a task's trial with an object; without
+/// `persons` whether one does it whom nothing disturbs.
+int completed(const char* name, const std::string& object, std::uint64_t persons = 0) {
   Task task = load_task(std::string("config/tasks/") + name + ".yaml");
   const auto is_other = [&](const TaskObject& other) { return other.name != object; };
   task.objects.erase(std::remove_if(task.objects.begin(), task.objects.end(), is_other), task.objects.end());
-  if (undisturbed != nullptr)
-    return testing::play(task, *undisturbed, 1, 0.0).result == TrialResult::completed;
+  if (persons == 0) return testing::play(task, OperatorSkill{}, 1, 0.0).result == TrialResult::completed;
   int count = 0;
-  for (std::uint64_t person = 1; person <= 8; ++person) {
+  for (std::uint64_t person = 1; person <= persons; ++person) {
     const TrialRow row = testing::play(task, draw_skill("veteran", 8000 + person), person, 1.0);
     count += row.result == TrialResult::completed;
   }
   return count;
 }
 
-class OperatorDoes : public ::testing::TestWithParam<std::tuple<const char*, const char*, int>> {};
+struct OtherTask {
+  const char *task, *object;
+  int persons, least;
+};
+class OperatorDoes : public ::testing::TestWithParam<OtherTask> {};
 
-// With nothing to disturb it always; else as often as they do it less what two more unlucky ones would take
-// away.
+// With nothing to disturb it always; else so often that one test in a hundred would fail by chance: of 100
+// veterans 55 catch the ball, and 71 nudge the cube into the box.
 TEST_P(OperatorDoes, the_other_tasks) {
-  const auto& [task, object, least] = GetParam();
-  const OperatorSkill undisturbed;
-  EXPECT_EQ(completed(task, object, &undisturbed), 1);
-  const int count = completed(task, object);
+  const auto& [task, object, persons, least] = GetParam();
+  EXPECT_EQ(completed(task, object), 1);
+  const int count = completed(task, object, static_cast<std::uint64_t>(persons));
   EXPECT_GE(count, least);
-  RecordProperty("completed_of_8", count);
+  RecordProperty("completed", count);
 }
 INSTANTIATE_TEST_SUITE_P(All, OperatorDoes,
-                         ::testing::Values(std::tuple("tap", "cube", 6), std::tuple("tap", "long_cuboid", 6),
-                                           std::tuple("slap", "cube", 6), std::tuple("slap", "ball", 6),
-                                           std::tuple("catch", "ball", 3),
-                                           std::tuple("nudge_into_box", "cube", 5),
-                                           std::tuple("hatch", "wall", 6)));
+                         ::testing::Values(OtherTask{"tap", "cube", 8, 6},
+                                           OtherTask{"tap", "long_cuboid", 8, 6},
+                                           OtherTask{"slap", "cube", 8, 6}, OtherTask{"slap", "ball", 8, 6},
+                                           OtherTask{"catch", "ball", 24, 7},
+                                           OtherTask{"nudge_into_box", "cube", 24, 11},
+                                           OtherTask{"hatch", "wall", 8, 6}),
+                         [](const auto& of) { return std::string(of.param.task) + "_" + of.param.object; });
 
 TEST(OperatorTrial, says_what_it_cannot_do) {
   Task task = load_task("config/tasks/hatch.yaml");
