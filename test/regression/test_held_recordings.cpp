@@ -167,8 +167,8 @@ class HeldRecording : public ::testing::TestWithParam<HeldObject> {
   std::optional<std::string> file_;
 };
 
-/// A person's fingers do not keep still among each other while they hold: 3 to 9 mm here. The object goes with
-/// them and moves no farther than they do, and two fifths more: grasp assist carries it with the distal
+/// A person's fingers do not keep still among each other while they hold: 3 to 9 mm here. The object goes
+/// with them and moves no farther than they do, and two fifths more: grasp assist carries it with the distal
 /// phalanges alone, while their movement is that of all that pressed. Measured: 10.7 mm where they move by
 /// 8.0, in lm_hmd_pinch at 1 g, all of it as that hand half opens at 7.2 s; 8.1 mm or less in the others.
 void expect_held(const HeldObject& held, const Outcome& outcome) {
