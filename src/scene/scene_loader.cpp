@@ -36,6 +36,8 @@ void check_overlaps(const std::string& file, const Scene& scene) {
 
 }  // namespace
 
+SceneError::SceneError(const std::string& message) : std::runtime_error(text::one_line(message, 4000)) {}
+
 std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories) {
   return find_named_file("scene", scene, ".urdf", directories);
 }

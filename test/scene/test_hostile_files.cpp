@@ -199,6 +199,17 @@ TEST(HostileMesh, that_is_too_large_or_has_too_many_triangles_is_refused) {
   test::expect_words(mesh_error("many.obj", faces), {"500001 triangles", "at most 500000"});
 }
 
+TEST(SceneError, is_one_line_whatever_the_file_is_called) {
+  const test::Folder folder;
+  try {
+    load_scene(folder.write("two\nlines.urdf", "<robot"), {});
+    FAIL();
+  } catch (const SceneError& error) {
+    test::expect_words(error.what(), {"two lines.urdf"});
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
 TEST(Names, of_links_are_short_and_of_letters_digits_bars_and_dashes) {
   const auto named = [](const std::string& name) {
     const std::string body = test::kInertial + std::string(test::kBox);

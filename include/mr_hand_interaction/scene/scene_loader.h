@@ -10,10 +10,11 @@
 
 namespace mrhi {
 
-/// A scene that cannot be loaded. what() is one line: the file, the thing in it, and what is allowed.
+/// A scene that cannot be loaded. what() is one line, whatever the file's name holds: the file, the thing in
+/// it, and what is allowed.
 class SceneError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit SceneError(const std::string& message);
 };
 
 /// What a loader needs beside the files themselves.
