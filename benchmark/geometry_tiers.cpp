@@ -11,6 +11,7 @@
 
 #include "collision/closest_features.h"
 #include "modelling/skin_model.h"
+#include "modelling/skin_parts.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
 #include "rendering/skin.h"
@@ -67,7 +68,7 @@ double skin_radius(const Capsule& bone, int capsule, bool first_half, const Skin
   double sum = 0.0;
   int count = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (skin.share(i, capsule) < 0.5) continue;
+    if (capsule_shares(skin.rest()[i])[static_cast<std::size_t>(capsule)] < 0.5) continue;
     const double s = along.dot(vertices[i] - bone.start) / along.squaredNorm();
     if (s < 0.0 || s > 1.0 || (s < 0.5) != first_half) continue;
     sum += (vertices[i] - bone.axis_point(s)).norm();
@@ -188,7 +189,9 @@ std::vector<Pose> touching_poses(const Geometries& rest, const Skin& skin, bool 
       touch = nearest(placed.skin);
       pose.position -= touch.gap * from;  // never past the touch
     }
-    if (std::abs(touch.gap) <= kTouch && skin.share(touch.vertex, capsule) > 0.5) poses.push_back(pose);
+    if (std::abs(touch.gap) <= kTouch &&
+        capsule_shares(skin.rest()[touch.vertex])[static_cast<std::size_t>(capsule)] > 0.5)
+      poses.push_back(pose);
   }
   return poses;
 }
@@ -225,7 +228,7 @@ void compare(const Geometries& rest, const Skin& skin, bool inside) {
 }  // namespace mrhi
 
 int main() {
-  const mrhi::Skin skin(mrhi::finest_skin());  // finer than the one that is drawn
+  const mrhi::Skin skin(mrhi::skinned(mrhi::finest_skin()));  // finer than the one that is drawn
   const mrhi::Geometries rest = mrhi::resting_hand(skin);
   std::printf(
       "%d poses each; all fingers against one box; smallest of %d times, all geometries by turns; "

@@ -4,11 +4,9 @@
 #include <cmath>
 
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
-#include "rendering/skin.h"
-#include "rendering/skin_nails.h"
-#include "rendering/skin_rig.h"
-#include "rendering/skin_shape.h"
 #include "simplified_mesh.h"
+#include "skin_parts.h"
+#include "skin_shape.h"
 #include "surface_net.h"
 
 namespace mrhi {
@@ -17,6 +15,7 @@ namespace {
 constexpr double kCell = 0.0026;  // length of the finest triangles' sides [m]
 constexpr double kTipWorth = 4.0, kSleeveWorth = 8.0, kWebWorth = 20.0;
 constexpr double kSleeveEdge = 0.005;  // [m]
+constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
 Hand hand_in(const HandPosture& posture) {
   return complete_hand(hand_joints(human_hand(), Side::right, Pose{}, posture), Pose{});
@@ -84,17 +83,20 @@ void settle(TriangleMesh& mesh) {
 
 /// What is looked at, fingers and most of all their ends and the sleeve's edge, and what folds, the webs
 /// between two fingers.
-double worth_of(const Skin& skin, std::size_t vertex) {
+double worth_of(const Vector3& vertex) {
+  const auto shares = capsule_shares(vertex);
+  const auto share = [&](int finger, int bone) {
+    return shares[static_cast<std::size_t>(capsule_index(finger, bone))];
+  };
   double worth = 1.0, all = 0.0, most = 0.0;
   for (int finger = 0; finger < kFingers; ++finger) {
     double of_finger = 0.0;
-    for (int bone = 1; bone < kBonesPerFinger; ++bone)
-      of_finger += skin.share(vertex, capsule_index(finger, bone));
-    worth += of_finger + kTipWorth * skin.share(vertex, capsule_index(finger, 3));
+    for (int bone = 1; bone < kBonesPerFinger; ++bone) of_finger += share(finger, bone);
+    worth += of_finger + kTipWorth * share(finger, 3);
     all += of_finger;
     most = std::max(most, of_finger);
   }
-  if (std::abs(skin.rest()[vertex].x() - kSleeveBegins) < kSleeveEdge) worth += kSleeveWorth;
+  if (std::abs(vertex.x() - kSleeveBegins) < kSleeveEdge) worth += kSleeveWorth;
   return worth + kWebWorth * (all - most);
 }
 
@@ -109,7 +111,44 @@ Places with_relief(const Skin& skin) {
   return places;
 }
 
+/// A phalanx takes the place along it as a fraction of its length, and what is beyond its ends or beside it
+/// in radii: longer bones stretch the skin, thicker ones widen it, and tips stay round.
+SkinModel::Influence influence(int bone, double weight, const Vector3& vertex, const Vector3& normal) {
+  const SkinBone& carrying = rest_hand().rig[static_cast<std::size_t>(bone)];
+  Vector3 place = carrying.axes.transpose() * (vertex - carrying.start);
+  double along = 0.0;
+  if (bone < kPhalanges) {
+    along = std::clamp(place.x(), 0.0, carrying.length);
+    place.x() -= along;
+  }
+  return {bone, static_cast<float>(weight), static_cast<float>(along / carrying.length),
+          (place / carrying.radius).cast<float>(),
+          (weight * carrying.axes.transpose() * normal).cast<float>()};
+}
+
 }  // namespace
+
+/// What the triangles' normals are off the shape's as they are made is nothing to be seen; what skin that
+/// folds adds to it is. So the bones carry the difference.
+SkinModel skinned(const TriangleMesh& rest) {
+  SkinModel model{rest.vertices, rest.triangles, {}, {}, {}, skin_creases(rest)};
+  std::vector<Vector3> facets(rest.vertices.size(), Vector3::Zero());
+  add_facets(rest.triangles, rest_hand().hand, rest.vertices, facets);
+  for (std::size_t v = 0; v < rest.vertices.size(); ++v) {
+    const Vector3& vertex = rest.vertices[v];
+    model.looks.push_back(skin_look(vertex));
+    const Vector3 normal = (1.0 + facets[v].norm()) * skin_normal(vertex) - facets[v];
+    auto weights = skin_weights(vertex);
+    double sum = 0.0;
+    for (double& weight : weights) sum += weight = weight < kLeastWeight ? 0.0 : weight;
+    for (int b = 0; b < kSkinBones; ++b) {
+      const double weight = weights[static_cast<std::size_t>(b)];
+      if (weight > 0.0) model.influences.push_back(influence(b, weight / sum, vertex, normal));
+    }
+    model.ends.push_back(static_cast<std::uint32_t>(model.influences.size()));
+  }
+  return model;
+}
 
 TriangleMesh finest_skin() {
   const SkinBox box = skin_box();
@@ -117,7 +156,7 @@ TriangleMesh finest_skin() {
 }
 
 TriangleMesh modelled_skin(std::size_t triangles) {
-  static const Skin finest(finest_skin());
+  static const Skin finest(skinned(finest_skin()));
   std::vector<Places> poses{finest.rest()};
   for (const Hand& hand :
        {hand_in(relaxed_posture()), hand_in(pointing_posture()), hand_in(bar_grip()), hand_in(cube_grip()),
@@ -128,7 +167,7 @@ TriangleMesh modelled_skin(std::size_t triangles) {
   }
   if (triangles > kOutlineTriangles) poses.push_back(with_relief(finest));  // the ghost has no nails
   std::vector<double> worth;
-  for (std::size_t v = 0; v < finest.size(); ++v) worth.push_back(worth_of(finest, v));
+  for (const Vector3& vertex : finest.rest()) worth.push_back(worth_of(vertex));
   TriangleMesh mesh = simplified({finest.rest(), finest.triangles()}, poses, worth, triangles);
   settle(mesh);
   return mesh;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "rendering/skin_shape.h"
+#include "skin_shape.h"
 
 namespace mrhi {
 namespace {

@@ -1,112 +1,25 @@
 #include "skin_creases.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "skin_rig.h"
-
 namespace mrhi {
 namespace {
 
-constexpr float kHalfWidth = 0.00050f;  // of the deepest [m]
-constexpr double kAbove = 0.00015;      // the triangles, so as to be before them [m]
-const Rgb kTint(0.85f, 0.77f, 0.74f);   // of the skin's colour
-
-// A crease is a curve on the rest hand's skin: where `beyond` changes its sign, as deep as `depth` says, 0
-// to 1.
-
-/// Straight across a finger, on the side of the palm.
-struct FingerCrease {
-  const SkinBone& bone;
-  double at;  // along the bone [m]
-
-  Vector3 on_bone(const Vector3& vertex) const { return bone.axes.transpose() * (vertex - bone.start); }
-  double beyond(const Vector3& vertex) const { return on_bone(vertex).x() - at; }
-  double depth(const Vector3& vertex) const {
-    const Vector3 place = on_bone(vertex);
-    if (std::hypot(place.y(), place.z()) > 1.3 * bone.radius) return 0.0;
-    return smooth_step(1.4, 0.6, std::abs(std::atan2(place.y(), -place.z())));
-  }
-};
-
-/// In the palm, part of the circle through three places, x to the fingers, y to the thumb [m].
-class PalmCrease {
- public:
-  PalmCrease(const Eigen::Vector2d& begin, const Eigen::Vector2d& on_the_way, const Eigen::Vector2d& end) {
-    // |c - p|^2 is the same for all three: 2 (p - q) . c = p^2 - q^2.
-    Eigen::Matrix2d sides;
-    sides << (begin - on_the_way).transpose(), (end - on_the_way).transpose();
-    const Eigen::Vector2d squares(begin.squaredNorm() - on_the_way.squaredNorm(),
-                                  end.squaredNorm() - on_the_way.squaredNorm());
-    centre_ = 0.5 * sides.inverse() * squares;
-    radius_ = (begin - centre_).norm();
-    middle_ = (on_the_way - centre_) / radius_;
-    reach_ = std::max(turned(begin), turned(end));
-  }
-
-  double beyond(const Vector3& vertex) const { return (vertex.head<2>() - centre_).norm() - radius_; }
-  double depth(const Vector3& vertex) const {
-    return smooth_step(reach_, 0.6 * reach_, turned(vertex.head<2>())) *
-           smooth_step(0.002, -0.004, vertex.z());
-  }
-
- private:
-  /// About the centre, away from the place on the way [rad].
-  double turned(const Eigen::Vector2d& place) const {
-    return std::acos(std::clamp((place - centre_).normalized().dot(middle_), -1.0, 1.0));
-  }
-  Eigen::Vector2d centre_, middle_;
-  double radius_ = 0.0, reach_ = 0.0;
-};
+constexpr double kAbove = 0.00015;     // the triangles, so as to be before them [m]
+const Rgb kTint(0.85f, 0.77f, 0.74f);  // of the skin's colour
 
 }  // namespace
-
-template <typename Crease>
-void SkinCreases::add(const Skin& skin, const Crease& crease) {
-  for (const auto& triangle : skin.triangles()) {
-    std::vector<Crossing> crossings;
-    for (std::size_t i = 0; i < 3; ++i) {
-      // From the lower index, so that both triangles at the edge are crossed at the same place.
-      const auto [a, b] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      const Vector3 &from = skin.rest()[static_cast<std::size_t>(a)],
-                    &to = skin.rest()[static_cast<std::size_t>(b)];
-      const double before = crease.beyond(from), after = crease.beyond(to);
-      if ((before < 0.0) == (after < 0.0)) continue;
-      const double share = before / (before - after);
-      const auto depth = static_cast<float>(crease.depth(from + share * (to - from)));
-      crossings.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                           static_cast<float>(share), depth * kHalfWidth});
-    }
-    if (crossings.size() == 2 && crossings[0].half_width + crossings[1].half_width > 0.0f)
-      parts_.push_back({crossings[0], crossings[1]});
-  }
-}
-
-SkinCreases::SkinCreases(const Skin& skin) {
-  constexpr double kBase = 0.42;  // of a finger's first bone: where it leaves the palm
-  for (int finger = 0; finger < kFingers; ++finger) {
-    for (int b = finger == 0 ? 2 : 1; b < kBonesPerFinger; ++b) {
-      const SkinBone& bone = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, b))];
-      add(skin, FingerCrease{bone, b == 1 ? kBase * bone.length : 0.0});
-    }
-  }
-  add(skin, PalmCrease({0.052, -0.038}, {0.060, -0.008}, {0.079, 0.015}));
-  add(skin, PalmCrease({0.056, 0.037}, {0.049, 0.008}, {0.033, -0.025}));
-  add(skin, PalmCrease({0.056, 0.037}, {0.036, 0.015}, {0.008, 0.006}));
-}
 
 void SkinCreases::pose(const SkinSurface& surface, const std::vector<Rgb>& colours,
                        std::vector<Corner>& corners) const {
   corners.clear();
-  for (const auto& part : parts_) {
+  for (const auto& part : skin_.model().creases) {
     std::array<Vector3, 2> places, normals;
     std::array<Rgb, 2> tints;
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto& [a, b, share, half_width] = part[i];
-      normals[i] = (surface.normals[a] + share * (surface.normals[b] - surface.normals[a])).normalized();
+      const auto& [a, b, fraction, half_width] = part[i];
+      normals[i] = (surface.normals[a] + fraction * (surface.normals[b] - surface.normals[a])).normalized();
       places[i] =
-          surface.vertices[a] + share * (surface.vertices[b] - surface.vertices[a]) + kAbove * normals[i];
-      tints[i] = kTint * (colours[a] + share * (colours[b] - colours[a]));
+          surface.vertices[a] + fraction * (surface.vertices[b] - surface.vertices[a]) + kAbove * normals[i];
+      tints[i] = kTint * (colours[a] + fraction * (colours[b] - colours[a]));
     }
     const Vector3 along = (places[1] - places[0]).normalized();
     std::array<Corner, 4> strip;  // counter-clockwise

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "light.h"
@@ -13,7 +11,7 @@ namespace mrhi {
 /// three. Narrow strips upon a skin's triangles, which are too few to be coloured so finely. Immutable.
 class SkinCreases {
  public:
-  explicit SkinCreases(const Skin& skin);
+  explicit SkinCreases(const Skin& skin) : skin_(skin) {}  ///< keeps a reference
 
   /// A corner of the strips' triangles, counter-clockwise seen from outside.
   struct Corner {
@@ -24,16 +22,7 @@ class SkinCreases {
   void pose(const SkinSurface& surface, const std::vector<Rgb>& colours, std::vector<Corner>& corners) const;
 
  private:
-  /// Where a crease crosses an edge of a triangle, the share of the way from vertex a to b.
-  struct Crossing {
-    std::uint32_t a, b;
-    float share;
-    float half_width;  // [m]
-  };
-  template <typename Crease>
-  void add(const Skin& skin, const Crease& crease);
-
-  std::vector<std::array<Crossing, 2>> parts_;  // one in each triangle that is crossed
+  const Skin& skin_;
 };
 
 }  // namespace mrhi

@@ -4,15 +4,11 @@
 #include <cmath>
 
 #include "light.h"
-#include "skin_nails.h"
 #include "skin_rig.h"
 
 namespace mrhi {
 namespace {
 
-const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
-    kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
-constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
 // A touch is seen around its middle as far as this, in radii of what presses.
 constexpr double kSpot = 2.0, kSpotCore = 1.1;
 constexpr double kLightTouch = 0.8;  // how red it is without force
@@ -76,46 +72,12 @@ std::array<Floats, kCapsules> make_counts() {
   return counts;
 }
 
-/// In the frame of the bone, in its radii: where fingers are redder.
-Rgb finger_colour(int finger, const Vector3& vertex, const Rgb& skin) {
-  const SkinBone& tip = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, 3))];
-  const Vector3 q = tip.axes.transpose() * (vertex - tip.start) / tip.radius;
-  const double length = tip.length / tip.radius;
-  const double red = smooth_step(-0.3, length + 0.5, q.x()) * smooth_step(0.9, -0.6, q.z());
-  return skin + static_cast<float>(0.7 * red) * (kBlush - skin);
-}
-
-/// Nails are lighter, and skin is darker along their edges.
-Rgb with_nail(const Vector3& vertex, const Rgb& skin) {
-  const SkinNail here = skin_nail(vertex);
-  const Rgb colour = skin + static_cast<float>(here.nail) * (kNail - skin);
-  return colour + static_cast<float>(0.5 * here.edge) * (kNailFold - colour);
-}
-
 }  // namespace
-
-SkinPaint::SkinPaint(const Skin& skin) {
-  tints_.reserve(skin.size());
-  for (std::size_t v = 0; v < skin.size(); ++v) {
-    int most = 0;
-    for (int c = 1; c < kPhalanges; ++c) {
-      if (skin.share(v, c) > skin.share(v, most)) most = c;
-    }
-    const Vector3& vertex = skin.rest()[v];
-    // The palm is pinker than the back of the hand, so that one can be told from the other.
-    const auto palmar = static_cast<float>(smooth_step(0.004, -0.008, vertex.z()));
-    Rgb colour = kBack + palmar * (kPalmar - kBack);
-    if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex, colour);
-    colour = with_nail(vertex, colour);
-    const auto wrist = static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x()));
-    tints_.push_back({colour, most, wrist});
-  }
-}
 
 /// How much of the touching colour a vertex takes: of the touches of its own finger, or the palm's.
 float SkinPaint::redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
                          const std::vector<int>& touched) const {
-  const int own = tints_[vertex].capsule;
+  const int own = skin_.model().looks[vertex].capsule;
   double red = 0.0;
   for (const int c : touched) {
     const bool palm = c == kPalm || bone_of(c) == 0, on_palm = own == kPalm || bone_of(own) == 0;
@@ -139,12 +101,12 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface,
   }
   colours.resize(surface.vertices.size());
   for (std::size_t v = 0; v < colours.size(); ++v) {
-    const Tint& tint = tints_[v];
+    const SkinModel::Look& look = skin_.model().looks[v];
     const float red = redness(v, surface.vertices[v], rendered, touched);
-    const Rgb colour = tint.colour + red * (touching_colour() - tint.colour);
+    const Rgb colour = look.colour + red * (touching_colour() - look.colour);
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();
     const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
-                                        counts[static_cast<std::size_t>(tint.capsule)]);
+                                        counts[static_cast<std::size_t>(look.capsule)]);
     colours[v] = (colour * light_on(normal, around)).min(1.0f);
   }
 }

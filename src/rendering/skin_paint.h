@@ -13,26 +13,21 @@ namespace mrhi {
 /// around where fingers cover each other or the palm (spheres as occluders). Immutable.
 class SkinPaint {
  public:
-  explicit SkinPaint(const Skin& skin);
+  explicit SkinPaint(const Skin& skin) : skin_(skin) {}  ///< keeps a reference
 
   /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
   /// presses, and the more so the harder.
   void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours) const;
 
   /// How much of a vertex is left to be seen: 1 everywhere but at the wrist, which ends in nothing.
-  float opacity(std::size_t vertex) const { return 1.0f - tints_[vertex].wrist; }
+  float opacity(std::size_t vertex) const { return 1.0f - skin_.model().looks[vertex].wrist; }
 
   static Rgb touching_colour() { return {0.86f, 0.30f, 0.08f}; }
 
  private:
-  struct Tint {
-    Rgb colour;
-    int capsule;  ///< that the vertex belongs to most
-    float wrist;  ///< how much of it has faded away
-  };
   float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
                 const std::vector<int>& touched) const;
-  std::vector<Tint> tints_;
+  const Skin& skin_;
 };
 
 }  // namespace mrhi

@@ -40,23 +40,12 @@ struct RestHand {
 };
 const RestHand& rest_hand();
 
-constexpr double kSleeveBegins =
-    -0.014;  ///< x of the rest hand where a sleeve takes the place of the skin [m]
-
 /// Whether no bone is missing but the thumb's metacarpal.
 bool has_whole_skin(const Hand& hand);
 
 /// Bones turn from where the rest hand has them by the least rotation that each takes from the one before.
 /// The hand must have a whole skin.
 SkinRig pose_rig(const Hand& hand);
-
-/// How much each bone carries of a point of the rest hand's skin; the sum is 1. At a joint the bend carries
-/// most, over a shorter way at the back than at the inside, so that a bent finger keeps its thickness.
-std::array<double, kSkinBones> skin_weights(const Vector3& point);
-
-/// How far the point belongs to each capsule: to phalanges by their bones' weights, to the palm by its
-/// distance.
-std::array<float, kCapsules> capsule_shares(const Vector3& point);
 
 /// 0 at `from`, 1 at `to`, constant beyond, with no kink; `from` may be the greater. t^2 (3 - 2 t): its slope
 /// is 0 at both ends.

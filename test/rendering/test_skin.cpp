@@ -1,13 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <tuple>
 
 #include "modelling/skin_model.h"
+#include "modelling/skin_parts.h"
+#include "modelling/skin_shape.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
-#include "rendering/rest_skin.h"
 #include "rendering/skin.h"
 #include "rendering/skin_checks.h"
-#include "rendering/skin_shape.h"
 #include "support/postures.h"
 #include "tracking/adult_hand.h"
 
@@ -66,24 +67,51 @@ TEST(Skin, is_as_fine_as_it_is_asked_to_be_and_finer_where_it_is_looked_at) {
   const Skin& skin = Skin::human();
   int tips = 0, rest = 0;
   for (std::size_t v = 0; v < skin.size(); ++v) {
+    const auto shares = capsule_shares(skin.rest()[v]);
     double tip = 0.0;
-    for (int finger = 0; finger < kFingers; ++finger) tip += skin.share(v, capsule_index(finger, 3));
+    for (int finger = 0; finger < kFingers; ++finger)
+      tip += shares[static_cast<std::size_t>(capsule_index(finger, 3))];
     ++(tip > 0.5 ? tips : rest);
   }
   EXPECT_GT(5 * tips, rest);  // of an eighth of the surface
 }
 
-// Written in micrometres.
-void expect_same(const TriangleMesh& made, const TriangleMesh& shipped) {
+/// Numbers as a compiler may round them otherwise; the rest to the bit.
+void expect_same(const SkinModel& made, const SkinModel& shipped) {
+  constexpr float kRounding = 1e-5f;  // of lengths [m], fractions and colours
   ASSERT_EQ(made.triangles, shipped.triangles);
-  ASSERT_EQ(made.vertices.size(), shipped.vertices.size());
-  for (std::size_t v = 0; v < made.vertices.size(); ++v)
-    EXPECT_LT((made.vertices[v] - shipped.vertices[v]).norm(), 1e-6);
+  ASSERT_EQ(made.ends, shipped.ends);
+  ASSERT_EQ(made.rest.size(), shipped.rest.size());
+  ASSERT_EQ(made.looks.size(), shipped.looks.size());
+  for (std::size_t v = 0; v < made.rest.size(); ++v) {
+    EXPECT_LT((made.rest[v] - shipped.rest[v]).norm(), kRounding);
+    EXPECT_EQ(made.looks[v].capsule, shipped.looks[v].capsule);
+    EXPECT_NEAR(made.looks[v].wrist, shipped.looks[v].wrist, kRounding);
+    EXPECT_LT((made.looks[v].colour - shipped.looks[v].colour).abs().maxCoeff(), kRounding);
+  }
+  ASSERT_EQ(made.influences.size(), shipped.influences.size());
+  for (std::size_t i = 0; i < made.influences.size(); ++i) {
+    const SkinModel::Influence &a = made.influences[i], &b = shipped.influences[i];
+    EXPECT_EQ(a.bone, b.bone);
+    EXPECT_NEAR(a.weight, b.weight, kRounding);
+    EXPECT_NEAR(a.along, b.along, kRounding);
+    EXPECT_LT((a.beyond - b.beyond).norm(), kRounding);
+    EXPECT_LT((a.normal - b.normal).norm(), 100.0f * kRounding);  // by differences of the shape over 0.1 mm
+  }
+  ASSERT_EQ(made.creases.size(), shipped.creases.size());
+  for (std::size_t i = 0; i < made.creases.size(); ++i) {
+    for (const std::size_t end : {0, 1}) {
+      const SkinModel::Crossing &a = made.creases[i][end], &b = shipped.creases[i][end];
+      EXPECT_EQ(std::tie(a.a, a.b), std::tie(b.a, b.b));
+      EXPECT_NEAR(a.fraction, b.fraction, kRounding);
+      EXPECT_NEAR(a.half_width, b.half_width, kRounding);
+    }
+  }
 }
 
 TEST(Skin, that_ships_is_what_make_skin_gives) {
-  expect_same(modelled_skin(kHumanTriangles), rest_skin());
-  expect_same(modelled_skin(kOutlineTriangles), rest_outline());
+  expect_same(skinned(modelled_skin(kHumanTriangles)), Skin::human().model());
+  expect_same(skinned(modelled_skin(kOutlineTriangles)), Skin::outline().model());
 }
 
 TEST(Skin, rest_hand_posed_is_the_rest_hand) {
@@ -105,10 +133,10 @@ TEST(Skin, fingers_are_as_thick_as_their_capsules_and_no_thicker) {
   const SkinSurface surface = skin_of(hand);
   for (int finger = 0; finger < kFingers; ++finger) {
     for (int bone = 2; bone < kBonesPerFinger; ++bone) {
-      const int index = capsule_index(finger, bone);
-      const Capsule& capsule = hand.capsules[static_cast<std::size_t>(index)];
+      const auto index = static_cast<std::size_t>(capsule_index(finger, bone));
+      const Capsule& capsule = hand.capsules[index];
       for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-        if (Skin::human().share(v, index) < 0.99f) continue;
+        if (capsule_shares(Skin::human().rest()[v])[index] < 0.99f) continue;
         const double radii = testing::distance_to_axis(capsule, surface.vertices[v]) / capsule.radius;
         EXPECT_LT(radii, 1.05);  // joints are a little thicker
         EXPECT_GT(radii, 0.70);  // the back of the fingertip is slimmer

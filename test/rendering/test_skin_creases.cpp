@@ -2,10 +2,10 @@
 
 #include <map>
 
+#include "modelling/skin_shape.h"
 #include "rendering/skin_checks.h"
 #include "rendering/skin_creases.h"
 #include "rendering/skin_rig.h"
-#include "rendering/skin_shape.h"
 #include "support/postures.h"
 
 namespace mrhi {

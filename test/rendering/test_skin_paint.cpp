@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "rendering/skin_nails.h"
+#include "modelling/skin_parts.h"
 #include "rendering/skin_paint.h"
 #include "rendering/skin_rig.h"
 #include "support/postures.h"
@@ -100,7 +100,7 @@ TEST(SkinPaint, every_finger_has_a_nail_on_its_back_lighter_than_the_skin_along_
     float nail = 0.0f, edge = 0.0f;
     int nails = 0, edges = 0;
     for (std::size_t v = 0; v < skin.size(); ++v) {
-      if (skin.share(v, tip) < 0.5) continue;
+      if (capsule_shares(skin.rest()[v])[static_cast<std::size_t>(tip)] < 0.5) continue;
       const SkinNail here = skin_nail(skin.rest()[v]);
       if (here.nail > 0.7) {
         EXPECT_GT((skin.rest()[v] - bone.start).dot(bone.axes.col(2)), 0.0) << finger;
@@ -120,7 +120,7 @@ TEST(SkinPaint, the_palm_is_darker_under_a_fist) {
   float lighter = 0.0f;
   for (std::size_t v = 0; v < open.size(); ++v) {
     const Vector3& rest = Skin::human().rest()[v];
-    const bool palm = Skin::human().share(v, kPalm) > 0.9f && rest.z() < 0.0;
+    const bool palm = capsule_shares(rest)[kPalm] > 0.9f && rest.z() < 0.0;
     if (palm) lighter += brightness(open[v]) - brightness(closed[v]);
   }
   EXPECT_GT(lighter, 1.0f);

@@ -1,9 +1,7 @@
-#include "skin_rig.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/math.h"
+#include "skin_parts.h"
 
 namespace mrhi {
 namespace {

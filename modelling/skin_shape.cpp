@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "skin_rig.h"
+#include "rendering/skin_rig.h"
 
 namespace mrhi {
 namespace {

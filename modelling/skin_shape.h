@@ -4,6 +4,9 @@
 
 namespace mrhi {
 
+/// x of the rest hand where a sleeve takes the place of the skin [m].
+constexpr double kSleeveBegins = -0.014;
+
 /// Signed distance, roughly, from the rest hand's skin [m], negative inside: rounded cones smoothly united
 /// (Quilez's polynomial minimum). Fingers have the capsules' surface on the side of the palm and are flatter
 /// at the back.
