@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "finger_forces.h"
+#include "contact_history.h"
 #include "joints/joint_law.h"
 #include "math/registration.h"
 #include "mr_hand_interaction/replay/recording_csv.h"

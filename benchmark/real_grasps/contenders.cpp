@@ -7,7 +7,6 @@
 #include "../speed_accuracy/engine_module.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
-#include "peers.h"
 
 namespace mrhi::real_grasps {
 namespace {

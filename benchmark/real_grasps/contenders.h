@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "../speed_accuracy/engine.h"
 #include "trial.h"
 
 namespace mrhi::real_grasps {
@@ -26,5 +27,11 @@ std::vector<Contender> peer_settings(const std::string& module, const Configurat
 
 /// NAME of .../speed_accuracy_NAME.so.
 std::string engine_name(const std::string& module);
+
+/// In a physics engine: the hand that closes, filtered as ours is, as kinematic capsules; steps of
+/// `configuration.step`.
+Story play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
+                const Configuration& configuration, const benchmark::EngineMaker& maker,
+                const std::string& setting);
 
 }  // namespace mrhi::real_grasps

@@ -1,24 +1,270 @@
 // Bodies put where recorded hands close: how many are held until the hand opens? See docs/real_grasps.md.
 
-#include <iostream>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "run.h"
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "mr_hand_interaction/parameters.h"
+#include "report.h"
+#include "text/command_line.h"
+#include "text/text.h"
+
+namespace mrhi::real_grasps {
+namespace {
+
+constexpr const char* kUsage = R"(usage: real_grasps [OPTION]... [--arctic DIR] FOLDER...
+Puts bodies at rest (0 g) where recorded hands close and tells how many are held until the hand opens.
+  FOLDER            recordings in the CSV schema, or single files
+  --set KEY=VALUE   a parameter, as replay's; repeatable
+  --only ROW,...    pinch20, pinch30, pinch40, grab_sphere60, grab_sphere80, grab_cube60, grab_cube80; at 1 g on a
+                    column: rest_sphere60, rest_sphere100, rest_cube60, rest_cube100; hands that stay open round it,
+                    of which none is to be held: pass_sphere40, pass_cube40, pass_sphere60, pass_cube60
+  --list            one line for each closing
+  --noise RMS_MM    white noise on each joint and axis; 0 if not said
+  --rate HZ         frames evenly spaced at this rate; as recorded if not said
+  --seeds N         each closing is played N times with other noise; 1 if not said
+  --compare         our models in several stiffnesses
+  --engine FILE     a physics engine too: its module, .../speed_accuracy_NAME.so; repeatable
+  --output DIR      writes real_grasps.csv, real_grasps_events.csv (a line for each closing) and, with --arctic,
+                    real_grasps_arctic.csv
+  --arctic DIR      plays the windows that arctic_windows.py cut into DIR: captured hands on captured objects
+  --lead SECONDS    for which such an object is led before it is let free; 1 if not said, 0: hands appear on it
+  --jobs N          recordings at the same time; 1 if not said
+docs/real_grasps.md says what the figures mean.
+)";
+
+struct Arguments {
+  Configuration configuration;
+  std::vector<Row> rows = all_rows();
+  bool list = false;
+  std::string output;  ///< folder, or empty
+  unsigned jobs = 1;
+  Disturbance disturbance;
+  unsigned seeds = 1;                ///< each closing is played so many times, with other noise
+  bool compare = false;              ///< our models in several settings
+  std::vector<std::string> engines;  ///< modules of physics engines
+  std::string arctic;                ///< folder of windows, or empty
+  double lead = 1.0;                 ///< for which an object is led before its window [s]
+  std::vector<std::string> paths;    ///< recordings, or folders of them
+};
+
+std::vector<Row> rows_of(const Given& given) {
+  const std::vector<Row> all = all_rows();
+  std::vector<Row> rows;
+  for (const std::string& name : text::split(given.text)) {
+    const auto row = std::find_if(all.begin(), all.end(), [&](const Row& r) { return r.name == name; });
+    if (row == all.end()) {
+      std::vector<std::string> names;
+      for (const Row& r : all) names.push_back(r.name);
+      given.refuse(text::joined(names));
+    }
+    rows.push_back(*row);
+  }
+  return rows;
+}
+
+/// Nothing if help is asked for. Throws UsageError or ParameterError.
+std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
+  Arguments a;
+  CommandLine line;
+  line.flag("--list", a.list).flag("--compare", a.compare);
+  line.once("--output", "DIR", a.output).once("--arctic", "DIR", a.arctic);
+  line.once("--only", "ROW,...", [&](const Given& given) { a.rows = rows_of(given); });
+  line.once("--lead", "SECONDS", [&](const Given& given) { a.lead = given.number(0.0, 10.0); });
+  line.once("--noise", "RMS_MM",
+            [&](const Given& given) { a.disturbance.noise = 1e-3 * given.number(0.0, 50.0); });
+  line.once("--rate", "HZ", [&](const Given& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
+  line.once("--seeds", "N",
+            [&](const Given& given) { a.seeds = static_cast<unsigned>(given.whole(1, 1000)); });
+  line.once("--jobs", "N", [&](const Given& given) { a.jobs = static_cast<unsigned>(given.whole(1, 64)); });
+  line.each("--engine", "FILE", [&](const Given& given) { a.engines.push_back(given.text); });
+  line.each("--set", "KEY=VALUE", [&](const Given& given) {
+    const auto [key, value] = given.setting();
+    set_parameter(a.configuration, key, value);
+  });
+  line.words([&](const Given& given) { a.paths.push_back(given.text); });
+  if (!line.read(words)) return std::nullopt;
+  validate(a.configuration);
+  if (a.paths.empty() && a.arctic.empty())
+    throw UsageError("a folder of recordings or --arctic is needed; see --help");
+  return a;
+}
+
+std::vector<Recording> load(const std::vector<std::string>& paths) {
+  std::vector<Recording> recordings;
+  for (const std::string& file : recording_files(paths)) recordings.push_back(load_recording(file));
+  if (recordings.empty() && !paths.empty()) throw std::runtime_error("no recording in the folders given");
+  return recordings;
+}
+
+/// A table in the output folder, if there is one; engines in other processes write to its end.
+std::ofstream table(const Arguments& arguments, const std::string& name) {
+  std::ofstream csv;
+  if (arguments.output.empty()) return csv;
+  csv.open(arguments.output + "/" + name, std::ios::app);
+  if (!csv) throw std::runtime_error("cannot write " + arguments.output + "/" + name);
+  return csv;
+}
+
+void begin_table(const Arguments& arguments, const std::string& name, void (*header)(std::ostream&)) {
+  if (arguments.output.empty()) return;
+  std::ofstream csv(arguments.output + "/" + name);
+  if (!csv) throw std::runtime_error("cannot write " + arguments.output + "/" + name);
+  header(csv);
+}
+
+void play_recording(const Recording& recording, const Row& row, const Arguments& arguments,
+                    const Player& player, std::vector<Event>& events) {
+  for (const Closing& closing : closings(recording, row)) {
+    for (unsigned seed = 1; seed <= arguments.seeds; ++seed) {
+      Disturbance disturbance = arguments.disturbance;
+      disturbance.seed = seed;
+      events.push_back({recording.name, closing, play(recording, closing, row, disturbance, player)});
+    }
+  }
+}
+
+/// Recordings at the same time; events in the recordings' order.
+std::vector<Event> play_row(const std::vector<Recording>& recordings, const Row& row,
+                            const Arguments& arguments, unsigned jobs, const Player& player) {
+  std::vector<std::vector<Event>> found(recordings.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < recordings.size();)
+      play_recording(recordings[i], row, arguments, player, found[i]);
+  };
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < jobs; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  std::vector<Event> events;
+  for (auto& of_one : found) events.insert(events.end(), of_one.begin(), of_one.end());
+  return events;
+}
+
+void play_closings(const std::vector<Recording>& recordings, const Arguments& arguments, unsigned jobs,
+                   const Contender& contender) {
+  if (recordings.empty()) return;
+  std::cout << contender.engine << ", " << contender.setting << std::endl;
+  std::ofstream rows = table(arguments, "real_grasps.csv"),
+                closings = table(arguments, "real_grasps_events.csv");
+  for (const Row& row : arguments.rows) {
+    const std::vector<Event> events = play_row(recordings, row, arguments, jobs, contender.player);
+    if (arguments.list)
+      for (const Event& event : events) std::cout << line(event) << '\n';
+    std::cout << line(row.name, events) << std::endl;
+    if (arguments.list) std::cout << line(lost_to(events)) << std::endl;
+    write_rows(rows, contender, row.name, events);
+    write_events(closings, contender, row.name, events);
+  }
+}
+
+/// Outcomes of windows, in the groups that are told of.
+struct Groups {
+  std::vector<WindowOutcome> first, tuned, held_out, all;
+
+  void add(const Window& window, const WindowOutcome& outcome) {
+    all.push_back(outcome);
+    if (window.first) first.push_back(outcome);
+    (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(outcome);
+  }
+  void tell(const std::string& name, std::ostream& csv, const Contender& contender) const {
+    const std::pair<const char*, const std::vector<WindowOutcome>*> groups[] = {
+        {"_first", &first}, {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}};
+    for (const auto& [group, outcomes] : groups) {
+      if (outcomes->empty()) continue;
+      std::cout << line(name + group, *outcomes) << std::endl;
+      write_arctic(csv, contender, name + group, *outcomes);
+    }
+  }
+};
+
+void play_windows(const Arguments& arguments, const Contender& contender) {
+  if (arguments.arctic.empty()) return;
+  if (arguments.paths.empty()) std::cout << contender.engine << ", " << contender.setting << std::endl;
+  std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
+  Groups groups;
+  for (const Window& window : load_windows(arguments.arctic, contender.configuration)) {
+    groups.add(window, play(window, contender.configuration, arguments.lead));
+    if (arguments.list) std::cout << line(window.name, {groups.all.back()}) << '\n';
+  }
+  groups.tell("arctic", csv, contender);
+}
+
+/// What no model has a part in: how far the captured hands, each as one piece, have the object with them.
+void play_windows_rigidly(const Arguments& arguments) {
+  if (arguments.arctic.empty()) return;
+  const Contender hand{"none", "rigid hand", arguments.configuration, {}};
+  std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
+  Groups groups;
+  for (const Window& window : load_windows(arguments.arctic, arguments.configuration))
+    groups.add(window, play_rigidly(window));
+  groups.tell("rigid", csv, hand);
+}
+
+/// Other engines play free bodies alone.
+Arguments free_rows(Arguments arguments) {
+  auto& rows = arguments.rows;
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const Row& row) { return row.rests; }), rows.end());
+  return arguments;
+}
+
+/// In a process of its own: engines that cannot share one need not, and what crashes there fails there.
+void play_engine(const std::vector<Recording>& recordings, const Arguments& arguments,
+                 const std::string& module) {
+  std::cout << std::flush;
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      for (const Contender& contender : peer_settings(module, arguments.configuration))
+        play_closings(recordings, free_rows(arguments), 1, contender);
+    } catch (const std::exception& error) {
+      std::cerr << "real_grasps: " << error.what() << std::endl;
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || status != 0)
+    std::cerr << "real_grasps: " << engine_name(module) << " did not come to its end\n";
+}
+
+/// Plays all that the arguments ask for; prints it, and writes tables. Throws std::exception with one line.
+void run(const Arguments& arguments) {
+  const std::vector<Recording> recordings = load(arguments.paths);
+  begin_table(arguments, "real_grasps.csv", write_header);
+  begin_table(arguments, "real_grasps_events.csv", write_events_header);
+  if (!arguments.arctic.empty()) begin_table(arguments, "real_grasps_arctic.csv", write_arctic_header);
+  const std::vector<Contender> contenders = arguments.compare
+                                                ? our_settings(arguments.configuration)
+                                                : std::vector<Contender>{ours(arguments.configuration)};
+  for (const Contender& contender : contenders) {
+    play_closings(recordings, arguments, arguments.jobs, contender);
+    play_windows(arguments, contender);
+  }
+  play_windows_rigidly(arguments);
+  for (const std::string& module : arguments.engines) play_engine(recordings, arguments, module);
+}
+
+}  // namespace
+}  // namespace mrhi::real_grasps
 
 int main(int argc, char** argv) {
-  using namespace mrhi::real_grasps;
+  using namespace mrhi;
   try {
-    const Arguments arguments = parse_arguments({argv + 1, argv + argc});
-    if (arguments.help) {
-      std::cout << help_text();
-    } else {
-      run(arguments);
-    }
-  } catch (const UsageError& error) {
-    std::cerr << "real_grasps: " << error.what() << '\n';
-    return 2;
+    if (const auto arguments = real_grasps::read_arguments({argv + 1, argv + argc}))
+      real_grasps::run(*arguments);
+    else
+      std::cout << real_grasps::kUsage;
   } catch (const std::exception& error) {
     std::cerr << "real_grasps: " << error.what() << '\n';
-    return 1;
+    const bool usage = dynamic_cast<const UsageError*>(&error) || dynamic_cast<const ParameterError*>(&error);
+    return usage ? 2 : 1;
   }
   return 0;
 }

@@ -1,6 +1,6 @@
 #include <chrono>
 
-#include "finger_forces.h"
+#include "contact_history.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"

@@ -1,4 +1,4 @@
-#include "peers.h"
+#include "contenders.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,18 @@ Recording load_recording(const std::string& file);
 /// Files and, of folders, all recordings in them, sorted by name. Throws std::runtime_error for a path at
 /// which there is nothing.
 std::vector<std::string> recording_files(const std::vector<std::string>& paths);
+
+/// Another tracker than the one that recorded.
+struct Disturbance {
+  double noise = 0.0;  ///< white, on each joint and axis, rms [m]
+  std::optional<double>
+      rate;  ///< frames evenly spaced, joints in between by straight lines [1/s]; else as recorded
+  std::uint64_t seed = 1;
+};
+
+/// The frames of a recording from `first` to `last` as the tracker has them. The same seed gives the same
+/// bits.
+std::vector<JointsFrame> disturbed(const std::vector<JointsFrame>& frames, std::size_t first,
+                                   std::size_t last, const Disturbance& disturbance);
 
 }  // namespace mrhi::real_grasps

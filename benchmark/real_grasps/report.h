@@ -8,7 +8,7 @@
 
 #include "arctic.h"
 #include "contenders.h"
-#include "half.h"
+#include "statistics.h"
 #include "trial.h"
 
 namespace mrhi::real_grasps {

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "closing.h"
-#include "first_blow.h"
+#include "contact_history.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/body.h"
-#include "take.h"
 
 namespace mrhi::real_grasps {
 

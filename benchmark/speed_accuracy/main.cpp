@@ -11,11 +11,12 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 
-#include "arguments.h"
 #include "configured.h"
 #include "contender.h"
 #include "results.h"
+#include "text/command_line.h"
 
 namespace mrhi::benchmark {
 namespace {
@@ -23,6 +24,13 @@ namespace {
 const std::vector<double> kSteps{0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008333333, 0.016666667};
 const std::vector<double> kQuickSteps{0.001, 0.008333333};
 constexpr double kQuickBudget = 1.0;  // of a contender [s]
+
+struct Arguments {
+  bool quick = false;
+  std::vector<std::string> scenes;   ///< names, or names of groups; empty: all
+  std::vector<std::string> engines;  ///< empty: all
+  std::string output;                ///< folder, made if it is not there
+};
 
 struct Plan {
   std::vector<ScenePlan> scenes;
@@ -40,6 +48,21 @@ std::vector<std::string> known_scenes(const std::vector<ScenePlan>& scenes) {
   for (const ScenePlan& scene : scenes)
     if (!chosen(names, scene.group)) names.push_back(scene.group);
   return names;
+}
+
+/// Nothing if help is asked for. Throws UsageError.
+std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
+  std::vector<std::string> engines;
+  for (const EngineModule& module : engine_modules()) engines.push_back(module.name);
+  Arguments a;
+  CommandLine line;
+  line.flag("--quick", a.quick).once("--output", "DIR", a.output);
+  line.each("--scene", "NAME",
+            [&](const Given& given) { a.scenes.push_back(given.one_of(known_scenes(all_scenes()))); });
+  line.each("--engine", "NAME", [&](const Given& given) { a.engines.push_back(given.one_of(engines)); });
+  if (!line.read(words)) return std::nullopt;
+  if (a.output.empty()) throw UsageError("--output DIR is missing");
+  return a;
 }
 
 Plan plan_for(const Arguments& arguments) {
@@ -141,10 +164,11 @@ int main(int argc, char** argv) {
   using namespace mrhi::benchmark;
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    std::vector<std::string> engines;
-    for (const EngineModule& module : engine_modules()) engines.push_back(module.name);
-    run(parse_arguments({argv + 1, argv + argc}, known_scenes(all_scenes()), engines));
-  } catch (const UsageError& error) {
+    if (const auto arguments = read_arguments({argv + 1, argv + argc}))
+      run(*arguments);
+    else
+      std::cout << "usage: speed_accuracy [--quick] [--scene NAME]... [--engine NAME]... --output DIR\n";
+  } catch (const mrhi::UsageError& error) {
     std::cerr << "speed_accuracy: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {

@@ -6,7 +6,6 @@
 
 #include "../arctic.h"
 #include "../contenders.h"
-#include "../half.h"
 #include "../report.h"
 #include "../statistics.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"

@@ -6,7 +6,6 @@
 #include <map>
 #include <sstream>
 
-#include "../arguments.h"
 #include "../contender.h"
 #include "../results.h"
 
@@ -162,22 +161,6 @@ TEST(SpeedAccuracy, the_csv_has_the_published_columns) {
   std::ostringstream csv;
   write_header(csv);
   EXPECT_EQ(csv.str(), "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n");
-}
-
-TEST(SpeedAccuracy, bad_usage_names_what_is_allowed) {
-  const auto message = [](const std::vector<std::string>& words) -> std::string {
-    try {
-      parse_arguments(words, {"slap"}, {"ode"});
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_NE(message({"--scene", "slip", "--output", "x"}).find("allowed: slap"), std::string::npos);
-  EXPECT_NE(message({"--engine", "odd", "--output", "x"}).find("allowed: ode"), std::string::npos);
-  EXPECT_NE(message({"--fast"}).find("unknown option '--fast'"), std::string::npos);
-  EXPECT_NE(message({}).find("--output DIR is missing"), std::string::npos);
-  EXPECT_EQ(message({"--scene", "slap", "--quick", "--output", "x"}), "");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
-#include "first_blow.h"
+#include "contact_history.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "mr_hand_interaction/integration/body_state.h"
 
@@ -68,6 +70,15 @@ std::optional<FirstBlow> first_blow(const Simulation& simulation, int body, doub
   if (contact == nullptr) return std::nullopt;
   return FirstBlow{to_seconds(simulation.result().stamp),
                    kind(*contact, simulation.state().hands[contact->key.hand], seconds)};
+}
+
+void add_finger_forces(const FrameResult& result, std::vector<double>& forces) {
+  std::map<std::pair<int, int>, double> sums;  // by hand and finger
+  for (const Contact& contact : result.contacts) {
+    if (contact.impulse.isZero(0.0))
+      sums[{contact.key.hand, finger_of(contact.key.capsule)}] += contact.force.norm();
+  }
+  for (const auto& [finger, sum] : sums) forces.push_back(sum);
 }
 
 }  // namespace mrhi::real_grasps

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mr_hand_interaction/simulation.h"
 
@@ -22,5 +23,9 @@ struct FirstBlow {
 
 /// That of a body at rest, once a frame of `seconds` [s] has given it more than 0.03 m/s; else nothing.
 std::optional<FirstBlow> first_blow(const Simulation& simulation, int body, double seconds);
+
+/// Adds, of each finger or palm that presses as the frame ends, how hard [N]: the sum of its contacts'
+/// forces. Contacts struck in the frame are left out: what they are pressed with is not known.
+void add_finger_forces(const FrameResult& result, std::vector<double>& forces);
 
 }  // namespace mrhi::real_grasps
