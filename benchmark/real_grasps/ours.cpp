@@ -44,7 +44,7 @@ void look(const Simulation& simulation, Story& story) {
                 twist_of(simulation.scene().bodies.front(), state).linear};
   for (const Contact& contact : result.contacts) moment.pressed |= contact.touching();
   story.moments.push_back(moment);
-  for (const Grip& grip : simulation.state().grips) story.taken |= grip.bears;
+  for (const Grip& grip : simulation.state().grips) story.taken |= grip.active;
   add_finger_forces(result, story.forces);
   for (const Event& event : result.events) {
     const bool begins = event.kind == EventKind::grasp_begin;

@@ -61,18 +61,19 @@ struct TrackingConfiguration {
       12.0;  ///< a joint faster than this has jumped: the hand touches nothing until clear [m/s]
 };
 
-/// What a hand can bring to bear under `implicit`. The paper's hand goes where it is tracked whatever stands
-/// against it; a person's gives way. Where a person's figures come from is told in docs/contact.md.
+/// Limits of a hand under `implicit`. The paper's hand follows the tracker whatever stands against it; a
+/// person's hand complies. docs/contact.md has the sources of a person's values.
 struct HandStrength {
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
   double finger = kUnlimited;  ///< most that a finger pushes with [N]
   double palm = kUnlimited;    ///< most that the palm pushes with [N]
   double pad = 0.0;            ///< depth over which pulp stiffens to the material's stiffness; 0: none [m]
-  double finger_mass = kUnlimited;  ///< effective, of a phalanx that strikes; people's: 0.01 to 0.03 [kg]
-  double palm_mass = kUnlimited;    ///< the same of a palm; people's: 0.3 to 0.5 [kg]
+  double finger_mass = kUnlimited;    ///< effective mass of a phalanx in an impact [kg]
+  double palm_mass = kUnlimited;      ///< effective mass of the palm in an impact [kg]
+  std::optional<double> restitution;  ///< of impacts by the hand, 0 to 1; unset: the object's restitution
 
-  static HandStrength of_a_person() { return {16.0, 32.0, 0.002, kUnlimited, kUnlimited}; }
+  static HandStrength of_a_person() { return {16.0, 32.0, 0.002, 0.02, 0.4, 0.0}; }
 };
 
 /// The switches are refinements: on, unless one is turned off to see what it is worth (docs/contact.md).

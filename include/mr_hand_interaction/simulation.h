@@ -25,6 +25,13 @@ enum class Rejection : std::uint8_t {
 };
 const char* to_string(Rejection rejection);
 
+/// What grasp assist adds to the contacts of a hand with a body.
+struct GraspSupport {
+  std::uint8_t hand = 0;            ///< index of the hand's track
+  std::uint16_t body = 0;           ///< index in Scene::bodies
+  Vector3 force = Vector3::Zero();  ///< on the body, mean over the time since the frame before, world [N]
+};
+
 /// What one frame led to. Valid until the next frame.
 struct FrameResult {
   Nanoseconds stamp = 0;
@@ -33,6 +40,7 @@ struct FrameResult {
   /// Touching at the frame's end, or since the frame before. Their forces are means over the time since then:
   /// the momentum transferred by it. Those that have ended have no depth.
   std::vector<Contact> contacts;
+  std::vector<GraspSupport> assists;  ///< of all active grips, by hand and body
   std::vector<Event> events;
   /// What came out as no number, and was left out or put back at its start: "object 'cube'". Empty, if all is
   /// well.

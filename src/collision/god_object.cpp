@@ -162,7 +162,7 @@ void begin_contact(const TouchingPair& pair, int point, const ContactMemory* mem
   contact = ContactMemory();
   contact.key = pair.key(point);
   contact.struck = nearest != nullptr && nearest->struck;
-  contact.given = nearest != nullptr ? nearest->given : 0.0;
+  contact.compliance = nearest != nullptr ? nearest->compliance : 0.0;
   contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged || pair.moving.appeared;
 }
 

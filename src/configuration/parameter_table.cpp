@@ -147,6 +147,9 @@ std::vector<ParameterEntry> hand_parameters() {
           number(
               "hand/pad", " [m]", {0, 0.01}, {0, 0.005},
               [](Configuration & c) -> auto& { return c.contact.hand.pad; }),
+          number_or(
+              {"material", "for that of the object's material"}, "hand/restitution", "", {0, 1}, {0, 1},
+              [](Configuration & c) -> auto& { return c.contact.hand.restitution; }),
           number(
               "hand/radius_scale", "", {0.1, 10}, {0.5, 2},
               [](Configuration & c) -> auto& { return c.hand_radius_scale; })};

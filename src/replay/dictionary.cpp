@@ -21,7 +21,7 @@ wx wy wz|rad/s|spin, world axes
 level||highest of any hand: 0 none, 1 hover, 2 contact, 3 grasp
 held||1 if a hand grasps it
 assisted||1 if contact/grasp_assist supports it
-assist_fx assist_fy assist_fz|N|force of the grasp assist
+assist_fx assist_fy assist_fz|N|force of the grasp assist, mean over the frame; not part of the contacts' forces
 frame||number of the frame, from 0, by which the tables' rows belong together
 
 joints.csv: each joint per frame, of a scene that has any; of one that slides m and N in place of rad and N m
@@ -85,6 +85,7 @@ kind||as in InteractionEvent.msg: GRASP_BEGIN
 object||its name; empty for events of hands
 hand_id||the tracker's number of the hand
 frame||number of the frame, from 0, by which the tables' rows belong together
+assisted||1 if contact/grasp_assist supports the object in that frame
 
 frames.csv: each frame
 time|s|stamp of the frame relative to the first

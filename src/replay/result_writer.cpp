@@ -33,14 +33,6 @@ InteractionLevel level_of(std::size_t body, const SimulationState& state) {
   return level;
 }
 
-/// Force of the grasp assist on a body, nothing where no assist is active [N].
-std::optional<Vector3> assist_force(std::size_t body, const SimulationState& state) {
-  std::optional<Vector3> force;
-  for (const Grip& grip : state.grips)
-    if (grip.body == body && grip.bears) force = force.value_or(Vector3::Zero()) + grip.force;
-  return force;
-}
-
 bool is_lost(const Hand& hand, const SimulationState& state) {
   return std::any_of(state.hands.begin(), state.hands.end(), [&](const HandTrack& track) {
     return track.active && track.current.id == hand.id && track.held;
@@ -128,7 +120,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
   const double time = to_seconds(result.stamp - first_stamp_);
   write_frame(time, result.stamp, gravity);
   if (scene_is_new_) write_bodies(time);
-  write_objects(time, state);
+  write_objects(time, result, state);
   if (!scene_->joints.empty()) write_joints(time, state);
   write_contacts(time, result, state);
   for (const Hand& hand : result.tracked) write_palm(time, hand, state);
@@ -168,13 +160,13 @@ void ResultWriter::write_bodies(double time) {
   }
 }
 
-void ResultWriter::write_objects(double time, const SimulationState& state) {
+void ResultWriter::write_objects(double time, const FrameResult& result, const SimulationState& state) {
   for (std::size_t i = 0; i < scene_->bodies.size(); ++i) {
     const Body& body = scene_->bodies[i];
     if (body.fixed) continue;
     const Twist twist = twist_of(body, state.bodies[i]);
     const InteractionLevel level = level_of(i, state);
-    const std::optional<Vector3> assist = assist_force(i, state);
+    const std::optional<Vector3> assist = assist_force(i, result);
     tables_->objects << time << body.name << state.bodies[i].pose.position;
     add_quaternion(tables_->objects, state.bodies[i].pose.orientation);
     tables_->objects << twist.linear << twist.angular << static_cast<int>(level)
@@ -233,7 +225,8 @@ void ResultWriter::write_events(const FrameResult& result) {
     const bool has_body = event.body >= 0;
     tables_->events << to_seconds(event.stamp - first_stamp_) << event_name(event.kind)
                     << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
-                    << event.hand_id << frame_;
+                    << event.hand_id << frame_
+                    << (has_body && assist_force(static_cast<std::size_t>(event.body), result) ? 1 : 0);
     tables_->events.end_row();
   }
 }

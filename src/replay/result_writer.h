@@ -27,7 +27,7 @@ class ResultWriter {
  private:
   void write_frame(double time, Nanoseconds stamp, const Vector3& gravity);
   void write_bodies(double time);
-  void write_objects(double time, const SimulationState& state);
+  void write_objects(double time, const FrameResult& result, const SimulationState& state);
   void write_joints(double time, const SimulationState& state);
   void write_contacts(double time, const FrameResult& result, const SimulationState& state);
   void write_palm(double time, const Hand& hand, const SimulationState& state);

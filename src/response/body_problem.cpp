@@ -28,7 +28,7 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
   fill_up(no_body_contact_, objects_);
   grips_.clear();
   for (Grip& grip : step.grips) {
-    if (grip.bears && grip.body == touched.body) grips_.push_back(&grip);
+    if (grip.active && grip.body == touched.body) grips_.push_back(&grip);
   }
   static_assert(kGripPoints == kLanes, "a grip fills one group of lanes");
   springs_.resize((hands_.size() + objects_.size()) / kLanes + grips_.size());

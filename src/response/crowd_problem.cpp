@@ -106,7 +106,7 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
   const int still = static_cast<int>(free_.size());
   for (const IslandBody& body : island.bodies) {
     for (const Grip& grip : step.grips) {
-      if (!grip.bears || grip.body != body.body) continue;
+      if (!grip.active || grip.body != body.body) continue;
       for (int point = 0; point < kGripPoints; ++point) {
         contacts_.emplace_back();
         make_grip_spring(step, *configuration_, grip, point, contacts_.back());

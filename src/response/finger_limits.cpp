@@ -12,6 +12,8 @@ namespace {
 /// The pad that laps over a face bears at most this multiple of what it bears when pushed along the normal:
 /// where hardly anything laps over, that face adds hardly anything.
 constexpr double kMostOnAFace = 2.5;
+/// A shorter stretch is rounding and has no direction [m].
+constexpr double kMinStretch = 1e-9;
 /// More than any edge gives with these: tangential force over the push.
 constexpr double kMostFriction = 4.0;
 
@@ -85,7 +87,7 @@ void grip_edges(ContactStep& step) {
     const Vector3 reach = contact.hand_point - contact.point + contact.lever;
     const Vector3 stretch = reach - contact.normal.dot(reach) * contact.normal;
     const double length = stretch.norm();
-    if (length == 0.0 || body.material.dynamic_friction <= 0.0) continue;
+    if (length <= kMinStretch || body.material.dynamic_friction <= 0.0) continue;
     const PlacedShape& placed = body.shapes[contact.key.shape];
     const Quaternion to_shape =
         (step.bodies[contact.key.body].pose.orientation * placed.pose.orientation).conjugate();
@@ -114,7 +116,7 @@ double pressed_by(const Contact& contact) {
 // A finger gives way once its contacts together push with its strength: each has the part of it that it has
 // of the depths, as equal springs side by side.
 //
-//     S_i = S d_i / sum d,     d_i = share max(0, depth - given)
+//     S_i = S d_i / sum d,     d_i = share max(0, depth - compliance)
 //
 // of all points of the finger on all bodies. A point that does not press has all of S, should it come to
 // press within the step.
@@ -129,6 +131,7 @@ void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
     const double part = together > 0.0 ? pressed_by(contact) / together : 1.0;
     contact.strength = part > 0.0 ? part * strength : strength;
     contact.inverse_mass = 1.0 / (is_palm(contact.key) ? hand.palm_mass : hand.finger_mass);
+    contact.restitution = hand.restitution;
   }
 }
 

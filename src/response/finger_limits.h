@@ -16,8 +16,8 @@ void grip_edges(ContactStep& step);
 /// unit, in the frame of the shape, which is a box or a cylinder.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction);
 
-/// Tells every contact what the hand has for it: a finger's strength is shared by all its points that press,
-/// on whatever bodies, by their depths; the mass of a blow is that of the phalanx.
+/// Sets the hand's limits in every contact. All loaded points of a finger share its strength by their depths,
+/// on whatever bodies. Mass and restitution of an impact are those of the phalanx.
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts);
 
 }  // namespace mrhi

@@ -74,6 +74,10 @@ Quaternion nearest_turn(const Matrix3& matrix) {
 
 }  // namespace
 
+std::size_t tip_point(int finger) {
+  return 3 + 2 * static_cast<std::size_t>(capsule_index(finger, 3));
+}
+
 Vector3 tip_of(const Hand& hand, int finger) {
   return hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))].end;
 }
@@ -82,7 +86,7 @@ Vector3 base_of(const Hand& hand, bool by_palm) {
   return by_palm ? hand.palm.position : tip_of(hand, 0);
 }
 
-double opening(const Grip& grip, const Hand& hand) {
+double aperture(const Grip& grip, const Hand& hand) {
   return (mean_tip(grip, hand) - base_of(hand, grip.by_palm)).norm();
 }
 

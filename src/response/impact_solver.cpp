@@ -207,6 +207,7 @@ void ImpactSolver::add(ContactStep& step, Contact& contact) {
   strike.struck = &contact.struck;
   by_hand_ = true;
   add(strike, body.material);
+  strikes_.back().restitution = contact.restitution.value_or(body.material.restitution);
 }
 
 void ImpactSolver::add(ContactStep& step, BodyContact& contact) {

@@ -84,7 +84,7 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
   }
   for (const IslandBody& body : island.bodies) {
     for (const Grip& grip : step.grips) {
-      if (!grip.bears || grip.body != body.body) continue;
+      if (!grip.active || grip.body != body.body) continue;
       for (int point = 0; point < kGripPoints; ++point) {
         contacts_.emplace_back();
         make_grip_spring(step, configuration, grip, point, contacts_.back());

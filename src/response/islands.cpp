@@ -48,7 +48,7 @@ void Islands::build(const ContactStep& step) {
 /// What a hand holds without touching it just now.
 void Islands::add_gripped(const ContactStep& step) {
   for (const Grip& grip : step.grips) {
-    if (!grip.bears) continue;
+    if (!grip.active) continue;
     const auto after = std::lower_bound(bodies_.begin(), bodies_.end(), grip.body,
                                         [](const IslandBody& x, std::size_t y) { return x.body < y; });
     if (after == bodies_.end() || after->body != grip.body)

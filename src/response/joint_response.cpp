@@ -19,7 +19,7 @@ bool has_touch(const ContactStep& step, const Island& island) {
          std::any_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
            return body.first < body.last ||
                   std::any_of(step.grips.begin(), step.grips.end(),
-                              [&](const Grip& grip) { return grip.bears && grip.body == body.body; });
+                              [&](const Grip& grip) { return grip.active && grip.body == body.body; });
          });
 }
 

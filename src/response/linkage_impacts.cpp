@@ -40,7 +40,7 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       strike.hand = &contact;
       strike.normal = contact.normal, strike.drive = contact.hand_velocity;
       strike.gap = -contact.depth;
-      strike.restitution = material(body.body).restitution;
+      strike.restitution = contact.restitution.value_or(material(body.body).restitution);
       strike.friction = material(body.body).static_friction;
       strike.inverse_mass = contact.inverse_mass;
       const Vector3 arm = contact.point - step.bodies[body.body].pose.position;

@@ -22,7 +22,7 @@ bool touched(const ContactStep& step, const Island& island) {
       if (!step.contacts[i].ignored) return true;
     }
     return std::any_of(step.grips.begin(), step.grips.end(),
-                       [&](const Grip& grip) { return grip.bears && grip.body == body.body; });
+                       [&](const Grip& grip) { return grip.active && grip.body == body.body; });
   };
   return island.links.size() > 0 || std::any_of(island.bodies.begin(), island.bodies.end(), is_touched);
 }

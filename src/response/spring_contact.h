@@ -52,7 +52,7 @@ Solved settle_hands(ContactStep& step, const Island& island, Solved solved) {
   }
   for (const IslandBody& body : island.bodies) {
     for (Grip& grip : step.grips) {
-      if (!grip.bears || grip.body != body.body) continue;
+      if (!grip.active || grip.body != body.body) continue;
       for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *solved++, point, grip);
     }
   }

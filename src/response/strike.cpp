@@ -73,8 +73,9 @@ void Strike::move_to(double later) {
   if (!is_of_balls()) {
     // rate() is the step's start's: by gravity it has grown by a t, in the mean of the wait by a (t - wait /
     // 2).
-    gap += wait * (rate() + acceleration * (time - 0.5 * wait));
-    move_arms(wait);
+    const double closed = -wait * (rate() + acceleration * (time - 0.5 * wait));
+    gap -= closed;
+    move_arms(wait, closed);
     return;
   }
   // Balls: the line of centres is followed exactly, whatever they spin, and the point divides it by the
@@ -89,11 +90,19 @@ void Strike::move_to(double later) {
 
 // r += t (c' - v), the rate of an arm from a moving centre to a moving point c. Both arms end at the same
 // c: with two of them J and -J would turn the pair by (c_b - c_a) x J.
-void Strike::move_arms(double seconds) {
-  // Where a ball touches moves with its centre, not with its surface.
-  const Vector3 point = radius_b > 0.0   ? b.velocity_of_centre()
-                        : radius_a > 0.0 ? a.velocity_of_centre()
-                                         : Vector3(0.5 * (a.velocity() + b.velocity()));
+void Strike::move_arms(double seconds, double closed) {
+  if (radius_a > 0.0 || radius_b > 0.0) {
+    // The point of a ball moves with its centre, and from the middle of the gap to its surface as the gap
+    // closes.
+    const Partner& ball = radius_b > 0.0 ? b : a;
+    const Vector3 to_surface = (radius_b > 0.0 ? -0.5 : 0.5) * closed * normal;
+    for (Partner* partner : {&a, &b}) {
+      if (partner->state == nullptr) continue;
+      partner->arm += seconds * (ball.velocity_of_centre() - partner->velocity_of_centre()) + to_surface;
+    }
+    return;
+  }
+  const Vector3 point = 0.5 * (a.velocity() + b.velocity());
   for (Partner* partner : {&a, &b}) {
     if (partner->state != nullptr) partner->arm += seconds * (point - partner->velocity_of_centre());
   }

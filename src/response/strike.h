@@ -63,7 +63,7 @@ struct Strike {
   void move_to(double later);
   /// Moves the arms on by `seconds` to where the two surfaces are then, at one point: so that a blow there
   /// keeps angular momentum.
-  void move_arms(double seconds);
+  void move_arms(double seconds, double closed);
 
   /// Call before the impact is relaxed: none of this blow has been given yet.
   void prepare();

@@ -34,7 +34,10 @@ Vector3 below(const Scene& scene) {
 std::string heads_up(const Scene& scene, const Configuration& configuration, const SimulationState& state) {
   std::string held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (is_held(i, state)) held += (held.empty() ? "" : ", ") + scene.bodies[i].name;
+    if (!is_held(i, state)) continue;
+    const bool assisted = std::any_of(state.grips.begin(), state.grips.end(),
+                                      [i](const Grip& grip) { return grip.active && grip.body == i; });
+    held += (held.empty() ? "" : ", ") + scene.bodies[i].name + (assisted ? " (with grasp assist)" : "");
   }
   const double g = configuration.gravity.value_or(scene.gravity).norm();
   char gravity[32];

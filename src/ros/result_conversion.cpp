@@ -26,7 +26,8 @@ mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const
   return message;
 }
 
-mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const SimulationState& state,
+mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const FrameResult& result,
+                                                      const SimulationState& state,
                                                       const std_msgs::Header& header) {
   mr_hand_interaction::ObjectStateArray message;
   message.header = header;
@@ -41,6 +42,9 @@ mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const 
     object.twist.angular = vector_message(twist.angular);
     object.mass = body.mass;
     object.held = is_held(i, state);
+    const std::optional<Vector3> assist = assist_force(i, result);
+    object.assisted = assist.has_value();
+    object.assist_force = vector_message(assist.value_or(Vector3::Zero()));
     message.objects.push_back(object);
   }
   return message;
@@ -72,12 +76,16 @@ mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const Fra
   return message;
 }
 
-mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Event& event,
-                                                    const std_msgs::Header& header) {
+mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
+                                                    const Event& event, const std_msgs::Header& header) {
   mr_hand_interaction::InteractionEvent message;
   message.header = header;
   message.kind = static_cast<std::uint8_t>(event.kind);
-  if (event.body >= 0) message.object = scene.bodies[static_cast<std::size_t>(event.body)].name;
+  if (event.body >= 0) {
+    const auto body = static_cast<std::size_t>(event.body);
+    message.object = scene.bodies[body].name;
+    message.assisted = assist_force(body, result).has_value();
+  }
   message.hand_id = event.hand_id;
   return message;
 }

@@ -17,13 +17,14 @@ namespace mrhi {
 /// What has happened, as messages in world (header.frame_id). Tracked hands are those after the filter.
 mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header);
 mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header);
-mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const SimulationState& state,
+mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const FrameResult& result,
+                                                      const SimulationState& state,
                                                       const std_msgs::Header& header);
 mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
                                                    const SimulationState& state,
                                                    const std_msgs::Header& header);
-mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Event& event,
-                                                    const std_msgs::Header& header);
+mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
+                                                    const Event& event, const std_msgs::Header& header);
 /// The scene's joints, in its order: place, velocity, and what the joint's own forces gave [rad or m].
 sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
                                              const std_msgs::Header& header);

@@ -118,7 +118,7 @@ void ResultPublisher::publish_contacts(const FrameResult& result, const std_msgs
 void ResultPublisher::publish_events(const std::vector<Event>& events) {
   for (const Event& event : events) {
     const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(event.stamp)));
-    publish_shared(events_, event_message(simulation_->scene(), event, when));
+    publish_shared(events_, event_message(simulation_->scene(), simulation_->result(), event, when));
   }
 }
 
@@ -159,7 +159,8 @@ void ResultPublisher::publish_rest(const FrameResult& result, const std_msgs::He
 
 void ResultPublisher::publish_objects(const std_msgs::Header& header) {
   if (objects_.getNumSubscribers() > 0)
-    publish_shared(objects_, objects_message(simulation_->scene(), simulation_->state(), header));
+    publish_shared(
+        objects_, objects_message(simulation_->scene(), simulation_->result(), simulation_->state(), header));
   if (!simulation_->scene().joints.empty() && joint_states_.getNumSubscribers() > 0)
     publish_shared(joint_states_, joint_states_message(simulation_->scene(), simulation_->state(), header));
 }

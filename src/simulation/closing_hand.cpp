@@ -6,12 +6,12 @@
 namespace mrhi {
 namespace {
 
-/// A finger closes if its opening shrinks faster than this [m/s], and than this part of the speed at which it
-/// or what it closes against moves: a hand that slaps or nudges does not close.
-constexpr double kClosingSpeed = 0.03;
-constexpr double kClosingPart = 0.5;
-/// A hand that opens faster than this takes nothing [m/s].
-constexpr double kOpeningSpeed = 0.1;
+/// A finger closes if its aperture shrinks faster than this [m/s],
+constexpr double kMinClosingSpeed = 0.03;
+/// and than this fraction of its own and its base's speed: a hand that slaps or nudges does not close.
+constexpr double kMinClosingRatio = 0.25;
+/// A finger whose aperture grows faster than this takes nothing [m/s].
+constexpr double kMaxOpeningSpeed = 0.1;
 /// Of a body from the line between a finger and what it closes against, at most [m].
 constexpr double kBeside = 0.01;
 /// Beyond this a body is not looked at [m].
@@ -39,20 +39,18 @@ bool is_base(bool by_palm, int capsule) {
   return finger_of(capsule) == 0;
 }
 
-/// At which the opening between a finger and what it closes against shrinks over the frame [m/s].
-double ClosingHand::closing_speed(const HandTrack& track, bool by_palm, int finger) const {
-  const Hand &from = track.previous, &to = track.current;
-  const double before = (tip_of(from, finger) - base_of(from, by_palm)).norm();
-  return (before - (tip_of(to, finger) - base_of(to, by_palm)).norm()) / seconds_;
+double ClosingHand::closing_speed(const HandTrack& track, bool by_palm, int finger) {
+  const Vector3 across = tip_of(track.current, finger) - base_of(track.current, by_palm);
+  const auto& points = track.mean_velocity.points;
+  const Vector3 apart = points[tip_point(finger)] - points[by_palm ? 0 : tip_point(0)];
+  return -across.dot(apart) / std::max(across.norm(), 1e-30);
 }
 
-/// It shrinks, and not by the way while the hand sweeps.
-bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) const {
-  if (seconds_ <= 0.0) return false;
-  const Hand &from = track.previous, &to = track.current;
-  const double tip = (tip_of(to, finger) - tip_of(from, finger)).norm() / seconds_;
-  const double base = (base_of(to, by_palm) - base_of(from, by_palm)).norm() / seconds_;
-  return closing_speed(track, by_palm, finger) > std::max(kClosingSpeed, kClosingPart * std::max(tip, base));
+bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) {
+  const auto& points = track.mean_velocity.points;
+  const double tip = points[tip_point(finger)].norm(), base = points[by_palm ? 0 : tip_point(0)].norm();
+  return closing_speed(track, by_palm, finger) >
+         std::max(kMinClosingSpeed, kMinClosingRatio * std::max(tip, base));
 }
 
 std::optional<ClosestFeatures> ClosingHand::nearest(const Capsule& capsule, int body, const Pose& pose,
@@ -92,7 +90,7 @@ void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, i
   if (!beside) return;
   if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, body, pose))
     look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
-  if (beside->distance > 0.0 || closing_speed(track, by_palm, finger) < -kOpeningSpeed) return;
+  if (beside->distance > 0.0 || closing_speed(track, by_palm, finger) < -kMaxOpeningSpeed) return;
   if (!look.touches) look.touches = touches(hand, body, pose);
   const double friction = scene_.bodies[static_cast<std::size_t>(body)].material.static_friction;
   const auto here = opposed(*look.touches, by_palm, finger, friction);

@@ -41,18 +41,18 @@ class ClosingHand {
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  void begin_frame(double seconds) { seconds_ = seconds; }
   Look look_at(const HandTrack& track, int body, const Pose& pose) const;
   /// Whether any of the hand is nearer to the body than `distance` [m].
   bool is_near(const Hand& hand, int body, const Pose& pose, double distance) const;
-  /// The way between the finger's tip and what it closes against shrinks, and not by the way as a hand
-  /// sweeps.
-  bool closes(const HandTrack& track, bool by_palm, int finger) const;
+  /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
+  /// the hand moves.
+  static bool closes(const HandTrack& track, bool by_palm, int finger);
+  /// Mean speed at which the aperture between the finger's tip and its base shrinks [m/s].
+  static double closing_speed(const HandTrack& track, bool by_palm, int finger);
 
  private:
   void look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
                   Look& look) const;
-  double closing_speed(const HandTrack& track, bool by_palm, int finger) const;
   std::optional<ClosestFeatures> nearest(const Capsule& capsule, int body, const Pose& pose,
                                          double margin) const;
   bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const;
@@ -61,7 +61,6 @@ class ClosingHand {
 
   const Scene& scene_;
   const ContactFinder& finder_;
-  double seconds_ = 0.0;  // of the frame
 };
 
 }  // namespace mrhi

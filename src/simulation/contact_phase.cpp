@@ -21,6 +21,13 @@ FrictionUse friction_use(const Contact& contact, const Material& material) {
   return {push, (contact.force + push * contact.normal).norm(), friction * std::max(push, 0.0)};
 }
 
+std::optional<Vector3> assist_force(std::size_t body, const FrameResult& result) {
+  std::optional<Vector3> force;
+  for (const GraspSupport& assist : result.assists)
+    if (assist.body == body) force = force.value_or(Vector3::Zero()) + assist.force;
+  return force;
+}
+
 const char* finger_name(int capsule) {
   constexpr const char* kNames[] = {"thumb", "index", "middle", "ring", "little", "palm"};
   return kNames[finger_of(capsule)];

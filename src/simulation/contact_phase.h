@@ -1,6 +1,8 @@
 #pragma once
 
-#include "mr_hand_interaction/simulation_state.h"
+#include <optional>
+
+#include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
 
@@ -16,6 +18,9 @@ struct FrictionUse {
   double limit;       ///< of that: Coulomb's coefficient times the push
 };
 FrictionUse friction_use(const Contact& contact, const Material& material);
+
+/// Force of grasp assist on a body, mean over the frame; nullopt if none supports it [N].
+std::optional<Vector3> assist_force(std::size_t body, const FrameResult& result);
 
 /// thumb, index, middle, ring, little; palm.
 const char* finger_name(int capsule);

@@ -63,7 +63,7 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       const bool may_end = interaction.level != InteractionLevel::none || struck;
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
       const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
-        return grip.bears && grip.hand == slot && grip.body == b;
+        return grip.active && grip.hand == slot && grip.body == b;
       });
       const InteractionLevel seen =
           gripped ? InteractionLevel::grasp
@@ -80,6 +80,10 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
 void report_frame(const FrameEnd& end, FrameResult& result) {
   find_contacts(end, result.contacts);
   add_transfer(end.transfer, result.contacts);
+  for (GraspSupport assist : end.transfer.assists) {
+    assist.force /= end.transfer.seconds;
+    result.assists.push_back(assist);
+  }
   update_interactions(end, result);
   for (const HandTrack& track : end.state.hands)
     if (track.active) result.tracked.push_back(track.current);
@@ -96,9 +100,20 @@ void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& r
   }
 }
 
-void FrameTransfer::add(const std::vector<Contact>& of_step, double step) {
+void FrameTransfer::add(const SimulationState& after, double step) {
   seconds += step;
-  for (const Contact& contact : of_step) {
+  for (const Grip& grip : after.grips) {
+    if (!grip.active) continue;
+    const auto same = std::find_if(assists.begin(), assists.end(), [&](const GraspSupport& known) {
+      return known.hand == grip.hand && known.body == grip.body;
+    });
+    if (same == assists.end()) {
+      assists.push_back({grip.hand, grip.body, step * grip.force});
+    } else {
+      same->force += step * grip.force;
+    }
+  }
+  for (const Contact& contact : after.contacts) {
     if (contact.impulse.isZero(0.0) && contact.force.isZero(0.0)) continue;
     auto known = std::lower_bound(contacts.begin(), contacts.end(), contact.key, before);
     if (known == contacts.end() || !(known->key == contact.key)) {

@@ -8,14 +8,16 @@
 
 namespace mrhi {
 
-/// What contacts have transferred since the frame before.
+/// Momentum transferred by contacts and grasp assist since the frame before; `force` is the sum of force
+/// times step [N s].
 struct FrameTransfer {
-  std::vector<Contact> contacts;  ///< sorted by key; `force` is the sum of force times step [N s]
-  double seconds = 0.0;           ///< time of the steps
+  std::vector<Contact> contacts;      ///< sorted by key
+  std::vector<GraspSupport> assists;  ///< sorted by hand and body
+  double seconds = 0.0;               ///< time of the steps
 
-  void clear() { contacts.clear(), seconds = 0.0; }
+  void clear() { contacts.clear(), assists.clear(), seconds = 0.0; }
   /// Adds a step of `step` seconds.
-  void add(const std::vector<Contact>& of_step, double step);
+  void add(const SimulationState& after, double step);
 };
 
 /// What a frame's result is made from, once bodies and hands are at the frame's stamp.

@@ -7,35 +7,45 @@ namespace mrhi {
 namespace {
 
 constexpr double kHoverBegins = 0.03;  // [m]
-/// What is left of the pushes when they are added as vectors, relative to their sum as numbers: at most this
-/// for a grasp to begin, and to last.
+/// Norm of the loads' vector sum over the sum of their norms: at most this for a grasp to begin, and to last.
 constexpr double kBalanced = 0.6, kStillBalanced = 0.75;
 
-struct Pressing {
+/// Loads of contacts, by their depths.
+struct Load {
   Vector3 sum = Vector3::Zero();
   double total = 0.0;
   int capsules = 0;
   bool struck = false;
 };
 
-template <typename IsOfIt>
-Pressing pressing(int slot, const std::vector<Contact>& contacts, IsOfIt&& is_of_it) {
-  Pressing result;
+template <typename Counts>
+Load load_of(const std::vector<Contact>& contacts, Counts&& counts) {
+  Load load;
   int last_capsule = -1;
   for (const Contact& contact : contacts) {
-    if (contact.key.hand != slot || !is_of_it(contact.key.body)) continue;
-    if (contact.impulse != Vector3::Zero()) result.struck = true;
+    if (!counts(contact.key)) continue;
+    if (contact.impulse != Vector3::Zero()) load.struck = true;
     if (!contact.touching()) continue;
-    result.sum += contact.share * contact.depth * contact.normal;
-    result.total += contact.share * contact.depth;
-    if (contact.key.capsule != last_capsule) ++result.capsules;
-    last_capsule = contact.key.capsule;
+    load.sum += contact.share * contact.depth * contact.normal;
+    load.total += contact.share * contact.depth;
+    const int capsule = kCapsules * contact.key.hand + contact.key.capsule;
+    if (capsule != last_capsule) ++load.capsules;
+    last_capsule = capsule;
   }
-  return result;
+  return load;
 }
 
-bool is_grasped(const Pressing& press, double balanced) {
-  return press.capsules >= 2 && press.sum.norm() <= balanced * press.total;
+bool is_balanced(const Load& load, double balanced) {
+  return load.capsules >= 2 && load.sum.norm() <= balanced * load.total;
+}
+
+/// True if the hands on a body grasp it together, and those without this one do not: each side of a box that
+/// two hands lift.
+bool grasps_with_others(int slot, int body, const std::vector<Contact>& contacts, double balanced) {
+  const auto of_all = [body](const ContactKey& key) { return key.body == body; };
+  const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
+  return is_balanced(load_of(contacts, of_all), balanced) &&
+         !is_balanced(load_of(contacts, of_others), balanced);
 }
 
 /// The joint that a body hangs on.
@@ -60,8 +70,10 @@ std::optional<int> floating_root(const Scene& scene, int body) {
 bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
                   double balanced) {
   const std::optional<int> root = floating_root(scene, body);
-  const auto is_of_it = [&](int other) { return floating_root(scene, other) == root; };
-  return root && is_grasped(pressing(slot, contacts, is_of_it), balanced);
+  const auto of_linkage = [&](const ContactKey& key) {
+    return key.hand == slot && floating_root(scene, key.body) == root;
+  };
+  return root && is_balanced(load_of(contacts, of_linkage), balanced);
 }
 
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
@@ -84,12 +96,15 @@ bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body
 InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
                             const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
                             InteractionLevel before) {
-  const Pressing press = pressing(slot, contacts, [body](int other) { return other == body; });
+  const Load load =
+      load_of(contacts, [&](const ContactKey& key) { return key.hand == slot && key.body == body; });
   const double balanced = before == InteractionLevel::grasp ? kStillBalanced : kBalanced;
-  if (is_grasped(press, balanced)) return InteractionLevel::grasp;
-  if (!scene.joints.empty() && press.capsules >= 1 && grasps_whole(scene, slot, body, contacts, balanced))
+  if (is_balanced(load, balanced)) return InteractionLevel::grasp;
+  if (load.capsules >= 1 && grasps_with_others(slot, body, contacts, balanced))
     return InteractionLevel::grasp;
-  if (press.capsules >= 1 || press.struck) return InteractionLevel::contact;
+  if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, balanced))
+    return InteractionLevel::grasp;
+  if (load.capsules >= 1 || load.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
   const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];
   return is_near(hand, body, finder, shape_of, body_pose, distance) ? InteractionLevel::hover

@@ -2,91 +2,114 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace mrhi {
 namespace {
 
-/// As deep as a pulp gives, the springs of contact hold a body [m].
-constexpr double kPulp = 0.003;
-/// Normals nearer to the way of gravity than this (cosine) bear the weight of a body: there nothing gives
-/// way.
-constexpr double kBears = 0.3;
-/// A hand that is deeper in a fixture than this is shown elsewhere, and grasps nothing where it is [m].
-constexpr double kBuried = 0.015;
-/// A touch that gives way from its first step on [m].
-constexpr double kBegins = 1e-6;
-/// A finger that has stopped comes to press by this of its depth a second [m/s].
-constexpr double kRecovers = 0.03;
-/// A body that slips, and is off where it was taken by this, is not held by contact [m].
-constexpr double kSlipped = 0.0015;
-/// So many fingers that close on a body grab it.
-constexpr int kGrab = 2;
-/// Part of the way to where both sides just touch the body again, by which the hand opens to let it go.
-constexpr double kOpened = 0.9;
-/// And at least by this, beyond a tracker's noise and what fingers do as they hold [m]. A hand that has
-/// opened by this and has lost the body on one side has let it go, too.
-constexpr double kOpenedLeast = 0.015;
-/// Of a grip over that of a touch: several fingers, on two sides.
-constexpr double kGripStiffness = 5.0;
-/// Of a grip's springs from their middle, at least and at most [m].
-constexpr double kSmallest = 0.04, kLargest = 0.06;
-/// Of that way, fingers that have parted by more do not carry what they held any more.
-constexpr double kOpens = 0.5;
-/// Nor do those that open faster than this: half of it would be a kick [m/s].
-constexpr double kLeaves = 0.35;
-/// A hand that is further from what it bears has left it, whatever its fingers do [m].
-constexpr double kAway = 0.02;
-/// Bond of a hand that nothing limits [N].
-constexpr double kUnlimited = 1e5;
-/// Grip force over what slip needs, in people 1.2 to 2 (Johansson & Westling 1984).
-constexpr double kMargin = 1.5;
-bool holds(const Grip& grip, const ContactKey& key) {
-  return grip.hand == key.hand && grip.body == key.body;
-}
+/// Depth that a fingertip pad complies by: up to there, the springs of contact hold a body [m].
+constexpr double kPadDepth = 0.003;
+/// A hand that is deeper in a fixture is rendered elsewhere, and grasps nothing where it is tracked [m].
+constexpr double kBuriedDepth = 0.015;
+/// Compliance depth of a touch that is about to begin [m].
+constexpr double kMinCompliance = 1e-6;
+/// Rate at which a finger that has stopped without an opposite touch regains its force [m/s].
+constexpr double kRecoverySpeed = 0.03;
+/// Cosine between the normals of touches on opposite faces, at most.
+constexpr double kOpposite = -0.3;
+/// Distance of a body from its place in the hand at which the grip becomes active [m].
+constexpr double kMaxOffset = 0.0015;
+/// Time constant of Grip::mean_aperture [s].
+constexpr double kMeanAperture = 0.05;
+/// A single frame's aperture counts beyond this multiple of the tracker's noise.
+constexpr double kNoiseMargin = 4.0;
+/// The hand has let go once it has opened by this fraction of the way to touch_aperture, and by this [m].
+constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
+/// Or by this, if one side does not touch the body any more [m].
+constexpr double kReleaseClearance = 0.0015;
+/// Fingers that have opened by this fraction of that way, or open faster, do not carry the body [m/s].
+constexpr double kOpensFraction = 0.5, kOpensSpeed = 0.35;
+/// A hand that is farther from a body than this has left it, whatever its fingers do [m].
+constexpr double kMaxDistance = 0.02;
+/// Stiffness of a grip over that of a touch: several fingers, on two sides.
+constexpr double kStiffnessRatio = 5.0;
+/// Limits of the distance from the springs to their middle [m].
+constexpr double kMinReach = 0.04, kMaxReach = 0.06;
+/// Bond of a hand of unlimited strength [N].
+constexpr double kUnlimitedBond = 1e5;
 
-const Grip* bearing_grip(const std::vector<Grip>& grips, const ContactKey& key) {
-  for (const Grip& grip : grips) {
-    if (grip.bears && holds(grip, key)) return &grip;
-  }
-  return nullptr;
+bool is_of(const Grip& grip, const ContactKey& key) {
+  return grip.hand == key.hand && grip.body == key.body;
 }
 
 bool slips(const std::vector<Contact>& contacts, const Grip& grip) {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    return contact.friction == Friction::slipping && contact.touching() && holds(grip, contact.key);
+    return contact.friction == Friction::slipping && contact.touching() && is_of(grip, contact.key);
   });
 }
 
-/// As far as the hand opens to let go: most of the way to where both sides just touch.
-double way_to_let_go(const Grip& grip, double part) {
-  return std::max(kOpenedLeast, part * (grip.opening - grip.least));
+/// Whether the base, and the fingers, of a grip touch the body.
+struct TouchingSides {
+  bool base = false, fingers = false;
+
+  TouchingSides(const Grip& grip, const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts) {
+      if (!contact.touching() || !is_of(grip, contact.key)) continue;
+      (is_base(grip.by_palm, contact.key.capsule) ? base : fingers) = true;
+    }
+  }
+  bool both() const { return base && fingers; }
+  bool none() const { return !base && !fingers; }
+};
+
+/// Whether the hand touches the same body on a face opposite to this contact's, or is about to (contacts begin
+/// 1 mm before the surface).
+bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
+    return other.key.hand == contact.key.hand && other.key.body == contact.key.body && !other.ignored &&
+           other.normal.dot(contact.normal) < kOpposite;
+  });
 }
 
-/// Fingers part too fast, or have parted too far, to carry what they held.
-bool leaves(const Grip& grip, const HandTrack& track, double seconds) {
-  const double now = opening(grip, track.current);
-  return now - opening(grip, track.previous) > kLeaves * seconds ||
-         now - grip.least > way_to_let_go(grip, kOpens);
+/// Opening by which the hand releases the body: `fraction` of the way to where both sides just touch it [m].
+double release_opening(const Grip& grip, double fraction) {
+  return std::max(kMinRelease, fraction * (grip.touch_aperture - grip.min_aperture));
 }
 
-/// What a hand bears goes with its fingers, but not with those that leave it: it stays where the palm has it.
-void follow(const HandTrack& track, double seconds, Grip& grip) {
-  grip.placed = grip.bears;
-  if (!grip.bears) return;
-  grip.in_palm_before = grip.in_palm;
-  if (!leaves(grip, track, seconds)) grip.in_palm = moved_in_palm(grip, track.current);
+/// Of a single frame's aperture [m].
+double noise_margin(const HandTrack& track) {
+  return kNoiseMargin * std::sqrt(track.filter.noise.variance);
 }
 
-/// What contact holds is not followed; where the hand has it is found once it slips.
-void find(const HandTrack& track, Grip& grip) {
-  if (grip.placed) return;
-  grip.placed = true;
-  grip.in_palm_before = moved_in_palm(grip, track.previous);
-  grip.in_palm = moved_in_palm(grip, track.current);
+/// By how much the hand has opened since it was most closed, without the tracker's noise [m].
+double opened_by(const HandTrack& track, double seconds, Grip& grip) {
+  const double now = aperture(grip, track.current);
+  const double margin = noise_margin(track);
+  grip.mean_aperture += (1.0 - std::exp(-seconds / kMeanAperture)) * (now - grip.mean_aperture);
+  grip.min_aperture = std::min({grip.min_aperture, grip.mean_aperture, now + margin});
+  return std::max(grip.mean_aperture, now - margin) - grip.min_aperture;
 }
 
-/// What was taken before goes on from where its pads were then; pads that are new to it from where they are.
+/// Speed at which the grip's fingers open: the mean one, or that of the last frame without the tracker's noise
+/// [m/s].
+double opening_speed(const HandTrack& track, double seconds, const Grip& grip) {
+  double sum = 0.0;
+  int count = 0;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    if (!grip.takes_part(finger)) continue;
+    sum -= ClosingHand::closing_speed(track, grip.by_palm, finger);
+    ++count;
+  }
+  const double change = aperture(grip, track.current) - aperture(grip, track.previous);
+  return std::max(sum / count, (change - noise_margin(track)) / seconds);
+}
+
+bool still_closes(const HandTrack& track, const Grip& grip) {
+  for (int finger = 0; finger < kFingers; ++finger)
+    if (grip.takes_part(finger) && ClosingHand::closes(track, grip.by_palm, finger)) return true;
+  return false;
+}
+
+/// A grip that is taken anew keeps the pads of its former fingers; those of new fingers start where they are.
 void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
   grip.pads = before.pads;
   if (grip.fingers == before.fingers && grip.by_palm == before.by_palm) return;
@@ -94,121 +117,107 @@ void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
   const Pose in_palm = moved_in_palm(before, from);
   for (std::size_t i = 0; i < here.size(); ++i) {
     const auto finger = static_cast<int>(i / 2);
-    const bool carried = before.takes_part(finger) || (finger == 0 && !before.by_palm);
-    if (!carried) grip.pads[i] = in_palm.to_local(here[i]);
+    const bool took_part = before.takes_part(finger) || (finger == 0 && !before.by_palm);
+    if (!took_part) grip.pads[i] = in_palm.to_local(here[i]);
   }
 }
 
-/// Contacts of one side of a grip.
-struct Pads {
-  Vector3 sum = Vector3::Zero();
-  int count = 0;
-
-  Vector3 middle() const { return sum / count; }
-};
-
-struct Sides {
-  Pads base, fingers;
-
-  Sides(const Grip& grip, const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts) {
-      if (!holds(grip, contact.key) || !contact.touching()) continue;
-      Pads& side = of(grip, contact);
-      side.sum += contact.point;
-      ++side.count;
-    }
-  }
-  Pads& of(const Grip& grip, const Contact& contact) {
-    return is_base(grip.by_palm, contact.key.capsule) ? base : fingers;
-  }
-  bool both() const { return base.count > 0 && fingers.count > 0; }
-};
-
 }  // namespace
 
-GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Vector3& gravity,
+GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder,
                          const ContactConfiguration& configuration)
-    : scene_(scene), closing_hand_(scene, finder), gravity_(gravity), configuration_(configuration) {
+    : scene_(scene), closing_hand_(scene, finder), configuration_(configuration) {
   closing_.reserve(kMaxHands * scene.bodies.size());
 }
 
 void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state) {
   if (!configuration_.grasp_assist) return;
   seconds_ = seconds;
-  closing_hand_.begin_frame(seconds);
-  let_go(state);
+  closing_.clear();
+  end_grips(state, [&](Grip& grip) {
+    const HandTrack& track = state.hands[grip.hand];
+    return !track.active || track.appeared || (seconds > 0.0 && opens(state, grip));
+  });
+  for (Grip& grip : state.grips) follow(state, grip);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    if (!state.hands[slot].active || state.hands[slot].appeared || buried(slot, state)) continue;
+    if (!state.hands[slot].active || state.hands[slot].appeared || is_buried(slot, state)) continue;
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
       const auto body = static_cast<std::size_t>(near.body);
-      // What is held by hands that do not close any more is known.
-      const bool known = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-        return grip.hand == slot && grip.body == body && (grip.bears || !grip.closes);
-      });
       const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
-      if (!known && !appeared && !scene_.bodies[body].fixed) look_at(slot, near.body, state);
+      if (!appeared && !scene_.bodies[body].fixed && !is_known(slot, body, state))
+        look_at(slot, near.body, state);
     }
   }
 }
 
-bool GraspAssist::buried(std::size_t slot, const SimulationState& state) const {
+bool GraspAssist::is_buried(std::size_t slot, const SimulationState& state) const {
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
-    return contact.key.hand == slot && contact.touching() && contact.depth > kBuried &&
+    return contact.key.hand == slot && contact.touching() && contact.depth > kBuriedDepth &&
            scene_.bodies[contact.key.body].fixed;
   });
 }
 
-void GraspAssist::let_go(SimulationState& state) {
-  closing_.clear();
+/// Nothing new is found about a body that a grip supports, or that a hand holds which does not close any
+/// more.
+bool GraspAssist::is_known(std::size_t slot, std::size_t body, const SimulationState& state) const {
+  return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
+    return grip.hand == slot && grip.body == body && (grip.active || !grip.closes);
+  });
+}
+
+/// What the fingers of an ended grip are still in they leave without a force.
+template <class HasEnded>
+void GraspAssist::end_grips(SimulationState& state, HasEnded&& has_ended) const {
   const auto ends = [&](Grip& grip) {
-    const HandTrack& track = state.hands[grip.hand];
-    grip.closes = false;
-    for (int finger = 0; finger < kFingers; ++finger)
-      grip.closes =
-          grip.closes || (grip.takes_part(finger) && closing_hand_.closes(track, grip.by_palm, finger));
-    if (track.active && !track.appeared && !opens(state, grip)) {
-      follow(track, seconds_, grip);
-      // Between a wall and what it holds no hand would find room.
-      if (grip.bears && buried(grip.hand, state))
-        state.interactions[grip.hand * state.bodies.size() + grip.body].shown_in = true;
-      return false;
-    }
-    // What the fingers are still in they leave without a push.
-    for (Contact& contact : state.contacts) {
-      if (grip.bears && holds(grip, contact.key)) contact.given = std::max(contact.given, contact.depth);
-    }
+    if (!has_ended(grip)) return false;
+    for (Contact& contact : state.contacts)
+      if (grip.active && is_of(grip, contact.key))
+        contact.compliance = std::max(contact.compliance, contact.depth);
     return true;
   };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), ends), state.grips.end());
 }
 
+void GraspAssist::drop_lost_hands(SimulationState& state) {
+  closing_.clear();
+  end_grips(state, [&](const Grip& grip) { return !state.hands[grip.hand].active; });
+}
+
+/// True if the hand has opened enough to release the body, or has left it.
 bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
-  const Hand& hand = state.hands[grip.hand].current;
-  const Sides sides(grip, state.contacts);
-  if (grip.bears && sides.base.count + sides.fingers.count == 0 &&
-      !closing_hand_.is_near(hand, grip.body, state.bodies[grip.body].pose, kAway))
+  const HandTrack& track = state.hands[grip.hand];
+  const TouchingSides touching(grip, state.contacts);
+  if (grip.active && touching.none() &&
+      !closing_hand_.is_near(track.current, grip.body, state.bodies[grip.body].pose, kMaxDistance))
     return true;
-  const double now = opening(grip, hand);
-  grip.least = std::min(grip.least, now);
-  const double opened = now - grip.least;
-  if (opened > way_to_let_go(grip, kOpened)) return true;
-  return opened > kOpenedLeast && !sides.both();
+  const double opened = opened_by(track, seconds_, grip);
+  grip.opens =
+      opening_speed(track, seconds_, grip) > kOpensSpeed || opened > release_opening(grip, kOpensFraction);
+  return opened > release_opening(grip, kReleaseFraction) || (!touching.both() && opened > kReleaseClearance);
 }
 
-/// On what hangs on joints no touch gives way: tongs are closed by pressing either arm from one side.
+/// A supported body follows the fingers, but not fingers that open.
+void GraspAssist::follow(SimulationState& state, Grip& grip) {
+  const HandTrack& track = state.hands[grip.hand];
+  grip.closes = still_closes(track, grip);
+  grip.in_palm_before = grip.in_palm;
+  if (!grip.opens) grip.in_palm = moved_in_palm(grip, track.current);
+  if (!grip.active) return;
+  if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
+  // A hand that is rendered before a fixture does not collide with what it holds there.
+  if (is_buried(grip.hand, state))
+    state.interactions[grip.hand * state.bodies.size() + grip.body].shown_in = true;
+}
+
+/// No compliance on bodies that hang on joints: tongs are closed by one side of each arm.
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
-  const auto look =
-      closing_hand_.look_at(state.hands[slot], body, state.bodies[static_cast<std::size_t>(body)].pose);
-  if (look.opposed) {
-    if (look.opposed->depth > kPulp) take(slot, body, *look.opposed, state);
-  } else if (look.closing != 0 && scene_.bodies[static_cast<std::size_t>(body)].flies) {
-    int fingers = 0;
-    for (int finger = 1; finger < kFingers; ++finger) fingers += look.closing >> finger & 1;
-    closing_.push_back({slot, static_cast<std::size_t>(body), fingers >= kGrab});
-  }
+  const auto b = static_cast<std::size_t>(body);
+  const auto look = closing_hand_.look_at(state.hands[slot], body, state.bodies[b].pose);
+  if (look.opposed && look.opposed->depth > kPadDepth) take(slot, body, *look.opposed, state);
+  if (look.closing != 0 && scene_.bodies[b].flies) closing_.push_back({slot, b});
 }
 
-/// What the hand has taken before and has not had to bear is taken anew, but is off by where it was then.
+/// A body that was taken before and needed no support is taken anew, but keeps its place in the hand.
 void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& opposed,
                        SimulationState& state) const {
   const auto b = static_cast<std::size_t>(body);
@@ -220,18 +229,18 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   grip.body = static_cast<std::uint16_t>(body);
   grip.by_palm = opposed.by_palm;
   grip.fingers = opposed.taking_part;
-  grip.least = opening(grip, from);
-  grip.opening = std::max(grip.least, opening(grip, to) + opposed.squeeze);
+  grip.min_aperture = grip.mean_aperture = aperture(grip, from);
+  grip.touch_aperture = std::max(grip.min_aperture, aperture(grip, to) + opposed.squeeze);
   int fingers = 0;
   for (int finger = 0; finger < kFingers; ++finger) fingers += grip.takes_part(finger) ? 1 : 0;
   const HandStrength& strength = configuration_.hand;
-  const double push = std::min(grip.by_palm ? strength.palm : strength.finger, fingers * strength.finger);
+  const double force = std::min(grip.by_palm ? strength.palm : strength.finger, fingers * strength.finger);
   grip.point.fill(Vector3::Zero());
   grip.velocity.fill(Vector3::Zero());
-  grip.bond = std::min(2.0 * material.static_friction * push, kUnlimited) / kGripPoints;
-  grip.stiffness = kGripStiffness * material.stiffness / kGripPoints;
+  grip.bond = std::min(2.0 * material.static_friction * force, kUnlimitedBond) / kGripPoints;
+  grip.stiffness = kStiffnessRatio * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposed.base + opposed.fingers);
-  const double reach = std::clamp(0.5 * (opposed.base - opposed.fingers).norm(), kSmallest, kLargest);
+  const double reach = std::clamp(0.5 * (opposed.base - opposed.fingers).norm(), kMinReach, kMaxReach);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
     const Vector3 point = centre + reach / std::sqrt(3.0) * corner;
@@ -241,53 +250,39 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   const auto after = [](const Grip& x, const Grip& y) {
     return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
   };
-  const auto place = std::lower_bound(state.grips.begin(), state.grips.end(), grip, after);
-  if (place == state.grips.end() || after(grip, *place)) {
+  const auto known = std::lower_bound(state.grips.begin(), state.grips.end(), grip, after);
+  const bool is_new = known == state.grips.end() || after(grip, *known);
+  if (is_new) {
     grip.pads = distal_ends(from);
-    state.grips.insert(place, grip);
-    return;
+  } else {
+    grip.min_aperture = std::min(grip.min_aperture, known->min_aperture);
+    if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
+    grip.in_hand = known->in_hand, grip.in_body = known->in_body;
+    keep_pads(*known, from, grip);
   }
-  grip.least = std::min(grip.least, place->least);
-  if (place->by_palm == grip.by_palm) grip.fingers |= place->fingers;
-  grip.in_hand = place->in_hand, grip.in_body = place->in_body;
-  keep_pads(*place, from, grip);
-  *place = grip;
+  grip.in_palm_before = moved_in_palm(grip, from);
+  grip.in_palm = moved_in_palm(grip, to);
+  if (is_new) {
+    state.grips.insert(known, grip);
+  } else {
+    *known = grip;
+  }
 }
 
-/// A touch that begins gives way if the hand closes on the body with several fingers, or has something beyond
-/// the surface that is touched.
-bool GraspAssist::gives_way(const Contact& contact, const SimulationState& state) const {
-  const auto on = std::find_if(closing_.begin(), closing_.end(), [&](const ClosingOn& x) {
-    return x.hand == contact.key.hand && x.body == contact.key.body;
+/// A finger that closes touches without force until the hand has the body between two sides. A finger that
+/// has stopped before that regains its force slowly.
+void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
+  if (contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
+  const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
+    return pair.hand == contact.key.hand && pair.body == contact.key.body;
   });
-  if (on == closing_.end()) return false;
-  if (contact.normal.dot(gravity_) > kBears * gravity_.norm()) return false;
-  if (on->grabs) return true;
-  const Hand& hand = state.hands[contact.key.hand].current;
-  const auto beyond = [&](const Vector3& point) { return contact.normal.dot(point - contact.point) < 0.0; };
-  const int capsule = contact.key.capsule;
-  const bool palm = is_base(true, capsule), thumb = finger_of(capsule) == 0;
-  if (!palm && beyond(hand.palm.position)) return true;
-  for (int finger = 0; finger < kFingers; ++finger) {
-    const bool faces = palm || thumb || finger == 0;
-    if (faces && has_tip(hand, finger) && beyond(tip_of(hand, finger))) return true;
-  }
-  return false;
-}
-
-/// Of the depth, a finger that closes round a body presses nothing. When it has stopped it presses from
-/// there, and by and by in full, if no grip bears the body.
-void GraspAssist::give_way(const SimulationState& state, double step, Contact& contact) const {
-  const bool may = contact.depth <= 0.0 || contact.given > 0.0;
-  const Grip* grip = bearing_grip(state.grips, contact.key);
-  const bool gives = grip != nullptr ? grip->fresh || (grip->closes && may)
-                                     : may && !closing_.empty() && gives_way(contact, state);
-  if (gives) {
-    contact.given = std::max(contact.depth, kBegins);
+  const bool opposed = closes && is_opposed(contact, state.contacts);
+  if (closes && !opposed) {
     contact.struck = true;
-  } else if (contact.given > 0.0) {
-    const double recovered = grip == nullptr ? kRecovers * step : 0.0;
-    contact.given = std::max(std::min(contact.given, contact.depth) - recovered, 0.0);
+    contact.compliance = std::max(contact.depth, kMinCompliance);
+  } else {
+    const double kept = std::min(contact.compliance, contact.depth) - kRecoverySpeed * step;
+    contact.compliance = opposed ? 0.0 : std::max(kept, 0.0);
   }
 }
 
@@ -297,7 +292,7 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
   const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 start = from * grip.in_hand[i], chord = to * grip.in_hand[i] - start;
-    // The point bends with the palm that carries it.
+    // The point's path bends with the palm's.
     const Vector3 arm = start - track.previous.palm.position;
     const auto bend = [&arm](const HandVelocity& of) -> Vector3 { return of.points[0] + of.turn.cross(arm); };
     const Vector3 start_bend = bend(track.path.start_bend), end_bend = bend(track.path.end_bend);
@@ -306,53 +301,28 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
   }
 }
 
-/// How far the body is off where the hand has taken it [m].
-double GraspAssist::off(const SimulationState& state, const Grip& grip) const {
+/// Largest distance of a spring's end on the body from its end on the hand [m].
+double GraspAssist::offset(const SimulationState& state, const Grip& grip) const {
   const Pose& pose = state.bodies[grip.body].pose;
-  double most = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < kGripPoints; ++i)
-    most = std::max(most, (pose * grip.in_body[i] - grip.point[i]).norm());
-  return most;
+    largest = std::max(largest, (pose * grip.in_body[i] - grip.point[i]).norm());
+  return largest;
 }
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!configuration_.grasp_assist) return;
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    grip.fresh = false;
-    const HandTrack& track = state.hands[grip.hand];
-    if (!grip.bears && (!slips(state.contacts, grip) || leaves(grip, track, seconds_))) continue;
-    find(track, grip);
-    place(fraction, until, track, grip);
-    if (grip.bears || off(state, grip) <= kSlipped) continue;
-    grip.bears = grip.fresh = true;
+    const bool held = TouchingSides(grip, state.contacts).both() && !slips(state.contacts, grip);
+    if (!grip.active && (held || grip.opens)) continue;
+    place(fraction, until, state.hands[grip.hand], grip);
+    if (grip.active || offset(state, grip) <= kMaxOffset) continue;
+    grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);
   }
-  for (Contact& contact : state.contacts) give_way(state, step, contact);
-}
-
-/// The grip's force, and the squeeze that friction needs to bear it, as the contacts that touch would share
-/// them, beside what their own springs give: the sum of all is the force on the body.
-void GraspAssist::share_force(SimulationState& state) const {
-  for (const Grip& grip : state.grips) {
-    if (!grip.bears) continue;
-    Sides sides(grip, state.contacts);
-    Vector3 squeeze = Vector3::Zero();
-    if (sides.both()) {
-      const Vector3 across = sides.fingers.middle() - sides.base.middle();
-      const double friction = std::max(scene_.bodies[grip.body].material.static_friction, 0.1);
-      const double push = kMargin * grip.force.norm() / (2.0 * friction);
-      if (across.norm() > 0.0) squeeze = push * across.normalized();
-    }
-    for (Contact& contact : state.contacts) {
-      if (!holds(grip, contact.key) || !contact.touching()) continue;
-      const double sign = is_base(grip.by_palm, contact.key.capsule) ? 1.0 : -1.0;
-      contact.friction = grip.slips ? Friction::slipping : Friction::sticking;
-      contact.force += grip.force / (sides.base.count + sides.fingers.count) +
-                       sign / sides.of(grip, contact).count * squeeze;
-    }
-  }
+  for (Contact& contact : state.contacts) set_compliance(state, step, contact);
 }
 
 }  // namespace mrhi

@@ -61,7 +61,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       alone(scene),
       flights(scene),
       sleeping(scene, configuration.contact.sleep),
-      assist(scene, finder, gravity, refinements(configuration)),
+      assist(scene, finder, refinements(configuration)),
       renderer(scene, finder) {
   check_filter(configuration.filter.type);
   reset();
@@ -91,6 +91,7 @@ void Simulation::Impl::clear_result() {
   result.rendered.clear();
   result.contacts.clear();
   result.events.clear();
+  result.assists.clear();
   result.not_finite.clear();
   reported = false;
   transfer.clear();

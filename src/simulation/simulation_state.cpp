@@ -95,8 +95,8 @@ void add_path(const HandPath& path, Fnv1a& hash) {
 }
 
 void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
-  const auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path] =
-      track;
+  const auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
+               mean_velocity] = track;
   hash.add(active);
   if (!active) {
     add_noise(filter.noise, current.side, hash);
@@ -119,6 +119,7 @@ void add_track(const HandTrack& track, Nanoseconds now, Fnv1a& hash) {
     add_hand(from, hash);
   }
   add_path(path, hash);
+  add_velocity(mean_velocity, hash);
 }
 
 void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {
@@ -135,17 +136,18 @@ void add_offset(const HandOffset& offset, Nanoseconds now, Fnv1a& hash) {
 
 void add_contact(const ContactMemory& contact, Fnv1a& hash) {
   const auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter,
-               at_edge, depth, twist, given, force] = contact;
+               at_edge, depth, twist, compliance, force] = contact;
   leave_out(at_edge, force);
   hash.all(key.order(), god_object, entry_normal, touched_from, axis_parameter, depth, twist, friction,
-           struck, given, ignored);
+           struck, compliance, ignored);
 }
 
 void add_grip(const Grip& grip, Fnv1a& hash) {
-  const auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads,
-               placed, in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = grip;
-  leave_out(stiffness, fresh, closes, placed, in_palm_before, slips, force, point, velocity);
-  hash.all(body, hand, by_palm, fingers, opening, least, bond, bears);
+  const auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness,
+               active, closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point,
+               velocity] = grip;
+  leave_out(stiffness, closes, opens, in_palm_before, slips, force, point, velocity);
+  hash.all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active);
   for (const Vector3& pad : pads) hash.add(pad);
   hash.add(in_palm);
   for (const Vector3& end : in_hand) hash.add(end);

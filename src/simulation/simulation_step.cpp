@@ -19,7 +19,7 @@ double Simulation::Impl::driven(double step) const {
     most = std::max(most, contact.hand_velocity.norm() + let_go(contact.key.body, contact.force));
   }
   for (const Grip& grip : state.grips) {
-    if (!grip.bears) continue;
+    if (!grip.active) continue;
     for (const Vector3& velocity : grip.velocity)
       most = std::max(most, velocity.norm() + let_go(grip.body, grip.force));
   }
@@ -44,8 +44,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
                            state.bodies, changes, state.grips};
   model->respond(contact_step);
   end_stage(Stage::response);
-  assist.share_force(state);
-  transfer.add(state.contacts, step);
+  transfer.add(state, step);
   const bool last = steps_done + 1 >= steps;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000004ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000005ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -216,9 +216,10 @@ class Parts {
     up_to(order, 3);
   }
   void one(HandTrack& part) {
-    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path] =
-        part;
-    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path);
+    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
+           mean_velocity] = part;
+    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
+        mean_velocity);
   }
   void one(ContactKey& part) {
     auto& [point, shape, capsule, hand, body] = part;
@@ -226,16 +227,16 @@ class Parts {
   }
   void one(ContactMemory& part) {
     auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge,
-           depth, twist, given, force] = part;
+           depth, twist, compliance, force] = part;
     one(key);
     one_of(friction, Friction::slipping);
-    all(struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge, depth, twist, given,
-        force);
+    all(struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge, depth, twist,
+        compliance, force);
   }
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
     all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
-        c.grip, c.share, c.inverse_mass, c.impulse);
+        c.grip, c.share, c.inverse_mass, c.restitution, c.impulse);
     // Found anew in each step, and without limits.
     way_.raw(&c.strength, sizeof c.strength);
     way_.raw(&c.time_of_impact, sizeof c.time_of_impact);
@@ -261,10 +262,11 @@ class Parts {
     all(shift, fingers, lag, stamp, left, left_since);
   }
   void one(Grip& part) {
-    auto& [body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
-           in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] = part;
-    all(body, hand, by_palm, fingers, opening, least, bond, stiffness, bears, fresh, closes, pads, placed,
-        in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity);
+    auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
+           closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity] =
+        part;
+    all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
+        closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;

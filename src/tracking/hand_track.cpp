@@ -185,6 +185,9 @@ void extend_path(double elapsed, HandTrack& track) {
     start[i] = elapsed * (part * start[i] - extrapolated[i]);
     extrapolated[i] *= elapsed;
   }
+  const double renewed = 1.0 - std::exp(-elapsed / kMeanVelocity);
+  double* __restrict mean_velocity = numbers(track.mean_velocity);
+  for (std::size_t i = 0; i < kNumbers; ++i) mean_velocity[i] += renewed * (mean[i] - mean_velocity[i]);
   path.longest_bend = 27.0 / 4.0 * std::min(detour, allowed) + elapsed * path.extrapolated;
   path.order = std::min(path.order + 1, 3);
 }

@@ -81,6 +81,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.filter.restart(hand);
   track.previous = track.current = hand;
   track.path = HandPath();
+  track.mean_velocity = HandVelocity();
   track.last_seen = stamp;
   track.rejoin.duration = 0;
   track.filter_change.reset();

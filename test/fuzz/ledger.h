@@ -155,7 +155,7 @@ class Ledger {
   /// Its force with the mean of where its springs end in the hand, and at most what each of them can give
   /// with that end's motion against the mean, as the hand turns.
   void note_grip(const Grip& grip, double seconds) {
-    if (!grip.bears) return;
+    if (!grip.active) return;
     borne_ = true;
     const Pose& pose = begun_[grip.body].pose;
     const double ahead = look_ahead(seconds, simulation_.configuration().contact.damping);

@@ -129,7 +129,7 @@ class Playing {
       made_.surplus = std::max(made_.surplus, ledger_->surplus());
       ++made_.booked;
       const auto& grips = simulation_.state().grips;
-      made_.borne += std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.bears; });
+      made_.borne += std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.active; });
     }
     if (!touches(simulation_)) ledger_.emplace(simulation_);
   }

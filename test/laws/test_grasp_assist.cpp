@@ -52,7 +52,7 @@ Outcome outcome_of(const Reach& reach) {
       },
       [&](const Simulation& s) {
         outcome.grips = std::max(outcome.grips, s.state().grips.size());
-        for (const Grip& grip : s.state().grips) outcome.borne = outcome.borne || grip.bears;
+        for (const Grip& grip : s.state().grips) outcome.borne = outcome.borne || grip.active;
         for (const Contact& contact : s.result().contacts)
           outcome.strongest = std::max(outcome.strongest, contact.force.norm());
       });
@@ -90,14 +90,15 @@ TEST(GraspAssist, bears_nothing_that_contact_holds) {
       [&](const Simulation& s) {
         for (const Grip& grip : s.state().grips) {
           taken = true;
-          EXPECT_FALSE(grip.bears);
+          EXPECT_FALSE(grip.active);
         }
       });
   EXPECT_TRUE(taken);
 }
 
-// Every step, the forces told of the contacts and their blows are what changes the body's momentum.
-TEST(GraspAssist, tells_all_of_the_force_on_the_body) {
+// Every step, the forces and impacts of the contacts, and grasp assist's force beside them, are what changes
+// the body's momentum.
+TEST(GraspAssist, its_force_and_the_contacts_are_all_that_acts_on_the_body) {
   // 1 mN for a frame: the forces are those of the last iterate, the momenta of the next.
   constexpr double kRate = 120.0, kSolved = 2e-5;  // [N s]
   Configuration configuration = testing::implicit_configuration();
@@ -120,42 +121,14 @@ TEST(GraspAssist, tells_all_of_the_force_on_the_body) {
         Vector3 given = Vector3::Zero();
         const double frame = to_seconds(s.state().time - last);
         for (const Contact& contact : s.result().contacts) given += frame * contact.force + contact.impulse;
+        for (const GraspSupport& assist : s.result().assists) given += frame * assist.force;
         if (last != 0 && s.result().contacts.size() > 1) {  // of a touch that ends nothing is told
           EXPECT_LT((now - before - given).norm(), kSolved) << to_seconds(s.state().time);
         }
-        for (const Grip& grip : s.state().grips) borne += grip.bears;
+        for (const Grip& grip : s.state().grips) borne += grip.active;
         before = now, last = s.state().time;
       });
   EXPECT_GT(borne, 50);
-}
-
-// What is told of a grip's squeeze is what people give: slip's need of it and half of that again.
-TEST(GraspAssist, tells_a_squeeze_of_one_and_a_half_times_what_slip_needs) {
-  Configuration configuration = testing::implicit_configuration();
-  configuration.contact.hand = HandStrength::of_a_person();
-  Body heavy = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 3.0);
-  heavy.material.static_friction = heavy.material.dynamic_friction = 0.1;
-  Simulation simulation(testing::scene_of(heavy), configuration);
-  double share = 0.0;  // of such a squeeze, at most, told of the index
-  testing::play(
-      simulation, 0.0, 1.5, 120.0,
-      [&](double t) {
-        return reaching(std::min(t / 0.2, 1.0), 0.012, 0.01,
-                        0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitY());
-      },
-      [&](const Simulation& s) {
-        double index = 0.0;
-        for (const Contact& contact : s.result().contacts)
-          index -= contact.key.capsule == capsule_index(1, 3) ? contact.force.x() : 0.0;
-        for (const Grip& grip : s.state().grips) {
-          if (!grip.bears) continue;
-          const double squeeze = 1.5 * grip.force.norm() / (2.0 * heavy.material.static_friction);
-          // Beside it the finger's own push is told, and half of what the grip gives.
-          EXPECT_LE(index, squeeze + HandStrength::of_a_person().finger + 0.5 * grip.force.norm());
-          if (squeeze > 1.0) share = std::max(share, index / squeeze);
-        }
-      });
-  EXPECT_GT(share, 0.95);
 }
 
 /// Thumb and index in a palm's frame, moved by `way` there.
@@ -297,17 +270,15 @@ TEST(GraspAssist, lets_go_of_what_it_has_left_behind) {
                         Vector3(0, 0.5 * testing::smooth(t - 0.3, 1.0), 0));
       },
       [&](const Simulation& s) {
-        for (const Grip& grip : s.state().grips) borne = borne || grip.bears;
+        for (const Grip& grip : s.state().grips) borne = borne || grip.active;
       });
   EXPECT_TRUE(borne) << "as long as the hand was there";
   EXPECT_TRUE(simulation.state().grips.empty());
 }
 
-/// Grips and, of contacts under the cube, how far they gave way at most, while the hand closes as `hand`
-/// says.
+/// Most grips at a time, while the hand closes as `hand` says.
 struct Taken {
   std::size_t grips = 0;
-  double given_below = 0.0, raised = 0.0;
 };
 
 template <typename HandAt>
@@ -316,14 +287,8 @@ Taken taken_from(const Scene& scene, HandAt&& hand) {
   configuration.contact.hand = HandStrength::of_a_person();
   Simulation simulation(scene, configuration);
   Taken taken;
-  testing::play(simulation, 0.0, 0.5, 120.0, hand, [&](const Simulation& s) {
-    taken.grips = std::max(taken.grips, s.state().grips.size());
-    for (const Contact& contact : s.state().contacts) {
-      if (contact.key.body == 0 && contact.normal.z() < -0.9)
-        taken.given_below = std::max(taken.given_below, contact.given);
-    }
-    taken.raised = std::max(taken.raised, s.state().bodies[0].pose.position.z());
-  });
+  testing::play(simulation, 0.0, 0.5, 120.0, hand,
+                [&](const Simulation& s) { taken.grips = std::max(taken.grips, s.state().grips.size()); });
   return taken;
 }
 
@@ -348,28 +313,6 @@ TEST(GraspAssist, takes_nothing_while_the_hand_is_deep_in_a_fixture) {
       return hand;
     });
     EXPECT_EQ(taken.grips, deep > 0.015 ? 0u : 1u) << deep;
-  }
-}
-
-// Index below and thumb above close on a cube that lies on two rails. What is below bears it, and lifts it at
-// once; without weight both would go in until they have it between them.
-TEST(GraspAssist, a_finger_under_a_weight_does_not_give_way) {
-  for (const double gravity : {0.0, 9.81}) {
-    Scene scene = testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1));
-    for (const double side : {-1.0, 1.0})
-      scene.bodies.push_back(fixture(Vector3(0.04, 0.004, 0.01), Vector3(0, side * 0.017, -kHalf - 0.0051)));
-    scene.gravity = Vector3(0, 0, -gravity);
-    Pose upright;
-    upright.orientation =
-        Quaternion(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitY()));  // index below, x to -z
-    const Taken taken = taken_from(scene, [&](double t) {
-      return testing::moved(reaching(std::min(t / 0.4, 1.0), 0.012, 0.006), upright);
-    });
-    if (gravity > 0.0) {
-      EXPECT_EQ(taken.given_below, 0.0);
-    } else {
-      EXPECT_GT(taken.given_below, 0.005);
-    }
   }
 }
 

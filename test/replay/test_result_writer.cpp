@@ -142,9 +142,7 @@ TEST(ResultWriter, an_object_that_grasp_assist_supports_is_marked_with_its_force
   Written written;
   written.state.interactions.assign(kMaxHands * written.state.bodies.size(), Interaction());
   written.state.interactions[2].level = InteractionLevel::grasp;  // of the second hand
-  written.state.grips.resize(1);
-  written.state.grips[0].bears = true;
-  written.state.grips[0].force = {0, 0, 0.25};
+  written.result.assists = {{0, 0, {0, 0, 0.25}}};
   written.write(0, 1);
   const std::string row = written.lines("objects.csv").at(1);
   EXPECT_EQ(row.substr(row.size() - 17), ",3,1,1,0,0,0.25,0");

@@ -139,6 +139,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "hand/palm_mass",
                                           "hand/palm_strength",
                                           "hand/radius_scale",
+                                          "hand/restitution",
                                           "hand/strength",
                                           "material/dynamic_friction",
                                           "material/restitution",

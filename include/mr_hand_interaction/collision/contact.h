@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/math.h"
@@ -34,7 +35,7 @@ enum class Friction : std::uint8_t { sticking, slipping };
 struct ContactMemory {
   ContactKey key{};
   Friction friction = Friction::sticking;
-  bool struck = false;   ///< the impulse of this approach has been given
+  bool struck = false;   ///< the impact of this approach is over
   bool ignored = false;  ///< overlapped as hand or body appeared: touches nothing until they have separated
   Vector3 god_object = Vector3::Zero();     ///< c, on the object's surface, body frame
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
@@ -44,11 +45,11 @@ struct ContactMemory {
   double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
   /// Turn of the phalanx about n against the object since the touch, as far as it is held [rad].
   double twist = 0.0;
-  double given = 0.0;  ///< by which the finger has given way as it closed round the body: of the depth [m]
+  double compliance = 0.0;  ///< part of the depth without force, of a finger that closes on the body [m]
   Vector3 force = Vector3::Zero();  ///< that the contact model last found [N]
 
   bool touching() const { return depth > 0.0 && !ignored; }
-  double pressed() const { return depth - given; }
+  double pressed() const { return depth - compliance; }
 };
 
 /// One touch of a hand (body 1) with an object (body 2): the god object with its memory, where things are in
@@ -67,7 +68,8 @@ struct Contact : ContactMemory {
   double grip = 1.0;                        ///< friction over that of a face, for the way that it is drawn
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
   double strength = HandStrength::kUnlimited;  ///< most that this point pushes with [N]
-  double inverse_mass = 0.0;                   ///< of the phalanx as it strikes, effective [1/kg]
+  double inverse_mass = 0.0;                   ///< of the phalanx in an impact, effective [1/kg]
+  std::optional<double> restitution;           ///< of an impact, 0 to 1; unset: the object's
   Vector3 impulse = Vector3::Zero();           ///< of an impact in this step [N s]
   double time_of_impact = 0.0;                 ///< of that impact, from the step's start [s]
 };

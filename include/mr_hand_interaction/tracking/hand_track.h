@@ -8,7 +8,8 @@
 
 namespace mrhi {
 
-constexpr int kMaxHands = 4;  ///< followed at once
+constexpr int kMaxHands = 4;            ///< followed at once
+constexpr double kMeanVelocity = 0.03;  ///< time constant of HandTrack::mean_velocity [s]
 
 /// After a short loss the hand does not snap from where it was held to where it is: it catches up, continuous
 /// in velocity and never ahead of the tracked hand.
@@ -67,7 +68,8 @@ struct HandTrack {
   FilterMemory filter;
   Rejoin rejoin;
   std::optional<FilterChange> filter_change;
-  HandPath path;  ///< from `previous` to `current`
+  HandPath path;               ///< from `previous` to `current`
+  HandVelocity mean_velocity;  ///< of the last frames, exponential mean over kMeanVelocity
 };
 
 /// Continues the path of the track to its current pose, `elapsed` seconds (above 0) after the previous one.
