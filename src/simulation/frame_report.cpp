@@ -62,13 +62,14 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || struck;
       if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
-      const bool gripped = std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
-        return grip.active && grip.hand == slot && grip.body == b;
+      const auto grip = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& candidate) {
+        return candidate.hand == slot && candidate.body == b && (candidate.active || candidate.released);
       });
       const InteractionLevel seen =
-          gripped ? InteractionLevel::grasp
-                  : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
-                               state.bodies[b].pose, result.contacts, interaction.level);
+          grip != state.grips.end()
+              ? (grip->active ? InteractionLevel::grasp : InteractionLevel::contact)
+              : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
+                           state.bodies[b].pose, result.contacts, interaction.level);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,
                          result.events);
     }

@@ -47,22 +47,8 @@ bool slips(const std::vector<Contact>& contacts, const Grip& grip) {
   });
 }
 
-/// Whether the base, and the fingers, of a grip touch the body.
-struct TouchingSides {
-  bool base = false, fingers = false;
-
-  TouchingSides(const Grip& grip, const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts) {
-      if (!contact.touching() || !is_of(grip, contact.key)) continue;
-      (is_base(grip.by_palm, contact.key.capsule) ? base : fingers) = true;
-    }
-  }
-  bool both() const { return base && fingers; }
-  bool none() const { return !base && !fingers; }
-};
-
-/// Whether the hand touches the same body on a face opposite to this contact's, or is about to (contacts begin
-/// 1 mm before the surface).
+/// Whether the hand touches the same body on a face opposite to this contact's, or is about to (contacts
+/// begin 1 mm before the surface).
 bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
     return other.key.hand == contact.key.hand && other.key.body == contact.key.body && !other.ignored &&
@@ -89,8 +75,8 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   return std::max(grip.mean_aperture, now - margin) - grip.min_aperture;
 }
 
-/// Speed at which the grip's fingers open: the mean one, or that of the last frame without the tracker's noise
-/// [m/s].
+/// Speed at which the grip's fingers open: the mean one, or that of the last frame without the tracker's
+/// noise [m/s].
 double opening_speed(const HandTrack& track, double seconds, const Grip& grip) {
   double sum = 0.0;
   int count = 0;
@@ -124,6 +110,13 @@ void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
 
 }  // namespace
 
+GraspAssist::TouchingSides::TouchingSides(const Grip& grip, const std::vector<Contact>& contacts) {
+  for (const Contact& contact : contacts) {
+    if (!contact.touching() || !is_of(grip, contact.key)) continue;
+    (is_base(grip.by_palm, contact.key.capsule) ? base : fingers) = true;
+  }
+}
+
 GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder,
                          const ContactConfiguration& configuration)
     : scene_(scene), closing_hand_(scene, finder), configuration_(configuration) {
@@ -134,10 +127,8 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   if (!configuration_.grasp_assist) return;
   seconds_ = seconds;
   closing_.clear();
-  end_grips(state, [&](Grip& grip) {
-    const HandTrack& track = state.hands[grip.hand];
-    return !track.active || track.appeared || (seconds > 0.0 && opens(state, grip));
-  });
+  const auto over = [&](Grip& grip) { return ends(state, grip); };
+  state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), over), state.grips.end());
   for (Grip& grip : state.grips) follow(state, grip);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active || state.hands[slot].appeared || is_buried(slot, state)) continue;
@@ -157,36 +148,36 @@ bool GraspAssist::is_buried(std::size_t slot, const SimulationState& state) cons
   });
 }
 
-/// Nothing new is found about a body that a grip supports, or that a hand holds which does not close any
-/// more.
+/// Nothing new is found about a body that a grip supports or has released, or of a hand that does not close
+/// any more.
 bool GraspAssist::is_known(std::size_t slot, std::size_t body, const SimulationState& state) const {
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-    return grip.hand == slot && grip.body == body && (grip.active || !grip.closes);
+    return grip.hand == slot && grip.body == body && (grip.active || grip.released || !grip.closes);
   });
-}
-
-/// What the fingers of an ended grip are still in they leave without a force.
-template <class HasEnded>
-void GraspAssist::end_grips(SimulationState& state, HasEnded&& has_ended) const {
-  const auto ends = [&](Grip& grip) {
-    if (!has_ended(grip)) return false;
-    for (Contact& contact : state.contacts)
-      if (grip.active && is_of(grip, contact.key))
-        contact.compliance = std::max(contact.compliance, contact.depth);
-    return true;
-  };
-  state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), ends), state.grips.end());
 }
 
 void GraspAssist::drop_lost_hands(SimulationState& state) {
   closing_.clear();
-  end_grips(state, [&](const Grip& grip) { return !state.hands[grip.hand].active; });
+  const auto lost = [&](const Grip& grip) { return !state.hands[grip.hand].active; };
+  state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), lost), state.grips.end());
+}
+
+/// True if the grip is over. A hand that lets go of a body that it supported is still in it: it exerts no
+/// force until it has left the body, or closes on it again.
+bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
+  const HandTrack& track = state.hands[grip.hand];
+  if (!track.active || track.appeared) return true;
+  const TouchingSides touching(grip, state.contacts);
+  if (grip.released) return touching.none() || still_closes(track, grip);
+  if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
+  grip.released = grip.active;
+  grip.active = false;
+  return !grip.released;
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
-bool GraspAssist::opens(const SimulationState& state, Grip& grip) const {
+bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  const TouchingSides touching(grip, state.contacts);
   if (grip.active && touching.none() &&
       !closing_hand_.is_near(track.current, grip.body, state.bodies[grip.body].pose, kMaxDistance))
     return true;
@@ -272,12 +263,15 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
 /// A finger that closes touches without force until the hand has the body between two sides. A finger that
 /// has stopped before that regains its force slowly.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
-  if (contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
+  const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
+    return grip.released && is_of(grip, contact.key);
+  });
+  if (!released && contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
   const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
     return pair.hand == contact.key.hand && pair.body == contact.key.body;
   });
   const bool opposed = closes && is_opposed(contact, state.contacts);
-  if (closes && !opposed) {
+  if (released || (closes && !opposed)) {
     contact.struck = true;
     contact.compliance = std::max(contact.depth, kMinCompliance);
   } else {
@@ -315,7 +309,7 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool held = TouchingSides(grip, state.contacts).both() && !slips(state.contacts, grip);
-    if (!grip.active && (held || grip.opens)) continue;
+    if (!grip.active && (held || grip.opens || grip.released)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     grip.active = true;

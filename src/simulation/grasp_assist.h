@@ -35,9 +35,16 @@ class GraspAssist {
   };
   bool is_buried(std::size_t slot, const SimulationState& state) const;
   bool is_known(std::size_t slot, std::size_t body, const SimulationState& state) const;
-  template <class HasEnded>
-  void end_grips(SimulationState& state, HasEnded&& has_ended) const;
-  bool opens(const SimulationState& state, Grip& grip) const;
+  /// Whether the base, and the fingers, of a grip touch the body.
+  struct TouchingSides {
+    bool base = false, fingers = false;
+
+    TouchingSides(const Grip& grip, const std::vector<Contact>& contacts);
+    bool both() const { return base && fingers; }
+    bool none() const { return !base && !fingers; }
+  };
+  bool ends(const SimulationState& state, Grip& grip) const;
+  bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   void look_at(std::size_t slot, int body, SimulationState& state);
   void take(std::size_t slot, int body, const ClosingHand::Opposed& opposed, SimulationState& state) const;

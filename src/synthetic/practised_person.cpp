@@ -78,7 +78,7 @@ std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place
   const Vector3 up(0.0, 0.0, 0.2), ahead = along * Vector3(0.02, 0.0, 0.0);
   Script script("cube");
   script.then(0.0, at(object, pushes_along_y, nudge.front().wrist), relaxed_posture());
-  script.then(1.0, ready, pointing_posture()).then(5.0, pushed, pointing_posture());
+  script.then(1.0, ready, pointing_posture()).then(6.0, pushed, pointing_posture());
   script.then(0.3, ready, pointing_posture()).then(0.4, shifted(ready, up), flat_posture());
   script.then(0.5, shifted(stop, up + 2.5 * ahead), flat_posture())
       .then(0.4, shifted(stop, ahead), flat_posture());

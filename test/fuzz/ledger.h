@@ -126,7 +126,7 @@ class Ledger {
   double rounding() const { return borne_ ? kGripRounding : kRounding; }
   struct Touched {
     std::uint64_t key;
-    double given;
+    double compliance;
   };
 
   void note_contact(const Contact& contact, double seconds) {
@@ -143,13 +143,13 @@ class Ledger {
   /// take it; and a finger that had given way comes to press of itself.
   void note_pressed(const Contact& contact, double stiffness) {
     const std::uint64_t key = contact.key.order();
-    touched_.push_back({key, contact.given});
+    touched_.push_back({key, contact.compliance});
     const auto before = std::find_if(touched_before_.begin(), touched_before_.end(),
                                      [key](const Touched& touched) { return touched.key == key; });
     if (before == touched_before_.end()) {
       work_ += 0.5 * stiffness * contact.depth * contact.depth;
-    } else if (contact.given < before->given) {
-      work_ += stiffness * std::max(contact.pressed(), 0.0) * (before->given - contact.given);
+    } else if (contact.compliance < before->compliance) {
+      work_ += stiffness * std::max(contact.pressed(), 0.0) * (before->compliance - contact.compliance);
     }
   }
   /// Its force with the mean of where its springs end in the hand, and at most what each of them can give

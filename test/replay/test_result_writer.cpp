@@ -108,9 +108,9 @@ TEST(ResultWriter, events_have_names_and_the_time_at_which_they_happened) {
   written.write(1'000'000'000, 2'000'000'000);
   const auto lines = written.lines("events.csv");
   ASSERT_EQ(lines.size(), 5u);
-  EXPECT_EQ(lines[0], "time,kind,object,hand_id,frame");
-  EXPECT_EQ(lines[1], "0,HAND_FOUND,,7,0");
-  EXPECT_EQ(lines[2], "0.5,GRASP_BEGIN,object,7,0");
+  EXPECT_EQ(lines[0], "time,kind,object,hand_id,frame,assisted");
+  EXPECT_EQ(lines[1], "0,HAND_FOUND,,7,0,0");
+  EXPECT_EQ(lines[2], "0.5,GRASP_BEGIN,object,7,0,0");
 }
 
 TEST(ResultWriter, frames_have_their_stamp_and_gravity_and_bodies_what_they_are) {

@@ -142,7 +142,7 @@ struct Things {
 TEST(ObjectMessages, tell_pose_twist_and_mass_of_what_is_no_fixture) {
   Things things;
   things.state.interactions[2].level = InteractionLevel::grasp;
-  const auto message = objects_message(things.scene, things.result, things.state, world());
+  const auto message = objects_message(things.scene, FrameResult(), things.state, world());
   ASSERT_EQ(message.objects.size(), 3u);
   EXPECT_EQ(message.objects[0].name, "rod_0");
   const auto& object = message.objects[2];
@@ -180,11 +180,11 @@ TEST(ObjectMessages, what_is_held_is_told_in_the_scenes_order) {
 TEST(EventMessages, name_the_object_and_the_hand_or_neither) {
   const Things things;
   Event event{5, EventKind::grasp_begin, 2, 7};
-  const auto grasp = event_message(things.scene, things.result, event, world());
+  const auto grasp = event_message(things.scene, FrameResult(), event, world());
   EXPECT_EQ(grasp.kind, grasp.GRASP_BEGIN);
   EXPECT_EQ(grasp.object, "free");
   EXPECT_EQ(grasp.hand_id, 7u);
-  const auto lost = event_message(things.scene, things.result, {5, EventKind::hand_lost, -1, 7}, world());
+  const auto lost = event_message(things.scene, FrameResult(), {5, EventKind::hand_lost, -1, 7}, world());
   EXPECT_EQ(lost.kind, lost.HAND_LOST);
   EXPECT_EQ(lost.object, "");
 }

@@ -84,7 +84,7 @@ Configuration unlike_defaults() {
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
   c.contact = {false, false, false, false, false, false, false,
-               false, false, false, false, false, 1,     {7, 8, 0.001, 0.03, 0.5}};
+               false, false, false, false, false, 1,     {7, 8, 0.001, 0.03, 0.5, 0.25}};
   c.tracking = {1.5, 3};
   return c;
 }

@@ -96,7 +96,7 @@ std::vector<Keyframe> nudge_and_stop(const Goal& goal, const Vector3& start) {
   stop.position = 0.5 * (slap[1].wrist.position + slap[3].wrist.position) + goal.position - scene_object();
   const Vector3 up(0.0, 0.0, 0.2), aside(0.05, 0.0, 0.2), ahead(0.02, 0.0, 0.0);
   then(1.0, ready, Vector3::Zero(), pointing_posture());
-  then(5.0, pushed, Vector3::Zero(), pointing_posture());
+  then(6.0, pushed, Vector3::Zero(), pointing_posture());
   then(0.3, ready, Vector3::Zero(), pointing_posture());
   then(0.4, ready, up, flat_posture());
   then(0.5, stop, aside, flat_posture());

@@ -25,6 +25,7 @@ struct Grip {
   double bond = 0.0;            ///< largest force of each spring [N]
   double stiffness = 0.0;       ///< of each spring [N/m]
   bool active = false;          ///< the springs act: the contacts alone did not hold the body
+  bool released = false;        ///< the hand has let go: no force on the body until it has left it
   bool closes = true;           ///< the hand is still closing
   bool opens = false;           ///< the hand is opening: the grip does not follow its fingers
   DistalEnds pads{};            ///< as the grip began, palm frame [m]
