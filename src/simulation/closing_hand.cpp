@@ -64,10 +64,14 @@ std::optional<ClosestFeatures> ClosingHand::nearest(const Capsule& capsule, int 
   return result;
 }
 
-bool ClosingHand::is_near(const Hand& hand, int body, const Pose& pose, double distance) const {
-  return std::any_of(hand.capsules.begin(), hand.capsules.end(), [&](const Capsule& capsule) {
-    return capsule.radius > 0.0 && nearest(capsule, body, pose, distance);
-  });
+double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, int body, const Pose& pose,
+                        double limit) const {
+  for (int c = 0; c < kCapsules; ++c) {
+    if (!hand.has(c) || is_base(by_palm, c) != of_base) continue;
+    const auto features = nearest(hand.capsules[static_cast<std::size_t>(c)], body, pose, limit);
+    if (features) limit = std::min(limit, features->distance);
+  }
+  return limit;
 }
 
 bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body,

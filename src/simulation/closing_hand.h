@@ -42,8 +42,9 @@ class ClosingHand {
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
   Look look_at(const HandTrack& track, int body, const Pose& pose) const;
-  /// Whether any of the hand is nearer to the body than `distance` [m].
-  bool is_near(const Hand& hand, int body, const Pose& pose, double distance) const;
+  /// Distance of a side of a grip, its base or its fingers, from the body; negative inside; at most `limit`
+  /// [m].
+  double gap(const Hand& hand, bool by_palm, bool of_base, int body, const Pose& pose, double limit) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
   /// the hand moves.
   static bool closes(const HandTrack& track, bool by_palm, int finger);

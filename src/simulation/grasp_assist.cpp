@@ -24,8 +24,8 @@ constexpr double kMeanAperture = 0.05;
 constexpr double kNoiseMargin = 4.0;
 /// The hand has let go once it has opened by this fraction of the way to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
-/// Or by this, if one side does not touch the body any more [m].
-constexpr double kReleaseClearance = 0.0015;
+/// Or by this, if the gaps between both sides and the body come to the clearance: there is room for it [m].
+constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
 /// Fingers that have opened by this fraction of that way, or open faster, do not carry the body [m/s].
 constexpr double kOpensFraction = 0.5, kOpensSpeed = 0.35;
 /// A hand that is farther from a body than this has left it, whatever its fingers do [m].
@@ -75,9 +75,8 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   return std::max(grip.mean_aperture, now - margin) - grip.min_aperture;
 }
 
-/// Speed at which the grip's fingers open: the mean one, or that of the last frame without the tracker's
-/// noise [m/s].
-double opening_speed(const HandTrack& track, double seconds, const Grip& grip) {
+/// Mean speed at which the grip's fingers open [m/s].
+double opening_speed(const HandTrack& track, const Grip& grip) {
   double sum = 0.0;
   int count = 0;
   for (int finger = 0; finger < kFingers; ++finger) {
@@ -85,8 +84,13 @@ double opening_speed(const HandTrack& track, double seconds, const Grip& grip) {
     sum -= ClosingHand::closing_speed(track, grip.by_palm, finger);
     ++count;
   }
+  return sum / count;
+}
+
+/// True if the fingers opened fast in the last frame, beyond the tracker's noise.
+bool opens_now(const HandTrack& track, double seconds, const Grip& grip) {
   const double change = aperture(grip, track.current) - aperture(grip, track.previous);
-  return std::max(sum / count, (change - noise_margin(track)) / seconds);
+  return change - noise_margin(track) > kOpensSpeed * seconds;
 }
 
 bool still_closes(const HandTrack& track, const Grip& grip) {
@@ -178,13 +182,18 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
 /// True if the hand has opened enough to release the body, or has left it.
 bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  if (grip.active && touching.none() &&
-      !closing_hand_.is_near(track.current, grip.body, state.bodies[grip.body].pose, kMaxDistance))
-    return true;
-  const double opened = opened_by(track, seconds_, grip);
+  grip.opened = opened_by(track, seconds_, grip);
   grip.opens =
-      opening_speed(track, seconds_, grip) > kOpensSpeed || opened > release_opening(grip, kOpensFraction);
-  return opened > release_opening(grip, kReleaseFraction) || (!touching.both() && opened > kReleaseClearance);
+      opening_speed(track, grip) > kOpensSpeed || grip.opened > release_opening(grip, kOpensFraction);
+  if (grip.opened > release_opening(grip, kReleaseFraction)) return true;
+  if (touching.both()) return false;
+  const auto gap = [&](bool of_base) {
+    return closing_hand_.gap(track.current, grip.by_palm, of_base, grip.body, state.bodies[grip.body].pose,
+                             kMaxDistance);
+  };
+  const double base = gap(true), fingers = gap(false);
+  return (grip.opened > kMinOpening && base + fingers > kReleaseClearance) ||
+         std::min(base, fingers) >= kMaxDistance;
 }
 
 /// A supported body follows the fingers, but not fingers that open.
@@ -308,10 +317,12 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   if (!configuration_.grasp_assist) return;
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    const bool held = TouchingSides(grip, state.contacts).both() && !slips(state.contacts, grip);
-    if (!grip.active && (held || grip.opens || grip.released)) continue;
+    const bool touching = TouchingSides(grip, state.contacts).both();
+    const bool lost = touching ? slips(state.contacts, grip) : grip.opened <= kMinOpening;
+    if (!grip.active && (!lost || grip.opens || grip.released)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
+    if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
     grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);

@@ -144,9 +144,9 @@ void add_contact(const ContactMemory& contact, Fnv1a& hash) {
 
 void add_grip(const Grip& grip, Fnv1a& hash) {
   const auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness,
-               active, released, closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force,
-               point, velocity] = grip;
-  leave_out(stiffness, closes, opens, in_palm_before, slips, force, point, velocity);
+               active, released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
+               in_body, force, point, velocity] = grip;
+  leave_out(stiffness, closes, opened, opens, in_palm_before, slips, force, point, velocity);
   hash.all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
   for (const Vector3& pad : pads) hash.add(pad);
   hash.add(in_palm);

@@ -263,10 +263,10 @@ class Parts {
   }
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-           released, closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point,
-           velocity] = part;
+           released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force,
+           point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-        released, closes, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point,
+        released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point,
         velocity);
   }
   void one(Interaction& part) {

@@ -27,6 +27,7 @@ struct Grip {
   bool active = false;          ///< the springs act: the contacts alone did not hold the body
   bool released = false;        ///< the hand has let go: no force on the body until it has left it
   bool closes = true;           ///< the hand is still closing
+  double opened = 0.0;          ///< by how much the hand has opened since it was most closed [m]
   bool opens = false;           ///< the hand is opening: the grip does not follow its fingers
   DistalEnds pads{};            ///< as the grip began, palm frame [m]
   Pose in_palm_before;  ///< at the frame's start: where the palm's frame of that time is now, in the palm
