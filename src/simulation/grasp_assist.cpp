@@ -192,7 +192,7 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
                              kMaxDistance);
   };
   const double base = gap(true), fingers = gap(false);
-  return (grip.opened > kMinOpening && base + fingers > kReleaseClearance) ||
+  return (grip.opened > kMinOpening && base + fingers > kReleaseClearance + 0.5 * noise_margin(track)) ||
          std::min(base, fingers) >= kMaxDistance;
 }
 

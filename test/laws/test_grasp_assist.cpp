@@ -200,6 +200,40 @@ TEST(GraspAssist, has_let_go_before_the_fingers_have_left) {
   for (const Grip& grip : simulation.state().grips) EXPECT_TRUE(grip.released);
 }
 
+// With the shipped hand and filter, at 1 g from when the hand has closed on, however slowly it opens.
+TEST(GraspAssist, ends_within_a_millimetre_of_clearance) {
+  constexpr double kDeep = 0.005, kRate = 120.0, kFalls = 0.4, kOpens = 0.8;
+  Body slippery = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.3);
+  slippery.material.static_friction = slippery.material.dynamic_friction = 0.2;
+  Scene scene = testing::scene_of(slippery);
+  scene.bounds = {Vector3::Constant(-1e5), Vector3::Constant(1e5)};
+  for (const double speed : {0.00025, 0.002, 0.02, 0.2}) {
+    const auto hand_at = [&](double t) {
+      const double opened = std::max(0.0, t - kOpens) * speed / (kFingersAway - kHalf + kDeep);
+      return reaching(std::min(t / 0.1, 1.0) - opened, kDeep, 0.0);
+    };
+    bool supported = false;
+    double clearance = 0.0;
+    const auto look = [&](const Simulation& s) {
+      const Hand& hand = s.result().tracked.at(0);
+      const bool active = !s.state().grips.empty() && s.state().grips[0].active;
+      const double apart = (tip_of(hand, 1) - tip_of(hand, 0)).x() - 2.0 * testing::kFingertipRadius;
+      if (active) clearance = std::max(clearance, apart - 2.0 * kHalf);
+      supported = supported || active;
+    };
+    Simulation weightless(scene, Configuration());
+    testing::play(weightless, 0.0, kFalls, kRate, hand_at);
+    scene.gravity = Vector3(0, 0, -9.81);
+    Simulation heavy(scene, Configuration());
+    heavy.set_state(weightless.state());
+    testing::play(heavy, kFalls + 1.0 / kRate, kOpens + (kDeep + 0.003) / speed + 0.2, kRate, hand_at, look);
+    scene.gravity.setZero();
+    EXPECT_TRUE(supported) << speed;
+    EXPECT_LE(clearance, 0.001) << speed;
+    EXPECT_FALSE(is_held(0, heavy.state())) << speed;
+  }
+}
+
 TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {
   Configuration configuration = testing::implicit_configuration();
   configuration.contact.grasp_assist = true;
