@@ -26,32 +26,6 @@ SolidMoments placed(const SolidMoments& in_shape, const Pose& pose) {
   return moments;
 }
 
-/// A convex shape's hull of the places farthest along many directions (a Fibonacci lattice), or a mesh
-/// itself.
-TriangleMesh triangles_of(const PlacedShape& shape) {
-  TriangleMesh mesh;
-  if (const Mesh* const given = std::get_if<Mesh>(&shape.shape)) {
-    mesh = *given->triangles;
-  } else {
-    constexpr int kDirections = 300;
-    const auto add_farthest = [&](const Vector3& n) {
-      mesh.vertices.push_back(std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
-    };
-    for (int corner = 0; corner < 8; ++corner)
-      add_farthest(Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).normalized());
-    for (int i = 0; i < kDirections && !std::holds_alternative<Box>(shape.shape); ++i) {
-      const double z = 1.0 - (2.0 * i + 1.0) / kDirections, across = std::sqrt(1.0 - z * z),
-                   turn = 2.39996 * i;
-      add_farthest({across * std::cos(turn), across * std::sin(turn), z});
-    }
-    mesh = convex_hull(mesh);
-    if (signed_volume(mesh) < 0.0)
-      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  }
-  for (Vector3& vertex : mesh.vertices) vertex = shape.pose * vertex;
-  return mesh;
-}
-
 Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
   Eigen::AlignedBox3d box;
   for (int axis = 0; axis < 3; ++axis)
@@ -165,6 +139,32 @@ class Columns {
 
 }  // namespace
 
+/// A convex shape's hull of the places farthest along many directions (a Fibonacci lattice), or a mesh
+/// itself.
+TriangleMesh surface_of(const PlacedShape& shape) {
+  TriangleMesh mesh;
+  if (const Mesh* const given = std::get_if<Mesh>(&shape.shape)) {
+    mesh = *given->triangles;
+  } else {
+    constexpr int kDirections = 300;
+    const auto add_farthest = [&](const Vector3& n) {
+      mesh.vertices.push_back(std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+    };
+    for (int corner = 0; corner < 8; ++corner)
+      add_farthest(Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).normalized());
+    for (int i = 0; i < kDirections && !std::holds_alternative<Box>(shape.shape); ++i) {
+      const double z = 1.0 - (2.0 * i + 1.0) / kDirections, across = std::sqrt(1.0 - z * z),
+                   turn = 2.39996 * i;
+      add_farthest({across * std::cos(turn), across * std::sin(turn), z});
+    }
+    mesh = convex_hull(mesh);
+    if (signed_volume(mesh) < 0.0)
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
+  for (Vector3& vertex : mesh.vertices) vertex = shape.pose * vertex;
+  return mesh;
+}
+
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume) {
   constexpr double kNeglected = 1e-3;
   const SolidMoments shared = Columns(mesh).shared();
@@ -204,7 +204,7 @@ SolidMoments moments_of(const std::vector<PlacedShape>& shapes) {
   if (!has_parts(shapes) && !may_overlap(shapes)) return all;
   TriangleMesh surfaces;
   for (const PlacedShape& shape : shapes) {
-    const TriangleMesh mesh = triangles_of(shape);
+    const TriangleMesh mesh = surface_of(shape);
     const int first = static_cast<int>(surfaces.vertices.size());
     surfaces.vertices.insert(surfaces.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (const auto& t : mesh.triangles)

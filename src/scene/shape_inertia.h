@@ -22,6 +22,9 @@ SolidMoments signed_moments(const TriangleMesh& mesh);
 /// 0.1 % of `volume`.
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume);
 
+/// A shape's surface in the frame that it is placed in: a mesh itself, facets within a round shape.
+TriangleMesh surface_of(const PlacedShape& shape);
+
 /// Whether closed parts overlap.
 bool overlaps_itself(const TriangleMesh& mesh);
 

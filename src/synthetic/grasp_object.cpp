@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "../scene/shape_inertia.h"
+#include "../text/text.h"
+#include "motions.h"
+#include "scripted_grasp.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kWidest = 0.09;  // that thumb and fingers close on [m]
+constexpr double kSpacing = 0.0175;
+constexpr double kThumbDepth = 0.006;
+constexpr double kReached = 0.004;  // what a fingertip may be off its place [m]
+/// The palm is this far from the fingertips: what is higher under it is in its way [m].
+constexpr double kUnderPalm = 0.06;
+
+/// A body's surface, body frame.
+class Surface {
+ public:
+  explicit Surface(const Body& body) {
+    for (const PlacedShape& shape : body.shapes) meshes_.push_back(surface_of(shape));
+    for (const TriangleMesh& mesh : meshes_)
+      for (const auto& t : mesh.triangles)
+        for (const int v : t) corners_.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  }
+
+  struct Hit {
+    Vector3 point, normal;
+  };
+  /// The outermost place on the line through `at` along `out`, seen from there.
+  std::optional<Hit> outermost(const Vector3& at, const Vector3& out) const {
+    std::optional<Hit> found;
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < corners_.size(); i += 3) {
+      const Vector3 &a = corners_[i], ab = corners_[i + 1] - a, ac = corners_[i + 2] - a;
+      const Vector3 normal = ab.cross(ac);
+      const double rise = normal.dot(out);
+      if (!(rise > 1e-12 * normal.norm())) continue;  // it faces away
+      const double s = normal.dot(a - at) / rise;
+      const Vector3 from_a = at + s * out - a;
+      const double v = from_a.cross(ac).dot(normal), w = ab.cross(from_a).dot(normal);
+      if (v < 0.0 || w < 0.0 || v + w > normal.squaredNorm() || (found && s <= farthest)) continue;
+      farthest = s;
+      found = Hit{at + s * out, normal.normalized()};
+    }
+    return found;
+  }
+  double reach(const Vector3& n) const {
+    double most = -1e300;
+    for (const Vector3& corner : corners_) most = std::max(most, n.dot(corner));
+    return most;
+  }
+
+ private:
+  std::vector<TriangleMesh> meshes_;
+  std::vector<Vector3> corners_;
+};
+
+/// Across which a hand may close: the body's axes, and those of a Fibonacci lattice.
+std::vector<Vector3> directions() {
+  constexpr int kOthers = 40;
+  std::vector<Vector3> all{Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+  for (int i = 0; i < kOthers; ++i) {
+    const double z = (i + 0.5) / kOthers, across = std::sqrt(1.0 - z * z), turn = 2.39996 * i;
+    all.push_back({across * std::cos(turn), across * std::sin(turn), z});
+  }
+  return all;
+}
+
+/// The hand's frame in the body's: y from thumb to fingers, z to where the palm is.
+struct Closing {
+  Matrix3 axes;
+  std::vector<FingertipContact> contacts;
+  double width, cost;
+};
+
+/// Thumb against as many of three fingers as find the surface; they bear alike.
+std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
+  constexpr double kFacing = 0.75;  // the least cosine of a normal and the way of closing
+  const auto hit = [&](double x, double way) -> std::optional<Surface::Hit> {
+    const auto found = surface.outermost(x * axes.col(0), way * axes.col(1));
+    return found && way * found->normal.dot(axes.col(1)) > kFacing ? found : std::nullopt;
+  };
+  const auto in_hand = [&](int finger, const Surface::Hit& at, double depth) {
+    return FingertipContact{finger, axes.transpose() * at.point, axes.transpose() * at.normal, depth};
+  };
+  const auto thumb = hit(0.0, -1.0), middle = hit(0.0, 1.0);
+  if (!thumb || !middle) return std::nullopt;
+  Closing found{axes, {in_hand(0, *thumb, kThumbDepth)}, axes.col(1).dot(middle->point - thumb->point), 0.0};
+  if (!(found.width > 0.0)) return std::nullopt;
+  for (int finger = 1; finger <= 3; ++finger) {
+    const auto at = finger == 2 ? middle : hit((finger - 2) * kSpacing, 1.0);
+    if (at && std::abs(axes.col(1).dot(at->point - middle->point)) < 0.01)
+      found.contacts.push_back(in_hand(finger, *at, 0.0));
+  }
+  const double fingers = static_cast<double>(found.contacts.size() - 1);
+  for (std::size_t i = 1; i < found.contacts.size(); ++i) found.contacts[i].depth = kThumbDepth / fingers;
+  found.cost =
+      found.width + 0.01 * (3.0 - fingers) + 2.0 * std::max(0.0, surface.reach(axes.col(2)) - kUnderPalm);
+  return found;
+}
+
+/// The narrowest that the palm has room for; a hand that comes from above is worth 5 mm, a way along one of
+/// the body's own axes 3 mm.
+Closing narrowest(const Body& body, const Surface& surface) {
+  constexpr int kTurns = 12;
+  const Vector3 up = body.start.orientation.conjugate() * Vector3::UnitZ();
+  std::optional<Closing> best;
+  int index = 0;
+  for (const Vector3& along : directions()) {
+    const double own = index++ < 3 ? 0.0 : 0.003;
+    const Vector3 side = std::abs(along.dot(up)) < 0.9 ? Vector3((up - along.dot(up) * along).normalized())
+                                                       : along.unitOrthogonal();
+    for (int i = 0; i < 2 * kTurns; ++i) {
+      Matrix3 axes;
+      axes.col(1) = i % 2 == 0 ? along : Vector3(-along);
+      axes.col(2) = Eigen::AngleAxisd(2.0 * M_PI * (i / 2) / kTurns, along) * side;
+      axes.col(0) = axes.col(1).cross(axes.col(2));
+      auto found = closing(surface, axes);
+      if (!found) continue;
+      found->cost += own - 0.005 * axes.col(2).dot(up);
+      if (!best || found->cost < best->cost - 1e-9) best = found;
+    }
+  }
+  if (!best || best->width > kWidest)
+    throw std::invalid_argument("object '" + body.name + "' " +
+                                (best ? "is " + text::number(best->width) + " m wide on its narrowest side"
+                                      : std::string("has no two sides that face away from each other")) +
+                                "; allowed: an object that a hand closes on, up to " + text::number(kWidest) +
+                                " m");
+  return *best;
+}
+
+/// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places.
+Grasp grasp_of(const Body& body) {
+  const Closing closing = narrowest(body, Surface(body));
+  std::optional<Grasp> best;
+  double least = 1e300;
+  for (const char* like : {"cube", "long_cuboid"}) {
+    Grasp grasp = shipped_grasp(like);
+    if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
+    const Vector3 wrist = grasp.wrist.position;
+    grasp.contacts = closing.contacts;
+    for (int y = -8; y <= 8; ++y)
+      for (int z = -4; z <= 8; ++z) {
+        grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
+        double error = 0.0;
+        for (const double gap : {-1.0, grasp.opening}) {
+          double of_gap = 0.0;
+          place_fingertips(human_hand(), grasp.wrist, grasp.contacts, gap, grasp.preferred, &of_gap);
+          error += of_gap * (gap < 0.0 ? 1.0 : 0.2);
+        }
+        error += 1e-4 * std::hypot(y, z);
+        if (error < least) least = error, best = grasp;
+      }
+  }
+  if (least > kReached)
+    throw std::invalid_argument("object '" + body.name + "': no hand reaches round it, by " +
+                                text::number(least) + " m; allowed: an object that a hand closes on");
+  return best->turned(Quaternion(closing.axes));
+}
+
+const Body& only_free_body(const Scene& scene) {
+  const Body* found = nullptr;
+  int free = 0;
+  for (const Body& body : scene.bodies)
+    if (body.flies) found = &body, ++free;
+  if (free != 1)
+    throw std::invalid_argument("scene '" + scene.name + "' has " + std::to_string(free) +
+                                " free objects; allowed: one, for a hand to grasp");
+  return *found;
+}
+
+}  // namespace
+
+ScriptedMotion grasp_object(const Scene& scene) {
+  const Body& body = only_free_body(scene);
+  const Grasp grasp = grasp_of(body).turned(body.start.orientation);
+  ScriptedMotion motion =
+      reach_and_carry(scene.name.c_str(), grasp, body.start.position, {0.05, -0.16, 0.02});
+  motion.name = "grasp_object";
+  return motion;
+}
+
+}  // namespace mrhi
