@@ -15,8 +15,9 @@ constexpr double kWidest = 0.09;  // that thumb and fingers close on [m]
 constexpr double kSpacing = 0.0175;
 constexpr double kThumbDepth = 0.006;
 constexpr double kReached = 0.004;  // what a fingertip may be off its place [m]
-/// The palm is this far from the fingertips: what is higher under it is in its way [m].
-constexpr double kUnderPalm = 0.06;
+/// What is higher above the fingertips than this is in the palm's way [m]: they close nearer to the palm
+/// then.
+constexpr double kUnderPalm = 0.045;
 
 /// A body's surface, body frame.
 class Surface {
@@ -76,31 +77,40 @@ struct Closing {
   Matrix3 axes;
   std::vector<FingertipContact> contacts;
   double width, cost;
+  double height = 0.0;  // of the fingertips above the body's centre, along z [m]
 };
 
-/// Thumb against as many of three fingers as find the surface; they bear alike.
+/// Thumb against as many of three fingers as find a surface that faces them; they press alike. Other fingers
+/// that would be in the body only touch: the little one has no finger against it on the thumb's other side.
 std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
   constexpr double kFacing = 0.75;  // the least cosine of a normal and the way of closing
-  const auto hit = [&](double x, double way) -> std::optional<Surface::Hit> {
-    const auto found = surface.outermost(x * axes.col(0), way * axes.col(1));
-    return found && way * found->normal.dot(axes.col(1)) > kFacing ? found : std::nullopt;
+  const double height = std::max(0.0, surface.reach(axes.col(2)) - kUnderPalm);
+  const auto hit = [&](double x, double way) {
+    return surface.outermost(x * axes.col(0) + height * axes.col(2), way * axes.col(1));
   };
-  const auto in_hand = [&](int finger, const Surface::Hit& at, double depth) {
-    return FingertipContact{finger, axes.transpose() * at.point, axes.transpose() * at.normal, depth};
+  const auto faces = [&](const Surface::Hit& at, double way) {
+    return way * at.normal.dot(axes.col(1)) > kFacing;
+  };
+  const auto in_hand = [&](int finger, const Surface::Hit& at) {
+    return FingertipContact{finger, axes.transpose() * at.point, axes.transpose() * at.normal, 0.0};
   };
   const auto thumb = hit(0.0, -1.0), middle = hit(0.0, 1.0);
-  if (!thumb || !middle) return std::nullopt;
-  Closing found{axes, {in_hand(0, *thumb, kThumbDepth)}, axes.col(1).dot(middle->point - thumb->point), 0.0};
+  if (!thumb || !middle || !faces(*thumb, -1.0) || !faces(*middle, 1.0)) return std::nullopt;
+  Closing found{axes, {in_hand(0, *thumb)}, axes.col(1).dot(middle->point - thumb->point), 0.0};
   if (!(found.width > 0.0)) return std::nullopt;
-  for (int finger = 1; finger <= 3; ++finger) {
+  std::vector<std::size_t> pressing;
+  for (int finger = 1; finger <= 4; ++finger) {
     const auto at = finger == 2 ? middle : hit((finger - 2) * kSpacing, 1.0);
-    if (at && std::abs(axes.col(1).dot(at->point - middle->point)) < 0.01)
-      found.contacts.push_back(in_hand(finger, *at, 0.0));
+    if (!at) continue;
+    const bool level = std::abs(axes.col(1).dot(at->point - middle->point)) < 0.01;
+    if (finger < 4 && level && faces(*at, 1.0)) pressing.push_back(found.contacts.size());
+    found.contacts.push_back(in_hand(finger, *at));
   }
-  const double fingers = static_cast<double>(found.contacts.size() - 1);
-  for (std::size_t i = 1; i < found.contacts.size(); ++i) found.contacts[i].depth = kThumbDepth / fingers;
-  found.cost =
-      found.width + 0.01 * (3.0 - fingers) + 2.0 * std::max(0.0, surface.reach(axes.col(2)) - kUnderPalm);
+  const auto fingers = static_cast<double>(pressing.size());
+  found.contacts[0].depth = kThumbDepth;
+  for (const std::size_t contact : pressing) found.contacts[contact].depth = kThumbDepth / fingers;
+  found.height = height;
+  found.cost = found.width + 0.01 * (3.0 - fingers) + 0.5 * height;  // a grip of the centre is worth more
   return found;
 }
 
@@ -143,7 +153,7 @@ Grasp grasp_of(const Body& body) {
   for (const char* like : {"cube", "long_cuboid"}) {
     Grasp grasp = shipped_grasp(like);
     if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
-    const Vector3 wrist = grasp.wrist.position;
+    const Vector3 wrist = grasp.wrist.position + closing.height * Vector3::UnitZ();
     grasp.contacts = closing.contacts;
     for (int y = -8; y <= 8; ++y)
       for (int z = -4; z <= 8; ++z) {
@@ -180,8 +190,9 @@ const Body& only_free_body(const Scene& scene) {
 ScriptedMotion grasp_object(const Scene& scene) {
   const Body& body = only_free_body(scene);
   const Grasp grasp = grasp_of(body).turned(body.start.orientation);
+  constexpr double kAside = 0.15;  // further away, so that the hand passes nothing of the object [m]
   ScriptedMotion motion =
-      reach_and_carry(scene.name.c_str(), grasp, body.start.position, {0.05, -0.16, 0.02});
+      reach_and_carry(scene.name.c_str(), grasp, body.start.position, kAside * grasp.retreat);
   motion.name = "grasp_object";
   return motion;
 }

@@ -219,6 +219,7 @@ TEST(BagInput, pose_arrays_are_taken_and_wrong_counts_refused) {
 geometry_msgs::PoseArray pose_array(const JointsFrame& frame) {
   geometry_msgs::PoseArray array;
   array.header.stamp = to_ros_time(frame.stamp);
+  array.header.frame_id = "leap_hands";
   for (const HandJoints& hand : frame.hands) {
     array.poses.resize(1);
     array.poses[0].position = to_message(hand.wrist.value());

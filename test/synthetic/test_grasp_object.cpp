@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Object{"mug", mug()}),
     [](const auto& object) { return std::string(object.param.name); });
 
-TEST(GraspObject, needs_one_free_object_that_a_hand_closes_on) {
+TEST(GraspObjectOf, needs_one_free_object_that_a_hand_closes_on) {
   const test::Folder folder;
   const auto refusal = [](const Scene& scene) -> std::string {
     try {
