@@ -110,7 +110,8 @@ std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
   found.contacts[0].depth = kThumbDepth;
   for (const std::size_t contact : pressing) found.contacts[contact].depth = kThumbDepth / fingers;
   found.height = height;
-  found.cost = found.width + 0.01 * (3.0 - fingers) + 0.5 * height;  // a grip of the centre is worth more
+  // A grip of the centre is worth more, and so is a side on which little sticks out.
+  found.cost = found.width + 0.01 * (3.0 - fingers) + 0.5 * height + 0.2 * surface.reach(axes.col(2));
   return found;
 }
 
@@ -148,6 +149,10 @@ Closing narrowest(const Body& body, const Surface& surface) {
 /// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places.
 Grasp grasp_of(const Body& body) {
   const Closing closing = narrowest(body, Surface(body));
+  std::vector<FingertipContact> pressing = closing.contacts;  // those that have to reach their places
+  pressing.erase(std::remove_if(pressing.begin(), pressing.end(),
+                                [](const auto& contact) { return contact.depth == 0.0; }),
+                 pressing.end());
   std::optional<Grasp> best;
   double least = 1e300;
   for (const char* like : {"cube", "long_cuboid"}) {
@@ -158,12 +163,11 @@ Grasp grasp_of(const Body& body) {
     for (int y = -8; y <= 8; ++y)
       for (int z = -4; z <= 8; ++z) {
         grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
-        double error = 0.0;
-        for (const double gap : {-1.0, grasp.opening}) {
-          double of_gap = 0.0;
-          place_fingertips(human_hand(), grasp.wrist, grasp.contacts, gap, grasp.preferred, &of_gap);
-          error += of_gap * (gap < 0.0 ? 1.0 : 0.2);
-        }
+        double error = 0.0, of_all = 0.0, of_open = 0.0;
+        place_fingertips(human_hand(), grasp.wrist, pressing, -1.0, grasp.preferred, &error);
+        place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred, &of_all);
+        place_fingertips(human_hand(), grasp.wrist, pressing, grasp.opening, grasp.preferred, &of_open);
+        error += 0.3 * of_all + 0.2 * of_open;
         error += 1e-4 * std::hypot(y, z);
         if (error < least) least = error, best = grasp;
       }
