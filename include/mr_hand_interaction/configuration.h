@@ -103,6 +103,7 @@ struct Configuration {
   std::optional<double> stiffness;  ///< gamma of every body that the scene says nothing else about [N/m];
                                     ///< unset: the contact model's own, see default_material()
   Material material;                ///< of every body that the scene says nothing else about
+  double density = 1000.0;          ///< of bodies whose scene file gives no mass [kg/m^3]
   double hand_radius_scale = 1.0;
   TrackingConfiguration tracking;
   ContactConfiguration contact;

@@ -106,10 +106,36 @@ class NearMemory {
   std::array<Set, 127> sets_;
 };
 
-struct MeshCollider::Impl {
-  explicit Impl(const TriangleMesh& mesh) : shape(mesh), guesses(shape.surface) {}
+namespace {
 
-  MeshNearest nearest(const Segment& segment, double range) const {
+/// The parts of a mesh whose parts may overlap; none of another.
+std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
+  std::vector<MeshShape> parts;
+  if (mesh.parts.size() < 2) return parts;
+  for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
+    const auto begin = mesh.triangles.begin();
+    const auto end = p + 1 < mesh.parts.size() ? begin + mesh.parts[p + 1] : mesh.triangles.end();
+    TriangleMesh part{{}, {begin + mesh.parts[p], end}};
+    for (std::array<int, 3>& triangle : part.triangles)
+      for (int& v : triangle) {
+        part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+        v = static_cast<int>(part.vertices.size()) - 1;
+      }
+    parts.emplace_back(part);
+  }
+  return parts;
+}
+
+}  // namespace
+
+/// A mesh of parts is their union. What is outside all of them is nearest to the union's surface, whatever
+/// lies within: one search through the tree of all faces finds it. What is inside a part has to leave that,
+/// and is as deep as in the part that it is deepest in.
+struct MeshCollider::Impl {
+  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {}
+
+  MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
+    if (&of != &shape) return MeshNearest(of.surface, of.tree, segment, range, -1);
     return memory.nearest(shape, segment, range, [&] { return searched(segment, range); });
   }
   MeshNearest searched(const Segment& segment, double range) const {
@@ -120,44 +146,66 @@ struct MeshCollider::Impl {
   }
   /// N.gap < 0 with the gap from the surface to the segment: the segment's nearest place is below the surface
   /// there (Baerentzen & Aanaes 2005).
-  bool inside(const MeshNearest& search) const {
-    return shape.surface.closed() && search.gap().dot(shape.surface.outward(search.nearest())) < 0.0;
+  static bool is_inside(const MeshShape& of, const MeshNearest& search) {
+    return of.surface.closed() && search.gap().dot(of.surface.outward(search.nearest())) < 0.0;
   }
-  int face_at(const SurfaceNearest& nearest) const;
-  ClosestFeatures leave(const Segment& segment, const SurfaceNearest& nearest) const;
-  void leave_by_end(const Segment& segment, double s, std::optional<ClosestFeatures>& best) const;
+  /// Inside, or through the surface.
+  static bool has_to_leave(const MeshShape& of, const MeshNearest& search) {
+    return search.nearest().distance < kOnSurface || is_inside(of, search);
+  }
+  static int face_at(const MeshShape& of, const SurfaceNearest& nearest);
+  ClosestFeatures leave(const MeshShape& of, const Segment& segment, const SurfaceNearest& nearest) const;
+  void leave_by_end(const MeshShape& of, const Segment& segment, double s,
+                    std::optional<ClosestFeatures>& best) const;
+  std::optional<ClosestFeatures> leave_parts(const Segment& segment) const;
 
   MeshShape shape;
+  std::vector<MeshShape> parts;
   mutable GuessMemory guesses;
   mutable NearMemory memory;
 };
 
 /// A face that has the nearest place, or one beside it.
-int MeshCollider::Impl::face_at(const SurfaceNearest& nearest) const {
+int MeshCollider::Impl::face_at(const MeshShape& of, const SurfaceNearest& nearest) {
   const auto index = static_cast<std::size_t>(nearest.index);
   if (nearest.part == SurfacePart::face) return nearest.index;
-  if (nearest.part == SurfacePart::edge) return shape.surface.edges()[index].faces[0];
-  return shape.surface.face_at_corner(nearest.index);
+  if (nearest.part == SurfacePart::edge) return of.surface.edges()[index].faces[0];
+  return of.surface.face_at_corner(nearest.index);
 }
 
-ClosestFeatures MeshCollider::Impl::leave(const Segment& segment, const SurfaceNearest& nearest) const {
+ClosestFeatures MeshCollider::Impl::leave(const MeshShape& of, const Segment& segment,
+                                          const SurfaceNearest& nearest) const {
   std::optional<ClosestFeatures> known;
-  if (!shape.surface.convex() && shape.surface.closed()) {
-    for (const double end : {0.0, 1.0}) leave_by_end(segment, end, known);
+  if (!of.surface.convex() && of.surface.closed()) {
+    for (const double end : {0.0, 1.0}) leave_by_end(of, segment, end, known);
   }
-  return leave_mesh(segment, shape.surface, shape.tree, face_at(nearest), known ? &*known : nullptr);
+  return leave_mesh(segment, of.surface, of.tree, face_at(of, nearest), known ? &*known : nullptr);
+}
+
+/// A part's faces have numbers of their own: none is told.
+std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& segment) const {
+  std::optional<ClosestFeatures> deepest;
+  for (const MeshShape& part : parts) {
+    if (part.surface.is_beyond(segment, kOnSurface)) continue;
+    const MeshNearest search = nearest(part, segment, kUnlimited);
+    if (!has_to_leave(part, search)) continue;
+    const ClosestFeatures way = leave(part, segment, search.nearest());
+    if (!deepest || way.distance < deepest->distance) deepest = way;
+  }
+  if (deepest) deepest->face = -1;
+  return deepest;
 }
 
 /// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
 /// inwards. The end's own nearest place is at depth d along the normal -gap / d, out of the solid; the
 /// segment has come out with it only if the other end is not behind: normal.(other - end) >= 0.
-void MeshCollider::Impl::leave_by_end(const Segment& segment, double s,
+void MeshCollider::Impl::leave_by_end(const MeshShape& of, const Segment& segment, double s,
                                       std::optional<ClosestFeatures>& best) const {
   const Vector3 end = segment.at(s);
   const Segment only_end(Capsule{end, end, 0.0});
-  const MeshNearest search = nearest(only_end, kUnlimited);
+  const MeshNearest search = nearest(of, only_end, kUnlimited);
   const double depth = search.nearest().distance;
-  if (depth < kOnSurface || !inside(search)) return;
+  if (depth < kOnSurface || !is_inside(of, search)) return;
   const Vector3 normal = -search.gap() / depth;
   const bool is_last_out = normal.dot(segment.at(1.0 - s) - end) >= 0.0;
   if (is_last_out && (!best || -depth > best->distance + kParallel))
@@ -177,9 +225,15 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const MeshSurface& surface = impl_->shape.surface;
   const Segment segment(capsule);
   if (surface.is_beyond(segment, capsule.radius + margin)) return std::nullopt;
-  const bool may_be_deep = surface.closed() && surface.in_bounds(segment.middle());
+  std::optional<ClosestFeatures> leaves;
+  if (!impl_->parts.empty()) leaves = impl_->leave_parts(segment);
+  if (leaves) {
+    leaves->distance -= capsule.radius;
+    return leaves;
+  }
+  const bool may_be_deep = impl_->parts.empty() && surface.closed() && surface.in_bounds(segment.middle());
   const double reach = may_be_deep ? kUnlimited : capsule.radius + margin;
-  const MeshNearest search = impl_->nearest(segment, reach);
+  const MeshNearest search = impl_->nearest(impl_->shape, segment, reach);
   if (!search.found()) return std::nullopt;
 
   // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
@@ -193,7 +247,11 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
     features.normal = normal.dot(features.normal) < 0.0 ? Vector3(-normal) : normal;
     features.face = nearest.index;
   }
-  if (nearest.distance < kOnSurface || impl_->inside(search)) features = impl_->leave(segment, nearest);
+  if (impl_->parts.empty() && Impl::has_to_leave(impl_->shape, search)) {
+    features = impl_->leave(impl_->shape, segment, nearest);
+  } else if (nearest.distance < kOnSurface) {
+    features.normal = surface.outward(nearest).normalized();
+  }
   features.distance -= capsule.radius;
   if (features.distance > margin) return std::nullopt;
   return features;

@@ -18,6 +18,11 @@ constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
 /// An edge that touches with its end leaves that to the corner there. Else one place would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
+/// A search for the way out from deeper than kDeep, or on the surface itself, takes some 30 times what
+/// another takes [m]. A visit of a shape makes kMostDeep at most: fine meshes far within each other, which no
+/// scene begins with, must not hold a step up.
+constexpr double kDeep = 0.002, kCoincides = 1e-9;
+constexpr int kMostDeep = 300;
 
 /// What may stick out of a shape: a corner (both ends the same) or an edge, in world.
 struct Probe {
@@ -47,6 +52,11 @@ struct Probing {
   const Pose& other_pose;
   bool other_is_b;
   double margin;
+  mutable int deep_left = kMostDeep;  // of the visit
+
+  void note(const ClosestFeatures& features) const {
+    if (features.distance < -kDeep || std::abs(features.distance) < kCoincides) --deep_left;
+  }
 
   std::optional<Touch> touch(const Probe& probe) const {
     const Vector3 middle = 0.5 * (probe.start + probe.end);
@@ -55,6 +65,7 @@ struct Probing {
     const auto features =
         closest_on(other, {other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
+    note(*features);
     // A part of the edge's length, not metres.
     const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
     if (probe.start != probe.end && at_end) return std::nullopt;
@@ -73,6 +84,7 @@ struct Probing {
     if (apart > margin) return -1e300;
     const Vector3 local = other_pose.to_local(centre);
     const auto features = closest_on(other, {local, local, 0.0}, margin + node.radius);
+    if (features) note(*features);
     return features ? node.radius - features->distance : -1e300;
   }
 };
@@ -201,8 +213,12 @@ class Touches {
   template <typename Wanted, typename See>
   void measure(const Wanted& wanted, const See& see) const {
     for (const Probing& probing : both_) {
-      const auto wanted_here = [&](const MeshTree::Node& node) { return wanted(probing, node); };
+      probing.deep_left = kMostDeep;
+      const auto wanted_here = [&](const MeshTree::Node& node) {
+        return probing.deep_left > 0 && wanted(probing, node);
+      };
       const auto try_out = [&](const Probe& probe) {
+        if (probing.deep_left <= 0) return;
         if (const auto touch = probing.touch(probe)) see(*touch);
       };
       Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out}.each();

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "../text/text.h"
+#include "body_box.h"
+#include "placed_collider.h"
 
 namespace mrhi {
 namespace {
@@ -31,11 +33,82 @@ std::vector<BodyState> start_states(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// A body's union of shapes, as a place in world sees it.
+struct Solid {
+  const Body& body;
+  const std::vector<ManifoldShape>& shapes;
+  const Pose& pose;
+
+  struct Depth {
+    double depth;    // of the place below the surface, < 0 outside [m]
+    Vector3 inward;  // unit, world
+  };
+  Depth at(const Vector3& place) const {
+    constexpr double kFar = 1e3;  // [m]
+    Depth deepest{-kFar, Vector3::UnitZ()};
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Pose in_world = pose * body.shapes[i].pose;
+      const Vector3 local = in_world.to_local(place);
+      const ClosestFeatures found = closest_on(shapes[i].shape, shapes[i].mesh, {local, local, 0.0}, kFar);
+      if (-found.distance > deepest.depth)
+        deepest = {-found.distance, in_world.orientation * Vector3(-found.normal)};
+    }
+    return deepest;
+  }
+};
+
+/// The diameter of the largest ball that is within both bodies, as far as it is found [m].
+///
+/// From places all over the first body, its middle first, the search goes into the body that it is less deep
+/// in, half the difference of both depths at a time, which leads to the middle of a layer that two flat faces
+/// share. What is found is in both. A manifold's depth, between corners and edges, knows nothing of faces
+/// that coincide.
+double common_ball(const Solid& a, const Solid& b) {
+  constexpr int kAcross = 5, kMostSteps = 16;
+  const BodyBox box = box_around(a.body);
+  double largest = 0.0;
+  constexpr int kStarts = kAcross * kAcross * kAcross;
+  for (int i = 0; i < kStarts; ++i) {
+    const int start = (i + kStarts / 2) % kStarts;
+    const Vector3 part(start % kAcross, start / kAcross % kAcross, start / kAcross / kAcross);
+    const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9;
+    Vector3 place = a.pose * Vector3(box.centre + offset.cwiseProduct(box.half));
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Solid::Depth in_a = a.at(place), in_b = b.at(place);
+      largest = std::max(largest, 2.0 * std::min(in_a.depth, in_b.depth));
+      const Solid::Depth& lesser = in_a.depth < in_b.depth ? in_a : in_b;
+      const double to_inside = kOverlap - lesser.depth;  // from outside
+      const double way =
+          std::max(0.5 * std::abs(in_a.depth - in_b.depth), lesser.depth < 0.0 ? to_inside : 0.0);
+      if (way < 1e-5) break;
+      place += way * lesser.inward;
+    }
+    if (largest > kOverlap) break;
+  }
+  return largest;
+}
+
+bool has_mesh(const Body& body) {
+  return std::any_of(body.shapes.begin(), body.shapes.end(),
+                     [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); });
+}
+
+}  // namespace
+
 /// The deepest point of all pairs of shapes. Each is of two shapes alone: a body that has several may have to
 /// go farther to be out.
 double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
                std::size_t a, std::size_t b) {
   double deepest = 0.0;
+  if (has_mesh(scene.bodies[a]) || has_mesh(scene.bodies[b])) {
+    const Solid of_a{scene.bodies[a], geometry.shapes[a], bodies[a].pose},
+        of_b{scene.bodies[b], geometry.shapes[b], bodies[b].pose};
+    const bool smaller = of_a.body.bounding_radius < of_b.body.bounding_radius;
+    deepest = smaller ? common_ball(of_a, of_b) : common_ball(of_b, of_a);
+    if (deepest > kOverlap) return deepest;
+  }
   for (std::size_t i = 0; i < scene.bodies[a].shapes.size(); ++i) {
     for (std::size_t j = 0; j < scene.bodies[b].shapes.size(); ++j) {
       const Manifold manifold =

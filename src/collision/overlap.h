@@ -12,7 +12,8 @@ namespace mrhi {
 /// What two bodies may overlap, as things that rest on each other do [m].
 constexpr double kOverlap = 0.001;
 
-/// How deep body `a` is in body `b` [m]; 0: not at all.
+/// How deep body `a` is in body `b` [m]; 0: not at all. If a mesh is one of them it may be less than that,
+/// but above kOverlap whenever they share a ball of this diameter.
 double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
                std::size_t a, std::size_t b);
 

@@ -235,6 +235,8 @@ std::vector<ParameterEntry> make_table() {
       {"gravity", "three numbers [x, y, z] from -100 to 100 in m/s^2, or 'scene' for the scene's own",
        assign_gravity, gravity_text, limits(kGravity, kGravitySlider)},
       number(
+          "scene/density", " [kg/m^3]", {0.1, 1e5}, {10, 10000}, [](C & c) -> auto& { return c.density; }),
+      number(
           "tracking/hold_time", " [s]", {0, 10}, {0, 2}, [](C & c) -> auto& { return c.tracking.hold_time; }),
       number(
           "tracking/max_speed", " [m/s]", {0.1, 1000}, {1, 50},

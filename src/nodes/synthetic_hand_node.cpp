@@ -19,13 +19,15 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction synthetic_hand_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
        rosrun mr_hand_interaction synthetic_hand_node --csv FILE [--motion NAME] [--side left|right] [--rate HZ]
-                                                      [--noise AMPLITUDE] [--seed N]
+                                                      [--noise AMPLITUDE] [--seed N] [--scene NAME|FILE]
 
 Publishes a scripted hand on /leap_motion/leap_device, as a Leap's driver would; with --csv writes one run of it as a
 recording, which needs no master.
 
   ~motion   grasp_cube (default) grasp_ball catch_ball pinch_long lift_flat nudge tap slap press_button flip_switch
-            turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs
+            turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs; grasp_object takes the only free
+            object of ~scene on its narrowest side
+  ~scene    of grasp_object: a shipped scene or a URDF file
   ~side     left or right; default right
   ~rate     frames per second; default 115
   ~noise    1: as a Leap's; default 0
@@ -38,9 +40,10 @@ recording, which needs no master.
 int write_recording(const std::vector<std::string>& arguments) {
   using mrhi::Given;
   mrhi::SyntheticHandOptions options;
-  std::string file;
+  std::string file, scene;
   mrhi::CommandLine line;
   line.once("--csv", "FILE", file).once("--motion", "NAME", options.motion);
+  line.once("--scene", "NAME|FILE", scene);
   line.once("--side", "left|right", options.side);
   line.once("--rate", "HZ", [&](const Given& given) { options.rate = given.number(1.0, 1000.0); });
   line.once("--noise", "AMPLITUDE", [&](const Given& given) { options.noise = given.number(0.0, 10.0); });
@@ -52,7 +55,7 @@ int write_recording(const std::vector<std::string>& arguments) {
     return 0;
   }
   if (file.empty()) throw mrhi::UsageError("--csv FILE is missing; see --help");
-  const auto frames = mrhi::record_motion(options);
+  const auto frames = mrhi::record_motion(options, mrhi::motion_for(options.motion, scene));
   std::ofstream out = mrhi::file_to_write(file);
   mrhi::write_recording_csv(out, frames);
   out.flush();

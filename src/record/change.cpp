@@ -1,11 +1,9 @@
 #include "change.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <stdexcept>
 
 #include "../text/file_text.h"
@@ -21,21 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxMeshBytes = 64u << 20;  // of a mesh
 
-bool begins_with(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
-
-std::string place_of(const std::string& uri, const std::string& folder) {
-  if (begins_with(uri, "file://")) return uri.substr(7);
-  if (begins_with(uri, "package://")) return resolve_package_uri(uri);
-  return (fs::path(folder) / uri).string();
-}
-
-void replace_all(const std::string& from, const std::string& to, std::string& text) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
-
 constexpr std::size_t kMaxYamlBytes = 4u << 20;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -46,7 +29,9 @@ struct Making {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const {
-    simulation.add(requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
+    simulation.add(
+        spawn.part ? *spawn.part
+                   : requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
   }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
@@ -99,33 +84,26 @@ SetParameters values_in(const YAML::Node& node) {
 
 }  // namespace
 
-RecordedFiles mesh_files(const std::string& xml, const std::string& folder) {
-  static const std::regex kFilename("filename\\s*=\\s*[\"']([^\"']*)[\"']");
-  RecordedFiles files;
-  for (std::sregex_iterator found(xml.begin(), xml.end(), kFilename), end; found != end; ++found) {
-    const std::string uri = (*found)[1];
-    const bool known =
-        std::any_of(files.begin(), files.end(), [&](const RecordedFile& file) { return file.name == uri; });
-    const auto bytes = known ? std::nullopt : file_text(place_of(uri, folder), kMaxMeshBytes + 1);
-    if (bytes && bytes->size() <= kMaxMeshBytes) files.push_back({uri, *bytes});
+RecordedFiles contents_of(const std::vector<SceneFile>& files) {
+  RecordedFiles contents;
+  for (const SceneFile& file : files) {
+    const auto bytes = file_text(file.path, kMaxMeshBytes + 1);
+    if (bytes && bytes->size() <= kMaxMeshBytes) contents.push_back({file.name, *bytes});
   }
-  return files;
+  return contents;
 }
 
-std::string with_meshes_in(const std::string& folder, std::string xml, const RecordedFiles& files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const std::string& uri = files[i].name;
-    if (xml.find('"' + uri + '"') == std::string::npos && xml.find('\'' + uri + '\'') == std::string::npos)
-      continue;
-    const fs::path path =
-        fs::path(folder) / ("mesh_" + std::to_string(i) + fs::path(uri).extension().string());
+std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files) {
+  std::map<std::string, std::string> paths;
+  for (const RecordedFile& file : files) {
+    const fs::path path = fs::path(folder) /
+                          ("mesh_" + std::to_string(paths.size()) + fs::path(file.name).extension().string());
     std::ofstream out = file_to_write(path.string());
-    out << files[i].bytes << std::flush;
+    out << file.bytes << std::flush;
     if (!out) throw std::runtime_error("cannot write " + path.string());
-    for (const char quote : {'"', '\''})
-      replace_all(quote + uri + quote, quote + ("file://" + path.string()) + quote, xml);
+    paths[file.name] = path.string();
   }
-  return xml;
+  return paths;
 }
 
 YAML::Node recorded_yaml(const std::string& yaml) {
@@ -266,7 +244,8 @@ std::string to_yaml(const Change& change) {
 RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
-  RecordedFiles files = mesh_files(spawn->request.urdf, "");
+  RecordedFiles files = contents_of(
+      spawn->part ? spawn->part->mesh_files : requested_scene(spawn->request, scene_options({})).mesh_files);
   files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }

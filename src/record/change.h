@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,16 +18,16 @@ struct RecordedFile {
 };
 using RecordedFiles = std::vector<RecordedFile>;
 
-/// The files that a URDF names as filename="...", as far as they can be read; relative paths start at
-/// `folder`.
-RecordedFiles mesh_files(const std::string& xml, const std::string& folder);
+/// The mesh files that a scene was made of, and nothing else that a URDF may name.
+RecordedFiles contents_of(const std::vector<SceneFile>& files);
 
-/// Writes those of `files` that a URDF names into `folder`, and returns the URDF with their paths there.
-std::string with_meshes_in(const std::string& folder, std::string xml, const RecordedFiles& files);
+/// Writes `files` into `folder`, for SceneOptions::mesh_files.
+std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files);
 
 // What a running simulation may be asked for besides hands.
 struct Spawn {
-  ObjectRequest request;  ///< with its name
+  ObjectRequest request;                   ///< with its name, and a URDF as text
+  std::shared_ptr<const Scene> part = {};  ///< what is to be added, if it has been made of the request
 };
 struct Delete {
   std::string name;
@@ -53,7 +55,7 @@ std::string to_text(const Change& change);
 
 /// As YAML in which numbers keep their bits. URDFs stand in files_of().
 std::string to_yaml(const Change& change);
-/// The URDF that a change brings, and the meshes that it names as far as they can be read.
+/// The URDF that a change brings, and the meshes that were read for it.
 RecordedFiles files_of(const Change& change);
 /// Throws std::invalid_argument with one line.
 Change change_from_yaml(const std::string& yaml, const RecordedFiles& files);

@@ -80,7 +80,7 @@ Scene scene_of_files(const World& world, const SceneOptions& options, const std:
   const RecordedFile* urdf = find_file(world.files, kUrdf);
   if (urdf == nullptr) throw SceneError("the recording has no scene.urdf; allowed: one that has");
   const fs::path file = fs::path(folder) / (world.scene + ".urdf");
-  write(file, with_meshes_in(folder, urdf->bytes, world.files));
+  write(file, urdf->bytes);
   if (const RecordedFile* yaml = find_file(world.files, kYaml))
     write(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes);
   return load_scene(file.string(), options);
@@ -88,14 +88,14 @@ Scene scene_of_files(const World& world, const SceneOptions& options, const std:
 
 }  // namespace
 
-World world_of_file(const std::string& urdf_file, const Configuration& configuration) {
+World world_of_file(const std::string& urdf_file, const Scene& scene, const Configuration& configuration) {
   World world;
   world.version = MR_HAND_INTERACTION_VERSION;
   world.scene = fs::path(urdf_file).stem().string();
   world.files.push_back({kUrdf, text_of(urdf_file)});
   const fs::path yaml = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(yaml)) world.files.push_back({kYaml, text_of(yaml)});
-  add_files(mesh_files(world.files.front().bytes, fs::path(urdf_file).parent_path().string()), world);
+  add_files(contents_of(scene.mesh_files), world);
   set_parameters(configuration, world);
   return world;
 }
@@ -153,6 +153,7 @@ Configuration configuration_of(const World& world, std::vector<std::string>& unk
 Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder) {
   SceneOptions options = scene_options(configuration);
   options.gravity.reset();
+  options.mesh_files = written_to(folder, world.files);
   Scene scene = scene_of_files(world, options, folder);
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
   // What is not in the scene came with others, and has gone again.
@@ -164,10 +165,7 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
       gone_since.push_back(name);
     }
   }
-  for (ObjectRequest request : world.added) {
-    request.urdf = with_meshes_in(folder, request.urdf, world.files);
-    append(requested_scene(request, options), scene);
-  }
+  for (const ObjectRequest& request : world.added) append(requested_scene(request, options), scene);
   for (const std::string& name : gone_since) {
     if (const std::optional<int> body = find_body(scene, name))
       remove_body(static_cast<std::size_t>(*body), scene);

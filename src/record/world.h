@@ -20,8 +20,8 @@ struct World {
   std::vector<ObjectRequest> added;               ///< objects that have come and are there, in their order
 };
 
-/// Of a scene's file: reads it, the YAML beside it and the meshes that it names.
-World world_of_file(const std::string& urdf_file, const Configuration& configuration);
+/// Of a scene's file: reads it, the YAML beside it and the meshes that `scene`, which it was loaded as, has.
+World world_of_file(const std::string& urdf_file, const Scene& scene, const Configuration& configuration);
 void set_parameters(const Configuration& configuration, World& world);
 
 /// Follows a change that has been made.

@@ -146,7 +146,7 @@ fast as the machine goes; needs no ROS master.
   --object-twist NAME,vx,vy,vz,wx,wy,wz
                             how it moves at the start, world axes [m/s, rad/s]; repeatable
   --hand-transform x,y,z,qx,qy,qz,qw
-                            pose of the device frame in world; else the bag's /tf_static, else at the origin
+                            pose of the device frame in world; else as the bag's /tf_static and /tf have it, else at the origin
                             and turned by +90 degrees about x
   --export HZ               scripts/export afterwards: demonstration.csv and demonstration.bag, of standard messages
                             alone; 0: a row for each frame

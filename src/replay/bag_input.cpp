@@ -3,7 +3,6 @@
 #include <mr_hand_interaction/HandFrame.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <tf2/buffer_core.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
@@ -12,6 +11,8 @@
 #include <vector>
 
 #include "../ros/tracker_messages.h"
+#include "../ros/transform_memory.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
@@ -82,56 +83,62 @@ const std::string& readable(const std::string& file) {
 }
 
 const char* const kWorld = "world";
+const char* const kLeapFrame = "leap_hands";
 
-std::string without_slash(const std::string& frame_id) {
-  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
-}
-
-/// Where trackers stand in world: everywhere the same, if that was given; else as a bag's /tf_static says,
-/// else at the default mount.
-class DeviceFrames {
+/// A frame that nothing places.
+class NoTransform : public std::runtime_error {
  public:
-  DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world);
-
-  const Pose& pose(const std::string& frame_id);
-
- private:
-  void read_static_transforms(const rosbag::Bag& bag);
-
-  std::optional<Pose> given_;
-  tf2::BufferCore transforms_;
-  std::map<std::string, Pose> known_;
+  using std::runtime_error::runtime_error;
 };
 
-DeviceFrames::DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
-    : given_(device_in_world) {
-  if (!given_) read_static_transforms(bag);
-}
+/// Where trackers stand in world: everywhere the same, if that was given; else as a bag's /tf_static and /tf
+/// say, as far as that had come when the hands came. The Leap's own frame has a default mount.
+class DeviceFrames {
+ public:
+  DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
+      : given_(device_in_world),
+        moving_(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "tf"})),
+        next_(moving_.begin()) {
+    rosbag::View fixed(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
+    for (const rosbag::MessageInstance& message : fixed)
+      each_in(message, [&](const auto& transform) { transforms_.set_fixed(transform); });
+  }
 
-void DeviceFrames::read_static_transforms(const rosbag::Bag& bag) {
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
-  for (const rosbag::MessageInstance& message : view) {
-    const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
-    if (!transforms) continue;
-    for (geometry_msgs::TransformStamped transform : transforms->transforms) {
-      transform.header.frame_id = without_slash(transform.header.frame_id);
-      transform.child_frame_id = without_slash(transform.child_frame_id);
-      transforms_.setTransform(transform, "bag", true);
+  /// Of hands that were recorded at `arrival`. Throws NoTransform.
+  Pose pose(const std::string& frame_id, Nanoseconds stamp, const ros::Time& arrival) {
+    if (given_) return *given_;
+    for (; next_ != moving_.end() && next_->getTime() <= arrival; ++next_)
+      each_in(*next_,
+              [&](const auto& transform) { transforms_.set(transform, from_ros_time(next_->getTime())); });
+    if (transforms_.connects(kWorld, frame_id)) return place(frame_id, stamp);
+    const std::string frame = frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
+    if (frame == kLeapFrame) return default_device_mount();
+    throw NoTransform("frame '" + text::one_line(frame_id, 64) +
+                      "' has no transform to 'world'; allowed: one that the bag's /tf_static or /tf has, or "
+                      "--hand-transform");
+  }
+
+ private:
+  Pose place(const std::string& frame_id, Nanoseconds stamp) const {
+    try {
+      return transforms_.pose(kWorld, frame_id, stamp);
+    } catch (const tf2::TransformException& error) {
+      throw NoTransform(text::one_line(error.what()));
     }
   }
-}
 
-const Pose& DeviceFrames::pose(const std::string& frame_id) {
-  if (given_) return *given_;
-  const auto found = known_.find(frame_id);
-  if (found != known_.end()) return found->second;
-  const std::string frame = without_slash(frame_id);
-  const bool connected = !frame.empty() && transforms_.canTransform(kWorld, frame, ros::Time(0));
-  const Pose pose = connected
-                        ? from_message(transforms_.lookupTransform(kWorld, frame, ros::Time(0)).transform)
-                        : default_device_mount();
-  return known_.emplace(frame_id, pose).first->second;
-}
+  template <class See>
+  static void each_in(const rosbag::MessageInstance& message, const See& see) {
+    const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
+    if (!transforms) return;
+    for (const geometry_msgs::TransformStamped& transform : transforms->transforms) see(transform);
+  }
+
+  std::optional<Pose> given_;
+  TransformMemory transforms_;
+  rosbag::View moving_;
+  rosbag::View::iterator next_;
+};
 
 }  // namespace
 
@@ -148,7 +155,8 @@ struct BagInput::Impl {
 
   SourceFrame place(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
     if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
-    return placed(joints, devices.pose(frame_id));
+    const bool empty = joints.hands.empty();
+    return placed(joints, empty ? Pose{} : devices.pose(frame_id, joints.stamp, receipt));
   }
 
   template <class Tracker>
@@ -206,6 +214,8 @@ struct BagInput::Impl {
       return refused(error.reason(), error.what());
     } catch (const ros::serialization::StreamOverrunException& error) {
       return refused("malformed", error.what());
+    } catch (const NoTransform& error) {
+      return refused("no transform", error.what());
     } catch (const std::invalid_argument& error) {
       return refused("unusable hand", error.what());
     }

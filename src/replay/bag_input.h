@@ -22,7 +22,8 @@ class BagInput : public FrameSource {
  public:
   /// Without a topic: /leap_motion/leap_device, else those of joints, hands/[left/|right/]..., together, else
   /// the only one of a fitting type.
-  /// Without a device pose: the bag's /tf_static, else the default mount. Throws BagError.
+  /// Without a device pose: the bag's /tf_static and /tf at the frames' stamps, as live; the Leap's own frame
+  /// has a default mount, hands in any other that nothing places are refused. Throws BagError.
   BagInput(const std::string& file, const std::optional<std::string>& topic,
            const std::optional<Pose>& device_in_world);
   ~BagInput() override;

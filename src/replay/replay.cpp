@@ -126,6 +126,7 @@ void replay(const ReplayArguments& arguments) {
   Simulation simulation = prepare_simulation(arguments);
   const ReplayInput input = open_input(arguments);
   ReplayRun run(arguments, input.topic);
+  for (const std::string& warning : simulation.scene().warnings) run.progress.line("replay: " + warning);
   run.begin(simulation, simulation.scene().name);
   run.summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
   if (!is_csv(arguments.input)) run.progress.line("replay: not known: " + run.summary.not_known.front());

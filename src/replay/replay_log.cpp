@@ -70,7 +70,7 @@ class Overrides {
     } catch (const SceneError& error) {
       throw UsageError(std::string("--scene: ") + error.what());
     }
-    World given = world_of_file(file, Configuration());
+    World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
       return a.name == b.name && a.bytes == b.bytes;
     };
@@ -235,10 +235,13 @@ class LogRun {
     char time[32];
     std::snprintf(time, sizeof time, "%.3f s: ", run_.seconds());
     live().changes.push_back(time + text::one_line(to_text(change), 200));
-    if (auto* spawn = std::get_if<Spawn>(&change))
-      spawn->request.urdf = with_meshes_in(scratch_.path(), spawn->request.urdf, entry.files);
     if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
     try {
+      if (auto* spawn = std::get_if<Spawn>(&change)) {
+        SceneOptions options = scene_options(simulation().configuration());
+        options.mesh_files = written_to(scratch_.path(), entry.files);
+        spawn->part = std::make_shared<const Scene>(requested_scene(spawn->request, options));
+      }
       make(change, *simulation_);
     } catch (const std::exception& error) {
       run_.reject("change", error.what());

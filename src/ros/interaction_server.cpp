@@ -71,8 +71,10 @@ Scene scene_of(const ServerParameters& parameters) {
   return scene;
 }
 
-World world_of(const ServerParameters& parameters) {
-  World world = world_of_file(find_scene_file(parameters.scene, scene_folders()), parameters.configuration);
+World world_of(const ServerParameters& parameters, const Scene& scene) {
+  for (const std::string& warning : scene.warnings) ROS_WARN("%s", warning.c_str());
+  World world =
+      world_of_file(find_scene_file(parameters.scene, scene_folders()), scene, parameters.configuration);
   world.twists = parameters.object_twists;
   return world;
 }
@@ -116,6 +118,7 @@ struct InteractionServer::Impl {
   bool pause(bool paused, std_srvs::SetBool::Response& response);
   bool spawn(const mr_hand_interaction::SpawnObject::Request& request,
              mr_hand_interaction::SpawnObject::Response& response);
+  std::string spawn(const ObjectRequest& request);
   bool spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
                   mr_hand_interaction::SpawnUrdf::Response& response);
   bool save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response);
@@ -152,7 +155,7 @@ InteractionServer::Impl::Impl(ros::NodeHandle node, ros::NodeHandle private_node
                               const ServerParameters& parameters)
     : fixed_frame_(parameters.fixed_frame),
       live_(scene_of(parameters), parameters.configuration),
-      log_(node, world_of(parameters), live_, clock_),
+      log_(node, world_of(parameters, live_.simulation().scene()), live_, clock_),
       results_(node, fixed_frame_, parameters.haptics_rate, clock_),
       diagnostics_(node, private_node, live_.simulation().scene().name),
       placing_(private_node, fixed_frame_),
@@ -305,29 +308,31 @@ bool InteractionServer::Impl::pause(bool paused, std_srvs::SetBool::Response& re
 
 bool InteractionServer::Impl::spawn(const mr_hand_interaction::SpawnObject::Request& request,
                                     mr_hand_interaction::SpawnObject::Response& response) {
-  return answer(response, [&] {
-    Spawn spawn{from_message(request)};
-    if (spawn.request.name.empty())
-      spawn.request.name = requested_body(spawn.request, options_of(live_.simulation().configuration())).name;
-    require_no_frame(spawn.request.name, fixed_frame_);
-    make(spawn);
-    show_change();
-    return "'" + spawn.request.name + "' is there";
-  });
+  return answer(response, [&] { return spawn(from_message(request)); });
 }
 
 bool InteractionServer::Impl::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
                                          mr_hand_interaction::SpawnUrdf::Response& response) {
-  return answer(response, [&] {
-    const Spawn spawn{from_message(request)};
-    const Scene part = requested_scene(spawn.request, options_of(live_.simulation().configuration()));
-    require_no_frames(part, fixed_frame_);
-    make(spawn);
-    show_change();
-    std::vector<std::string> names;
-    for (const Body& body : part.bodies) names.push_back(body.name);
-    return text::joined(names) + (names.size() > 1 ? " are there" : " is there");
-  });
+  return answer(response, [&] { return spawn(from_message(request)); });
+}
+
+/// What is there then, and what was assumed of it.
+std::string InteractionServer::Impl::spawn(const ObjectRequest& request) {
+  const SceneOptions options = options_of(live_.simulation().configuration());
+  Spawn spawn{with_file_read(request, options)};
+  spawn.part = std::make_shared<const Scene>(requested_scene(spawn.request, options));
+  require_no_frames(*spawn.part, fixed_frame_);
+  if (!spawn.request.whole) spawn.request.name = spawn.part->bodies.front().name;
+  make(spawn);
+  show_change();
+  std::vector<std::string> names;
+  for (const Body& body : spawn.part->bodies) names.push_back("'" + body.name + "'");
+  std::string text = text::joined(names) + (names.size() > 1 ? " are there" : " is there");
+  for (const std::string& warning : spawn.part->warnings) {
+    ROS_WARN("%s", warning.c_str());
+    text += "; " + warning;
+  }
+  return text;
 }
 
 /// What is recorded of a replay needs no world that was saved: it is no change.

@@ -70,7 +70,7 @@ std::string resolve_package_uri(const std::string& uri) {
 }
 
 SceneOptions scene_options(const Configuration& configuration) {
-  return {default_material(configuration), configuration.gravity, resolve_package_uri};
+  return {default_material(configuration), configuration.gravity, resolve_package_uri, configuration.density};
 }
 
 }  // namespace mrhi

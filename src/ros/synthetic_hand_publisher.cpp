@@ -2,13 +2,14 @@
 
 #include <std_srvs/Trigger.h>
 
+#include "mr_hand_interaction/ros/package_paths.h"
 #include "node.h"
 
 namespace mrhi {
 namespace {
 
 SyntheticHandOptions options_from(const ros::NodeHandle& parameters) {
-  refuse_unknown(parameters, {"loop", "motion", "noise", "rate", "reset", "seed", "side"});
+  refuse_unknown(parameters, {"loop", "motion", "noise", "rate", "reset", "scene", "seed", "side"});
   SyntheticHandOptions options;
   read_parameter(parameters, "motion", "a string", options.motion);
   read_parameter(parameters, "side", "a string", options.side);
@@ -16,6 +17,13 @@ SyntheticHandOptions options_from(const ros::NodeHandle& parameters) {
   read_parameter(parameters, "noise", "a number", options.noise);
   options.seed = read_seed(parameters, options.seed);
   return options;
+}
+
+SyntheticHand hand_from(const ros::NodeHandle& parameters) {
+  const SyntheticHandOptions options = options_from(parameters);
+  std::string scene;
+  read_parameter(parameters, "scene", "a string", scene);
+  return {options, motion_for(options.motion, scene)};
 }
 
 double rate_from(const ros::NodeHandle& parameters) {
@@ -32,9 +40,14 @@ bool loop_from(const ros::NodeHandle& parameters) {
 
 }  // namespace
 
+ScriptedMotion motion_for(const std::string& motion, const std::string& scene) {
+  if (motion != "grasp_object") return make_motion(motion);
+  return grasp_object(load_scene(find_scene_file(scene, scene_folders()), scene_options({})));
+}
+
 SyntheticHandPublisher::SyntheticHandPublisher(ros::NodeHandle node, const ros::NodeHandle& parameters)
     : node_(node),
-      hand_(options_from(parameters)),
+      hand_(hand_from(parameters)),
       loop_(loop_from(parameters)),
       publisher_(node_, rate_from(parameters)) {
   read_parameter(parameters, "reset", "the name of a service", reset_service_);

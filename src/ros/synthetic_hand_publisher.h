@@ -9,9 +9,14 @@
 
 namespace mrhi {
 
+/// The motion of that name; grasp_object's is made for the scene, a name or a URDF's path. Throws
+/// std::invalid_argument, or SceneError.
+ScriptedMotion motion_for(const std::string& motion, const std::string& scene);
+
 /// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on a schedule of its own.
-/// Parameters: ~motion (grasp_cube), ~side (right), ~rate (115) [Hz], ~noise (0), ~seed (1), ~loop (true),
-/// ~reset: name of a std_srvs/Trigger service to call before each run but the first (none).
+/// Parameters: ~motion (grasp_cube), ~scene (of the motion grasp_object), ~side (right), ~rate (115) [Hz],
+/// ~noise (0), ~seed (1), ~loop (true), ~reset: name of a std_srvs/Trigger service to call before each run
+/// but the first (none).
 class SyntheticHandPublisher {
  public:
   /// Throws std::invalid_argument naming the parameter and what is allowed.

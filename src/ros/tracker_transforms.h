@@ -2,20 +2,15 @@
 
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
-#include <tf2_ros/buffer.h>
 
 #include <functional>
-#include <map>
 #include <string>
 
-#include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/stamp_check.h"
+#include "transform_memory.h"
 
 namespace mrhi {
 
-/// Where trackers stand, by /tf and /tf_static, read by the callbacks' own thread. tf2's listener takes what
-/// comes: a stamp beyond a duration's range ends the node there, and one far ahead makes all that follow too
-/// old.
+/// A TransformMemory of /tf and /tf_static, read by the callbacks' own thread.
 class TrackerTransforms {
  public:
   /// Is told why a transform is left out, and which.
@@ -24,24 +19,18 @@ class TrackerTransforms {
 
   TrackerTransforms(ros::NodeHandle node, Refused refused);
 
-  /// Pose of a frame in another: at the stamp, else the latest. Throws tf2::TransformException.
-  Pose pose(const std::string& fixed, const std::string& frame, Nanoseconds stamp) const;
-  /// What moves is forgotten: it would be refused as older than what is here.
-  void clear();
+  /// As TransformMemory.
+  Pose pose(const std::string& fixed, const std::string& frame, Nanoseconds stamp) const {
+    return memory_.pose(fixed, frame, stamp);
+  }
+  void clear() { memory_.clear(); }
 
  private:
   using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
-  /// When transforms of a frame came, and what was the last to be believed.
-  struct Stream {
-    StampCheck check;
-    Nanoseconds arrival = 0;
-  };
   void take(const Arrival& arrival);
-  bool believed(const geometry_msgs::TransformStamped& transform);
 
   Refused refused_;
-  std::map<std::string, Stream> streams_;  // by the child frame
-  tf2_ros::Buffer buffer_;
+  TransformMemory memory_;
   ros::Subscriber moving_, fixed_;
 };
 

@@ -1,4 +1,4 @@
-#include "mesh_loader.h"
+#include "solid_mesh.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -60,7 +60,7 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
   std::vector<Vector3> points = mesh.vertices;
   Qhull hull;
   if (points.size() < 4 || !hull.run(points))
-    throw std::runtime_error("has no convex hull with a volume; allowed: corners that are not in one plane");
+    throw NoVolume("has no volume, nor has its convex hull; allowed: corners that are not in one plane");
   TriangleMesh result;
   std::vector<int> name(points.size(), -1);
   hull.each_facet([&](std::vector<int>& around) {

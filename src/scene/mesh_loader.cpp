@@ -15,14 +15,12 @@
 #include <new>
 #include <stdexcept>
 
+#include "../text/file_text.h"
 #include "../text/limited_child.h"
 #include "../text/text.h"
 
 namespace mrhi {
 namespace {
-
-/// Vertices nearer to each other than this part of the mesh's extent are one, if that closes a surface.
-constexpr double kSeam = 1e-6;
 
 /// Gathers the triangles of a scene graph into one mesh.
 class Collector {
@@ -67,71 +65,30 @@ class Collector {
   std::map<std::array<ai_real, 3>, int> known_;
 };
 
-Vector3 extent_of(const TriangleMesh& mesh) {
-  Vector3 extent = Vector3::Zero();
-  for (const Vector3& vertex : mesh.vertices)
-    extent = extent.cwiseMax((vertex - mesh.vertices[0]).cwiseAbs());
-  return extent;
-}
+const char* const kFormats[] = {".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds"};
 
-/// Joins vertices that are no farther apart than `distance` with the first of them, and drops the triangles
-/// that vanish.
-void weld(TriangleMesh& mesh, double distance) {
-  using Cell = std::array<long long, 3>;
-  std::map<Cell, std::vector<int>> cells;
-  std::vector<int> same(mesh.vertices.size());
-  const auto cell_of = [&](const Vector3& place) -> Cell {
-    return {{static_cast<long long>(std::floor(place.x() / distance)),
-             static_cast<long long>(std::floor(place.y() / distance)),
-             static_cast<long long>(std::floor(place.z() / distance))}};
-  };
-  const auto first_near = [&](const Vector3& place, int otherwise) {
-    const Cell middle = cell_of(place);
-    for (int i = 0; i < 27; ++i) {
-      const auto found =
-          cells.find({{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1}});
-      if (found == cells.end()) continue;
-      for (const int v : found->second)
-        if (v < otherwise && (mesh.vertices[v] - place).norm() <= distance) otherwise = v;
-    }
-    return otherwise;
-  };
-  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
-    same[v] = first_near(mesh.vertices[v], v);
-    if (same[v] == v) cells[cell_of(mesh.vertices[v])].push_back(v);
-  }
-  const auto vanishes = [](const std::array<int, 3>& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  };
-  for (std::array<int, 3>& triangle : mesh.triangles)
-    for (int& v : triangle) v = same[v];
-  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), vanishes),
-                       mesh.triangles.end());
-}
-
-Vector3 doubled_area(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
-  const Vector3& a = mesh.vertices[triangle[0]];
-  return (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a);
-}
-
-/// Edges that do not belong to two triangles, once in each direction.
-int count_open_edges(const TriangleMesh& mesh) {
-  std::map<std::pair<int, int>, int> balance;
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const int from = triangle[k], to = triangle[(k + 1) % 3];
-      balance[std::minmax({from, to})] += from < to ? 1 : -1;
-    }
-  }
-  return static_cast<int>(
-      std::count_if(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; }));
+std::string lower_extension(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 void check_format(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension == ".stl" || extension == ".obj" || extension == ".dae") return;
-  throw std::runtime_error("is of the format '" + extension + "'; allowed: .stl, .obj, .dae");
+  const std::string extension = lower_extension(file);
+  std::string all;
+  for (const char* known : kFormats) {
+    if (extension == known) return;
+    all += (all.empty() ? "" : ", ") + std::string(known);
+  }
+  throw std::runtime_error("is of the format '" + text::one_line(extension, 20) + "'; allowed: " + all);
+}
+
+/// What stands for a large file where git has not fetched it.
+void check_fetched(const std::string& file) {
+  const std::string pointer = "version https://git-lfs";
+  if (file_text(file, pointer.size()) == pointer)
+    throw std::runtime_error(
+        "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
 }
 
 /// What a mesh may cost to read. The largest that have triangles within the limit are read in a second or
@@ -166,72 +123,96 @@ std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
   return items;
 }
 
+/// An STL as assimp knows it: without bytes behind its triangles, of which each takes 50 and the first begins
+/// at 84; and if it is text, in lower case.
+std::string plain_stl(const std::string& file) {
+  std::string bytes = file_text(file, kMostBytes).value_or("");
+  std::uint32_t count = 0;
+  if (bytes.size() < 84) return bytes;
+  std::memcpy(&count, &bytes[80], sizeof count);
+  const std::uint64_t whole = 84 + std::uint64_t(50) * count;
+  if (whole <= bytes.size()) {
+    bytes.resize(whole);
+  } else if (bytes.compare(0, 5, "SOLID") == 0) {
+    for (char& c : bytes) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return bytes;
+}
+
 /// Assimp reads what is given to it without any limit, and a small file may stand for an endless scene.
 TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate);
+  const std::string stl = lower_extension(file) == ".stl" ? plain_stl(file) : "";
+  const aiScene* scene =
+      stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
+                  : importer.ReadFileFromMemory(stl.data(), stl.size(), aiProcess_Triangulate, "stl");
   const std::string problem = importer.GetErrorString();
   if (problem.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
   if (!scene || !scene->mRootNode) {
     throw std::runtime_error("cannot be read: " + text::one_line(problem, 120) +
-                             "; allowed: a whole STL, OBJ or DAE file");
+                             "; allowed: a whole STL, OBJ, DAE, PLY or glTF file");
   }
   Collector collector(scale);
   collector.add(*scene, *scene->mRootNode, aiMatrix4x4());
   return collector.take();
 }
 
-}  // namespace
+LoadedMesh read(const MeshFile& source) {
+  LoadedMesh loaded;
+  try {
+    check_format(source.file);
+    check_size(source.file);
+    check_fetched(source.file);
+    loaded.mesh = read_by_assimp(source.file, source.scale);
+    const std::size_t count = loaded.mesh.triangles.size();
+    if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
+    if (count > kMostTriangles)
+      throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
+                               std::to_string(kMostTriangles));
+  } catch (const std::bad_alloc&) {
+    loaded = {{}, "takes more memory than is allowed"};
+  } catch (const std::exception& error) {
+    loaded = {{}, error.what()};
+  }
+  return loaded;
+}
 
-TriangleMesh load_mesh(const std::string& file, const Vector3& scale) {
-  check_format(file);
-  check_size(file);
+std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
   const std::string bytes = run_in_child(kLimits, [&] {
-    const TriangleMesh mesh = read_by_assimp(file, scale);
-    if (mesh.triangles.size() > kMostTriangles)
-      throw std::runtime_error("has " + std::to_string(mesh.triangles.size()) +
-                               " triangles; allowed: at most " + std::to_string(kMostTriangles));
     std::string all;
-    append(mesh.vertices, all);
-    append(mesh.triangles, all);
+    for (const MeshFile& file : files) {
+      const LoadedMesh loaded = read(file);
+      append(std::vector<char>(loaded.problem.begin(), loaded.problem.end()), all);
+      append(loaded.problem.empty() ? loaded.mesh.vertices : std::vector<Vector3>{}, all);
+      append(loaded.problem.empty() ? loaded.mesh.triangles : std::vector<std::array<int, 3>>{}, all);
+    }
     return all;
   });
+  std::vector<LoadedMesh> meshes(files.size());
   std::size_t at = 0;
-  TriangleMesh mesh;
-  mesh.vertices = taken<Vector3>(bytes, at);
-  mesh.triangles = taken<std::array<int, 3>>(bytes, at);
-  if (mesh.triangles.empty()) throw std::runtime_error("has no triangles; allowed: at least one");
-  return mesh;
+  for (LoadedMesh& mesh : meshes) {
+    const std::vector<char> problem = taken<char>(bytes, at);
+    mesh.problem.assign(problem.begin(), problem.end());
+    mesh.mesh.vertices = taken<Vector3>(bytes, at);
+    mesh.mesh.triangles = taken<std::array<int, 3>>(bytes, at);
+  }
+  return meshes;
 }
 
-void make_solid(TriangleMesh& mesh) {
-  const Vector3 extent = extent_of(mesh);
-  const double seam = kSeam * extent.maxCoeff();
-  if (count_open_edges(mesh) > 0 && seam > 0.0) weld(mesh, seam);
-  if (const int open = count_open_edges(mesh)) {
-    throw std::runtime_error("is not closed: " + std::to_string(open) +
-                             " edges lack a neighbour or are turned against it, with vertices within " +
-                             text::number(seam) +
-                             " m joined; allowed for collision: a closed surface, or <!-- hull --> behind "
-                             "the mesh for its convex hull");
-  }
-  const double volume = signed_volume(mesh);
-  if (!(std::abs(volume) > 1e-9 * extent.maxCoeff() * extent.maxCoeff() * extent.maxCoeff())) {
-    throw std::runtime_error("encloses no volume; allowed for collision: a closed surface around a volume");
-  }
-  if (volume < 0) {
-    for (std::array<int, 3>& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  }
-}
+}  // namespace
 
-double signed_volume(const TriangleMesh& mesh) {
-  double volume = 0;
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    const Vector3 arm = mesh.vertices[triangle[0]] - mesh.vertices[0];
-    volume += doubled_area(mesh, triangle).dot(arm) / 6;
+/// What is too much for one child process is read one by one, so that it is known which file is to blame.
+std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
+  if (files.empty()) return {};
+  try {
+    return read_in_child(files);
+  } catch (const std::runtime_error& error) {
+    if (files.size() == 1) return {{{}, error.what()}};
   }
-  return volume;
+  std::vector<LoadedMesh> meshes;
+  for (const MeshFile& file : files) meshes.push_back(load_meshes({file}).front());
+  return meshes;
 }
 
 }  // namespace mrhi

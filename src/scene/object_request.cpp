@@ -1,9 +1,12 @@
 #include "mr_hand_interaction/scene/object_request.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "../collision/overlap.h"
+#include "../text/file_text.h"
 #include "../text/text.h"
+#include "../text/xml_danger.h"
 #include "scene_yaml.h"
 #include "shape_kinds.h"
 #include "urdf.h"
@@ -36,14 +39,17 @@ PlacedLink placed_shape(const ObjectRequest& request) {
   link->inertial = std::make_shared<urdf::Inertial>();
   link->inertial->mass = request.mass;
   link->name = request.name;
-  return {link, request.mass == 0.0, request.pose};
+  return {link, request.mass == 0.0, request.pose, {}};
 }
 
-PlacedLink placed_urdf(const ObjectRequest& request) {
-  PlacedLink placed = only_link(kSource, request.urdf);
+PlacedLink placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
+  document = parse_urdf(kSource, request.urdf);
+  PlacedLink placed = only_body(kSource, document);
   placed.in_world = request.pose;
   if (request.name.empty()) return placed;
   auto renamed = std::make_shared<urdf::Link>(*placed.link);
+  const auto friction = document.friction.find(renamed->name);
+  if (friction != document.friction.end()) document.friction[request.name] = friction->second;
   renamed->name = request.name;
   placed.link = renamed;
   return placed;
@@ -62,21 +68,24 @@ void check_motion(const ObjectRequest& request) {
 
 }  // namespace
 
-Body requested_body(const ObjectRequest& request, const SceneOptions& options) {
+namespace {
+
+Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
   check_motion(request);
-  PlacedLink placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request);
+  UrdfDocument document;
+  PlacedLink placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request, document);
   placed.in_world.orientation.normalize();
-  Body body = read_body(kSource, placed, options);
+  Scene scene;
+  read_body(kSource, request.folder, document, placed, options, scene);
+  Body& body = scene.bodies.front();
   body.start_twist = request.twist;
   if (request.rgba) {
     check_color(kSource, *request.rgba);
     for (Visual& visual : body.visuals) visual.rgba = *request.rgba;
   }
   if (!request.material.empty()) apply_material_yaml(kSource + ": material", request.material, body);
-  return body;
+  return scene;
 }
-
-namespace {
 
 void put_before(const std::string& name, Scene& scene) {
   if (name.empty()) return;
@@ -93,14 +102,33 @@ void put_before(const std::string& name, Scene& scene) {
 
 }  // namespace
 
-Scene requested_scene(const ObjectRequest& request, const SceneOptions& options) {
+ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options) {
+  if (request.urdf.empty() || request.urdf.find('<') != std::string::npos) return request;
+  const std::string given = text::one_line(request.urdf, 200);
+  std::string file = request.urdf;
+  if (file.compare(0, 7, "file://") == 0) file = file.substr(7);
+  if (file.compare(0, 10, "package://") == 0)
+    file = options.resolve_package_uri ? options.resolve_package_uri(file) : "";
+  const auto text = file.empty() ? std::nullopt : file_text(file, kMostXmlBytes + 1);
+  if (!text || text->empty())
+    throw SceneError(
+        kSource + ": no URDF in '" + given +
+        "'; allowed: the text of a URDF, or the absolute path or package:// of a file that has it");
+  request.urdf = *text;
+  request.folder = std::filesystem::path(file).parent_path().string();
+  return request;
+}
+
+Body requested_body(const ObjectRequest& request, const SceneOptions& options) {
+  return scene_of_body(with_file_read(request, options), options).bodies.front();
+}
+
+Scene requested_scene(const ObjectRequest& given, const SceneOptions& options) {
+  const ObjectRequest request = with_file_read(given, options);
   Scene scene;
-  if (!request.whole) {
-    scene.bodies.push_back(requested_body(request, options));
-    return scene;
-  }
+  if (!request.whole) return scene_of_body(request, options);
   check_motion(request);
-  read_urdf_text(kSource, request.urdf, options, scene);
+  read_urdf_text(kSource, request.folder, request.urdf, options, scene);
   if (!request.joints.empty()) apply_joints_yaml(kSource + ": joints", request.joints, scene);
   Pose root = request.pose;
   root.orientation.normalize();

@@ -25,6 +25,25 @@ void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   }
 }
 
+/// Bounds that no file gives hold all that moves where it starts.
+void widen_bounds(Scene& scene) {
+  constexpr double kRoom = 1.0;  // [m]
+  Bounds wide = scene.bounds;
+  for (const Body& body : scene.bodies) {
+    if (body.fixed) continue;
+    const Vector3 room = Vector3::Constant(kRoom + body.bounding_radius), &start = body.start.position;
+    if ((start.array() >= scene.bounds.min.array()).all() &&
+        (start.array() <= scene.bounds.max.array()).all())
+      continue;
+    wide.min = wide.min.cwiseMin(start - room), wide.max = wide.max.cwiseMax(start + room);
+  }
+  if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;
+  scene.bounds = wide;
+  scene.warnings.push_back(
+      "bodies start out of the usual bounds, which are widened: " + text::vector(wide.min) + " to " +
+      text::vector(wide.max) + " m; the YAML's 'bounds' sets others");
+}
+
 /// Bodies that begin inside each other push each other out with all they have, and many of them at once cost
 /// more than a step has time for.
 void check_overlaps(const std::string& file, const Scene& scene) {
@@ -46,6 +65,7 @@ Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
   read_urdf(urdf_file, options, scene);
+  const Bounds usual = scene.bounds;
   const fs::path settings = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(settings)) apply_scene_yaml(settings.string(), scene);
   if (options.gravity) scene.gravity = *options.gravity;
@@ -54,6 +74,7 @@ Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw SceneError(urdf_file + ": " + text::one_line(error.what()));
   }
+  if (usual.min == scene.bounds.min && usual.max == scene.bounds.max) widen_bounds(scene);
   check_starts_in_bounds(urdf_file, scene);
   check_overlaps(urdf_file, scene);
   return scene;

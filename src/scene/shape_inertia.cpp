@@ -1,7 +1,18 @@
 #include "shape_inertia.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "solid_mesh.h"
+
 namespace mrhi {
 namespace {
+
+void add(const SolidMoments& part, double sign, SolidMoments& sum) {
+  sum.volume += sign * part.volume;
+  sum.first += sign * part.first;
+  sum.second += sign * part.second;
+}
 
 SolidMoments placed(const SolidMoments& in_shape, const Pose& pose) {
   const Matrix3 turn = pose.orientation.toRotationMatrix();
@@ -15,18 +26,201 @@ SolidMoments placed(const SolidMoments& in_shape, const Pose& pose) {
   return moments;
 }
 
+Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
+  Eigen::AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
+      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+    }
+  return box;
+}
+
+bool may_overlap(const std::vector<PlacedShape>& shapes) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const PlacedShape& shape : shapes) boxes.push_back(box_of(shape));
+  for (std::size_t a = 0; a < boxes.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if ((boxes[a].intersection(boxes[b]).sizes().array() > 0.0).all()) return true;
+  return false;
+}
+
+SolidMoments raw_moments(const Shape& shape) {
+  if (const Mesh* const mesh = std::get_if<Mesh>(&shape)) return signed_moments(*mesh->triangles);
+  return std::visit([](const auto& asked) { return asked.moments(); }, shape);
+}
+
+SolidMoments sum_of(const std::vector<PlacedShape>& shapes) {
+  SolidMoments all;
+  for (const PlacedShape& shape : shapes) add(placed(raw_moments(shape.shape), shape.pose), 1.0, all);
+  return all;
+}
+
+bool has_parts(const std::vector<PlacedShape>& shapes) {
+  return std::any_of(shapes.begin(), shapes.end(), [](const PlacedShape& shape) {
+    const Mesh* const mesh = std::get_if<Mesh>(&shape.shape);
+    return mesh != nullptr && !mesh->triangles->parts.empty();
+  });
+}
+
+/// Where lines along x, on a grid across, go in and out of surfaces.
+class Columns {
+ public:
+  explicit Columns(const TriangleMesh& mesh) : lines_(kLines * kLines) {
+    Eigen::AlignedBox3d box;
+    for (const auto& t : mesh.triangles)
+      for (const int v : t) box.extend(mesh.vertices[std::size_t(v)]);
+    low_ = {box.min().y(), box.min().z()};
+    cell_ = Eigen::Vector2d(box.sizes().y(), box.sizes().z()) / kLines;
+    if (!(cell_.minCoeff() > 0.0)) return;
+    for (const auto& t : mesh.triangles)
+      cross(mesh.vertices[std::size_t(t[0])], mesh.vertices[std::size_t(t[1])],
+            mesh.vertices[std::size_t(t[2])]);
+  }
+
+  /// A line is within n solids between two crossings: n - 1 too many.
+  SolidMoments shared() {
+    SolidMoments sum;
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+      auto& crossings = lines_[line];
+      std::sort(crossings.begin(), crossings.end());
+      int within = 0;
+      for (const auto& crossing : crossings) within += crossing.second;
+      if (within != 0) continue;  // it has passed an edge
+      const Eigen::Vector2d at = place(int(line % kLines), int(line / kLines));
+      for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+        within += crossings[i].second;
+        if (within > 1) add_stretch(crossings[i].first, crossings[i + 1].first, at, within - 1, sum);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr int kLines = 100;  // on a side
+
+  /// Off the middle of a cell by parts that no file has, so that lines meet no edges.
+  Eigen::Vector2d place(int i, int j) const {
+    return low_ + cell_.cwiseProduct(Eigen::Vector2d(i + 0.5031417, j + 0.4972853));
+  }
+  void add_stretch(double x0, double x1, const Eigen::Vector2d& at, int times, SolidMoments& sum) const {
+    const double area = times * cell_.prod(), length = x1 - x0;
+    const double x = 0.5 * (x1 * x1 - x0 * x0), xx = (x1 * x1 * x1 - x0 * x0 * x0) / 3.0;
+    const double y = at.x(), z = at.y();
+    Matrix3 second;
+    second << xx, x * y, x * z, x * y, length * y * y, length * y * z, x * z, length * y * z, length * z * z;
+    sum.volume += area * length;
+    sum.first += area * Vector3(x, length * y, length * z);
+    sum.second += area * second;
+  }
+  void cross(const Vector3& a, const Vector3& b, const Vector3& c) {
+    const Eigen::Vector2d p = a.tail<2>(), q = b.tail<2>(), r = c.tail<2>();
+    const auto side = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& at) {
+      return (to - from).x() * (at - from).y() - (to - from).y() * (at - from).x();
+    };
+    const double twice = side(p, q, r);
+    if (twice == 0.0) return;
+    const Eigen::Vector2d low = (p.cwiseMin(q).cwiseMin(r) - low_).cwiseQuotient(cell_),
+                          high = (p.cwiseMax(q).cwiseMax(r) - low_).cwiseQuotient(cell_);
+    for (int j = std::max(0, int(low.y()) - 1); j <= std::min(kLines - 1, int(high.y())); ++j)
+      for (int i = std::max(0, int(low.x()) - 1); i <= std::min(kLines - 1, int(high.x())); ++i) {
+        const Eigen::Vector2d at = place(i, j);
+        const double u = side(q, r, at) / twice, v = side(r, p, at) / twice, w = 1.0 - u - v;
+        if (u < 0.0 || v < 0.0 || w < 0.0) continue;
+        // Seen along x a triangle whose normal points back is entered.
+        lines_[std::size_t(j * kLines + i)].emplace_back(u * a.x() + v * b.x() + w * c.x(),
+                                                         twice < 0.0 ? 1 : -1);
+      }
+  }
+
+  std::vector<std::vector<std::pair<double, int>>> lines_;
+  Eigen::Vector2d low_, cell_;
+};
+
 }  // namespace
 
-Matrix3 inertia_of(const std::vector<PlacedShape>& shapes, double mass) {
-  double volume = 0.0;
-  Matrix3 second = Matrix3::Zero();
-  for (const PlacedShape& shape : shapes) {
-    const SolidMoments moments =
-        placed(std::visit([](const auto& asked) { return asked.moments(); }, shape.shape), shape.pose);
-    volume += moments.volume, second += moments.second;
+/// A convex shape's hull of the places farthest along many directions (a Fibonacci lattice), or a mesh
+/// itself.
+TriangleMesh surface_of(const PlacedShape& shape) {
+  TriangleMesh mesh;
+  if (const Mesh* const given = std::get_if<Mesh>(&shape.shape)) {
+    mesh = *given->triangles;
+  } else {
+    constexpr int kDirections = 300;
+    const auto add_farthest = [&](const Vector3& n) {
+      mesh.vertices.push_back(std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+    };
+    for (int corner = 0; corner < 8; ++corner)
+      add_farthest(Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).normalized());
+    for (int i = 0; i < kDirections && !std::holds_alternative<Box>(shape.shape); ++i) {
+      const double z = 1.0 - (2.0 * i + 1.0) / kDirections, across = std::sqrt(1.0 - z * z),
+                   turn = 2.39996 * i;
+      add_farthest({across * std::cos(turn), across * std::sin(turn), z});
+    }
+    mesh = convex_hull(mesh);
+    if (signed_volume(mesh) < 0.0)
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
-  if (!(volume > 0.0)) return Matrix3::Zero();
-  return mass / volume * (second.trace() * Matrix3::Identity() - second);
+  for (Vector3& vertex : mesh.vertices) vertex = shape.pose * vertex;
+  return mesh;
+}
+
+SolidMoments shared_moments(const TriangleMesh& mesh, double volume) {
+  constexpr double kNeglected = 1e-3;
+  const SolidMoments shared = Columns(mesh).shared();
+  return shared.volume > kNeglected * volume ? shared : SolidMoments{};
+}
+
+bool overlaps_itself(const TriangleMesh& mesh) {
+  return shared_moments(mesh, signed_volume(mesh)).volume > 0.0;
+}
+
+/// By the tetrahedra from the origin to the triangles, with their signs (Tonon 2004).
+///
+/// Of a tetrahedron with the corners 0, a, b, c:
+///     V = a.(b x c) / 6,   integral of x = V (a + b + c) / 4,
+///     integral of x x^T = V / 20 (a a^T + b b^T + c c^T + (a + b + c)(a + b + c)^T).
+/// V is positive for a triangle that faces away from the origin and negative else, so that what is outside
+/// the solid is taken off again: right for a closed mesh alone.
+SolidMoments signed_moments(const TriangleMesh& mesh) {
+  SolidMoments moments;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    const auto corner = [&](std::size_t i) -> const Vector3& {
+      return mesh.vertices[static_cast<std::size_t>(triangle[i])];
+    };
+    const Vector3 &a = corner(0), &b = corner(1), &c = corner(2);
+    const double volume = a.dot(b.cross(c)) / 6.0;
+    const Vector3 sum = a + b + c;
+    moments.volume += volume;
+    moments.first += 0.25 * volume * sum;
+    moments.second +=
+        0.05 * volume * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  return moments;
+}
+
+SolidMoments moments_of(const std::vector<PlacedShape>& shapes) {
+  SolidMoments all = sum_of(shapes);
+  if (!has_parts(shapes) && !may_overlap(shapes)) return all;
+  TriangleMesh surfaces;
+  for (const PlacedShape& shape : shapes) {
+    const TriangleMesh mesh = surface_of(shape);
+    const int first = static_cast<int>(surfaces.vertices.size());
+    surfaces.vertices.insert(surfaces.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const auto& t : mesh.triangles)
+      surfaces.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
+  }
+  add(shared_moments(surfaces, all.volume), -1.0, all);
+  return all;
+}
+
+Matrix3 inertia_of(const std::vector<PlacedShape>& shapes, double mass) {
+  const bool has_mesh = std::any_of(shapes.begin(), shapes.end(), [](const PlacedShape& shape) {
+    return std::holds_alternative<Mesh>(shape.shape);
+  });
+  const SolidMoments moments = has_mesh ? moments_of(shapes) : sum_of(shapes);
+  if (!(moments.volume > 0.0)) return Matrix3::Zero();
+  return mass / moments.volume * (moments.second.trace() * Matrix3::Identity() - moments.second);
 }
 
 }  // namespace mrhi

@@ -6,20 +6,25 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mesh_loader.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "warnings.h"
 
 namespace mrhi {
 
-/// A URDF as urdfdom reads it.
+/// A URDF as urdfdom reads it once it is normal_urdf(). A root link with a shape hangs on one without.
 struct UrdfDocument {
   urdf::ModelInterfaceSharedPtr model;
   std::vector<urdf::LinkConstSharedPtr> links;  ///< in the order of the file (urdfdom sorts by name)
+  std::map<std::string, double> friction;       ///< Coulomb's coefficient, of links that have one
+  Warnings warnings;
 };
 
 /// Throws SceneError with urdfdom's complaints on one line; urdfdom itself prints nothing.
@@ -36,15 +41,25 @@ void check_color(const std::string& element, const std::array<float, 4>& rgba);
 /// Whether it turns or slides.
 bool moves(const urdf::Joint& joint);
 
-/// A link below the root and where it is.
-struct PlacedLink {
+/// A link that is a part of a body, and its place in the frame of the body's first link.
+struct LinkPart {
   urdf::LinkConstSharedPtr link;
-  bool fixed;     ///< on fixed joints all the way, else it is a body that moves
-  Pose in_world;  ///< the link's frame, all joints at 0; the root is the world
+  Pose pose;
 };
 
-/// All links but the root, in the URDF's order. Throws SceneError for joints that make no scene.
-std::vector<PlacedLink> place_links(const std::string& urdf_file, const UrdfDocument& document);
+/// A body: a link below the root and those that fixed joints hold to it.
+struct PlacedLink {
+  urdf::LinkConstSharedPtr link;
+  bool fixed;                    ///< on fixed joints all the way, or of mass 0; else it moves
+  Pose in_world;                 ///< the link's frame, all joints at 0; the root is the world
+  std::vector<LinkPart> merged;  ///< not of a fixture, whose links are fixtures themselves
+};
+
+bool has_shape(const PlacedLink& placed);
+
+/// All bodies, in the order of their first links in the URDF. Throws SceneError for joints that make no
+/// scene.
+std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document);
 
 /// The joints that turn or slide of a URDF, in the order of their links, between the scene's bodies, which
 /// are known. They begin at 0, or at the limit that is nearest to it. Throws SceneError.
@@ -54,35 +69,53 @@ std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument&
 /// Turns a URDF's geometry into shapes; each mesh file is read once.
 class ShapeReader {
  public:
-  ShapeReader(std::string urdf_file, const SceneOptions& options)
-      : urdf_file_(std::move(urdf_file)), options_(options) {}
+  /// Paths of meshes start at `folder`.
+  ShapeReader(std::string source, std::string folder, const SceneOptions& options, Warnings& warnings)
+      : source_(std::move(source)), folder_(std::move(folder)), options_(options), warnings_(warnings) {}
 
-  /// `element` names the place in messages. A solid's mesh must be closed. Throws SceneError.
-  Shape read(const urdf::Geometry& geometry, const std::string& element, bool solid);
+  /// Reads the mesh files of all these links together, which takes less time than one by one.
+  void prepare(const std::vector<urdf::LinkConstSharedPtr>& links);
+
+  /// `element` names the place in messages. Throws SceneError. A solid's mesh is closed or its hull; nothing
+  /// is returned for one that is a flat sheet.
+  std::optional<Shape> read(const urdf::Geometry& geometry, const std::string& element, bool solid);
+
+  const std::vector<SceneFile>& files() const { return files_; }
 
  private:
-  Mesh read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
-  std::string mesh_file(const std::string& uri, const std::string& element) const;
-  Shape make(const std::string& kind, const std::vector<double>& size, const std::string& element) const;
+  /// A mesh as URDFs name it: which file, how large, and its hull or itself.
+  struct Named;
+  Named named(const urdf::Mesh& mesh) const;
+  std::string find_file(const std::string& uri) const;
+  std::optional<Shape> read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
+  std::shared_ptr<const TriangleMesh> solid_of(const Named& mesh, const std::string& element);
+  const TriangleMesh& triangles_of(const Named& mesh);
+  std::optional<Shape> make(const std::string& kind, const std::vector<double>& size,
+                            const std::string& element);
   [[noreturn]] void fail(const std::string& element, const std::string& what) const;
 
-  std::string urdf_file_;
+  const std::string source_, folder_;
   const SceneOptions& options_;
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
+  Warnings& warnings_;
+  std::map<std::string, LoadedMesh> loaded_;                           // by file and scale
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // the same, as they are used
+  std::vector<SceneFile> files_;
 };
 
-/// The bodies of a URDF in its order, complete but for their materials, which are the default, and its
-/// joints. Links without any geometry on fixed joints only place others and are left out. Throws SceneError.
+/// The bodies of a URDF in its order, complete but for their materials, which are the default, its joints,
+/// and what was assumed. Links without any geometry on fixed joints only place others and are left out.
+/// Throws SceneError.
 void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene);
 
-/// The same of a URDF's text, which `source` names in messages.
-void read_urdf_text(const std::string& source, const std::string& xml, const SceneOptions& options,
-                    Scene& scene);
+/// The same of a URDF's text, which `source` names in messages; paths of meshes start at `folder`.
+void read_urdf_text(const std::string& source, const std::string& folder, const std::string& xml,
+                    const SceneOptions& options, Scene& scene);
 
-/// One of them; `source` names it in messages.
-Body read_body(const std::string& source, const PlacedLink& placed, const SceneOptions& options);
+/// Adds one of them.
+void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
+               const PlacedLink& placed, const SceneOptions& options, Scene& scene);
 
-/// The one link with a shape of a URDF's text, where that has it. Throws SceneError for none and several.
-PlacedLink only_link(const std::string& source, const std::string& xml);
+/// The one body with a shape of a URDF, where that has it. Throws SceneError for none and several.
+PlacedLink only_body(const std::string& source, UrdfDocument& document);
 
 }  // namespace mrhi

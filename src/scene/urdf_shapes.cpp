@@ -1,5 +1,3 @@
-#include "urdf.h"
-
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <stdexcept>
@@ -8,6 +6,8 @@
 #include "limits.h"
 #include "mesh_loader.h"
 #include "shape_kinds.h"
+#include "solid_mesh.h"
+#include "urdf.h"
 
 namespace mrhi {
 namespace {
@@ -22,24 +22,93 @@ bool begins_with(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
 void check_extent(const Vector3& extent, double part, const char* where) {
   if (body_limits::kSize.contains(part)) return;
   throw std::runtime_error("measures " + text::vector(extent) +
-                           " m; allowed: " + body_limits::kSize.describe() + " m " + where);
+                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
+                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
 }
 
 /// Of a thing that collides each size, as a box's; a picture may be flat.
 void check_sizes(const TriangleMesh& mesh, bool solid) {
   Eigen::AlignedBox3d box;
-  for (const Vector3& vertex : mesh.vertices) box.extend(vertex);
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (const int vertex : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(vertex)]);
   const Vector3 extent = box.sizes();
   check_extent(extent, extent.maxCoeff(), "along the longest axis");
   if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
 
+/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or one that has the
+/// name.
+std::string find_above(const fs::path& folder, const std::string& in_package) {
+  const std::string name = in_package.substr(0, in_package.find('/'));
+  std::error_code error;
+  fs::path above = fs::absolute(folder, error).lexically_normal();
+  for (int level = 0; level < 32 && !error; ++level, above = above.parent_path()) {
+    if (is_file(above / in_package)) return (above / in_package).string();
+    if (above.filename() == name && is_file(above.parent_path() / in_package))
+      return (above.parent_path() / in_package).string();
+    if (above == above.root_path()) break;
+  }
+  return "";
+}
+
 }  // namespace
 
-Shape ShapeReader::read(const urdf::Geometry& geometry, const std::string& element, bool solid) {
+struct ShapeReader::Named {
+  std::string uri, file;  ///< file: empty if it is not found
+  Vector3 scale;
+  bool hull;
+  std::string key() const { return file + " " + text::vector(scale); }
+};
+
+ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
+  const std::string uri = without_hull(mesh.filename);
+  return {uri, find_file(uri), to_vector(mesh.scale), is_hull(mesh.filename)};
+}
+
+/// Paths of other systems have backslashes.
+std::string ShapeReader::find_file(const std::string& uri) const {
+  const auto given = options_.mesh_files.find(uri);
+  if (given != options_.mesh_files.end()) return given->second;
+  for (const char* scheme : {"package://", "model://"}) {
+    if (!begins_with(uri, scheme)) continue;
+    const std::string file = options_.resolve_package_uri ? options_.resolve_package_uri(uri) : "";
+    return is_file(file) ? file : find_above(folder_, uri.substr(std::string(scheme).size()));
+  }
+  std::string path = begins_with(uri, "file://") ? uri.substr(7) : uri;
+  if (!is_file(fs::path(folder_) / path)) std::replace(path.begin(), path.end(), '\\', '/');
+  return is_file(fs::path(folder_) / path) ? (fs::path(folder_) / path).string() : "";
+}
+
+void ShapeReader::prepare(const std::vector<urdf::LinkConstSharedPtr>& links) {
+  std::vector<MeshFile> wanted;
+  std::vector<std::string> keys;
+  const auto want = [&](const urdf::GeometrySharedPtr& geometry) {
+    if (!geometry || geometry->type != urdf::Geometry::MESH) return;
+    const auto& mesh = static_cast<const urdf::Mesh&>(*geometry);
+    if (from_filename(mesh.filename)) return;
+    const Named name = named(mesh);
+    if (name.file.empty() || !loaded_.emplace(name.key(), LoadedMesh{}).second) return;
+    wanted.push_back({name.file, name.scale});
+    keys.push_back(name.key());
+  };
+  for (const urdf::LinkConstSharedPtr& link : links) {
+    for (const auto& collision : link->collision_array) want(collision->geometry);
+    for (const auto& visual : link->visual_array) want(visual->geometry);
+  }
+  std::vector<LoadedMesh> meshes = load_meshes(wanted);
+  for (std::size_t i = 0; i < meshes.size(); ++i) loaded_[keys[i]] = std::move(meshes[i]);
+}
+
+std::optional<Shape> ShapeReader::read(const urdf::Geometry& geometry, const std::string& element,
+                                       bool solid) {
   switch (geometry.type) {
     case urdf::Geometry::SPHERE:
       return make("sphere", {static_cast<const urdf::Sphere&>(geometry).radius}, element);
@@ -60,10 +129,14 @@ Shape ShapeReader::read(const urdf::Geometry& geometry, const std::string& eleme
   }
 }
 
-Shape ShapeReader::make(const std::string& name, const std::vector<double>& size,
-                        const std::string& element) const {
+std::optional<Shape> ShapeReader::make(const std::string& name, const std::vector<double>& size,
+                                       const std::string& element) {
   const Range& range = body_limits::kSize;
   const ShapeKind& kind = *find_shape_kind(name);
+  if (std::all_of(size.begin(), size.end(), [](double s) { return s == 0.0; })) {
+    warnings_.add("shapes of size 0 are left out", element);
+    return std::nullopt;
+  }
   for (const double s : size) {
     if (!range.contains(s))
       fail(element, kind.describe(size) + " m is not allowed; allowed: " + range.describe() + " m");
@@ -71,48 +144,62 @@ Shape ShapeReader::make(const std::string& name, const std::vector<double>& size
   return kind.make(size);
 }
 
-Mesh ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
-  const Vector3 scale = to_vector(mesh.scale);
-  if (!scale.allFinite() || (scale.array() == 0).any()) {
-    fail(element,
-         "mesh scale " + text::vector(scale) + " is not allowed; allowed: three numbers, none of them 0");
+/// What is only looked at may be missing: the collision shape is drawn in its place.
+std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
+  const Named name = named(mesh);
+  const std::string what = "mesh '" + text::one_line(name.uri, 200) + "' ";
+  if (!name.scale.allFinite() || (name.scale.array() == 0).any())
+    fail(element, "mesh scale " + text::vector(name.scale) +
+                      " is not allowed; allowed: three numbers, none of them 0");
+  try {
+    if (name.file.empty())
+      throw std::runtime_error(begins_with(name.uri, "package://")
+                                   ? "not found: no such package, nor a folder of its name above the URDF "
+                                     "that has the file; allowed: "
+                                     "a package on the ROS path, or such a folder"
+                                   : "not found in '" + folder_ +
+                                         "'; allowed: package://, file://, or a path from the URDF's folder");
+    const TriangleMesh& triangles = triangles_of(name);
+    check_sizes(triangles, false);
+    const std::string key = name.key() + (name.hull ? " hull" : solid ? " solid" : "");
+    auto& used = meshes_[key];
+    if (!used) used = solid ? solid_of(name, element) : std::make_shared<const TriangleMesh>(triangles);
+    const bool is_uri = name.uri.find("://") != std::string::npos;
+    return Mesh{used,
+                is_uri && !begins_with(name.uri, "model")
+                    ? name.uri
+                    : "file://" + fs::absolute(name.file).lexically_normal().string(),
+                name.scale};
+  } catch (const NoVolume& error) {
+    warnings_.add("flat sheets do not touch and are left out", element + " " + what + error.what());
+  } catch (const std::runtime_error& error) {
+    if (solid) fail(element, what + error.what());
+    warnings_.add("visuals that cannot be read are left out", element + " " + what + error.what());
   }
-  const bool hull = solid && is_hull(mesh.filename);
-  const std::string uri = without_hull(mesh.filename);
-  const std::string file = mesh_file(uri, element);
-  const std::string key = file + (hull ? " hull " : solid ? " solid " : " ") + text::vector(scale);
-  if (!meshes_.count(key)) {
-    try {
-      TriangleMesh triangles = load_mesh(file, scale);
-      check_sizes(triangles, false);
-      if (hull) triangles = convex_hull(triangles);
-      if (solid) make_solid(triangles);
-      check_sizes(triangles, solid);
-      meshes_[key] = std::make_shared<const TriangleMesh>(std::move(triangles));
-    } catch (const std::runtime_error& error) {
-      fail(element, "mesh '" + uri + "' " + error.what());
-    }
-  }
-  const bool is_uri = uri.find("://") != std::string::npos;
-  return {meshes_[key], is_uri ? uri : "file://" + fs::absolute(file).lexically_normal().string(), scale};
+  return std::nullopt;
 }
 
-std::string ShapeReader::mesh_file(const std::string& uri, const std::string& element) const {
-  fs::path file = fs::path(urdf_file_).parent_path() / uri;
-  if (begins_with(uri, "file://")) file = uri.substr(7);
-  if (begins_with(uri, "package://")) {
-    file = options_.resolve_package_uri ? options_.resolve_package_uri(uri) : std::string();
-    if (file.empty())
-      fail(element, "mesh '" + uri + "': package not found; allowed: a package on the ROS path");
-  }
-  std::error_code ignored;
-  if (fs::is_regular_file(file, ignored)) return file.string();
-  fail(element, "mesh '" + uri + "' not found at '" + file.string() +
-                    "'; allowed: package://, file://, or a path from the URDF's folder");
+std::shared_ptr<const TriangleMesh> ShapeReader::solid_of(const Named& mesh, const std::string& element) {
+  TriangleMesh triangles = triangles_of(mesh);
+  if (mesh.hull) triangles = convex_hull(triangles);
+  for (const std::string& assumed : make_solid(triangles))
+    warnings_.add("a mesh " + assumed, element + " '" + text::one_line(mesh.uri, 100) + "'");
+  check_sizes(triangles, true);
+  return std::make_shared<const TriangleMesh>(std::move(triangles));
+}
+
+const TriangleMesh& ShapeReader::triangles_of(const Named& mesh) {
+  auto found = loaded_.find(mesh.key());
+  if (found == loaded_.end())
+    found = loaded_.emplace(mesh.key(), load_meshes({{mesh.file, mesh.scale}}).front()).first;
+  if (!found->second.problem.empty()) throw std::runtime_error(found->second.problem);
+  const auto same = [&](const SceneFile& file) { return file.name == mesh.uri; };
+  if (std::none_of(files_.begin(), files_.end(), same)) files_.push_back({mesh.uri, mesh.file});
+  return found->second.mesh;
 }
 
 void ShapeReader::fail(const std::string& element, const std::string& what) const {
-  throw SceneError(urdf_file_ + ": " + element + ": " + text::one_line(what));
+  throw SceneError(source_ + ": " + element + ": " + text::one_line(what));
 }
 
 }  // namespace mrhi

@@ -1,7 +1,8 @@
-#include "urdf.h"
+#include <algorithm>
 
 #include "../text/text.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "urdf.h"
 
 namespace mrhi {
 namespace {
@@ -10,56 +11,40 @@ class Tree {
  public:
   Tree(const std::string& file, const UrdfDocument& document)
       : file_(file), model_(*document.model), root_(*model_.getRoot()) {
-    check_root();
     for (const auto& entry : model_.joints_) check_joint(*entry.second);
   }
 
-  PlacedLink place(const urdf::LinkConstSharedPtr& link) const {
-    PlacedLink placed{link, link->parent_joint->type == urdf::Joint::FIXED, Pose{}};
-    const urdf::Link* at = link.get();
-    for (std::size_t steps = 0; at != &root_; ++steps) {
-      if (steps > model_.links_.size()) fail("link '" + link->name + "' hangs in a loop of joints");
-      placed.in_world = to_pose(at->parent_joint->parent_to_joint_origin_transform) * placed.in_world;
-      at = model_.getLink(at->parent_joint->parent_link_name).get();
-    }
-    return placed;
+  bool is_fixed(const urdf::Link& link) const {
+    return &link != &root_ && link.parent_joint->type == urdf::Joint::FIXED;
+  }
+  /// The first link that fixed joints hold this one to, or the root; its place there.
+  LinkPart held_to(const urdf::LinkConstSharedPtr& link) const {
+    LinkPart at{link, Pose{}};
+    while (is_fixed(*at.link)) step_up(at);
+    return at;
+  }
+  Pose in_world(const urdf::LinkConstSharedPtr& link) const {
+    LinkPart at{link, Pose{}};
+    while (at.link.get() != &root_) step_up(at);
+    return at.pose;
   }
 
  private:
-  void check_root() const {
-    if (root_.collision_array.empty() && root_.visual_array.empty()) return;
-    fail("root link '" + root_.name +
-         "' has geometry; allowed: a root without any ('world'), others joined to it");
+  void step_up(LinkPart& at) const {
+    at.pose = to_pose(at.link->parent_joint->parent_to_joint_origin_transform) * at.pose;
+    at.link = model_.getLink(at.link->parent_joint->parent_link_name);
   }
 
   void check_joint(const urdf::Joint& joint) const {
-    const std::string what = "joint '" + joint.name + "' ";
-    const bool fixed = joint.type == urdf::Joint::FIXED;
-    if (!fixed && joint.type != urdf::Joint::FLOATING && !moves(joint)) {
-      // Other types urdfdom does not take.
-      fail(what +
-           "is planar; allowed: floating (a free body), fixed (a fixture), revolute, continuous, prismatic");
-    }
-    if (joint.mimic) fail(what + "mimics '" + joint.mimic->joint_name + "'; allowed: joints without mimic");
-    if (model_.getLink(joint.child_link_name)->parent_joint.get() != &joint) {
-      fail(what + "is a second parent of link '" + joint.child_link_name +
-           "'; allowed: one joint to each link");
-    }
-    if (joint.parent_link_name == root_.name || moves(joint)) return;
-    if (!fixed) {
-      fail(what + "floats on '" + joint.parent_link_name + "'; allowed: floating joints on the root '" +
-           root_.name + "'");
-    }
-    const urdf::JointSharedPtr above = model_.getLink(joint.parent_link_name)->parent_joint;
-    if (above && above->type != urdf::Joint::FIXED) {
-      fail(what + "is fixed to " + (moves(*above) ? "the body '" : "the free body '") +
-           joint.parent_link_name + (moves(*above) ? "', which moves" : "'") +
-           "; allowed: fixed joints on the root or on fixtures (a body may have several collision elements)");
-    }
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw SceneError(file_ + ": " + text::one_line(what));
+    const std::string what = file_ + ": joint '" + text::one_line(joint.name, 60) + "' ";
+    const bool known = joint.type == urdf::Joint::FIXED || joint.type == urdf::Joint::FLOATING;
+    if (!known && !moves(joint))  // other types urdfdom does not take
+      throw SceneError(what +
+                       "is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
+                       "that it is on), revolute, continuous, prismatic");
+    if (model_.getLink(joint.child_link_name)->parent_joint.get() != &joint)
+      throw SceneError(what + "is a second parent of link '" + joint.child_link_name +
+                       "'; allowed: one joint to each link");
   }
 
   const std::string& file_;
@@ -67,7 +52,27 @@ class Tree {
   const urdf::Link& root_;
 };
 
+/// Each mass that is given is 0, as other simulators have what never moves.
+bool is_weightless(const PlacedLink& placed) {
+  const auto given = [](const urdf::Link& link) { return link.inertial != nullptr; };
+  const auto none = [](const urdf::Link& link) { return !link.inertial || link.inertial->mass == 0.0; };
+  const auto& merged = placed.merged;
+  return none(*placed.link) &&
+         std::all_of(merged.begin(), merged.end(), [&](const LinkPart& part) { return none(*part.link); }) &&
+         (given(*placed.link) ||
+          std::any_of(merged.begin(), merged.end(), [&](const LinkPart& part) { return given(*part.link); }));
+}
+
+bool has_shape(const urdf::Link& link) {
+  return !link.collision_array.empty() || !link.visual_array.empty();
+}
+
 }  // namespace
+
+bool has_shape(const PlacedLink& placed) {
+  return has_shape(*placed.link) || std::any_of(placed.merged.begin(), placed.merged.end(),
+                                                [](const LinkPart& part) { return has_shape(*part.link); });
+}
 
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
@@ -79,11 +84,27 @@ Pose to_pose(const urdf::Pose& pose) {
   return {{pose.position.x, pose.position.y, pose.position.z}, Quaternion(q.w, q.x, q.y, q.z).normalized()};
 }
 
-std::vector<PlacedLink> place_links(const std::string& urdf_file, const UrdfDocument& document) {
+std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document) {
   const Tree tree(urdf_file, document);
+  const urdf::LinkConstSharedPtr root = document.model->getRoot();
   std::vector<PlacedLink> placed;
+  std::map<const urdf::Link*, std::size_t> bodies;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    if (link != document.model->getRoot()) placed.push_back(tree.place(link));
+    const bool fixture = link != root && tree.held_to(link).link == root;
+    if (link == root || (tree.is_fixed(*link) && !fixture)) continue;
+    bodies[link.get()] = placed.size();
+    placed.push_back({link, fixture, tree.in_world(link), {}});
+  }
+  for (const urdf::LinkConstSharedPtr& link : document.links) {
+    const LinkPart held = tree.held_to(link);
+    if (held.link == root || held.link == link) continue;
+    placed[bodies.at(held.link.get())].merged.push_back({link, held.pose});
+  }
+  for (PlacedLink& body : placed) {
+    if (body.fixed || moves(*body.link->parent_joint) || !is_weightless(body)) continue;
+    body.fixed = true;
+    document.warnings.add("links of mass 0 are fixtures; a mass, or no <inertial>, makes them move",
+                          "'" + body.link->name + "'");
   }
   return placed;
 }

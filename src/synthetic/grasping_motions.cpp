@@ -21,25 +21,27 @@ void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& 
   script.then(0.8, shifted(wrist, kApproach * retreat + aside), relaxed_posture());
 }
 
-/// Reaches for an object at rest, closes, carries and lets go.
 ScriptedMotion reach_and_carry(const char* object, const Vector3& aside) {
-  const Grasp grasp = shipped_grasp(object);
+  return reach_and_carry(object, shipped_grasp(object), scene_object(), aside);
+}
+
+}  // namespace
+
+ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
+                               const Vector3& aside) {
   const GraspPostures postures(grasp);
-  const Pose at = Pose{scene_object(), Quaternion::Identity()} * grasp.wrist;
+  const Pose at = Pose{object, Quaternion::Identity()} * grasp.wrist;
   const Pose before = shifted(at, kApproach * grasp.retreat);
-  Script script(object);
+  Script script(scene);
   script.then(0.0, shifted(before, aside), relaxed_posture());
   script.then(0.9, before, postures.open, -0.15 * grasp.retreat);
   script.then(0.8, at, postures.open);
   script.then(0.6, at, postures.near);
   script.then(0.7, at, postures.pressing).by_way_of(postures.touching, postures.touching_share);
   script.hold(0.4);
-  carry_and_release(script, grasp, postures, scene_object(), {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())},
-                    aside);
+  carry_and_release(script, grasp, postures, object, {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())}, aside);
   return script.motion();
 }
-
-}  // namespace
 
 ScriptedMotion grasp_cube() {
   return reach_and_carry("cube", {0.05, -kAside, 0.02});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fingertip_reach.h"
+#include "mr_hand_interaction/synthetic/scripted_motion.h"
 
 namespace mrhi {
 
@@ -31,6 +32,11 @@ struct GraspPostures {
 /// Of the shipped objects cube, ball, long_cuboid and flat_cuboid. Throws std::invalid_argument that lists
 /// them.
 Grasp shipped_grasp(const std::string& object);
+
+/// Reaches for an object at rest whose centre is at `object`, closes, carries and lets go; `scene` names its
+/// scene, `aside` is where the hand comes from [m, world].
+ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
+                               const Vector3& aside);
 
 /// Postures of a hand round an object from open to pressed deep into it. `depth` is what thumb and fingers
 /// together close beyond its surface; each tip has its share of it. Below 0 the tips are off the surface.

@@ -23,7 +23,10 @@ double in_range(const char* name, double value, double lowest, double highest) {
 }  // namespace
 
 SyntheticHand::SyntheticHand(const SyntheticHandOptions& options)
-    : motion_(make_motion(options.motion)),
+    : SyntheticHand(options, make_motion(options.motion)) {}
+
+SyntheticHand::SyntheticHand(const SyntheticHandOptions& options, const ScriptedMotion& motion)
+    : motion_(motion),
       side_(side_of(options.side)),
       rate_(in_range("rate", options.rate, 1.0, 1000.0)),
       noise_(in_range("noise", options.noise, 0.0, 10.0), options.seed) {}
@@ -44,7 +47,11 @@ JointsFrame SyntheticHand::next() {
 }
 
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options) {
-  SyntheticHand hand(options);
+  return record_motion(options, make_motion(options.motion));
+}
+
+std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, const ScriptedMotion& motion) {
+  SyntheticHand hand(options, motion);
   std::vector<JointsFrame> frames;
   while (hand.next_run() == 0) frames.push_back(hand.next());
   return frames;

@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kDeepest = 32;
 constexpr std::size_t kMostElements = 100'000;
+constexpr std::size_t kMostAttributes = 64;  // of an element: libraries look each up among those before it
 
 /// Bytes of the UTF-8 character that begins with `lead`; 0: none does.
 std::size_t length_of(unsigned char lead) {
@@ -17,17 +18,10 @@ std::size_t length_of(unsigned char lead) {
   return lead < 0xF5 ? 4 : 0;
 }
 
-bool is_text(const std::string& xml) {
-  for (std::size_t at = 0; at < xml.size();) {
-    const auto lead = static_cast<unsigned char>(xml[at]);
-    const std::size_t length = length_of(lead);
-    const bool blank = lead == '\n' || lead == '\r' || lead == '\t';
-    if (length == 0 || at + length > xml.size() || (lead < 0x20 && !blank)) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(xml[at + i]) & 0xC0) != 0x80) return false;
-    at += length;
-  }
-  return true;
+bool has_control_characters(const std::string& xml) {
+  return std::any_of(xml.begin(), xml.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+  });
 }
 
 /// Follows tags without building anything.
@@ -57,6 +51,7 @@ class Tags {
 
   int deepest() const { return deepest_; }
   std::size_t elements() const { return elements_; }
+  std::size_t attributes() const { return attributes_; }
   bool declares() const { return declares_; }
   bool strange() const { return strange_; }
 
@@ -85,9 +80,12 @@ class Tags {
   void tag() {
     const bool closes = begins("</");
     char quote = 0;
+    std::size_t attributes = 0;
     for (++at_; at_ < xml_.size() && (quote || xml_[at_] != '>'); ++at_) {
+      if (!quote && xml_[at_] == '=') ++attributes;
       if (quote ? xml_[at_] == quote : xml_[at_] == '"' || xml_[at_] == '\'') quote = quote ? 0 : xml_[at_];
     }
+    attributes_ = std::max(attributes_, attributes);
     if (closes) {
       depth_ = std::max(0, depth_ - 1);
       return;
@@ -98,17 +96,29 @@ class Tags {
   }
 
   const std::string& xml_;
-  std::size_t at_ = 0, elements_ = 0;
+  std::size_t at_ = 0, elements_ = 0, attributes_ = 0;
   int depth_ = 0, deepest_ = 0;
   bool declares_ = false, strange_ = false;
 };
 
 }  // namespace
 
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
+    if (length == 0 || at + length > text.size()) return false;
+    for (std::size_t i = 1; i < length; ++i)
+      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
+    at += length;
+  }
+  return true;
+}
+
 std::optional<std::string> xml_danger(const std::string& xml) {
   if (xml.size() > kMostXmlBytes)
     return "is longer than " + std::to_string(kMostXmlBytes) + " bytes; allowed: at most that";
-  if (!is_text(xml)) return "is no text; allowed: UTF-8 without control characters";
+  if (has_control_characters(xml) || !is_utf8(xml))
+    return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
   Tags tags(xml);
   tags.follow();
   if (tags.declares()) return "has a document type; allowed: none";
@@ -118,6 +128,9 @@ std::optional<std::string> xml_danger(const std::string& xml) {
     return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
   if (tags.elements() > kMostElements)
     return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMostElements);
+  if (tags.attributes() > kMostAttributes)
+    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
+           std::to_string(kMostAttributes);
   return {};
 }
 

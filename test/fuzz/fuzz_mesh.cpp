@@ -2,6 +2,7 @@
 // others: its triangles, three bytes for a vertex and three for the triangle on the vertices so far.
 #include "fuzz/target.h"
 #include "scene/mesh_loader.h"
+#include "scene/solid_mesh.h"
 #include "support/fixtures.h"
 
 namespace {
@@ -29,7 +30,9 @@ TriangleMesh mesh_of(fuzzing::Bytes& bytes) {
 
 TriangleMesh mesh_of_file(int kind, const std::string& text) {
   static const char* const names[] = {"mesh.stl", "mesh.obj", "mesh.dae"};
-  return load_mesh(fuzzing::folder().write(names[kind], text), Vector3::Ones());
+  LoadedMesh loaded = load_meshes({{fuzzing::folder().write(names[kind], text), Vector3::Ones()}}).front();
+  if (!loaded.problem.empty()) throw std::runtime_error(loaded.problem);
+  return loaded.mesh;
 }
 
 void touch(const TriangleMesh& mesh) {

@@ -36,9 +36,10 @@ struct TestBag {
     bag.write(topic, to_ros_time(time), message);
   }
 
-  void add_leap(const std::string& topic, const JointsFrame& frame, std::size_t cut = 0) {
+  void add_leap(const std::string& topic, const JointsFrame& frame, std::size_t cut = 0,
+                const std::string& frame_id = "leap_hands") {
     topic_tools::ShapeShifter message;
-    write_leap(frame, "leap_hands", 0, static_cast<float>(kRate), message);
+    write_leap(frame, frame_id, 0, static_cast<float>(kRate), message);
     std::vector<std::uint8_t> bytes(message.size());
     ros::serialization::OStream out(bytes.data(), message.size());
     message.write(out);
@@ -48,15 +49,20 @@ struct TestBag {
   }
 
   void add_static(const std::string& parent, const std::string& child, const Vector3& place) {
+    add_transform("/tf_static", kBegin, 0, parent, child, place);
+  }
+  void add_transform(const std::string& topic, Nanoseconds time, Nanoseconds stamp, const std::string& parent,
+                     const std::string& child, const Vector3& place) {
     tf2_msgs::TFMessage message;
     message.transforms.resize(1);
+    message.transforms[0].header.stamp = to_ros_time(stamp);
     message.transforms[0].header.frame_id = parent;
     message.transforms[0].child_frame_id = child;
     message.transforms[0].transform.translation.x = place.x();
     message.transforms[0].transform.translation.y = place.y();
     message.transforms[0].transform.translation.z = place.z();
     message.transforms[0].transform.rotation.w = 1.0;
-    add("/tf_static", kBegin, message);
+    add(topic, time, message);
   }
 
   std::vector<SourceFrame> read(const std::optional<std::string>& topic = {},
@@ -125,6 +131,54 @@ TEST(BagInput, the_devices_place_is_the_given_else_that_of_tf_static) {
   }
 }
 
+// A device on a headset: at each frame's stamp between the transforms about it, and the latest where none has
+// come since.
+TEST(BagInput, a_device_that_moves_is_where_tf_has_it_at_each_frames_stamp) {
+  constexpr Nanoseconds kHalf = 5'000'000;
+  TestBag bag("moving.bag");
+  for (int i = 0; i < 6; ++i) {
+    const Nanoseconds stamp = kBegin + 2 * kHalf * i;
+    bag.add_transform("/tf", stamp, stamp, "world", "leap_hands", {0.1 * i, 0, 0});
+    if (i == 0) continue;
+    JointsFrame frame = frames()[0];
+    frame.stamp = stamp - kHalf;
+    bag.add_leap("/leap_motion/leap_device",
+                 frame);  // recorded half a period before the transform that follows
+    frame.stamp = stamp;
+    bag.add_transform("/tf", stamp, stamp, "world", "other", {9, 9, 9});
+    bag.add_leap("/leap_motion/leap_device", frame);
+  }
+  const auto read = bag.read();
+  ASSERT_EQ(read.size(), 10u);
+  const auto palm = [](double x) {
+    return complete_hand(frames()[0].hands[0], Pose{{x, 0, 0}, Quaternion::Identity()}).palm.position;
+  };
+  for (int i = 1; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(2 * i - 2);
+    ASSERT_TRUE(read[k].frame && read[k + 1].frame) << read[k].detail;
+    EXPECT_TRUE(read[k].frame->hands[0].palm.position.isApprox(palm(0.1 * (i - 1)), 1e-12)) << "the latest";
+    EXPECT_TRUE(read[k + 1].frame->hands[0].palm.position.isApprox(palm(0.1 * i), 1e-12))
+        << "the stamp's own";
+  }
+}
+
+TEST(BagInput, hands_in_a_frame_that_nothing_places_are_refused_but_for_the_leaps_own) {
+  for (const char* frame_id : {"camera", "tracker/left_hand", "", "leap_hands_2"}) {
+    TestBag bag("unplaced.bag");
+    bag.add_static("base", "camera", {});
+    bag.add_leap("/leap_motion/leap_device", frames()[0], 0, frame_id);
+    const auto read = bag.read();
+    EXPECT_FALSE(read.at(0).frame) << frame_id;
+    EXPECT_EQ(read[0].reason, "no transform");
+    EXPECT_NE(read[0].detail.find("--hand-transform"), std::string::npos) << read[0].detail;
+  }
+  TestBag bag("world.bag");
+  bag.add_leap("/leap_motion/leap_device", frames()[0], 0, "/world");
+  const auto read = bag.read();
+  ASSERT_TRUE(read.at(0).frame) << read[0].detail;
+  EXPECT_EQ(read[0].frame->hands[0].palm.position, complete_hand(frames()[0].hands[0], Pose{}).palm.position);
+}
+
 TEST(BagInput, a_damaged_message_is_refused_and_the_rest_is_read) {
   TestBag bag("damaged.bag");
   bag.add_leap("/leap_motion/leap_device", frames()[0], 40);
@@ -165,6 +219,7 @@ TEST(BagInput, pose_arrays_are_taken_and_wrong_counts_refused) {
 geometry_msgs::PoseArray pose_array(const JointsFrame& frame) {
   geometry_msgs::PoseArray array;
   array.header.stamp = to_ros_time(frame.stamp);
+  array.header.frame_id = "leap_hands";
   for (const HandJoints& hand : frame.hands) {
     array.poses.resize(1);
     array.poses[0].position = to_message(hand.wrist.value());

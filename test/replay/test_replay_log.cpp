@@ -37,8 +37,8 @@ class Entries : public LogSource {
 class Live {
  public:
   Live(const std::string& urdf, const Configuration& configuration)
-      : world_(world_of_file(urdf, configuration)),
-        live_(load_scene(urdf, scene_options(configuration)), configuration) {}
+      : live_(load_scene(urdf, scene_options(configuration)), configuration),
+        world_(world_of_file(urdf, live_.simulation().scene(), configuration)) {}
 
   void begin_recording() {
     if (!recorded_) entries.clear();
@@ -98,8 +98,8 @@ class Live {
     return entries.back();
   }
 
-  World world_;
   LiveSimulation live_;
+  World world_;
   std::uint64_t sequence_ = 0;
   bool recorded_ = false;
 };
@@ -301,6 +301,36 @@ TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
   const YAML::Node summary = Replayed().run(live);
   EXPECT_EQ(summary["live_run"]["same"].as<std::size_t>(), live.entries.size());
   EXPECT_EQ(summary["materials"]["part"]["static_friction"].as<double>(), 0.7);
+}
+
+// A bag goes to others: a URDF of a stranger must not put files of this machine into it.
+TEST(ReplayLog, a_recording_has_the_scenes_meshes_and_no_other_file_that_the_urdf_names) {
+  const test::TemporaryFolder folder;
+  std::filesystem::copy("config/meshes/spanner.stl", folder / "part.stl");
+  std::ofstream(folder / "secret") << "a secret";
+  std::ofstream(folder / "secret.obj") << "a secret";
+  const std::string secret = folder / "secret";
+  const std::string urdf = "<robot name='own'><!-- filename=\"" + secret + "\" --><link name='part'>" +
+                           "<visual><geometry><mesh filename='" + secret + "'/></geometry></visual>" +
+                           "<visual><geometry><mesh filename='secret.obj'/></geometry></visual>" +
+                           "<collision><geometry><mesh filename='" + (folder / "part.stl") +
+                           "'/></geometry></collision></link><sensor filename='" + secret + "'/></robot>";
+  std::ofstream(folder / "own.urdf") << urdf;
+  Live live(folder / "own.urdf", Configuration());
+  live.begin_recording();
+  const auto names = [](const RecordedFiles& files) {
+    std::vector<std::string> all;
+    for (const RecordedFile& file : files) all.push_back(file.name);
+    return all;
+  };
+  EXPECT_EQ(names(live.entries.at(0).files), (std::vector<std::string>{"scene.urdf", folder / "part.stl"}));
+  Spawn spawn;
+  spawn.request.name = "other";
+  spawn.request.urdf = urdf;
+  spawn.request.pose.position = {1, 0, 0};
+  live.change(spawn);
+  EXPECT_EQ(names(live.entries.at(1).files),
+            (std::vector<std::string>{folder / "part.stl", "spawn/other.urdf"}));
 }
 
 TEST(ReplayLog, changes_keep_their_bits_as_text) {

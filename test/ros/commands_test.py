@@ -20,10 +20,10 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
 from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, shortened, to_run  # noqa: E402
 
-PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "compare", "doctor",
-            "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node", "marker_relay_node", "plan_study",
-            "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
-            "training_keys", "training_node")
+PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "check_scene", "compare",
+            "doctor", "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node",
+            "marker_relay_node", "plan_study", "power_study", "replay", "run_when", "set", "simulated_operator_node",
+            "simulated_study", "synthetic_hand_node", "training_keys", "training_node")
 
 
 class CommandsTest(unittest.TestCase):
@@ -103,6 +103,24 @@ class CommandsTest(unittest.TestCase):
             if done.returncode != 0 or len(done.stdout) < 80 or done.stderr:
                 failures.append("%s: %d\n%s%s" % (program, done.returncode, done.stdout, done.stderr))
         self.assertEqual(failures, [])
+
+    def test_check_scene_tells_what_became_of_each_scene_and_whether_all_load(self):
+        status, said = self.user.run(["rosrun", NAME, "check_scene", "part.urdf", "rack", "--picture", "rack.svg"])
+        self.assertEqual(status, 0, said)
+        self.assertRegex(said, r"part +free +150 +72 +30, 40, 60 +1 +0.8 +0.3")
+        self.assertRegex(said, r"shelf +fixture ")
+        with open(os.path.join(self.user.folder, "rack.svg"), encoding="ascii") as picture:
+            self.assertGreater(picture.read().count("<path"), 100)
+        with open(os.path.join(self.user.folder, "bare.urdf"), "w", encoding="ascii") as file:
+            file.write("<robot name='b'><link name='b.1'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision>"
+                       "</link></robot>")
+        status, said = self.user.run(["rosrun", NAME, "check_scene", "none.urdf", "bare.urdf", "--density", "500"])
+        self.assertEqual(status, 1)
+        self.assertIn("none.urdf", said)
+        self.assertRegex(said, r"b_1 +free +500 ")
+        self.assertRegex(said, r"warning: masses .*'b_1' 0.5 kg")
+        for words in ([], ["cube", "--density", "0"], ["cube", "--colour"]):
+            self.assertEqual(self.user.run(["rosrun", NAME, "check_scene", *words])[0], 2, words)
 
     def test_a_node_refuses_an_argument_that_it_does_not_know(self):
         for program in [name for name in PROGRAMS if name.endswith("_node")]:

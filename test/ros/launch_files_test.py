@@ -13,7 +13,9 @@ import roslib.packages
 import rosbag
 import rospkg
 import rostest
+from geometry_msgs.msg import TransformStamped
 from std_msgs.msg import Empty
+from tf2_msgs.msg import TFMessage
 
 PACKAGE = "mr_hand_interaction"
 FOLDER = os.path.join(rospkg.RosPack().get_path(PACKAGE), "launch")
@@ -144,7 +146,19 @@ class LaunchFilesTest(unittest.TestCase):
                 self.assertIn(why, said)
                 self.assertEqual(said.count("\n"), 1, said)
                 if path != paths["other"]:  # whoever plays it says so
-                    self.assertEqual(self.run_when(path, "bag_without", "/tf_static", "echo", "placed"), (0, ""))
+                    self.assertEqual(self.run_when(path, "bag_without", "leap_hands", "echo", "placed"), (0, ""))
+
+    def test_a_mount_is_for_bags_in_which_nothing_places_the_device(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for topic, frame, placed in (("/tf", "leap_hands", False), ("/tf_static", "/leap_hands", False),
+                                         ("/tf", "cube", True), ("/other", "leap_hands", True)):
+                path = os.path.join(folder, "a.bag")
+                with rosbag.Bag(path, "w") as bag:
+                    transform = TransformStamped(child_frame_id=frame)
+                    transform.header.frame_id = "world"
+                    bag.write(topic, TFMessage([transform]))
+                self.assertEqual(self.run_when(path, "bag_without", "leap_hands", "echo", "placed"),
+                                 (0, "placed\n" if placed else ""), (topic, frame))
 
     def test_a_bag_that_cannot_be_played_to_its_end_is_named(self):
         with tempfile.TemporaryDirectory() as folder:

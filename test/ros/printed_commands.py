@@ -156,9 +156,22 @@ class User:
             file.write("points:\n")
             for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
                 file.write("  - {name: p%d, world: [%g, %g, %g], device: [%g, %g, %g]}\n" % (index, x, y, z, x, z, -y))
+        self.write_mesh("part.stl")
         for name, urdf in printed_scenes():
             with open(os.path.join(self.folder, name + ".urdf"), "w", encoding="utf-8") as file:
                 file.write(urdf)
+
+    def write_mesh(self, name):
+        """A block of 30 by 40 by 60 mm, as a CAD program writes it."""
+        corners = [(30 * x, 40 * y, 60 * z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+        with open(os.path.join(self.folder, name), "w", encoding="ascii") as file:
+            file.write("solid part\n")
+            for a, b, c, d in quads:
+                for triangle in ((a, b, c), (a, c, d)):
+                    file.write("facet normal 0 0 0\nouter loop\n%sendloop\nendfacet\n" %
+                               "".join("vertex %d %d %d\n" % corners[corner] for corner in triangle))
+            file.write("endsolid part\n")
 
     def write_bag(self, name, of_a_live_run):
         """Three seconds of the scripted hand; a live run's says what the simulation took, here frames without a hand."""

@@ -4,6 +4,7 @@
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/task.h"
 #include "scene/scene_files.h"
+#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -118,15 +119,40 @@ TEST(HostileUrdf, that_is_large_is_refused) {
   test::expect_words(urdf_error("<robot name=\"r\">" + repeated("<a/>", 100'001)), {"at most 100000"});
 }
 
-// TinyXML 2.6.2 steps over the end of its buffer on a lead byte that lacks its continuation, and stands still
-// on some of them.
-TEST(HostileUrdf, that_is_no_text_is_refused) {
+// TinyXML 2.6.2 steps over the end of its buffer on a lead byte that lacks its continuation: it never sees
+// one.
+TEST(HostileUrdf, that_is_no_utf8_is_read_as_latin1_and_control_characters_are_refused) {
   const std::string good = test::thing(test::kInertial + std::string(test::kBox));
-  for (const char* bytes : {"\xEF", "\xEF\xBB", "\xC0\x80", "\xF5", "\xE2\x28\xA1", "\x80", "\x01"}) {
-    test::expect_words(urdf_error(good + bytes), {"is no text", "UTF-8"});
-    test::expect_words(urdf_error("<robot name=\"" + std::string(bytes) + "\">"), {"is no text", "UTF-8"});
+  for (const char* bytes : {"\xEF", "\xEF\xBB", "\xC0\x80", "\xF5", "\xE2\x28\xA1", "\x80"}) {
+    EXPECT_EQ(urdf_error("<!-- " + std::string(bytes) + " -->" + good), "");
+    test::expect_words(urdf_error("<robot name=\"" + std::string(bytes) + "\">"), {"bad URDF"});
   }
+  test::expect_words(urdf_error(good + "\x01"), {"is no text", "UTF-8"});
   test::expect_words(urdf_error(good + std::string(1, '\0')), {"is no text", "UTF-8"});
+}
+
+// Libraries look each attribute up among those before it: 200 000 of them took a minute.
+TEST(HostileUrdf, that_has_attributes_without_end_is_refused) {
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += " a" + std::to_string(i) + "=\"\"";
+  test::expect_words(urdf_error("<robot name=\"r\"><link" + many + "/></robot>"),
+                     {"65 attributes", "at most 64"});
+}
+
+TEST(HostileUrdf, with_names_of_any_length_ends_in_one_line) {
+  const std::string longest(40'000, 'x');
+  for (const std::string& element : {"<mesh filename=\"" + longest + "\"/>", "<" + longest + "/>"})
+    EXPECT_LT(urdf_error(test::thing(std::string(test::kInertial) + "<collision><geometry>" + element +
+                                     "</geometry></collision>"))
+                  .size(),
+              1000u);
+}
+
+TEST(HostileUrdf, with_angles_that_mean_nothing_is_refused) {
+  const std::string body = test::kInertial + std::string(test::kBox);
+  for (const char* rpy : {"1e300 0 0", "0 1e4 0", "0 0 -1e19", "0 0 inf"})
+    test::expect_words(urdf_error(test::thing(body, std::string("xyz=\"0 0 0\" rpy=\"") + rpy + "\"")),
+                       {"rpy"});
 }
 
 TEST(HostileUrdf, that_declares_entities_is_refused) {
@@ -157,6 +183,35 @@ TEST(Overlaps, of_bodies_at_load_are_refused_and_named) {
   const std::string message = urdf_error(test::robot(boxes));
   test::expect_words(message, {"'box1' is ", " m in 'box0'"});
   EXPECT_LT(message.size(), 600u);
+}
+
+// Faces that coincide have no corner within the other mesh: what they share is found by its volume.
+TEST(Overlaps, of_meshes_inside_each_other_are_refused_whatever_coincides) {
+  const test::Folder folder;
+  std::string cube = "";
+  for (int i = 0; i < 8; ++i)
+    cube += "v " + std::to_string(i & 1 ? 0.03 : -0.03) + " " + std::to_string(i & 2 ? 0.03 : -0.03) + " " +
+            std::to_string(i & 4 ? 0.03 : -0.03) + "\n";
+  folder.write("cube.obj", cube + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  const std::string mesh = test::kInertial + std::string(
+                                                 "<collision><geometry><mesh filename=\"cube.obj\"/>"
+                                                 "</geometry></collision>");
+  const auto error = [&](const std::string& other, const std::string& place) {
+    return test::scene_error(folder.write(
+        "s.urdf",
+        test::robot(test::link("a", mesh) + test::joint("floating", "world", "a") + test::link("b", other) +
+                    test::joint("floating", "world", "b", "xyz=\"" + place + "\""))));
+  };
+  for (const char* place :
+       {"0 0 0", "0.001 0 0", "0 0.03 0", "0 0 0.0585", "0.03 0.03 0", "0.02 -0.01 0.005"})
+    test::expect_words(error(mesh, place), {"'b'", "'a'", "at most 0.001 m"});
+  for (const char* place : {"0.0595 0 0", "0 0.06 0", "0.06 0.06 0", "0 0 0.07"})
+    EXPECT_EQ(error(mesh, place), "") << place;
+  const std::string box =
+      test::kInertial +
+      std::string("<collision><geometry><box size=\"0.06 0.06 0.06\"/></geometry></collision>");
+  test::expect_words(error(box, "0.03 0 0"), {"'b'", "'a'"});
+  EXPECT_EQ(error(box, "0.06 0 0"), "");
 }
 
 TEST(Overlaps, of_fixtures_with_each_other_are_their_own_affair) {
@@ -210,20 +265,35 @@ TEST(SceneError, is_one_line_whatever_the_file_is_called) {
   }
 }
 
-TEST(Names, of_links_are_short_and_of_letters_digits_bars_and_dashes) {
-  const auto named = [](const std::string& name) {
-    const std::string body = test::kInertial + std::string(test::kBox);
-    return urdf_error(test::robot(test::link(name, body) + test::joint("floating", "world", name)));
+TEST(Names, of_links_are_made_short_and_of_letters_digits_bars_and_dashes_and_that_is_said) {
+  const test::Folder folder;
+  const std::string body = test::kInertial + std::string(test::kBox);
+  const auto named = [&](const std::string& name) {
+    return load_scene(
+        folder.write("s.urdf", test::robot(test::link(name, body) + test::joint("floating", "world", name))),
+        {});
   };
-  EXPECT_EQ(named("Cube_2-b"), "");
-  EXPECT_EQ(named(std::string(64, 'a')), "");
+  for (const std::string& name : {std::string("Cube_2-b"), std::string(64, 'a')}) {
+    EXPECT_EQ(named(name).bodies.at(0).name, name);
+    EXPECT_TRUE(named(name).warnings.empty());
+  }
   for (const std::string& name :
        {std::string("../x"), std::string("=1+1"), std::string("+1"), std::string("-1"), std::string("@x"),
-        std::string("a b"), std::string("W\xC3\xBC"), std::string(65, 'a'), std::string(100'000, 'a')}) {
-    const std::string message = named(name);
-    test::expect_words(message, {"64 letters, digits, '_' and '-'"});
-    EXPECT_LT(message.size(), 500u);
+        std::string("a b"), std::string("W\xC3\xBC"), std::string(65, 'a'), std::string(100'000, 'a'),
+        std::string("a,b"), std::string("a/b"), std::string("Cup.001")}) {
+    const Scene scene = named(name);
+    EXPECT_TRUE(is_name(scene.bodies.at(0).name)) << scene.bodies[0].name;
+    test::expect_words(scene.warnings.at(0), {"64 letters, digits, '_' and '-'", scene.bodies[0].name});
+    EXPECT_LT(scene.warnings[0].size(), 700u);
   }
+  // Names that become the same are told apart, and one that may stay stays.
+  const Scene two = load_scene(
+      folder.write("s.urdf", test::robot(test::link("a.b", body) + test::link("a_b", body) +
+                                         test::joint("floating", "world", "a.b") +
+                                         test::joint("floating", "world", "a_b", "xyz=\"1 0 0\""))),
+      {});
+  EXPECT_EQ(two.bodies.at(0).name, "a_b_2");
+  EXPECT_EQ(two.bodies.at(1).name, "a_b");
 }
 
 }  // namespace

@@ -145,6 +145,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "material/restitution",
                                           "material/static_friction",
                                           "material/stiffness",
+                                          "scene/density",
                                           "step",
                                           "tracking/hold_time",
                                           "tracking/max_speed"};

@@ -3,8 +3,8 @@
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/shape.h"
 #include "mr_hand_interaction/synthetic/random.h"
-#include "scene/mesh_loader.h"
 #include "scene/shape_inertia.h"
+#include "scene/solid_mesh.h"
 #include "support/tessellated.h"
 
 /// What every shape answers, against what its definition says of a great many places.
@@ -125,7 +125,7 @@ TEST_P(KnownShape, inertia_is_that_of_its_parts_wherever_they_are_placed) {
   const Matrix3 own = inertia_of({{GetParam().shape, {}}}, 0.2);
   EXPECT_EQ(own, own.transpose());
   for (int i = 0; i < 20; ++i) {
-    const Pose pose{random.gaussian_vector(0.05), any_turn(random)};
+    const Pose pose{0.1 * random.gaussian_vector(1.0).normalized(), any_turn(random)};
     const Matrix3 turn = pose.orientation.toRotationMatrix();
     const Vector3& p = pose.position;
     // Steiner: the shapes here have their centres of mass at their origins.
@@ -205,15 +205,69 @@ TEST(MakeSolid, turns_outward_what_is_turned_inward_and_changes_nothing_twice) {
   EXPECT_EQ(turned.triangles, good.triangles);
 }
 
-TEST(MakeSolid, refuses_what_lacks_a_triangle_or_has_one_twice_or_turned) {
-  const TriangleMesh good = testing::tessellated_box({0.03, 0.02, 0.01}, 2);
-  TriangleMesh open = good, doubled = good, turned = good;
-  std::swap(turned.triangles[7][0], turned.triangles[7][1]);
-  EXPECT_THROW(make_solid(turned), std::runtime_error);
-  open.triangles.pop_back();
-  EXPECT_THROW(make_solid(open), std::runtime_error);
+// What one exporter or another writes: each face both ways, one twice, one turned, one missing of many.
+TEST(MakeSolid, repairs_the_faults_of_exporters_and_assumes_nothing) {
+  const TriangleMesh good = testing::tessellated_box({0.03, 0.02, 0.01}, 30);
+  const double volume = signed_volume(good);
+  TriangleMesh both_ways = good, doubled = good, turned = good, holed = good;
+  for (std::array<int, 3> t : good.triangles) both_ways.triangles.push_back({{t[0], t[2], t[1]}});
   doubled.triangles.push_back(doubled.triangles.front());
-  EXPECT_THROW(make_solid(doubled), std::runtime_error);
+  std::swap(turned.triangles[7][0], turned.triangles[7][1]);
+  holed.triangles.erase(holed.triangles.begin() + 40);
+  for (TriangleMesh* mesh : {&both_ways, &doubled, &turned, &holed}) {
+    EXPECT_EQ(make_solid(*mesh), std::vector<std::string>{});
+    EXPECT_NEAR(signed_volume(*mesh), volume, 1e-12);
+    EXPECT_EQ(mesh->triangles.size(), good.triangles.size());
+  }
+}
+
+TriangleMesh boxes(const std::vector<std::pair<Vector3, Vector3>>& sizes_and_places) {
+  TriangleMesh all;
+  for (const auto& [half, place] : sizes_and_places) {
+    const TriangleMesh box = testing::tessellated_box(half, 1);
+    const int first = static_cast<int>(all.vertices.size());
+    for (const Vector3& vertex : box.vertices) all.vertices.push_back(vertex + place);
+    for (const auto& t : box.triangles) all.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
+  }
+  return all;
+}
+
+double solid_volume(TriangleMesh mesh, std::size_t turned_from = 1000) {
+  for (std::size_t t = turned_from; t < mesh.triangles.size(); ++t)
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  EXPECT_EQ(make_solid(mesh), std::vector<std::string>{});
+  return Mesh{std::make_shared<const TriangleMesh>(mesh), "", Vector3::Ones()}.moments().volume;
+}
+
+// 1e-3: what parts share is measured along lines.
+TEST(MakeSolid, counts_parts_that_are_apart_overlap_or_hold_each_other_once) {
+  const Vector3 half = Vector3::Constant(0.02), far(0.1, 0, 0), near(0.03, 0.001, 0.002);
+  const double one = 6.4e-5;
+  EXPECT_NEAR(solid_volume(boxes({{half, Vector3::Zero()}, {half, far}}), 12), 2 * one, 1e-15);
+  EXPECT_NEAR(solid_volume(boxes({{half, Vector3::Zero()}, {half, near}})), 2 * one - 0.01 * 0.039 * 0.038,
+              1e-3 * one);
+  EXPECT_NEAR(solid_volume(boxes({{half, Vector3::Zero()}, {0.5 * half, Vector3::Zero()}})), one, 1e-15);
+  // Turned against the one around it, it is a cavity.
+  EXPECT_NEAR(solid_volume(boxes({{half, Vector3::Zero()}, {0.5 * half, Vector3::Zero()}}), 12), 0.875 * one,
+              1e-15);
+}
+
+TEST(MakeSolid, takes_the_hull_of_what_is_open_says_so_and_leaves_sheets_out) {
+  TriangleMesh open = testing::tessellated_box({0.03, 0.02, 0.01}, 1);
+  open.triangles.resize(open.triangles.size() - 2);
+  const std::vector<std::string> assumed = make_solid(open);
+  ASSERT_EQ(assumed.size(), 1u);
+  EXPECT_NE(assumed[0].find("convex hull"), std::string::npos);
+  EXPECT_NEAR(signed_volume(open), 8 * 0.03 * 0.02 * 0.01, 1e-15);
+  TriangleMesh sheet = boxes({{Vector3::Constant(0.02), Vector3::Zero()}});
+  const int first = static_cast<int>(sheet.vertices.size());
+  for (const Vector3& v : {Vector3(0, 0, 0.1), Vector3(0.1, 0, 0.1), Vector3(0, 0.1, 0.1)})
+    sheet.vertices.push_back(v);
+  sheet.triangles.push_back({{first, first + 1, first + 2}});
+  EXPECT_EQ(make_solid(sheet), std::vector<std::string>{"has flat sheets, which are left out"});
+  EXPECT_NEAR(signed_volume(sheet), 6.4e-5, 1e-15);
+  TriangleMesh only_sheet{sheet.vertices, {{{first, first + 1, first + 2}}}};
+  EXPECT_THROW(make_solid(only_sheet), NoVolume);
 }
 
 }  // namespace

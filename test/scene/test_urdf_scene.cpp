@@ -124,8 +124,9 @@ TEST(UrdfScene, AMaterialMayBeNamedOnceForAll) {
       R"(<visual><geometry><sphere radius="1"/></geometry><material name="blue"/></visual>)";
   const Scene scene = load(robot(blue + link("a", kBox + visual) + joint("fixed", "world", "a")));
   EXPECT_EQ((std::array<float, 4>{{0, 0, 1, 1}}), scene.bodies.at(0).visuals.at(0).rgba);
-  test::expect_words(error(robot(link("a", kBox + visual) + joint("fixed", "world", "a"))),
-                     {"'a'", "'blue'"});
+  const Scene grey = load(robot(link("a", kBox + visual) + joint("fixed", "world", "a")));
+  EXPECT_EQ(Visual().rgba, grey.bodies.at(0).visuals.at(0).rgba);
+  test::expect_words(grey.warnings.at(0), {"'a'", "'blue'"});
 }
 
 TEST(UrdfScene, WhatHasNoVisualIsSeenByItsCollisionShapes) {
@@ -145,7 +146,7 @@ TEST(UrdfScene, RefusesWhatIsNoUrdf) {
 }
 
 TEST(UrdfScene, RefusesAWrongMass) {
-  for (const char* mass : {"0", "-0.1"}) {
+  for (const char* mass : {"1e-09", "-0.1"}) {
     test::expect_words(error(thing(inertial(mass, {1, 1, 1}) + kBox)),
                        {"'thing'", "mass", mass, "from 1e-06 to 1e+06 kg"});
   }
@@ -160,8 +161,11 @@ TEST(UrdfScene, RefusesAnInertiaThatNoRigidBodyHas) {
   EXPECT_EQ("", error(thing(inertial("1", {1, 1, 2.01}) + kBox))) << "a thin plate, rounded";
 }
 
-TEST(UrdfScene, RefusesAFreeBodyWithoutInertialOrCollision) {
-  test::expect_words(error(thing(kBox)), {"'thing'", "inertial"});
+TEST(UrdfScene, RefusesAFreeBodyWithoutCollisionUnlessItHasAVisual) {
+  const Scene seen =
+      load(thing(std::string(kInertial) + R"(<visual><geometry><sphere radius="0.1"/></geometry></visual>)"));
+  EXPECT_TRUE(std::holds_alternative<Sphere>(seen.bodies.at(0).shapes.at(0).shape));
+  test::expect_words(seen.warnings.at(0), {"'thing'", "visuals"});
   test::expect_words(error(thing(kInertial)), {"'thing'", "collision", "255"});
 }
 
@@ -195,8 +199,8 @@ TEST(UrdfScene, RefusesJointsThatMakeNoScene) {
   const std::string two = link("a", content) + link("b", content) + joint("floating", "world", "a");
   test::expect_words(error(robot(link("a", content) + joint("planar", "world", "a"))),
                      {"'world_a'", "planar", "floating", "fixed", "revolute"});
-  test::expect_words(error(robot(two + joint("floating", "a", "b"))), {"'a_b'", "floats on 'a'", "'world'"});
-  test::expect_words(error(robot(two + joint("fixed", "a", "b"))), {"'a_b'", "free body 'a'", "collision"});
+  const Scene floating = load(robot(two + joint("floating", "a", "b", R"(xyz="0.3 0 0")")));
+  EXPECT_EQ(2u, floating.bodies.size()) << "free of what it is placed by";
   test::expect_words(error(robot(two)), {"root"});
   test::expect_words(error(robot(two + joint("floating", "world", "c"))), {"c"});
   test::expect_words(error(robot(two + joint("fixed", "world", "b") + joint("fixed", "b", "a"))),
@@ -206,7 +210,7 @@ TEST(UrdfScene, RefusesJointsThatMakeNoScene) {
 TEST(UrdfScene, RefusesLoopsOfJoints) {
   const std::string loop =
       link("a", kBox) + link("b", kBox) + joint("fixed", "a", "b") + joint("fixed", "b", "a");
-  test::expect_words(error(robot(loop)), {"'a'", "loop", "joined to one root link"});
+  test::expect_words(error(robot(loop)), {"'a'", "loop", "a tree of links"});
   const std::string beside = link("a", kBox) + link("b", kBox) + joint("fixed", "world", "a");
   test::expect_words(error(robot(beside + joint("fixed", "b", "b"))), {"'b'", "loop"});
   // As many joints as there is room for, none of which ends: in no more than their number's time.
@@ -218,16 +222,135 @@ TEST(UrdfScene, RefusesLoopsOfJoints) {
             std::string::npos);
 }
 
-TEST(UrdfScene, RefusesARootWithGeometry) {
-  test::expect_words(error("<robot name=\"x\">" + link("table", kBox) + "</robot>"), {"'table'", "geometry"});
+const char* const kBall = R"(<collision><geometry><sphere radius="0.02"/></geometry></collision>)";
+
+TEST(UrdfScene, ARootWithAShapeIsAFreeBodyUnlessItIsTheWorldOrWeighsNothing) {
+  const auto root = [](const std::string& name, const std::string& content) {
+    return load("<robot name=\"x\">" + link(name, content) + "</robot>");
+  };
+  const Scene cup = root("cup", std::string(kInertial) + kBox);
+  ASSERT_EQ(1u, cup.bodies.size());
+  EXPECT_FALSE(cup.bodies[0].fixed);
+  EXPECT_TRUE(cup.bodies[0].start.position.isZero());
+  EXPECT_TRUE(cup.warnings.empty());
+  EXPECT_TRUE(root("world", kBox).bodies.at(0).fixed);
+  const Scene plane = root("plane", inertial("0", {0, 0, 0}) + kBox);
+  EXPECT_TRUE(plane.bodies.at(0).fixed);
+  test::expect_words(plane.warnings.at(0), {"'plane'", "mass 0", "fixtures"});
+  // A joint's parent may be a world that is no link of the file.
+  EXPECT_TRUE(load("<robot name=\"x\">" + link("a", kBox) + joint("fixed", "world", "a") + "</robot>")
+                  .bodies.at(0)
+                  .fixed);
 }
 
-TEST(UrdfScene, RefusesNamesThatBreakTablesAndFrames) {
-  for (const char* name : {"a,b", "a b", "a/b"}) {
-    const std::string urdf =
-        robot(link(name, std::string(kInertial) + kBox) + joint("floating", "world", name));
-    test::expect_words(error(urdf), {name, "allowed"});
-  }
+// 0.1 kg at 0 and 0.3 kg at x = 0.08: the centre is at 0.06. Of two balls of 0.4 m r^2 each,
+// I_xx = 0.4 (0.1 + 0.3) 0.02^2, and I_yy has 0.1 0.06^2 + 0.3 0.02^2 besides.
+TEST(UrdfScene, LinksOnFixedJointsAreOneBodyWithTheMassCentreAndInertiaOfAll) {
+  const auto ball = [](const std::string& mass) {
+    return "<inertial><mass value=\"" + mass + "\"/></inertial>" + kBall;
+  };
+  const Scene scene =
+      load(robot(link("cup", ball("0.1")) + link("frame", "") + link("handle", ball("0.3")) +
+                 link("lid", kBall) + joint("floating", "world", "cup", R"(xyz="0 0 0.2")") +
+                 joint("fixed", "cup", "frame", R"(xyz="0 0.08 0" rpy="0 0 -1.5707963267948966")") +
+                 joint("fixed", "frame", "handle", R"(xyz="0.08 0.08 0" rpy="0 0 1.5707963267948966")") +
+                 joint("fixed", "cup", "lid", R"(xyz="0 0 0.1")")));
+  ASSERT_EQ(1u, scene.bodies.size());
+  const Body& body = scene.bodies[0];
+  EXPECT_EQ("cup", body.name);
+  EXPECT_NEAR(0.4, body.mass, 1e-15);
+  EXPECT_TRUE(body.start.position.isApprox(Vector3(0.06, 0, 0.2), 1e-12)) << body.start.position.transpose();
+  ASSERT_EQ(3u, body.shapes.size());
+  EXPECT_TRUE(body.shapes[1].pose.position.isApprox(Vector3(0.02, 0, 0), 1e-12));
+  EXPECT_TRUE(body.shapes[2].pose.position.isApprox(Vector3(-0.06, 0, 0.1), 1e-12)) << "no mass, but a shape";
+  EXPECT_NEAR(0.4 * 0.4 * 4e-4, body.inertia(0, 0), 1e-12);
+  EXPECT_NEAR(0.4 * 0.4 * 4e-4 + 0.1 * 0.0036 + 0.3 * 0.0004, body.inertia(1, 1), 1e-12);
+}
+
+TEST(UrdfScene, ABodyWithoutMassHasThatOfItsVolumeAndItIsSaid) {
+  SceneOptions options;
+  options.density = 500.0;
+  const test::Folder folder;
+  const std::string file = folder.write(
+      "t.urdf",
+      thing(std::string(kBox) + R"(<collision><origin xyz="0.05 0 0"/><geometry><box size="0.05 0.05 0.05"/>
+                      </geometry></collision>)"));
+  const Scene scene = load_scene(file, options);
+  EXPECT_NEAR(500.0 * 2 * 1.25e-4, scene.bodies.at(0).mass, 1e-12);
+  EXPECT_TRUE(scene.bodies[0].start.position.isApprox(Vector3(0.025, 0, 0), 1e-12));
+  EXPECT_NEAR(0.125 * (0.0025 + 0.01) / 12.0, scene.bodies[0].inertia(1, 1), 1e-12);
+  ASSERT_EQ(1u, scene.warnings.size());
+  test::expect_words(scene.warnings[0], {"scene/density", "500 kg/m^3", "'thing' 0.125 kg"});
+}
+
+// 1e-2: what shapes share is measured along lines, of round ones between facets.
+TEST(UrdfScene, WhatShapesShareCountsOnce) {
+  const Scene scene = load(thing(std::string(kBox) + kBall));  // the ball is in the box
+  EXPECT_NEAR(0.125, scene.bodies.at(0).mass, 1e-2 * 0.125);
+  EXPECT_NEAR(0.125 * 2 * 0.0025 / 12.0, scene.bodies[0].inertia(0, 0), 1e-2 * 5.2e-5);
+}
+
+TEST(UrdfScene, LimitsThatAreNotWholeAreCompletedAndThatIsSaid) {
+  const auto door = [](const std::string& type, const std::string& more) {
+    return load(robot(link("door", std::string(kInertial) + kBox) + "<joint name=\"j\" type=\"" + type +
+                      "\"><parent link=\"world\"/><child link=\"door\"/><axis xyz=\"0 0 1\"/>" + more +
+                      "</joint>"));
+  };
+  const Scene bare = door("prismatic", R"(<limit lower="0" upper="0.2"/>)");
+  EXPECT_EQ(0.2, bare.joints.at(0).upper);
+  EXPECT_TRUE(bare.warnings.empty());
+  const Scene none = door("revolute", "");
+  EXPECT_FALSE(none.joints.at(0).is_limited());
+  test::expect_words(none.warnings.at(0), {"without limits", "'j'"});
+  test::expect_words(door("revolute", R"(<limit lower="1" upper="0"/>)").warnings.at(0),
+                     {"'j'", "lower 1 above upper 0"});
+  const Scene equal = door("revolute", R"(<limit lower="0" upper="0"/>)");
+  EXPECT_TRUE(equal.joints.empty() && equal.bodies.at(0).fixed);
+  test::expect_words(equal.warnings.at(0), {"equal limits", "'j'"});
+  const Scene mimic = door("continuous", R"(<mimic joint="other"/>)");
+  EXPECT_EQ(1u, mimic.joints.size());
+  test::expect_words(mimic.warnings.at(0), {"<mimic>", "'j'"});
+}
+
+TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {
+  const std::string contact = R"(<contact><lateral_friction value="1.5"/></contact>)";
+  const Scene scene =
+      load(robot(link("a", contact + kInertial + kBox) + link("b", std::string(kInertial) + kBox) +
+                 joint("floating", "world", "a") + joint("floating", "world", "b", R"(xyz="1 0 0")") +
+                 R"(<gazebo reference="b"><mu1>0.25</mu1></gazebo>)"));
+  EXPECT_EQ(1.5, scene.bodies.at(0).material.static_friction);
+  EXPECT_EQ(1.5, scene.bodies.at(0).material.dynamic_friction);
+  EXPECT_EQ(0.25, scene.bodies.at(1).material.dynamic_friction);
+  EXPECT_TRUE(scene.bodies.at(1).own_material.static_friction);
+  EXPECT_FALSE(scene.bodies.at(1).own_material.restitution);
+}
+
+TEST(UrdfScene, WarnsOfUnitsThatCannotBeMeant) {
+  const auto warning = [](const std::string& content) { return load(thing(content)).warnings.at(0); };
+  test::expect_words(warning(inertial("0.1", {1, 1, 1}) + kBox), {"'thing' 1 kg m^2", "unit"});
+  test::expect_words(warning(std::string(inertial("0.1", {1, 1, 1})) +
+                             R"(<collision><geometry><box size="90 90 90"/></geometry></collision>)"),
+                     {"millimetres", "'thing'"});
+  test::expect_words(load(thing(std::string(kInertial) + kBox, R"(rpy="0 90 0")")).warnings.at(0),
+                     {"radians", "0 90 0"});
+}
+
+TEST(UrdfScene, BoundsThatNoFileGivesHoldTheStarts) {
+  const std::string far = thing(std::string(kInertial) + kBox, R"(xyz="5 0 0")");
+  const Scene scene = load(far);
+  EXPECT_GT(scene.bounds.max.x(), 5.5);
+  test::expect_words(scene.warnings.at(0), {"bounds"});
+  const test::Folder folder;
+  folder.write("t.yaml", "bounds: {min: [-1, -1, -1], max: [1, 1, 1]}\n");
+  test::expect_words(test::scene_error(folder.write("t.urdf", far)), {"'thing'", "out of bounds"});
+}
+
+TEST(UrdfScene, NamesOtherFormatsThatAreNoUrdf) {
+  test::expect_words(error("<sdf version=\"1.6\"/>"), {"is SDF", "URDF"});
+  test::expect_words(error(thing(std::string(kInertial) +
+                                 R"(<collision><geometry><box size="${w} 1 1"/></geometry></collision>)")),
+                     {"is xacro", "rosrun xacro"});
+  test::expect_words(error("<mujoco/>"), {"'robot'", "'mujoco'"});
 }
 
 }  // namespace

@@ -11,8 +11,10 @@ namespace mrhi {
 
 /// An object that somebody wants in a scene.
 struct ObjectRequest {
-  std::string name;          ///< empty: that of the URDF's link
-  std::string urdf;          ///< XML with one link that has a shape; empty: `shape` instead
+  std::string name;  ///< empty: that of the URDF's link
+  /// XML with one link that has a shape, or the path or package:// of a file of it; empty: `shape` instead.
+  std::string urdf;
+  std::string folder;        ///< where paths of meshes in the XML start
   std::string shape;         ///< box, sphere, or cylinder (about z)
   std::vector<double> size;  ///< box: x, y, z; sphere: radius; cylinder: radius, length [m]
   double mass = 0.0;         ///< of `shape`, which is solid [kg]; 0: a fixture
@@ -25,6 +27,10 @@ struct ObjectRequest {
   bool whole = false;
   std::string joints;  ///< of `whole`: YAML, as in a scene's joints; empty: as the URDF has them
 };
+
+/// The request with the text of the file that its `urdf` names, and that file's folder; the request itself if
+/// that is no path. Throws SceneError.
+ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options);
 
 /// Throws SceneError with one line that says what is wrong and what is allowed. A link of the URDF on a fixed
 /// joint is a fixture.

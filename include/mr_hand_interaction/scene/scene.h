@@ -16,6 +16,12 @@ struct Bounds {
   Vector3 max{1.5, 1.5, 2.0};
 };
 
+/// A mesh file that a scene was made of.
+struct SceneFile {
+  std::string name;  ///< as the URDF writes it
+  std::string path;  ///< where it was read
+};
+
 /// All that exists besides hands. Immutable once loaded.
 struct Scene {
   std::string name;
@@ -23,6 +29,8 @@ struct Scene {
   std::vector<Joint> joints;          ///< see arrange_joints()
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   Bounds bounds;                      ///< a free body whose centre leaves is put back where it started
+  std::vector<std::string> warnings;  ///< what the loader assumed or left out, a line each
+  std::vector<SceneFile> mesh_files;  ///< each once, in the order in which they were read
 };
 
 /// Index of the body of that name, or nothing.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,6 +24,9 @@ struct SceneOptions {
   std::optional<Vector3> gravity;  ///< overrides the scene's own [m/s^2]
   /// Turns "package://NAME/PATH" into a file path; empty result: package not found.
   std::function<std::string(const std::string& uri)> resolve_package_uri;
+  double density = 1000.0;  ///< of bodies without a mass [kg/m^3]
+  /// Files to read for the meshes that a URDF names so, before anything else is looked for.
+  std::map<std::string, std::string> mesh_files{};
 };
 
 /// The URDF file that `scene` means: a path to a URDF, or a name looked up as DIRECTORY/NAME.urdf.

@@ -33,6 +33,9 @@ struct PrismForm {
 struct TriangleMesh {
   std::vector<Vector3> vertices;
   std::vector<std::array<int, 3>> triangles;
+  /// First triangle of each closed part, ascending from 0, of a mesh whose parts may overlap: the solid is
+  /// their union. Empty: one part.
+  std::vector<int> parts{};
 };
 
 // Each shape answers the same questions, in its own frame and in a file of its own

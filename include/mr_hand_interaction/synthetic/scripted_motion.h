@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 
 namespace mrhi {
@@ -47,6 +48,11 @@ std::vector<std::string> motion_names();
 
 /// Throws std::invalid_argument that lists the names.
 ScriptedMotion make_motion(const std::string& name);
+
+/// Grasps the only free body of a scene where it starts, on the narrowest side that thumb and fingers close
+/// on, and carries it. Throws std::invalid_argument for a scene of several, and a body that no hand closes
+/// on.
+ScriptedMotion grasp_object(const Scene& scene);
 
 /// Pose of a desktop device in world unless a user says otherwise: at the origin, y up becomes z up.
 Pose default_device_mount();

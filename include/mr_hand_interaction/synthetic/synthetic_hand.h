@@ -23,6 +23,8 @@ class SyntheticHand {
   /// Throws std::invalid_argument that names the option and what is allowed. The device is where
   /// default_device_mount() has it.
   explicit SyntheticHand(const SyntheticHandOptions& options);
+  /// Another motion than the options'.
+  SyntheticHand(const SyntheticHandOptions& options, const ScriptedMotion& motion);
 
   const ScriptedMotion& motion() const { return motion_; }
   /// Stamp that the next frame will have.
@@ -41,5 +43,6 @@ class SyntheticHand {
 
 /// One run of the motion and the pause after it.
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options);
+std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, const ScriptedMotion& motion);
 
 }  // namespace mrhi

@@ -1,0 +1,365 @@
+#include "solid_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "shape_inertia.h"
+
+namespace mrhi {
+namespace {
+
+using Triangle = std::array<int, 3>;
+using Triangles = std::vector<Triangle>;
+
+/// Vertices nearer to each other than this part of the mesh's extent are one, if that closes a surface: what
+/// rounding leaves, and then what exporters do.
+constexpr double kSeams[] = {1e-6, 1e-5, 1e-4};
+/// A hole that is filled is no wider than this part of the extent.
+constexpr double kSmallHole = 0.05;
+/// A solid has more than this part of its extent's cube.
+constexpr double kLeastVolume = 1e-9;
+
+Vector3 corner(const TriangleMesh& mesh, const Triangle& triangle, std::size_t k) {
+  return mesh.vertices[static_cast<std::size_t>(triangle[k])];
+}
+
+double extent_of(const TriangleMesh& mesh, const Triangles& triangles) {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) box.extend(corner(mesh, t, k));
+  return triangles.empty() ? 0.0 : box.sizes().maxCoeff();
+}
+
+double volume_of(const TriangleMesh& mesh, const Triangles& triangles) {
+  double volume = 0.0;
+  for (const Triangle& t : triangles) {
+    const Vector3 &origin = mesh.vertices[0], a = corner(mesh, t, 0);
+    volume += (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).dot(a - origin) / 6.0;
+  }
+  return volume;
+}
+
+/// How often each edge runs from its lesser vertex to the other, less how often back; and its triangles.
+struct Edge {
+  int balance = 0;
+  std::vector<int> triangles;
+};
+using Edges = std::map<std::pair<int, int>, Edge>;
+
+Edges edges_of(const Triangles& triangles) {
+  Edges edges;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      Edge& edge = edges[std::minmax(from, to)];
+      edge.balance += from < to ? 1 : -1;
+      edge.triangles.push_back(static_cast<int>(t));
+    }
+  }
+  return edges;
+}
+
+bool is_closed(const Triangles& triangles) {
+  const Edges edges = edges_of(triangles);
+  return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second.balance == 0; });
+}
+
+bool is_solid(const TriangleMesh& mesh, const Triangles& part) {
+  const double extent = extent_of(mesh, part);
+  return std::abs(volume_of(mesh, part)) > kLeastVolume * extent * extent * extent && is_closed(part);
+}
+
+/// Joins vertices that are no farther apart than `distance` with the first of them, and drops the triangles
+/// that vanish.
+void weld(TriangleMesh& mesh, double distance) {
+  using Cell = std::array<long long, 3>;
+  std::map<Cell, std::vector<int>> cells;
+  std::vector<int> same(mesh.vertices.size());
+  const auto cell_of = [&](const Vector3& place) -> Cell {
+    return {{static_cast<long long>(std::floor(place.x() / distance)),
+             static_cast<long long>(std::floor(place.y() / distance)),
+             static_cast<long long>(std::floor(place.z() / distance))}};
+  };
+  const auto first_near = [&](const Vector3& place, int otherwise) {
+    const Cell middle = cell_of(place);
+    for (int i = 0; i < 27; ++i) {
+      const auto found =
+          cells.find({{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1}});
+      if (found == cells.end()) continue;
+      for (const int v : found->second)
+        if (v < otherwise && (mesh.vertices[v] - place).norm() <= distance) otherwise = v;
+    }
+    return otherwise;
+  };
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    same[v] = first_near(mesh.vertices[v], v);
+    if (same[v] == v) cells[cell_of(mesh.vertices[v])].push_back(v);
+  }
+  const auto vanishes = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+  for (Triangle& triangle : mesh.triangles)
+    for (int& v : triangle) v = same[v];
+  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), vanishes),
+                       mesh.triangles.end());
+}
+
+/// The first of all triangles between the same three vertices, whichever way it is turned.
+Triangles without_doubled(const Triangles& triangles) {
+  std::map<Triangle, bool> seen;
+  Triangles kept;
+  for (const Triangle& triangle : triangles) {
+    Triangle key = triangle;
+    std::sort(key.begin(), key.end());
+    if (seen.emplace(key, true).second) kept.push_back(triangle);
+  }
+  return kept;
+}
+
+/// Some of a mesh's triangles, with their own vertices alone.
+TriangleMesh cut_out(const TriangleMesh& mesh, const Triangles& triangles) {
+  TriangleMesh part;
+  std::map<int, int> renamed;
+  for (Triangle triangle : triangles) {
+    for (int& v : triangle) {
+      const auto known = renamed.emplace(v, static_cast<int>(part.vertices.size()));
+      if (known.second) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+      v = known.first->second;
+    }
+    part.triangles.push_back(triangle);
+  }
+  return part;
+}
+
+/// Triangles that hang together by edges of two, each part turned the way of its first one.
+std::vector<Triangles> parts_of(const Triangles& triangles) {
+  const Edges edges = edges_of(triangles);
+  std::vector<Triangles> parts;
+  std::vector<char> reached(triangles.size(), 0);
+  Triangles turned = triangles;
+  for (std::size_t first = 0; first < triangles.size(); ++first) {
+    if (reached[first]) continue;
+    std::vector<int> open{static_cast<int>(first)}, part;
+    reached[first] = 1;
+    while (!open.empty()) {
+      const int now = open.back();
+      open.pop_back();
+      part.push_back(now);
+      const Triangle here = turned[std::size_t(now)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int from = here[k], to = here[(k + 1) % 3];
+        const Edge& edge = edges.at(std::minmax(from, to));
+        if (edge.triangles.size() != 2) continue;
+        const int next = edge.triangles[0] == now ? edge.triangles[1] : edge.triangles[0];
+        if (reached[std::size_t(next)]) continue;
+        reached[std::size_t(next)] = 1;
+        open.push_back(next);
+        Triangle& there = turned[std::size_t(next)];
+        for (std::size_t j = 0; j < 3; ++j)
+          if (there[j] == from && there[(j + 1) % 3] == to) {
+            std::swap(there[1], there[2]);
+            break;
+          }
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.emplace_back();
+    for (const int t : part) parts.back().push_back(turned[std::size_t(t)]);
+  }
+  return parts;
+}
+
+/// Fans over the holes of a part that are small; each runs against the triangles at its border.
+void fill_small_holes(TriangleMesh& mesh, Triangles& part) {
+  const double widest = kSmallHole * extent_of(mesh, part);
+  std::map<int, int> next;  // along the border
+  for (const auto& [ends, edge] : edges_of(part)) {
+    if (edge.balance == 0) continue;
+    const bool up = edge.balance > 0;
+    if (!next.emplace(up ? ends.second : ends.first, up ? ends.first : ends.second).second) return;
+  }
+  while (!next.empty()) {
+    std::vector<int> loop;
+    Eigen::AlignedBox3d box;
+    for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
+      box.extend(mesh.vertices[std::size_t(at->first)]);
+      loop.push_back(at->second);
+      next.erase(at);
+    }
+    if (loop.size() < 3 || box.sizes().norm() > widest) continue;
+    for (std::size_t i = 2; i < loop.size(); ++i) part.push_back({{loop[0], loop[i - 1], loop[i]}});
+  }
+}
+
+/// The solid angle of a closed part as seen from a place is 4 pi inside and 0 outside (van Oosterom &
+/// Strackee 1983).
+bool is_inside(const TriangleMesh& mesh, const Triangles& part, const Vector3& place) {
+  double angle = 0.0;
+  for (const Triangle& t : part) {
+    const Vector3 a = corner(mesh, t, 0) - place, b = corner(mesh, t, 1) - place,
+                  c = corner(mesh, t, 2) - place;
+    const double x = a.norm(), y = b.norm(), z = c.norm();
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+  }
+  return std::abs(angle) > 6.283185307179586;
+}
+
+/// By some of its corners.
+bool is_within(const TriangleMesh& mesh, const Triangles& part, const Triangles& other) {
+  constexpr std::size_t kAsked = 16;
+  const std::size_t step = std::max<std::size_t>(1, part.size() / kAsked);
+  for (std::size_t t = 0; t < part.size(); t += step)
+    if (!is_inside(mesh, other, corner(mesh, part[t], 0))) return false;
+  return true;
+}
+
+/// A closed part and what is within it.
+struct Solid {
+  Triangles triangles;
+  bool inward;  // as the file has it
+  std::vector<Triangles> cavities;
+};
+
+/// The largest first: what is within another one is its cavity if it is turned against it, else a part of it.
+std::vector<Solid> nested(const TriangleMesh& mesh, std::vector<Triangles> parts) {
+  std::vector<std::pair<double, Triangles*>> by_size;
+  for (Triangles& part : parts) by_size.emplace_back(-std::abs(volume_of(mesh, part)), &part);
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Solid> solids;
+  for (const auto& sized : by_size) {
+    Triangles& part = *sized.second;
+    const bool inward = volume_of(mesh, part) < 0.0;
+    const auto around = std::find_if(solids.begin(), solids.end(), [&](const Solid& solid) {
+      return is_within(mesh, part, solid.triangles) &&
+             std::none_of(solid.cavities.begin(), solid.cavities.end(),
+                          [&](const Triangles& cavity) { return is_within(mesh, part, cavity); });
+    });
+    if (around != solids.end() && inward == around->inward) continue;
+    for (Triangle& t : part)
+      if (inward == (around == solids.end())) std::swap(t[1], t[2]);
+    if (around == solids.end()) {
+      solids.push_back({part, inward, {}});
+    } else {
+      around->cavities.push_back(part);
+    }
+  }
+  return solids;
+}
+
+void put(std::vector<Triangles> parts, TriangleMesh& mesh) {
+  mesh.triangles.clear(), mesh.parts.clear();
+  for (const Solid& solid : nested(mesh, std::move(parts))) {
+    mesh.parts.push_back(static_cast<int>(mesh.triangles.size()));
+    for (const Triangle& t : solid.triangles) mesh.triangles.push_back(t);
+    for (const Triangles& cavity : solid.cavities)
+      mesh.triangles.insert(mesh.triangles.end(), cavity.begin(), cavity.end());
+  }
+  if (mesh.parts.size() < 2 || !overlaps_itself(mesh)) mesh.parts.clear();
+}
+
+bool are_solid(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
+  return !parts.empty() &&
+         std::all_of(parts.begin(), parts.end(), [&](const Triangles& part) { return is_solid(mesh, part); });
+}
+
+/// What is left open once all has been tried. Sheets are what has no hull.
+std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMesh& mesh) {
+  std::vector<Triangles> solids;
+  Triangles open;
+  bool left_out = false;
+  for (Triangles& part : parts) {
+    if (!is_solid(mesh, part)) fill_small_holes(mesh, part);
+    if (is_solid(mesh, part)) solids.push_back(part);
+  }
+  for (const Triangles& part : parts) {
+    if (is_solid(mesh, part)) continue;
+    bool flat = false;
+    if (!solids.empty()) {
+      try {
+        convex_hull(cut_out(mesh, part));
+      } catch (const NoVolume&) {
+        flat = true;
+      }
+    }
+    left_out = left_out || flat;
+    if (!flat) open.insert(open.end(), part.begin(), part.end());
+  }
+  std::vector<std::string> assumed;
+  if (left_out) assumed.push_back("has flat sheets, which are left out");
+  if (!open.empty()) {
+    const TriangleMesh hull = convex_hull(cut_out(mesh, open));
+    const int first = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), hull.vertices.begin(), hull.vertices.end());
+    solids.emplace_back();
+    for (const Triangle& t : hull.triangles)
+      solids.back().push_back({{t[0] + first, t[1] + first, t[2] + first}});
+    assumed.push_back("is not closed: its convex hull is taken");
+  }
+  put(solids, mesh);
+  return assumed;
+}
+
+}  // namespace
+
+double signed_volume(const TriangleMesh& mesh) {
+  return mesh.vertices.empty() ? 0.0 : volume_of(mesh, mesh.triangles);
+}
+
+std::vector<std::string> make_solid(TriangleMesh& mesh) {
+  mesh.parts.clear();
+  if (is_solid(mesh, mesh.triangles)) {
+    std::vector<Triangles> parts = parts_of(mesh.triangles);
+    if (parts.size() == 1) {
+      if (signed_volume(mesh) < 0.0)
+        for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+      return {};
+    }
+    if (are_solid(mesh, parts)) return put(parts, mesh), std::vector<std::string>{};
+  }
+  const double extent = extent_of(mesh, mesh.triangles);
+  if (!(extent > 0.0)) throw NoVolume("has no volume; allowed for collision: a surface around a volume");
+  TriangleMesh best = mesh;
+  for (const double seam : kSeams) {
+    TriangleMesh welded = mesh;
+    weld(welded, seam * extent);
+    const std::vector<Triangles> as_they_are = parts_of(welded.triangles);
+    if (are_solid(welded, as_they_are) && is_closed(welded.triangles)) {
+      mesh = welded;
+      return put(as_they_are, mesh), std::vector<std::string>{};
+    }
+    welded.triangles = without_doubled(welded.triangles);
+    const std::vector<Triangles> parts = parts_of(welded.triangles);
+    if (seam == kSeams[0]) best = welded;
+    if (!are_solid(welded, parts)) continue;
+    mesh = welded;
+    return put(parts, mesh), std::vector<std::string>{};
+  }
+  mesh = best;
+  return put_with_hull(parts_of(mesh.triangles), mesh);
+}
+
+std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes) {
+  const auto is_mesh = [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); };
+  if (std::count_if(shapes.begin(), shapes.end(), is_mesh) < 2) return shapes;
+  std::vector<PlacedShape> joined;
+  auto all = std::make_shared<TriangleMesh>();
+  for (const PlacedShape& placed : shapes) {
+    if (!is_mesh(placed)) {
+      joined.push_back(placed);
+      continue;
+    }
+    const TriangleMesh& mesh = *std::get<Mesh>(placed.shape).triangles;
+    const int vertices = static_cast<int>(all->vertices.size()),
+              first = static_cast<int>(all->triangles.size());
+    for (const int part : mesh.parts.empty() ? std::vector<int>{0} : mesh.parts)
+      all->parts.push_back(first + part);
+    for (const Vector3& vertex : mesh.vertices) all->vertices.push_back(placed.pose * vertex);
+    for (const Triangle& t : mesh.triangles)
+      all->triangles.push_back({{t[0] + vertices, t[1] + vertices, t[2] + vertices}});
+  }
+  joined.push_back({Mesh{all, "", Vector3::Ones()}, Pose{}});
+  return joined;
+}
+
+}  // namespace mrhi

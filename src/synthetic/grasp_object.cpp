@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "../scene/shape_inertia.h"
+#include "../text/text.h"
+#include "motions.h"
+#include "scripted_grasp.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kWidest = 0.09;  // that thumb and fingers close on [m]
+constexpr double kSpacing = 0.0175;
+constexpr double kThumbDepth = 0.006;
+constexpr double kReached = 0.004;  // what a fingertip may be off its place [m]
+/// What is higher above the fingertips than this is in the palm's way [m]: they close nearer to the palm
+/// then.
+constexpr double kUnderPalm = 0.045;
+
+/// A body's surface, body frame.
+class Surface {
+ public:
+  explicit Surface(const Body& body) {
+    for (const PlacedShape& shape : body.shapes) meshes_.push_back(surface_of(shape));
+    for (const TriangleMesh& mesh : meshes_)
+      for (const auto& t : mesh.triangles)
+        for (const int v : t) corners_.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  }
+
+  struct Hit {
+    Vector3 point, normal;
+  };
+  /// The outermost place on the line through `at` along `out`, seen from there.
+  std::optional<Hit> outermost(const Vector3& at, const Vector3& out) const {
+    std::optional<Hit> found;
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < corners_.size(); i += 3) {
+      const Vector3 &a = corners_[i], ab = corners_[i + 1] - a, ac = corners_[i + 2] - a;
+      const Vector3 normal = ab.cross(ac);
+      const double rise = normal.dot(out);
+      if (!(rise > 1e-12 * normal.norm())) continue;  // it faces away
+      const double s = normal.dot(a - at) / rise;
+      const Vector3 from_a = at + s * out - a;
+      const double v = from_a.cross(ac).dot(normal), w = ab.cross(from_a).dot(normal);
+      if (v < 0.0 || w < 0.0 || v + w > normal.squaredNorm() || (found && s <= farthest)) continue;
+      farthest = s;
+      found = Hit{at + s * out, normal.normalized()};
+    }
+    return found;
+  }
+  double reach(const Vector3& n) const {
+    double most = -1e300;
+    for (const Vector3& corner : corners_) most = std::max(most, n.dot(corner));
+    return most;
+  }
+
+ private:
+  std::vector<TriangleMesh> meshes_;
+  std::vector<Vector3> corners_;
+};
+
+/// Across which a hand may close: the body's axes, and those of a Fibonacci lattice.
+std::vector<Vector3> directions() {
+  constexpr int kOthers = 40;
+  std::vector<Vector3> all{Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+  for (int i = 0; i < kOthers; ++i) {
+    const double z = (i + 0.5) / kOthers, across = std::sqrt(1.0 - z * z), turn = 2.39996 * i;
+    all.push_back({across * std::cos(turn), across * std::sin(turn), z});
+  }
+  return all;
+}
+
+/// The hand's frame in the body's: y from thumb to fingers, z to where the palm is.
+struct Closing {
+  Matrix3 axes;
+  std::vector<FingertipContact> contacts;
+  double width, cost;
+  double height = 0.0;  // of the fingertips above the body's centre, along z [m]
+};
+
+/// Thumb against as many of three fingers as find a surface that faces them; they press alike. Other fingers
+/// that would be in the body only touch: the little one has no finger against it on the thumb's other side.
+std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
+  constexpr double kFacing = 0.75;  // the least cosine of a normal and the way of closing
+  const double height = std::max(0.0, surface.reach(axes.col(2)) - kUnderPalm);
+  const auto hit = [&](double x, double way) {
+    return surface.outermost(x * axes.col(0) + height * axes.col(2), way * axes.col(1));
+  };
+  const auto faces = [&](const Surface::Hit& at, double way) {
+    return way * at.normal.dot(axes.col(1)) > kFacing;
+  };
+  const auto in_hand = [&](int finger, const Surface::Hit& at) {
+    return FingertipContact{finger, axes.transpose() * at.point, axes.transpose() * at.normal, 0.0};
+  };
+  const auto thumb = hit(0.0, -1.0), middle = hit(0.0, 1.0);
+  if (!thumb || !middle || !faces(*thumb, -1.0) || !faces(*middle, 1.0)) return std::nullopt;
+  Closing found{axes, {in_hand(0, *thumb)}, axes.col(1).dot(middle->point - thumb->point), 0.0};
+  if (!(found.width > 0.0)) return std::nullopt;
+  std::vector<std::size_t> pressing;
+  for (int finger = 1; finger <= 4; ++finger) {
+    const auto at = finger == 2 ? middle : hit((finger - 2) * kSpacing, 1.0);
+    if (!at) continue;
+    const bool level = std::abs(axes.col(1).dot(at->point - middle->point)) < 0.01;
+    if (finger < 4 && level && faces(*at, 1.0)) pressing.push_back(found.contacts.size());
+    found.contacts.push_back(in_hand(finger, *at));
+  }
+  const auto fingers = static_cast<double>(pressing.size());
+  found.contacts[0].depth = kThumbDepth;
+  for (const std::size_t contact : pressing) found.contacts[contact].depth = kThumbDepth / fingers;
+  found.height = height;
+  // A grip of the centre is worth more, and so is a side on which little sticks out.
+  found.cost = found.width + 0.01 * (3.0 - fingers) + 0.5 * height + 0.2 * surface.reach(axes.col(2));
+  return found;
+}
+
+/// The narrowest that the palm has room for; a hand that comes from above is worth 5 mm, a way along one of
+/// the body's own axes 3 mm.
+Closing narrowest(const Body& body, const Surface& surface) {
+  constexpr int kTurns = 12;
+  const Vector3 up = body.start.orientation.conjugate() * Vector3::UnitZ();
+  std::optional<Closing> best;
+  int index = 0;
+  for (const Vector3& along : directions()) {
+    const double own = index++ < 3 ? 0.0 : 0.003;
+    const Vector3 side = std::abs(along.dot(up)) < 0.9 ? Vector3((up - along.dot(up) * along).normalized())
+                                                       : along.unitOrthogonal();
+    for (int i = 0; i < 2 * kTurns; ++i) {
+      Matrix3 axes;
+      axes.col(1) = i % 2 == 0 ? along : Vector3(-along);
+      axes.col(2) = Eigen::AngleAxisd(2.0 * M_PI * (i / 2) / kTurns, along) * side;
+      axes.col(0) = axes.col(1).cross(axes.col(2));
+      auto found = closing(surface, axes);
+      if (!found) continue;
+      found->cost += own - 0.005 * axes.col(2).dot(up);
+      if (!best || found->cost < best->cost - 1e-9) best = found;
+    }
+  }
+  if (!best || best->width > kWidest)
+    throw std::invalid_argument("object '" + body.name + "' " +
+                                (best ? "is " + text::number(best->width) + " m wide on its narrowest side"
+                                      : std::string("has no two sides that face away from each other")) +
+                                "; allowed: an object that a hand closes on, up to " + text::number(kWidest) +
+                                " m");
+  return *best;
+}
+
+/// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places.
+Grasp grasp_of(const Body& body) {
+  const Closing closing = narrowest(body, Surface(body));
+  std::vector<FingertipContact> pressing = closing.contacts;  // those that have to reach their places
+  pressing.erase(std::remove_if(pressing.begin(), pressing.end(),
+                                [](const auto& contact) { return contact.depth == 0.0; }),
+                 pressing.end());
+  std::optional<Grasp> best;
+  double least = 1e300;
+  for (const char* like : {"cube", "long_cuboid"}) {
+    Grasp grasp = shipped_grasp(like);
+    if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
+    const Vector3 wrist = grasp.wrist.position + closing.height * Vector3::UnitZ();
+    grasp.contacts = closing.contacts;
+    for (int y = -8; y <= 8; ++y)
+      for (int z = -4; z <= 8; ++z) {
+        grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
+        double error = 0.0, of_all = 0.0, of_open = 0.0;
+        place_fingertips(human_hand(), grasp.wrist, pressing, -1.0, grasp.preferred, &error);
+        place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred, &of_all);
+        place_fingertips(human_hand(), grasp.wrist, pressing, grasp.opening, grasp.preferred, &of_open);
+        error += 0.3 * of_all + 0.2 * of_open;
+        error += 1e-4 * std::hypot(y, z);
+        if (error < least) least = error, best = grasp;
+      }
+  }
+  if (least > kReached)
+    throw std::invalid_argument("object '" + body.name + "': no hand reaches round it, by " +
+                                text::number(least) + " m; allowed: an object that a hand closes on");
+  return best->turned(Quaternion(closing.axes));
+}
+
+const Body& only_free_body(const Scene& scene) {
+  const Body* found = nullptr;
+  int free = 0;
+  for (const Body& body : scene.bodies)
+    if (body.flies) found = &body, ++free;
+  if (free != 1)
+    throw std::invalid_argument("scene '" + scene.name + "' has " + std::to_string(free) +
+                                " free objects; allowed: one, for a hand to grasp");
+  return *found;
+}
+
+}  // namespace
+
+ScriptedMotion grasp_object(const Scene& scene) {
+  const Body& body = only_free_body(scene);
+  const Grasp grasp = grasp_of(body).turned(body.start.orientation);
+  constexpr double kAside = 0.15;  // further away, so that the hand passes nothing of the object [m]
+  ScriptedMotion motion =
+      reach_and_carry(scene.name.c_str(), grasp, body.start.position, kAside * grasp.retreat);
+  motion.name = "grasp_object";
+  return motion;
+}
+
+}  // namespace mrhi
