@@ -161,12 +161,12 @@ class Door:
         self._server = await asyncio.get_running_loop().create_server(
             self._protocol, address, port, ssl=context, backlog=MAX_CONNECTIONS,
             **({'ssl_handshake_timeout': PATIENCE} if context else {}))
-        self._tasks = [asyncio.ensure_future(self._show())]
+        self._showing = asyncio.ensure_future(self._show())
         return self._server.sockets[0].getsockname()[1]
 
     async def stop(self):
-        for task in self._tasks:
-            task.cancel()
+        self._showing.cancel()
+        await asyncio.wait([self._showing])
         for viewer in list(self._viewers):
             await viewer.socket.close(code=1001, message=b'web_door ends')
         self._server.close()
