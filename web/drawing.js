@@ -35,7 +35,6 @@ class Label extends THREE.Sprite {
   constructor(height = LETTERS) {
     const canvas = document.createElement('canvas');
     super(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
-    this.material.map.minFilter = THREE.LinearFilter;
     Object.assign(this, {canvas, height, said: '', renderOrder: 1});
   }
 
@@ -44,9 +43,9 @@ class Label extends THREE.Sprite {
     this.said = text;
     const context = this.canvas.getContext('2d'), size = 48, lines = text.split('\n');
     context.font = `${size}px sans-serif`;
-    const width = Math.ceil(Math.max(...lines.map((line) => context.measureText(line).width))) + 16;
-    this.canvas.width = width;
-    this.canvas.height = Math.ceil(1.3 * size * lines.length);
+    const width = Math.max(...lines.map((line) => context.measureText(line).width)) + 16;
+    this.canvas.width = THREE.Math.ceilPowerOfTwo(width); // so that it may be drawn small
+    this.canvas.height = THREE.Math.ceilPowerOfTwo(1.3 * size * lines.length);
     context.font = `${size}px sans-serif`;
     context.textAlign = 'center';
     context.lineJoin = 'round';
@@ -54,12 +53,12 @@ class Label extends THREE.Sprite {
     context.strokeStyle = '#222';
     context.fillStyle = '#f4f4f4';
     lines.forEach((line, i) => {
-      context.strokeText(line, width / 2, size * (1 + 1.3 * i));
-      context.fillText(line, width / 2, size * (1 + 1.3 * i));
+      context.strokeText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
+      context.fillText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
     });
     this.material.map.dispose(); // of another size
     this.material.map.needsUpdate = true;
-    this.scale.set(this.height * width / size, this.height * this.canvas.height / size, 1);
+    this.scale.set(this.height * this.canvas.width / size, this.height * this.canvas.height / size, 1);
   }
 }
 
@@ -180,6 +179,7 @@ class Capsules extends THREE.Mesh {
   }
 }
 
+const THUMB = 1; // its metacarpal, which a Leap calls its proximal phalanx
 const CAPSULES_OF_A_HAND = 40, HANDS = 4, CONTACTS = 30;
 
 // Phalanges as they are, and what lies between the metacarpals of neighbouring fingers.
@@ -187,7 +187,7 @@ function addHand(capsules, [, , , , phalanges]) {
   const metacarpals = [];
   for (const [which, ...rest] of phalanges) {
     const start = length(rest.slice(0, 3)), end = length(rest.slice(3, 6)), radius = LENGTH * rest[6];
-    if (which % 4 === 0) metacarpals[which / 4] = {start, end, radius};
+    if (which % 4 === 0 || which === THUMB) metacarpals[Math.floor(which / 4)] = {start, end, radius};
     capsules.add(start, end, radius, rest[7] ? TOUCHING : SKIN);
   }
   for (let finger = 0; finger + 1 < metacarpals.length; ++finger) {

@@ -100,7 +100,10 @@ async function enter(mode) {
     return;
   }
   session.addEventListener('end', leave);
-  session.addEventListener('select', (event) => { if (!event.inputSource.hand) placing.inFront(); });
+  // A tap on a phone or a controller's trigger; a pinch is a select too, and is for objects.
+  session.addEventListener('select', (event) => {
+    if (!hands.there && event.inputSource.targetRayMode !== 'transient-pointer') placing.inFront();
+  });
   space.addEventListener('reset', (event) => placing.reset(event.transform));
   placing.inFront();
   renderer.autoClear = false;
