@@ -48,11 +48,12 @@ class RecordingPort(server.Port):
 class RunningDoor:
     """For the length of a block. `call` runs a function in its loop."""
 
-    def __init__(self, folder, context=None, **options):
+    def __init__(self, folder, context=None, three=None, **options):
+        """`three`: folder of three.js; none: something stands for it."""
         self.port, self.picture = RecordingPort(), picture.Picture()
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
-        self._folder, self._context, self._options = folder, context, options
+        self._three, self._context, self._options = three or three_folder(folder), context, options
 
     def __enter__(self):
         self._thread.start()
@@ -62,7 +63,7 @@ class RunningDoor:
         return self
 
     async def _start(self):
-        self.door = server.Door(self.port, self.picture, os.path.join(PACKAGE, 'web'), three_folder(self._folder), TOKEN,
+        self.door = server.Door(self.port, self.picture, os.path.join(PACKAGE, 'web'), self._three, TOKEN,
                                 **self._options)
         return await self.door.start('127.0.0.1', 0, self._context)
 

@@ -69,7 +69,7 @@ class Headset(web_browser.Browser):
             self.run_first(file.read() + DEVICE)
 
     def enter(self, mode):
-        self.click('#' + mode)
+        self.run('document.getElementById("%s").click()' % mode)
 
     def play(self, names, rows):
         self.run(PLAY % (json.dumps(names), json.dumps(rows)))
