@@ -241,6 +241,8 @@ class ContactMark extends THREE.Group {
   }
 }
 
+const READ = ['instructions', 'timer', 'result']; // training's texts, which stand before rviz's eye
+
 export class Drawing {
   constructor() {
     this.world = new THREE.Group(); // place it: everything is in it
@@ -251,6 +253,8 @@ export class Drawing {
     this.label = new Label(0.014); // for a headset, which sees no page
     this.world.add(this.objects, this.training, ...this.hands, ...this.contacts, this.label);
     this.title = '';
+    this.instructions = '';
+    this.changed = false; // there is something else to be seen
     this.bodies = new Map();
     this.poses = new Map(); // latest entries, also of what has no shape yet
     this.touching = false;
@@ -262,6 +266,7 @@ export class Drawing {
     clear(this.objects);
     this.bodies.clear();
     this.title = title;
+    this.changed = true;
     for (const body of bodies) {
       const group = new THREE.Group();
       group.name = body.name;
@@ -277,11 +282,14 @@ export class Drawing {
   }
 
   trainingMarks(shapes) {
+    const before = this.training.children.length;
     clear(this.training);
-    for (const shape of shapes) {
+    this.instructions = shapes.filter((shape) => READ.includes(shape.ns)).map((shape) => shape.text || '').join('\n');
+    for (const shape of shapes.filter((other) => !READ.includes(other.ns))) {
       const object = drawn(shape);
       if (object) this.training.add(object);
     }
+    if (before === 0 && this.training.children.length > 0) this.changed = true;
   }
 
   move(entry) {
@@ -314,10 +322,11 @@ export class Drawing {
     return this.bodies.size > 0 && this.objects.children.every((group) => group.visible);
   }
 
-  // A ball around the objects and a hand beside them, in the view's axes.
+  // A ball around the objects and training's places, in the view's axes.
   extent() {
     this.world.updateMatrixWorld(true);
     const box = new THREE.Box3().setFromObject(this.objects), ball = new THREE.Sphere(new THREE.Vector3(0, 0.25, 0), 0);
+    box.expandByObject(this.training);
     if (!box.isEmpty()) box.getBoundingSphere(ball);
     ball.radius = Math.max(0.14, ball.radius);
     return ball;

@@ -17,10 +17,11 @@ const grid = new THREE.GridHelper(1, 20, 0x777777, 0x555555);
 const camera = new THREE.PerspectiveCamera(45, 1, 0.01, 20), eye = new THREE.PerspectiveCamera();
 const orbit = new OrbitControls(camera, renderer.domElement);
 stage.add(...lights(), drawing.world, grid);
+orbit.addEventListener('start', () => { turned = true; });
 drawing.world.matrixAutoUpdate = false;
 grid.position.y = 0.1; // where rviz has it
 eye.matrixAutoUpdate = false;
-let hold = '', session = null, space = null, claimed = false, seen = false;
+let hold = '', session = null, space = null, claimed = false, turned = false;
 
 function say(text) {
   element('message').textContent = text;
@@ -32,8 +33,9 @@ const link = new Link({
   training: (content) => drawing.trainingMarks(content),
   frame: (content) => {
     drawing.frame(content);
-    if (!seen && drawing.complete) home();
-    seen = seen || drawing.complete;
+    if (!drawing.changed || !drawing.complete) return;
+    drawing.changed = false;
+    if (!turned) home();
   },
   ping: ([, trip, offset]) => {
     if (trip === null) return;
@@ -63,13 +65,16 @@ function resize() {
   camera.updateProjectionMatrix();
 }
 
-function label(text) {
-  if (hold !== text) element('title').textContent = hold = text;
+function label(text, instructions) {
+  if (hold === text + instructions) return;
+  hold = text + instructions;
+  element('title').textContent = text;
+  element('instructions').textContent = instructions;
 }
 
 function drawPage() {
   requestAnimationFrame(drawPage);
-  label(drawing.text);
+  label(drawing.text, drawing.instructions);
   if (session) return;
   orbit.update();
   renderer.render(stage, camera);
@@ -133,7 +138,7 @@ function drawXr(time, frame) {
   sendHands();
   drawing.world.matrix.copy(placing.world);
   drawing.label.position.set(0, 0, 0.05);
-  drawing.label.say(drawing.text);
+  drawing.label.say([drawing.instructions, drawing.text].filter((text) => text).join('\n'));
   const layer = frame.session.renderState.baseLayer;
   renderer.setFramebuffer(layer.framebuffer);
   renderer.setRenderTarget(null);
@@ -174,6 +179,7 @@ for (const mode of ['immersive-ar', 'immersive-vr']) element(mode).onclick = () 
 element('place').onclick = () => placing.inFront();
 element('leave').onclick = () => session.end();
 element('home').onclick = home;
+element('buttons').addEventListener('beforexrselect', (event) => event.preventDefault()); // a tap on a button is no select
 window.addEventListener('resize', resize);
 if (navigator.xr) navigator.xr.addEventListener('devicechange', showButtons);
 home();

@@ -92,7 +92,8 @@ class Picture:
     def take_training(self, message):
         """training/markers: each array has all that is shown."""
         self._training_time = time.monotonic()
-        self.training = _text('training', [_marker(marker) for marker in message.markers if marker.action == 0])
+        self.training = _text('training', [dict(_marker(marker), ns=marker.ns) for marker in message.markers
+                                           if marker.action == 0])
 
     def expire(self):
         """Drops what a training_node that has ended showed."""

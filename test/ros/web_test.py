@@ -2,29 +2,38 @@
 """A headset's hands through web.launch, in Chromium with an emulated headset, and what lookers-on see."""
 import asyncio
 import csv
+import glob
 import json
+import math
 import os
+import signal
 import socket
+import ssl
 import struct
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
+import urllib.request
 
+import aiohttp
 import numpy
 import rosbag
+import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose, PoseArray
 from sensor_msgs.msg import PointCloud
 from tf2_msgs.msg import TFMessage
 
-from mr_hand_interaction.msg import InteractionEvent, ObjectStateArray
+from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
 from mr_hand_interaction.srv import DeleteObject, SpawnObject, SpawnObjectRequest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web")]
+import doors  # noqa: E402
 import emulated_headset  # noqa: E402
 from launching import Launch  # noqa: E402
 from tracker_hands import joints, program, recording  # noqa: E402
@@ -79,7 +88,6 @@ class Viewer(threading.Thread):
         asyncio.run(self._look())
 
     async def _look(self):
-        import aiohttp
         async with aiohttp.ClientSession() as session:
             while not self._over:
                 try:
@@ -110,15 +118,16 @@ class WebTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder, self.port = folder.name, free_port()
-        self.clouds, self.late, self.mounts, self.kinds, self.objects = [], [], {}, [], {}
-        for name, kind, take in (("hands/point_cloud", PointCloud, self.take_cloud), ("/tf_static", TFMessage, self.take_mount),
+        self.left, self.right, self.late, self.mounts, self.kinds, self.objects = [], [], [], {}, [], {}
+        for name, kind, take in (("hands/left/point_cloud", PointCloud, self.left.append),
+                                 ("hands/right/point_cloud", PointCloud, self.take_right), ("/tf_static", TFMessage, self.take_mount),
                                  ("interaction_events", InteractionEvent, lambda event: self.kinds.append(event.kind)),
                                  ("objects", ObjectStateArray, self.take_objects)):
             self.addCleanup(rospy.Subscriber(name, kind, take, queue_size=100, tcp_nodelay=True).unregister)
 
-    def take_cloud(self, cloud):
+    def take_right(self, cloud):
         self.late.append(rospy.get_time() - cloud.header.stamp.to_sec())
-        self.clouds.append(cloud)
+        self.right.append(cloud)
 
     def take_mount(self, message):
         self.mounts.update({transform.child_frame_id: transform for transform in message.transforms})
@@ -170,8 +179,9 @@ class WebTest(unittest.TestCase):
             headset.open("http://127.0.0.1:%d/%s/" % (self.port, TOKEN))
             wait_until(lambda: headset.run("return page.drawing.complete"), "the page")
             headset.enter("immersive-ar")
-            wait_until(lambda: self.clouds, "hands")
-            self.check_both_hands(self.clouds[-1])
+            wait_until(lambda: self.left and self.right, "hands")
+            for cloud in self.left[-1], self.right[-1]:
+                self.check_hand(cloud)
             rows, names = self.rows(), headset.run("return import('./hands.js').then((hands) => hands.JOINTS)")
             headset.play(names, rows)
             highest = 0.0
@@ -193,8 +203,8 @@ class WebTest(unittest.TestCase):
         place = self.objects[name]
         return [place.x, place.y, place.z]
 
-    def check_both_hands(self, cloud):
-        self.assertEqual(len(cloud.points), 50)
+    def check_hand(self, cloud):
+        self.assertEqual(len(cloud.points), 25)
         self.assertTrue(numpy.isfinite([(p.x, p.y, p.z) for p in cloud.points]).all())
         radius, confidence = cloud.channels
         self.assertEqual((radius.name, confidence.name), ("radius", "confidence"))
@@ -203,13 +213,14 @@ class WebTest(unittest.TestCase):
 
     def check_as_given(self, rows):
         """The played rows are among the messages, each to the bit and in order; a page leaves out a frame rather than be late."""
-        given = iter(rows)
-        played = [cloud for cloud in self.clouds if cloud.points and numpy.isnan(cloud.points[0].x) and
-                  cloud.points[25].x == cloud.points[25].x]
+        def numbers(cloud):
+            return [number for p in cloud.points for number in (p.x, p.y, p.z)]
+        begin = next(k for k, cloud in enumerate(self.right) if numbers(cloud) in rows)
+        played = [cloud for cloud in self.right[begin:] if cloud.points]
         self.assertGreater(len(played), 0.5 * len(rows))
+        given = iter(rows)
         for cloud in played:
-            numbers = [number for p in cloud.points[25:] for number in (p.x, p.y, p.z)]
-            self.assertTrue(any(numbers == row for row in given), "what was not given, or not in this order")
+            self.assertTrue(any(numbers(cloud) == row for row in given), "what was not given, or not in this order")
         self.played = played
 
     def check_replays(self, params):
@@ -218,9 +229,9 @@ class WebTest(unittest.TestCase):
         run = json.loads(self.text(live, "summary.json"))["live_run"]
         self.assertGreater(run["compared"], 300)
         self.assertEqual((run["same"], run["parts_at"]), (run["compared"], None))
-        arrays = [PoseArray(cloud.header, [Pose(position=Point(p.x, p.y, p.z)) for p in cloud.points[25:]])
+        arrays = [PoseArray(cloud.header, [Pose(position=Point(p.x, p.y, p.z)) for p in cloud.points])
                   for cloud in self.played]
-        self.write_bag("clouds", "/hands/point_cloud", self.played)
+        self.write_bag("clouds", "/hands/right/point_cloud", self.played)
         self.write_bag("arrays", "/hands/right/pose_array", arrays)
         clouds, arrays = (self.replay(name, "--scene", "cube", "--params", params) for name in ("clouds", "arrays"))
         for table in ("objects.csv", "contacts.csv", "events.csv"):
@@ -260,7 +271,57 @@ class WebTest(unittest.TestCase):
                 return seen > highest - 0.002
             wait_until(was_carried, "the cube carried to %.3f m" % highest)
 
-    def test_hands_that_have_no_place_or_no_master_end_in_one_line(self):
+    def test_two_people_have_their_hands_in_one_scene(self):
+        if not roslib.packages.find_node("mr_hand_interaction", "merge_hands"):
+            self.skipTest("merge_hands is not built")
+        frames = []
+        self.addCleanup(rospy.Subscriber("hand_frame", HandFrame, frames.append, queue_size=100).unregister)
+        row = next(row for row in recording(self.folder, RATE) if row["palm_x"])
+        points = [(x, -z, y, 0.008) for x, y, z in joints(row, 25)]
+        numbers = 100 * [math.nan] + [number for point in points for number in point]
+
+        async def be_there(place):
+            async with aiohttp.ClientSession() as session:
+                origin = "http://127.0.0.1:%d" % self.port
+                async with session.ws_connect("%s/%s/socket" % (origin, TOKEN), origin=origin, max_msg_size=0) as door:
+                    await doors.put_hands_in(door, place)
+                    end = time.monotonic() + 20.0
+                    while time.monotonic() < end and not both():
+                        await door.send_bytes(struct.pack("<d200f50B", 1e3 * time.monotonic(), *numbers, *(25 * [0] + 25 * [2])))
+                        await asyncio.sleep(1.0 / 60)
+
+        def both():
+            return frames and len(frames[-1].hands) == 2
+
+        async def two():
+            await asyncio.gather(be_there([0, 0, 0, 0, 0, 0, 1]), be_there([0.5, 0, 0, 0, 0, 0, 1]))
+        with self.launch("people:=2", "scene:=cube"), Viewer(self.port) as viewer:
+            wait_until(lambda: viewer.place("cube"), "the scene")
+            asyncio.run(two())
+            self.assertTrue(both(), "two hands in one frame")
+            first, second = sorted(frames[-1].hands, key=lambda hand: hand.palm.position.x)
+            self.assertNotEqual(first.id, second.id)
+            self.assertAlmostEqual(second.palm.position.x - first.palm.position.x, 0.5, delta=1e-3)
+
+    def test_https_makes_its_certificate_at_the_first_start(self):
+        home = os.path.join(self.folder, "ros")
+        command = [program("web_door"), "__name:=secure", "_https:=true", "_token:=" + TOKEN, "_port:=%d" % self.port]
+        door = subprocess.Popen(command, env=dict(os.environ, ROS_HOME=home), stdout=subprocess.DEVNULL)
+        try:
+            def answers():
+                made = glob.glob(os.path.join(home, "mr_hand_interaction", "*.pem"))
+                try:
+                    trusting = ssl.create_default_context(cafile=made[0])
+                    page = "https://127.0.0.1:%d/%s/" % (self.port, TOKEN)
+                    return urllib.request.urlopen(page, context=trusting, timeout=10).status == 200
+                except (IndexError, OSError):
+                    return False
+            wait_until(answers, "the page by HTTPS")
+        finally:
+            door.send_signal(signal.SIGINT)
+            self.assertEqual(door.wait(60), 0)
+
+    def test_a_door_that_cannot_open_says_why_in_one_line(self):
         door = program("web_door")
         for arguments, line in ((["_port:=x"], "~port is x; allowed: 0 to 65535"),
                                 (["_people:=3"], "~people is 3; allowed: 1 to 2"), (["_colour:=red"], "unknown parameter ~colour"),

@@ -100,9 +100,9 @@ async def answer_until(socket, done, longest=20.0):
     raise AssertionError('nothing came within %g s' % longest)
 
 
-async def put_hands_in(socket):
+async def put_hands_in(socket, place=(0, 0, 0, 0, 0, 0, 1)):
     """Until hands are taken: a place, a clock, and the mount known to all."""
     await socket.send_json({'hands': True})
     await answer_until(socket, lambda kind, content: kind == 'person')
-    await socket.send_json({'place': [0, 0, 0, 0, 0, 0, 1]})
+    await socket.send_json({'place': list(place)})
     await answer_until(socket, lambda kind, content: kind == 'ping' and content[0] > 8)
