@@ -1,10 +1,12 @@
 #include "scene_shapes.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "../record/world.h"
+#include "../record/record_yaml.h"
 #include "../text/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -39,6 +41,38 @@ void add_visual(const Visual& visual, const Pose& frame, int id, MarkerLayer& la
   marker.colors.clear();  // the viewer has lights of its own
   if (const Mesh* const mesh = std::get_if<Mesh>(&visual.shape)) make_triangle_list(*mesh->triangles, marker);
 }
+
+/// Makes a change of a world, as far as it is seen; false if it is not.
+struct Shown {
+  const RecordedFiles& files;
+  World& world;
+
+  bool operator()(const Spawn& spawn) const {
+    world.added.push_back(spawn.request);
+    for (const RecordedFile& file : files)
+      if (find_file(world.files, file.name) == nullptr) world.files.push_back(file);
+    return true;
+  }
+  bool operator()(const Delete& remove) const {
+    const auto added = std::find_if(
+        world.added.begin(), world.added.end(),
+        [&](const ObjectRequest& request) { return !request.whole && request.name == remove.name; });
+    if (added == world.added.end()) {
+      world.removed.push_back(remove.name);
+    } else {
+      world.added.erase(added);
+    }
+    return true;
+  }
+  bool operator()(const SetParameters& set) const {
+    for (const auto& [name, value] : set.values) world.parameters[name] = value;
+    return true;
+  }
+  template <class Other>
+  bool operator()(const Other& /*places what is there*/) const {
+    return false;
+  }
+};
 
 std::string title(const Scene& scene, const Configuration& configuration) {
   const double g = configuration.gravity.value_or(scene.gravity).norm();
@@ -79,36 +113,24 @@ SceneShapes::SceneShapes(ros::NodeHandle node)
 
 void SceneShapes::take(const SimulationInput& input) {
   try {
-    if (input.kind == SimulationInput::BEGIN) begin(input);
-    if (input.kind == SimulationInput::CHANGE && simulation_) change(input);
+    if (input.kind == SimulationInput::BEGIN) {
+      world_ = world_from_yaml(input.text, files_of(input));
+    } else if (input.kind == SimulationInput::CHANGE && world_) {
+      const RecordedFiles files = files_of(input);
+      if (!std::visit(Shown{files, *world_}, change_from_yaml(input.text, files))) return;
+    } else {
+      return;
+    }
+    publish();
   } catch (const std::exception& error) {
     ROS_WARN("the scene is not shown: %s", text::one_line(error.what()).c_str());
   }
 }
 
-void SceneShapes::begin(const SimulationInput& input) {
-  const World world = world_from_yaml(input.text, files_of(input));
-  std::vector<std::string> unknown;
-  const Configuration configuration = configuration_of(world, unknown);
-  simulation_ =
-      std::make_unique<LiveSimulation>(scene_of(world, configuration, meshes_.path()), configuration);
-  publish();
-}
-
-void SceneShapes::change(const SimulationInput& input) {
-  const RecordedFiles files = files_of(input);
-  Change change = change_from_yaml(input.text, files);
-  // Neither changes what is there.
-  if (std::holds_alternative<PlaceObject>(change) || std::holds_alternative<Pause>(change)) return;
-  if (auto* const spawn = std::get_if<Spawn>(&change))
-    spawn->request.urdf = with_meshes_in(meshes_.path(), spawn->request.urdf, files);
-  make(change, *simulation_);
-  publish();
-}
-
 void SceneShapes::publish() const {
-  const Simulation& simulation = simulation_->simulation();
-  publisher_.publish(scene_shapes(simulation.scene(), simulation.configuration(), "world"));
+  std::vector<std::string> unknown;
+  const Configuration configuration = configuration_of(*world_, unknown);
+  publisher_.publish(scene_shapes(scene_of(*world_, configuration, files_.path()), configuration, "world"));
 }
 
 }  // namespace mrhi

@@ -4,11 +4,10 @@
 #include <ros/ros.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <cstdint>
-#include <memory>
+#include <optional>
 
 #include "../record/scratch_folder.h"
-#include "mr_hand_interaction/live_simulation.h"
+#include "../record/world.h"
 
 namespace mrhi {
 
@@ -27,12 +26,10 @@ class SceneShapes {
 
  private:
   void take(const mr_hand_interaction::SimulationInput& input);
-  void begin(const mr_hand_interaction::SimulationInput& input);
-  void change(const mr_hand_interaction::SimulationInput& input);
   void publish() const;
 
-  ScratchFolder meshes_{"scene_shapes"};
-  std::unique_ptr<LiveSimulation> simulation_;
+  ScratchFolder files_{"scene_shapes"};  ///< of the scene, from which it is read
+  std::optional<World> world_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
 };
