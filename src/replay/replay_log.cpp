@@ -1,12 +1,10 @@
-#include <stdlib.h>
-
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
 #include <set>
 #include <stdexcept>
 
+#include "../record/scratch_folder.h"
 #include "../record/world.h"
 #include "../simulation/state_bytes.h"
 #include "../text/csv.h"
@@ -110,24 +108,6 @@ class Overrides {
   std::set<std::string> fixed_;
   bool other_scene_ = false;
   std::vector<std::string> differing_;
-};
-
-/// A folder that is removed with its contents at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_((std::filesystem::temp_directory_path() / "replay_XXXXXX").string()) {
-    if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 class LogRun {
@@ -269,7 +249,7 @@ class LogRun {
 
   const ReplayArguments& arguments_;
   Overrides overrides_;
-  ScratchFolder scratch_;
+  ScratchFolder scratch_{"replay"};
   ReplayRun run_;
   std::unique_ptr<LiveSimulation> simulation_;
   std::unique_ptr<CsvFile> hashes_;

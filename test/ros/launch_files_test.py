@@ -112,6 +112,8 @@ class LaunchFilesTest(unittest.TestCase):
                                         ("multi_machine.launch", "hands:=x", "leap, demo"),
                                         ("mr_view.launch", "hands:=x", "demo, leap, none"),
                                         ("training.launch", "hands:=x", "leap, operator, demo, none"),
+                                        ("web.launch", "hands:=x", "headset, demo, leap, bag, none"),
+                                        ("web.launch", "people:=3", "1, 2"),
                                         ("playback.launch", "rate:=x", "a number above 0"),
                                         ("playback.launch", "rate:=1 --pause", "a number above 0")):
             with self.assertRaises(roslaunch.xmlloader.XmlParseException) as told:

@@ -1,5 +1,6 @@
 """A headless Chromium, driven by chromedriver over the WebDriver protocol (W3C)."""
 
+import base64
 import json
 import shutil
 import socket
@@ -26,14 +27,15 @@ def free_port():
 
 
 class Browser:
-    def __init__(self):
+    def __init__(self, *arguments):
+        """`arguments` for Chromium; by default it draws without a GPU."""
         port = free_port()  # not every version tells which it has chosen itself
         self.address = 'http://127.0.0.1:%d' % port
         self.driver = subprocess.Popen(['chromedriver', '--port=%d' % port], stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
         try:
             self._wait_until_ready()
-            options = {'args': ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage']}
+            options = {'args': ['--headless', '--no-sandbox', '--disable-dev-shm-usage', *(arguments or ['--disable-gpu'])]}
             wanted = {'goog:chromeOptions': options, 'timeouts': {'implicit': 1000 * LIMIT // 2}}  # [ms] to be found
             wanted = {'capabilities': {'alwaysMatch': wanted}}
             self.session = '/session/' + self._send('POST', '/session', wanted)['sessionId']
@@ -84,6 +86,15 @@ class Browser:
 
     def run(self, script):
         return self._send('POST', self.session + '/execute/sync', {'script': script, 'args': []})
+
+    def run_first(self, script):
+        """In every page that is opened from now on, before its own scripts."""
+        order = {'cmd': 'Page.addScriptToEvaluateOnNewDocument', 'params': {'source': script}}
+        self._send('POST', self.session + '/goog/cdp/execute', order)
+
+    def picture(self):
+        """Of what is seen, a PNG."""
+        return base64.b64decode(self._send('GET', self.session + '/screenshot'))
 
     def close(self):
         try:

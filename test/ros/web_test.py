@@ -1,0 +1,341 @@
+#!/usr/bin/env python3
+"""A headset's hands through web.launch, in Chromium with an emulated headset, and what lookers-on see."""
+import asyncio
+import csv
+import glob
+import json
+import math
+import os
+import signal
+import socket
+import ssl
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import urllib.request
+
+import aiohttp
+import numpy
+import rosbag
+import roslib.packages
+import rospy
+import rostest
+from geometry_msgs.msg import Point, Pose, PoseArray
+from sensor_msgs.msg import PointCloud
+from tf2_msgs.msg import TFMessage
+
+from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
+from mr_hand_interaction.srv import DeleteObject, SpawnObject, SpawnObjectRequest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web")]
+import doors  # noqa: E402
+import emulated_headset  # noqa: E402
+from launching import Launch  # noqa: E402
+from tracker_hands import joints, program, recording  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+TOKEN = "test"
+RATE = 60  # of the scripted hand, frames per second
+CARRIED = 0.06  # m, of 0.08
+# A browser that draws by software on a busy machine stops for tenths of a second. The motion goes on where it was, as it has
+# a row for each frame, so the hand is kept so long.
+HOLD = 5.0  # s
+GRASP = [InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END]
+
+
+def free_port():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+def float32(number):
+    return struct.unpack("f", struct.pack("f", number))[0]
+
+
+def matrix(transform):
+    """4x4, of a TransformStamped."""
+    p, q = transform.transform.translation, transform.transform.rotation
+    x, y, z, w = q.x, q.y, q.z, q.w
+    return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), p.x],
+                        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), p.y],
+                        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), p.z], [0, 0, 0, 1]])
+
+
+class Viewer(threading.Thread):
+    """Looks on as a browser does, until the end of the block: keeps the scene, and where things are."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.origin = "http://127.0.0.1:%d" % port
+        self.bodies, self.places, self.largest, self.frames, self.hands = {}, {}, 0, 0, 0
+        self._over = False
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self._over = True
+        self.join()
+
+    def run(self):
+        asyncio.run(self._look())
+
+    async def _look(self):
+        async with aiohttp.ClientSession() as session:
+            while not self._over:
+                try:
+                    async with session.ws_connect("%s/%s/socket" % (self.origin, TOKEN), origin=self.origin,
+                                                  max_msg_size=0) as door:
+                        while not self._over:
+                            self._take((await door.receive(timeout=10)).data)
+                except (aiohttp.ClientError, TypeError):
+                    await asyncio.sleep(0.1)  # not there yet
+
+    def _take(self, text):
+        (kind, content), = json.loads(text).items()
+        if kind == "scene":
+            self.bodies = {body["id"]: body["name"] for body in content["bodies"]}
+        if kind == "frame":
+            self.frames += 1
+            self.largest = max(self.largest, len(text))
+            self.hands = len(content[0])
+            self.places.update({entry[0]: [1e-4 * number for number in entry[2:5]] for entry in content[2]})
+
+    def place(self, name):
+        return next((self.places.get(id_) for id_, body in self.bodies.items() if body == name), None)
+
+
+class WebTest(unittest.TestCase):
+    def setUp(self):
+        rospy.init_node("web_test")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder, self.port = folder.name, free_port()
+        self.left, self.right, self.late, self.mounts, self.kinds, self.objects = [], [], [], {}, [], {}
+        for name, kind, take in (("hands/left/point_cloud", PointCloud, self.left.append),
+                                 ("hands/right/point_cloud", PointCloud, self.take_right), ("/tf_static", TFMessage, self.take_mount),
+                                 ("interaction_events", InteractionEvent, lambda event: self.kinds.append(event.kind)),
+                                 ("objects", ObjectStateArray, self.take_objects)):
+            self.addCleanup(rospy.Subscriber(name, kind, take, queue_size=100, tcp_nodelay=True).unregister)
+
+    def take_right(self, cloud):
+        self.late.append(rospy.get_time() - cloud.header.stamp.to_sec())
+        self.right.append(cloud)
+
+    def take_mount(self, message):
+        self.mounts.update({transform.child_frame_id: transform for transform in message.transforms})
+
+    def take_objects(self, message):
+        self.objects = {state.name: state.pose.position for state in message.objects}
+
+    def launch(self, *arguments):
+        return Launch("web.launch", "token:=" + TOKEN, "port:=%d" % self.port, *arguments)
+
+    def replay(self, name, *arguments):
+        """The folder of its tables."""
+        output = os.path.join(self.folder, name + "_result")
+        subprocess.run([program("replay"), "--input", os.path.join(self.folder, name + ".bag"), "--output", output, *arguments],
+                       check=True, stdout=subprocess.DEVNULL)
+        return output
+
+    @staticmethod
+    def text(folder, name):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            return file.read()
+
+    def write_bag(self, name, topic, messages):
+        with rosbag.Bag(os.path.join(self.folder, name + ".bag"), "w") as bag:
+            bag.write("/tf_static", TFMessage(list(self.mounts.values())), messages[0].header.stamp)
+            for message in messages:
+                bag.write(topic, message, message.header.stamp)
+
+    def rows(self):
+        """Of the scripted hand, in the space of the headset."""
+        mount, = self.mounts.values()
+        of_world = numpy.linalg.inv(matrix(mount))
+        rows = [[(x, -z, y, 1.0) for x, y, z in joints(row, 25)] for row in recording(self.folder, RATE)]
+        return [[float32(number) for point in row for number in (of_world @ point)[:3]] for row in rows if row]
+
+    def test_a_headsets_hand_takes_carries_and_releases_as_a_tracker_s_does(self):
+        missing = emulated_headset.missing()
+        if missing:
+            self.skipTest(missing)
+        bag = os.path.join(self.folder, "live.bag")
+        params = os.path.join(self.folder, "params.yaml")
+        with open(params, "w", encoding="utf-8") as file:
+            file.write("tracking: {hold_time: %g}\n" % HOLD)
+        with self.launch("scene:=cube", "params:=" + params), Launch("record.launch", "bag:=" + bag), \
+                Viewer(self.port) as viewer:
+            wait_until(lambda: viewer.place("cube"), "the scene")
+            headset = emulated_headset.Headset()
+            self.addCleanup(headset.close)
+            headset.open("http://127.0.0.1:%d/%s/" % (self.port, TOKEN))
+            wait_until(lambda: headset.run("return page.drawing.complete"), "the page")
+            headset.enter("immersive-ar")
+            wait_until(lambda: self.left and self.right, "hands")
+            for cloud in self.left[-1], self.right[-1]:
+                self.check_hand(cloud)
+            rows, names = self.rows(), headset.run("return import('./hands.js').then((hands) => hands.JOINTS)")
+            headset.play(names, rows)
+            highest = 0.0
+            while headset.run("return played") <= len(rows):
+                highest = max(highest, self.objects["cube"].z)
+            wait_until(lambda: InteractionEvent.HAND_LOST in self.kinds[-2:], "the hand's end")
+            self.assertEqual(headset.errors(), [])
+            wait_until(lambda: numpy.allclose(viewer.place("cube"), self.at("cube"), atol=1e-4), "the viewer's last frame")
+        self.assertEqual([kind for kind in self.kinds if kind in GRASP], GRASP)
+        self.assertGreater(highest - 0.22, CARRIED)
+        self.assertLessEqual(viewer.largest, 5000)
+        late = sorted(self.late)
+        print("from the headset's frame to a subscriber: median %.1f ms, p99 %.1f ms of %d frames" %
+              (1e3 * late[len(late) // 2], 1e3 * late[int(0.99 * len(late))], len(late)))
+        self.check_as_given(rows)
+        self.check_replays(params)
+
+    def at(self, name):
+        place = self.objects[name]
+        return [place.x, place.y, place.z]
+
+    def check_hand(self, cloud):
+        self.assertEqual(len(cloud.points), 25)
+        self.assertTrue(numpy.isfinite([(p.x, p.y, p.z) for p in cloud.points]).all())
+        radius, confidence = cloud.channels
+        self.assertEqual((radius.name, confidence.name), ("radius", "confidence"))
+        self.assertTrue(all(0.003 < value < 0.03 for value in radius.values))
+        self.assertEqual(set(confidence.values), {1.0})
+
+    def check_as_given(self, rows):
+        """The played rows are among the messages, each to the bit and in order; a page leaves out a frame rather than be late."""
+        def numbers(cloud):
+            return [number for p in cloud.points for number in (p.x, p.y, p.z)]
+        begin = next(k for k, cloud in enumerate(self.right) if numbers(cloud) in rows)
+        played = [cloud for cloud in self.right[begin:] if cloud.points]
+        self.assertGreater(len(played), 0.5 * len(rows))
+        given = iter(rows)
+        for cloud in played:
+            self.assertTrue(any(numbers(cloud) == row for row in given), "what was not given, or not in this order")
+        self.played = played
+
+    def check_replays(self, params):
+        """The session is the live run again; and its hands do to the bit what they do as PoseArray."""
+        live = self.replay("live")
+        run = json.loads(self.text(live, "summary.json"))["live_run"]
+        self.assertGreater(run["compared"], 300)
+        self.assertEqual((run["same"], run["parts_at"]), (run["compared"], None))
+        arrays = [PoseArray(cloud.header, [Pose(position=Point(p.x, p.y, p.z)) for p in cloud.points])
+                  for cloud in self.played]
+        self.write_bag("clouds", "/hands/right/point_cloud", self.played)
+        self.write_bag("arrays", "/hands/right/pose_array", arrays)
+        clouds, arrays = (self.replay(name, "--scene", "cube", "--params", params) for name in ("clouds", "arrays"))
+        for table in ("objects.csv", "contacts.csv", "events.csv"):
+            self.assertEqual(self.text(clouds, table), self.text(arrays, table))
+        events = [row["kind"] for row in csv.DictReader(self.text(clouds, "events.csv").splitlines())]
+        self.assertEqual([kind for kind in events if "GRASP" in kind], ["GRASP_BEGIN", "GRASP_END"])
+
+    def test_lookers_on_see_what_comes_and_goes(self):
+        with self.launch("hands:=demo"), Viewer(self.port) as first, Viewer(self.port) as second:
+            for viewer in (first, second):
+                wait_until(lambda: viewer.hands == 1 and viewer.place("cube"), "hand and cube")
+            box = SpawnObjectRequest(name="box", shape="box", size=[0.05, 0.05, 0.1], mass=0.1)
+            box.pose.position.x, box.pose.orientation.w = 0.3, 1.0
+            rospy.wait_for_service("/interaction_node/spawn", 60)
+            self.assertTrue(rospy.ServiceProxy("/interaction_node/spawn", SpawnObject)(box).success)
+            for viewer in (first, second):
+                wait_until(lambda: viewer.place("box"), "the box")
+                self.assertAlmostEqual(viewer.place("box")[0], 0.3, delta=1e-4)
+            self.assertTrue(rospy.ServiceProxy("/interaction_node/delete", DeleteObject)("box").success)
+            for viewer in (first, second):
+                wait_until(lambda: "box" not in viewer.bodies.values(), "the box's end")
+
+    def test_a_recording_is_shown_as_it_was(self):
+        bag = os.path.join(self.folder, "demo.bag")
+        with self.launch("hands:=demo", "motion:=grasp_cube"), Launch("record.launch", "bag:=" + bag):
+            wait_until(lambda: GRASP[1] in self.kinds, "a grasp")
+        with rosbag.Bag(bag) as recorded:
+            highest = max(message.objects[0].pose.position.z for _, message, _ in recorded.read_messages("/objects"))
+        wait_until(lambda: not rospy.get_published_topics("/interaction_node"), "the nodes' end")
+        with self.launch("hands:=bag", "bag:=" + bag, "loop:=false"), Viewer(self.port) as viewer:
+            seen = 0.0
+            wait_until(lambda: viewer.hands == 1 and viewer.place("cube"), "the recording")
+
+            def was_carried():
+                nonlocal seen
+                seen = max(seen, viewer.place("cube")[2])
+                return seen > highest - 0.002
+            wait_until(was_carried, "the cube carried to %.3f m" % highest)
+
+    def test_two_people_have_their_hands_in_one_scene(self):
+        if not roslib.packages.find_node("mr_hand_interaction", "merge_hands"):
+            self.skipTest("merge_hands is not built")
+        frames = []
+        self.addCleanup(rospy.Subscriber("hand_frame", HandFrame, frames.append, queue_size=100).unregister)
+        row = next(row for row in recording(self.folder, RATE) if row["palm_x"])
+        points = [(x, -z, y, 0.008) for x, y, z in joints(row, 25)]
+        numbers = 100 * [math.nan] + [number for point in points for number in point]
+
+        async def be_there(place):
+            async with aiohttp.ClientSession() as session:
+                origin = "http://127.0.0.1:%d" % self.port
+                async with session.ws_connect("%s/%s/socket" % (origin, TOKEN), origin=origin, max_msg_size=0) as door:
+                    await doors.put_hands_in(door, place)
+                    end = time.monotonic() + 20.0
+                    while time.monotonic() < end and not both():
+                        await door.send_bytes(struct.pack("<d200f50B", 1e3 * time.monotonic(), *numbers, *(25 * [0] + 25 * [2])))
+                        await asyncio.sleep(1.0 / 60)
+
+        def both():
+            return frames and len(frames[-1].hands) == 2
+
+        async def two():
+            await asyncio.gather(be_there([0, 0, 0, 0, 0, 0, 1]), be_there([0.5, 0, 0, 0, 0, 0, 1]))
+        with self.launch("people:=2", "scene:=cube"), Viewer(self.port) as viewer:
+            wait_until(lambda: viewer.place("cube"), "the scene")
+            asyncio.run(two())
+            self.assertTrue(both(), "two hands in one frame")
+            first, second = sorted(frames[-1].hands, key=lambda hand: hand.palm.position.x)
+            self.assertNotEqual(first.id, second.id)
+            self.assertAlmostEqual(second.palm.position.x - first.palm.position.x, 0.5, delta=1e-3)
+
+    def test_https_makes_its_certificate_at_the_first_start(self):
+        home = os.path.join(self.folder, "ros")
+        command = [program("web_door"), "__name:=secure", "_https:=true", "_token:=" + TOKEN, "_port:=%d" % self.port]
+        door = subprocess.Popen(command, env=dict(os.environ, ROS_HOME=home), stdout=subprocess.DEVNULL)
+        try:
+            def answers():
+                made = glob.glob(os.path.join(home, "mr_hand_interaction", "*.pem"))
+                try:
+                    trusting = ssl.create_default_context(cafile=made[0])
+                    page = "https://127.0.0.1:%d/%s/" % (self.port, TOKEN)
+                    return urllib.request.urlopen(page, context=trusting, timeout=10).status == 200
+                except (IndexError, OSError):
+                    return False
+            wait_until(answers, "the page by HTTPS")
+        finally:
+            door.send_signal(signal.SIGINT)
+            self.assertEqual(door.wait(60), 0)
+
+    def test_a_door_that_cannot_open_says_why_in_one_line(self):
+        door = program("web_door")
+        for arguments, line in ((["_port:=x"], "~port is x; allowed: 0 to 65535"),
+                                (["_people:=3"], "~people is 3; allowed: 1 to 2"), (["_colour:=red"], "unknown parameter ~colour"),
+                                (["_token:=a b"], "~token is 'a b'; allowed: 4 to 64"),
+                                (["_three:=/nope"], "apt-get install libjs-three"),
+                                (["_address:=192.0.2.1", "_https:=false"], "192.0.2.1 port 8765: "), (["now"], "unknown argument 'now'")):
+            done = subprocess.run([door, *arguments, "__name:=refused"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  timeout=60, universal_newlines=True, check=False)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn(line, done.stderr)
+            for parameter in ("port", "people", "colour", "token", "three", "address", "https"):
+                if rospy.has_param("/refused/" + parameter):
+                    rospy.delete_param("/refused/" + parameter)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("mr_hand_interaction", "web", WebTest)

@@ -1,0 +1,347 @@
+"""The door of browsers, on this machine's own address: what it refuses, and that hands and frames never wait in line."""
+import asyncio
+import json
+import os
+import random
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import types
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+try:
+    import aiohttp
+except ImportError:
+    raise unittest.SkipTest('aiohttp is not installed (Debian: python3-aiohttp)')
+from doors import TOKEN, RunningDoor, answer_until, hands, put_hands_in  # noqa: E402
+from web import certificate, messages, picture, server  # noqa: E402
+
+FRAME = 1.0 / 60  # [s]
+
+
+def point(x=0.0, y=0.0, z=0.0, w=1.0):
+    return types.SimpleNamespace(x=x, y=y, z=z, w=w)
+
+
+def pose(x=0.0):
+    return types.SimpleNamespace(position=point(x), orientation=point())
+
+
+def object_states(count, x):
+    return types.SimpleNamespace(objects=[types.SimpleNamespace(name='body_%d' % i, held=False, pose=pose(x - 0.01 * i))
+                                          for i in range(count)])
+
+
+def rendered_hands(count):
+    phalanges = [types.SimpleNamespace(finger=i // 4, bone=i % 4, start=point(-1.2345, 0.4321, 1.1111), radius=0.0088,
+                                       end=point(-1.2345, 0.4321, 1.1111), touching=True) for i in range(20)]
+    hand = types.SimpleNamespace(side=1, palm=pose(1.2345), palm_width=0.085, wrist=point(1.0), phalanges=phalanges)
+    return types.SimpleNamespace(hands=count * [hand])
+
+
+def wait_until(holds, what, longest=20.0):
+    end = time.monotonic() + longest
+    while not holds():
+        if time.monotonic() > end:
+            raise AssertionError('waited %g s for %s' % (longest, what))
+        time.sleep(0.01)
+
+
+class DoorTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def run_with(self, visit, **options):
+        """visit(door, session), a coroutine; the door's log stays in self.lines."""
+        async def run(door):
+            async with aiohttp.ClientSession() as session:
+                return await asyncio.wait_for(visit(door, session), 120)
+        with RunningDoor(self.folder, **options) as door:
+            self.lines = door.port.lines
+            return asyncio.run(run(door))
+
+    def refused(self, line):
+        """In the log, in one line; it may be told a second later, with others."""
+        wait_until(lambda: any(line in told for told in self.lines), "'%s' in %s" % (line, self.lines))
+        self.assertTrue(all(told.isprintable() for told in self.lines))
+
+    def test_a_wrong_token_gets_one_line_whatever_it_asks_for(self):
+        async def visit(door, session):
+            for path in ('', 'x', 'x/', 'x/socket', TOKEN + 'x/', TOKEN[:-1] + '/page.js', '%ff%fe/', '../' + TOKEN + '/../'):
+                async with session.get('%s/%s' % (door.origin, path)) as reply:
+                    self.assertEqual((reply.status, await reply.text()),
+                                     (403, 'wrong access token; open the address that web_door printed\n'), path)
+            self.refused('wrong access token')
+            for name, status in (('', 200), ('page.js', 200), ('three/build/three.module.js', 200), ('server.py', 404),
+                                 ('../package.xml', 404), ('..%2fpackage.xml', 404), ('three/../../etc/passwd', 404)):
+                async with session.get(aiohttp.client.URL(door.page + name, encoded=True)) as reply:
+                    self.assertEqual(reply.status, status, name)
+        self.run_with(visit)
+
+    def test_a_page_of_another_origin_is_refused(self):
+        async def visit(door, session):
+            for origin in ('http://evil.example', 'https' + door.origin[4:], 'null', door.origin + '.evil.example', None):
+                with self.assertRaises(aiohttp.WSServerHandshakeError) as refusal:
+                    await session.ws_connect(door.page + 'socket', origin=origin)
+                self.assertEqual(refusal.exception.status, 403)
+            self.refused("origin 'http://evil.example'; allowed: " + door.origin)
+        self.run_with(visit)
+
+    def test_ten_megabytes_are_refused_in_one_line_and_others_are_served_on(self):
+        async def visit(door, session):
+            async with door.connect(session) as looker:
+                for send in ('send_str', 'send_bytes'):
+                    async with door.connect(session) as sender:
+                        large = 10 * 1024 * 1024 * 'x'
+                        try:
+                            await getattr(sender, send)(large if send == 'send_str' else large.encode())
+                            while not sender.closed:
+                                await sender.receive(timeout=20)
+                        except OSError:
+                            pass  # it was ended while most of it had not been sent
+                await answer_until(looker, lambda kind, content: kind == 'ping')
+            self.refused('exceeds limit %d' % messages.MAX_BYTES)
+        self.run_with(visit)
+
+    def test_a_thousand_connections_leave_the_viewers_that_are_there_alone(self):
+        async def visit(door, session):
+            async with door.connect(session) as looker:
+                await answer_until(looker, lambda kind, content: kind == 'ping')
+                crowd, refused = [], set()
+
+                def note_refused():
+                    for one in crowd:
+                        try:
+                            if one.recv(200).endswith(b'too many connections; allowed: %d\n' % server.MAX_CONNECTIONS):
+                                refused.add(one)
+                        except OSError:
+                            pass  # nothing said yet, or ended
+                    return len(refused)
+                try:
+                    for _ in range(1000):
+                        crowd.append(socket.create_connection(('127.0.0.1', door.number), timeout=20))
+                        crowd[-1].setblocking(False)
+                        await asyncio.sleep(0)
+                    await answer_until(looker, lambda kind, content: kind == 'ping')
+                    # Those that have been silent for long make room for others meanwhile.
+                    wait_until(lambda: note_refused() > 1000 - 3 * server.MAX_CONNECTIONS, 'refusals')
+                finally:
+                    for one in crowd:
+                        one.close()
+                await answer_until(looker, lambda kind, content: kind == 'ping')
+            self.refused('too many connections; allowed: %d' % server.MAX_CONNECTIONS)
+            self.assertLess(len(self.lines), 20, 'a line for each would be a flood')
+
+            async def returns():
+                async with session.get(door.page) as reply:
+                    return reply.status == 200
+            self.assertTrue(await returns(), 'there is room again')
+        self.run_with(visit)
+
+    def test_viewers_beyond_the_limit_are_refused(self):
+        async def visit(door, session):
+            async with door.connect(session), door.connect(session):
+                with self.assertRaises(aiohttp.WSServerHandshakeError):
+                    await door.connect(session)
+            self.refused('too many viewers; allowed: 2')
+        self.run_with(visit, viewers=2)
+
+    def test_a_message_that_is_not_allowed_ends_its_sender_with_the_reason(self):
+        async def visit(door, session):
+            for message in ('{', '{"delete": "cube"}', '{"place": [0, 0, 0, 0, 0, 0, 0]}', '{"pong": [1, -1]}'):
+                async with door.connect(session) as sender:
+                    await sender.send_str(message)
+                    while True:
+                        reply = await sender.receive(timeout=20)
+                        if reply.type == aiohttp.WSMsgType.CLOSE:
+                            break
+                    self.assertEqual(reply.data, 1008)
+                    self.assertIn('allowed: ', reply.extra)
+            self.refused('an unknown key; allowed: pong, hands, place')
+        self.run_with(visit)
+
+    def test_whatever_is_sent_the_door_serves_on(self):
+        async def visit(door, session):
+            chance = random.Random(1)
+            texts = ['{"place": [%s]}' % ', '.join(7 * ['1e308']), '[' * 2000, '{"pong": [NaN, 1]}', '"\\ud800"', '{"hands": 1}', '']
+            async with door.connect(session) as looker:
+                for k in range(300):
+                    async with door.connect(session) as sender:
+                        for _ in range(chance.randrange(1, 5)):
+                            try:
+                                if chance.random() < 0.3:
+                                    await sender.send_str(chance.choice(texts))
+                                else:
+                                    size = chance.choice([messages.HANDS.size, chance.randrange(2000)])
+                                    await sender.send_bytes(bytes(chance.randrange(256) for _ in range(size)))
+                            except OSError:
+                                break  # refused already
+                    with socket.create_connection(('127.0.0.1', door.number)) as raw:
+                        raw.sendall(chance.choice([b'', b'GET / HTTP/1.1\r\n', b'GET /%s/socket HTTP/1.1\r\nUpgrade: x\r\n\r\n'
+                                                   % TOKEN.encode()]) + bytes(chance.randrange(256) for _ in range(200)) +
+                                    b'\r\n\r\n')
+                    if k % 20 == 0:
+                        await answer_until(looker, lambda kind, content: kind == 'ping')
+                await answer_until(looker, lambda kind, content: kind == 'ping')
+            wait_until(lambda: door.port.counts[-1] == 0, 'the end of all viewers')
+            self.assertTrue(all(line.isprintable() and 'Traceback' not in line for line in self.lines), self.lines)
+            self.assertFalse([line for line in self.lines if 'Unhandled' in line or 'exception' in line.lower()], self.lines)
+            self.assertEqual(door.port.taken, [], 'hands of nobody')
+        self.run_with(visit)
+
+    def test_hands_keep_their_bits_and_come_within_a_frame(self):
+        async def visit(door, session):
+            async with door.connect(session) as headset:
+                await put_hands_in(headset)
+                await asyncio.sleep(server.SETTLING)
+                sent = []
+                for k in range(400):
+                    now = time.monotonic()
+                    await headset.send_bytes(hands(now, k / 8192.0))  # a float32, and so to be kept to the bit
+                    sent.append((1000.0 + now, k / 8192.0))
+                    end = now + FRAME / 2
+                    while time.monotonic() < end:
+                        try:
+                            message = await headset.receive(timeout=max(1e-4, end - time.monotonic()))
+                        except asyncio.TimeoutError:
+                            break
+                        if 'ping' in message.data[:8]:
+                            await headset.send_json({'pong': [message.json()['ping'][0], 1e3 * time.monotonic()]})
+                wait_until(lambda: len(door.port.taken) == 400, 'all frames')
+                late = sorted(arrival - then for (arrival, *_), (then, _) in zip(door.port.taken, sent))
+                off = max(abs(stamp - then) for (_, _, stamp, _, _), (then, _) in zip(door.port.taken, sent))
+                print('hands: median %.2f ms, p99 %.2f ms; stamps off by at most %.2f ms' %
+                      (1e3 * late[200], 1e3 * late[395], 1e3 * off))
+                self.assertLess(late[395], FRAME)
+                self.assertLess(off, 0.005)  # half of a slow round trip on a busy machine; the limit of use is a frame
+                for (_, person, _, frame, numbers), (_, value) in zip(door.port.taken, sent):
+                    self.assertEqual((person, frame, numbers), (0, 'headset_1_1', 200 * [value]))
+        self.run_with(visit)
+
+    def test_of_hands_that_came_at_once_only_the_newest_is_published(self):
+        async def visit(door, session):
+            async with door.connect(session) as headset:
+                await put_hands_in(headset)
+                await asyncio.sleep(server.SETTLING)
+                start = time.monotonic()
+                pause = asyncio.run_coroutine_threadsafe(asyncio.sleep(0), door._loop)
+                pause.result(5)
+                door._loop.call_soon_threadsafe(time.sleep, 0.3)  # the door is busy
+                for k in range(20):
+                    await headset.send_bytes(hands(start + 0.01 * k, k / 8192.0))
+                wait_until(lambda: door.port.taken, 'hands')
+                await asyncio.sleep(0.2)
+                self.assertLess(len(door.port.taken), 5)
+                self.assertEqual(door.port.taken[-1][4][0], 19 / 8192.0)
+        self.run_with(visit)
+
+    def test_each_person_has_a_place_and_the_hands_go_when_they_leave(self):
+        async def visit(door, session):
+            async with door.connect(session) as first:
+                await put_hands_in(first)
+                async with door.connect(session) as second:
+                    await put_hands_in(second)
+                    async with door.connect(session) as third:
+                        await third.send_json({'hands': True})
+                        line = await answer_until(third, lambda kind, content: kind == 'refused')
+                        self.assertEqual(line, 'hands of 2 already; allowed: 2')
+                    await asyncio.sleep(server.SETTLING)
+                    for one in (first, second):
+                        await one.send_bytes(hands(time.monotonic()))
+                    wait_until(lambda: len(door.port.taken) == 2, 'both')
+                    self.assertEqual({(person, frame) for _, person, _, frame, _ in door.port.taken},
+                                     {(0, 'headset_1_1'), (1, 'headset_2_1')})
+                wait_until(lambda: len(door.port.taken) == 3, 'the end of the second')
+                _, person, stamp, _, numbers = door.port.taken[-1]
+                self.assertEqual((person, numbers), (1, []))
+                self.assertGreater(stamp, door.port.taken[1][2])
+        self.run_with(visit, people=2)
+
+    def test_a_new_placing_has_a_frame_of_its_own_which_nodes_know_before_it_is_used(self):
+        async def visit(door, session):
+            async with door.connect(session) as headset:
+                await put_hands_in(headset)
+                await asyncio.sleep(server.SETTLING)
+                await headset.send_json({'place': [1, 0, 0, 0, 0, 0, 1]})
+                end = time.monotonic() + 2 * server.SETTLING
+                while time.monotonic() < end:
+                    await headset.send_bytes(hands(time.monotonic()))
+                    await asyncio.sleep(FRAME)
+                wait_until(lambda: door.port.taken[-1][3] == 'headset_1_2', 'the new frame')
+                self.assertEqual([[name for name, _ in transforms] for transforms in door.port.mounted],
+                                 [['headset_1_1'], ['headset_1_1', 'headset_1_2']])
+                used = [frame for _, _, _, frame, _ in door.port.taken]
+                self.assertEqual(used, sorted(used))
+                self.assertGreater(used.count('headset_1_1'), 3, 'the hands stay while the nodes learn the new frame')
+        self.run_with(visit)
+
+    def test_frames_fit_into_five_kilobytes_and_every_body_has_its_turn(self):
+        async def visit(door, session):
+            door.picture.take_hands(rendered_hands(4))
+            async with door.connect(session) as looker:
+                seen, frames = set(), 0
+                while len(seen) < 300:
+                    frames += 1
+                    door.picture.take_hands(rendered_hands(4))
+                    door.picture.take_objects(object_states(300, 0.001 * frames))
+                    door.changed()
+                    content = await answer_until(looker, lambda kind, content: kind == 'frame')
+                    self.assertLessEqual(len(json.dumps({'frame': content}, separators=(',', ':'))), picture.MAX_FRAME)
+                    seen |= {entry[0] for entry in content[2]}
+                    self.assertLess(frames, 60)
+        self.run_with(visit)
+
+    def test_who_does_not_read_is_left_behind_and_costs_nothing(self):
+        async def visit(door, session):
+            idle = socket.create_connection(('127.0.0.1', door.number))
+            idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            idle.sendall(('GET /%s/socket HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nOrigin: %s\r\nUpgrade: websocket\r\n'
+                          'Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n'
+                          % (TOKEN, door.number, door.origin)).encode())
+            wait_until(lambda: door.port.counts, 'the viewer')
+            viewer, = door.door._viewers
+            most = 0
+            for k in range(1500):
+                door.picture.take_objects(object_states(50, 0.001 * k))
+                door.picture.take_hands(rendered_hands(4))
+                door.changed()
+                most = max(most, viewer.transport.get_write_buffer_size())
+                await asyncio.sleep(0.002)
+            self.assertLess(most, 4 * server.UNSENT)
+            self.assertLess(len(viewer.texts), 20)
+            idle.close()
+        self.run_with(visit, rate=120.0)
+
+    def test_https_has_a_certificate_of_its_own_that_is_made_once(self):
+        import ssl
+        names = ['127.0.0.1', 'lab.local']
+        files = certificate.own_certificate(os.path.join(self.folder, 'ros'), names)
+        self.assertEqual(os.stat(files[1]).st_mode & 0o077, 0, 'nobody else reads the key')
+        with open(files[0], 'rb') as first:
+            made = first.read()
+        self.assertEqual(certificate.own_certificate(os.path.join(self.folder, 'ros'), names[::-1]), files)
+        with open(files[0], 'rb') as again:
+            self.assertEqual(again.read(), made)
+        told = subprocess.run(['openssl', 'x509', '-in', files[0], '-noout', '-ext', 'subjectAltName'], check=True,
+                              stdout=subprocess.PIPE, universal_newlines=True).stdout
+        self.assertIn('DNS:lab.local', told)
+        self.assertIn('IP Address:127.0.0.1', told)
+        own = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        own.load_cert_chain(*files)
+        trusting = ssl.create_default_context(cafile=files[0])
+
+        async def visit(door, session):
+            async with session.get(door.page, ssl=trusting) as reply:
+                self.assertEqual(reply.status, 200)
+            async with door.connect(session, ssl=trusting) as looker:
+                await answer_until(looker, lambda kind, content: kind == 'ping')
+        self.run_with(visit, context=own)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,345 @@
+// Draws what web_door sends, in world: x and y level, z up, metres. scripts/web/picture.py says what the numbers are.
+
+import * as THREE from './three/build/three.module.js';
+
+const LENGTH = 1e-4, DIRECTION = 1e-3, FORCE = 1e-2; // of a whole number [m], [1], [N]
+const SKIN = new THREE.Color(0.90, 0.69, 0.57), TOUCHING = new THREE.Color(0.82, 0.25, 0.18);
+const STICKS = 0x009e73, SLIPS = 0xf0e442, STRUCK = 0xffffff; // by phase of a contact: Okabe and Ito's colours
+const PHASES = [STRUCK, STICKS, SLIPS];
+const LONGEST = 0.12, HALF = 3; // an arrow's length, and the force that has half of it [m], [N]
+const SHORTEST = 0.004, DOT = 0.0025, RING = 0.006; // [m]
+const LETTERS = 0.009; // height [m]
+
+function bytes(text) {
+  const data = atob(text), array = new Uint8Array(data.length);
+  for (let i = 0; i < data.length; ++i) array[i] = data.charCodeAt(i);
+  return new Float32Array(array.buffer);
+}
+
+function place(object, x, y, z, qx, qy, qz, qw) {
+  object.position.set(x, y, z);
+  object.quaternion.set(qx, qy, qz, qw).normalize();
+}
+
+function length([x, y, z]) {
+  return new THREE.Vector3(x, y, z).multiplyScalar(LENGTH);
+}
+
+function material([r, g, b, a], options = {}) {
+  return new THREE.MeshStandardMaterial({color: new THREE.Color(r, g, b), roughness: 0.7, transparent: a < 1, opacity: a,
+    depthWrite: a >= 1, ...options});
+}
+
+// Text that faces the eye. Its picture is drawn anew only when it says something else.
+class Label extends THREE.Sprite {
+  constructor(height = LETTERS) {
+    const canvas = document.createElement('canvas');
+    super(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
+    Object.assign(this, {canvas, height, said: '', renderOrder: 1});
+  }
+
+  say(text) {
+    if (text === this.said) return;
+    this.said = text;
+    const context = this.canvas.getContext('2d'), size = 48, lines = text.split('\n');
+    context.font = `${size}px sans-serif`;
+    const width = Math.max(...lines.map((line) => context.measureText(line).width)) + 16;
+    this.canvas.width = THREE.Math.ceilPowerOfTwo(width); // so that it may be drawn small
+    this.canvas.height = THREE.Math.ceilPowerOfTwo(1.3 * size * lines.length);
+    context.font = `${size}px sans-serif`;
+    context.textAlign = 'center';
+    context.lineJoin = 'round';
+    context.lineWidth = 6;
+    context.strokeStyle = '#222';
+    context.fillStyle = '#f4f4f4';
+    lines.forEach((line, i) => {
+      context.strokeText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
+      context.fillText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
+    });
+    this.material.map.dispose(); // of another size
+    this.material.map.needsUpdate = true;
+    this.scale.set(this.height * this.canvas.width / size, this.height * this.canvas.height / size, 1);
+  }
+}
+
+const ROUND = {
+  1: () => new THREE.BoxBufferGeometry(1, 1, 1),
+  2: () => new THREE.SphereBufferGeometry(0.5, 32, 20),
+  3: () => new THREE.CylinderBufferGeometry(0.5, 0.5, 1, 40).rotateX(Math.PI / 2),
+};
+
+function triangles(shape) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(bytes(shape.points || ''), 3));
+  geometry.computeVertexNormals();
+  let color = shape.color;
+  if (shape.colors) { // three.js knows no opacity of a corner: the first corner's is that of all
+    const rgba = bytes(shape.colors), rgb = new Float32Array(rgba.length / 4 * 3);
+    for (let i = 0; i < rgba.length / 4; ++i) rgb.set(rgba.subarray(4 * i, 4 * i + 3), 3 * i);
+    geometry.setAttribute('color', new THREE.BufferAttribute(rgb, 3));
+    color = [1, 1, 1, rgba[3]];
+  }
+  const options = {side: THREE.DoubleSide, vertexColors: shape.colors ? THREE.VertexColors : THREE.NoColors};
+  return new THREE.Mesh(geometry, material(color, options));
+}
+
+function line(shape, Kind) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(bytes(shape.points || ''), 3));
+  const [r, g, b, a] = shape.color;
+  return new Kind(geometry, new THREE.LineBasicMaterial({color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a}));
+}
+
+// A visualization_msgs/Marker; null for a type that nobody sends.
+function drawn(shape) {
+  let object = null;
+  if (ROUND[shape.type]) {
+    object = new THREE.Mesh(ROUND[shape.type](), material(shape.color));
+    object.scale.set(...shape.scale);
+  } else if (shape.type === 4) {
+    object = line(shape, THREE.Line);
+  } else if (shape.type === 5) {
+    object = line(shape, THREE.LineSegments);
+  } else if (shape.type === 9) {
+    object = new Label(shape.scale[2]);
+    object.say(shape.text || '');
+  } else if (shape.type === 11) {
+    object = triangles(shape);
+    object.scale.set(...shape.scale);
+  }
+  if (object) place(object, ...shape.pose);
+  return object;
+}
+
+function clear(group) {
+  for (const child of [...group.children]) {
+    group.remove(child);
+    child.traverse((object) => {
+      if (object.geometry && !(object instanceof THREE.Sprite)) object.geometry.dispose(); // sprites share theirs
+      if (object.material && object.material.map) object.material.map.dispose();
+      if (object.material) object.material.dispose();
+    });
+  }
+}
+
+// One mesh of capsules that move: for each corner on which half of the unit capsule it is, and in which direction.
+class Capsules extends THREE.Mesh {
+  constructor(count) {
+    const around = 10, rows = 8, corners = [], indices = [];
+    for (let row = 0; row < rows; ++row) {
+      const far = row >= rows / 2, up = Math.PI * ((far ? row - 1 : row) / (rows - 2) - 0.5);
+      for (let i = 0; i < around; ++i) {
+        const turn = 2 * Math.PI * i / around;
+        corners.push([far, Math.cos(up) * Math.cos(turn), Math.cos(up) * Math.sin(turn), Math.sin(up)]);
+      }
+    }
+    for (let k = 0; k < count; ++k) {
+      for (let row = 0; row + 1 < rows; ++row) {
+        for (let i = 0; i < around; ++i) {
+          const a = k * corners.length + row * around + i, b = a - i + (i + 1) % around;
+          indices.push(a, b, b + around, a, b + around, a + around);
+        }
+      }
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(indices);
+    for (const name of ['position', 'normal', 'color'])
+      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * count * corners.length), 3));
+    super(geometry, material([1, 1, 1, 1], {vertexColors: THREE.VertexColors}));
+    Object.assign(this, {corners, count, used: 0, frustumCulled: false});
+  }
+
+  begin() {
+    this.used = 0;
+  }
+
+  add(start, end, radius, color) {
+    if (this.used === this.count) return;
+    const z = end.clone().sub(start), {position, normal, color: paint} = this.geometry.attributes;
+    if (z.lengthSq() === 0) z.set(0, 0, 1);
+    z.normalize();
+    const x = new THREE.Vector3(1, 0, 0).cross(z);
+    if (x.lengthSq() < 0.1) x.set(0, 1, 0).cross(z);
+    x.normalize();
+    const y = z.clone().cross(x), out = new THREE.Vector3();
+    let at = this.used++ * this.corners.length;
+    for (const [far, a, b, c] of this.corners) {
+      out.set(0, 0, 0).addScaledVector(x, a).addScaledVector(y, b).addScaledVector(z, c);
+      normal.setXYZ(at, out.x, out.y, out.z);
+      out.multiplyScalar(radius).add(far ? end : start);
+      position.setXYZ(at, out.x, out.y, out.z);
+      paint.setXYZ(at++, color.r, color.g, color.b);
+    }
+  }
+
+  end() {
+    this.geometry.setDrawRange(0, this.geometry.index.count / this.count * this.used);
+    for (const attribute of Object.values(this.geometry.attributes)) attribute.needsUpdate = true;
+    this.visible = this.used > 0;
+  }
+}
+
+const THUMB = 1; // its metacarpal, which a Leap calls its proximal phalanx
+const CAPSULES_OF_A_HAND = 40, HANDS = 4, CONTACTS = 30;
+
+// Phalanges as they are, and what lies between the metacarpals of neighbouring fingers.
+function addHand(capsules, [, , , , phalanges]) {
+  const metacarpals = [];
+  for (const [which, ...rest] of phalanges) {
+    const start = length(rest.slice(0, 3)), end = length(rest.slice(3, 6)), radius = LENGTH * rest[6];
+    if (which % 4 === 0 || which === THUMB) metacarpals[Math.floor(which / 4)] = {start, end, radius};
+    capsules.add(start, end, radius, rest[7] ? TOUCHING : SKIN);
+  }
+  for (let finger = 0; finger + 1 < metacarpals.length; ++finger) {
+    const a = metacarpals[finger], b = metacarpals[finger + 1];
+    if (!a || !b) continue;
+    for (const part of finger === 0 ? [0.2, 0.4, 0.6, 0.8] : [0.33, 0.67]) { // the thumb's is farther away
+      const end = a.end.clone().lerp(b.end, part);
+      capsules.add(a.start.clone().lerp(b.start, part), end, 0.5 * (a.radius + b.radius), SKIN);
+    }
+  }
+}
+
+// Where a hand and an object meet: a dot, a ring on the surface, an arrow for the force and its newtons.
+class ContactMark extends THREE.Group {
+  constructor() {
+    super();
+    const plain = (color) => new THREE.MeshBasicMaterial({color, depthTest: false});
+    this.dot = new THREE.Mesh(new THREE.SphereBufferGeometry(DOT, 12, 8), plain(0xffffff));
+    this.ring = new THREE.Mesh(new THREE.RingBufferGeometry(0.8 * RING, RING, 24),
+      new THREE.MeshBasicMaterial({side: THREE.DoubleSide, depthTest: false}));
+    this.shaft = new THREE.Mesh(new THREE.CylinderBufferGeometry(0.00175, 0.00175, 1, 12).rotateX(Math.PI / 2),
+      material([0.97, 0.97, 0.97, 1]));
+    this.head = new THREE.Mesh(new THREE.ConeBufferGeometry(0.0045, 0.014, 16).rotateX(Math.PI / 2),
+      material([0.97, 0.97, 0.97, 1]));
+    this.newtons = new Label();
+    this.add(this.dot, this.ring, this.shaft, this.head, this.newtons);
+  }
+
+  show([x, y, z, nx, ny, nz, fx, fy, fz, phase]) {
+    const point = length([x, y, z]), normal = new THREE.Vector3(nx, ny, nz).multiplyScalar(DIRECTION);
+    const force = new THREE.Vector3(fx, fy, fz).multiplyScalar(FORCE), newtons = force.length();
+    const ahead = new THREE.Vector3(0, 0, 1);
+    this.dot.position.copy(point);
+    this.ring.position.copy(point).addScaledVector(normal, 6e-4);
+    this.ring.quaternion.setFromUnitVectors(ahead, normal.normalize());
+    this.ring.material.color.setHex(PHASES[phase] === undefined ? STRUCK : PHASES[phase]);
+    const arrow = LONGEST * newtons / (newtons + HALF);
+    const seen = arrow >= SHORTEST;
+    for (const part of [this.shaft, this.head, this.newtons]) part.visible = seen;
+    if (!seen) return;
+    const direction = force.divideScalar(newtons), tip = point.clone().addScaledVector(direction, -0.02);
+    const head = Math.min(0.014, 0.5 * arrow);
+    this.head.scale.z = head / 0.014;
+    this.head.position.copy(tip).addScaledVector(direction, -0.5 * head);
+    this.shaft.scale.z = arrow - head;
+    this.shaft.position.copy(tip).addScaledVector(direction, -0.5 * (arrow + head));
+    this.head.quaternion.setFromUnitVectors(ahead, direction);
+    this.shaft.quaternion.copy(this.head.quaternion);
+    this.newtons.position.copy(tip).addScaledVector(direction, -arrow - LETTERS);
+    this.newtons.say(`${newtons.toFixed(1)} N`);
+  }
+}
+
+const READ = ['instructions', 'timer', 'result']; // training's texts, which stand before rviz's eye
+
+export class Drawing {
+  constructor() {
+    this.world = new THREE.Group(); // place it: everything is in it
+    this.objects = new THREE.Group();
+    this.training = new THREE.Group();
+    this.hands = Array.from({length: HANDS}, () => new Capsules(CAPSULES_OF_A_HAND));
+    this.contacts = Array.from({length: CONTACTS}, () => new ContactMark());
+    this.label = new Label(0.014); // for a headset, which sees no page
+    this.world.add(this.objects, this.training, ...this.hands, ...this.contacts, this.label);
+    this.title = '';
+    this.instructions = '';
+    this.changed = false; // there is something else to be seen
+    this.bodies = new Map();
+    this.poses = new Map(); // latest entries, also of what has no shape yet
+    this.touching = false;
+    this.frames = 0;
+    this.frame([[], [], []]);
+  }
+
+  scene({title, bodies}) {
+    clear(this.objects);
+    this.bodies.clear();
+    this.title = title;
+    this.changed = true;
+    for (const body of bodies) {
+      const group = new THREE.Group();
+      group.name = body.name;
+      for (const shape of body.shapes) {
+        const object = drawn(shape);
+        if (object) group.add(object);
+      }
+      group.visible = !body.free; // until it is known where it is
+      this.objects.add(group);
+      this.bodies.set(body.id, group);
+      if (body.free && this.poses.has(body.id)) this.move(this.poses.get(body.id));
+    }
+  }
+
+  trainingMarks(shapes) {
+    const before = this.training.children.length;
+    clear(this.training);
+    this.instructions = shapes.filter((shape) => READ.includes(shape.ns)).map((shape) => shape.text || '').join('\n');
+    for (const shape of shapes.filter((other) => !READ.includes(other.ns))) {
+      const object = drawn(shape);
+      if (object) this.training.add(object);
+    }
+    if (before === 0 && this.training.children.length > 0) this.changed = true;
+  }
+
+  move(entry) {
+    const [id, held, x, y, z, ...turn] = entry;
+    this.poses.set(id, entry);
+    const group = this.bodies.get(id);
+    if (!group) return;
+    place(group, ...length([x, y, z]).toArray(), ...turn);
+    group.visible = true;
+    group.held = held === 1;
+  }
+
+  frame([hands, contacts, objects]) {
+    this.frames += 1;
+    this.hands.forEach((capsules, i) => {
+      capsules.begin();
+      if (hands[i]) addHand(capsules, hands[i]);
+      capsules.end();
+    });
+    this.touching = contacts.length > 0;
+    this.contacts.forEach((mark, i) => {
+      mark.visible = i < contacts.length;
+      if (mark.visible) mark.show(contacts[i]);
+    });
+    for (const entry of objects) this.move(entry);
+  }
+
+  // Whether it is known where everything is.
+  get complete() {
+    return this.bodies.size > 0 && this.objects.children.every((group) => group.visible);
+  }
+
+  // A ball around the objects and training's places, in the view's axes.
+  extent() {
+    this.world.updateMatrixWorld(true);
+    const box = new THREE.Box3().setFromObject(this.objects), ball = new THREE.Sphere(new THREE.Vector3(0, 0.25, 0), 0);
+    box.expandByObject(this.training);
+    if (!box.isEmpty()) box.getBoundingSphere(ball);
+    ball.radius = Math.max(0.14, ball.radius);
+    return ball;
+  }
+
+  get text() {
+    const held = this.objects.children.filter((group) => group.held).map((group) => group.name);
+    return `${this.title}  |  holding: ${held.join(', ') || 'nothing'}`;
+  }
+}
+
+export function lights() {
+  const sun = new THREE.DirectionalLight(0xffffff, 0.7);
+  sun.position.set(0.4, 0.8, 1);
+  return [new THREE.HemisphereLight(0xffffff, 0xa0a0a8, 0.9), sun];
+}
