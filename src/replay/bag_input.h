@@ -15,16 +15,15 @@ class BagError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Hands from one topic of a bag: leap_motion/Human in any version (by the definition that the bag carries),
-/// a message of joints (ros/tracker_messages.h; of a right hand where neither topic nor frame names a side),
-/// or HandFrame in world. Reads message by message.
+/// Hands from topics of a bag: a tracker's message (ros/tracker_messages.h; of a right hand where neither
+/// topic nor frame names a side), or HandFrame in world. Reads a few messages ahead.
 class BagInput : public FrameSource {
  public:
   /// Without a topic: /leap_motion/leap_device, else those of joints, hands/[left/|right/]..., together, else
   /// the only one of a fitting type.
   /// Without a device pose: the bag's /tf_static, else the default mount. Throws BagError.
   BagInput(const std::string& file, const std::optional<std::string>& topic,
-           const std::optional<Pose>& device_in_world);
+           const std::optional<Pose>& device_in_world, const HandOptions& hands = {});
   ~BagInput() override;
 
   std::optional<SourceFrame> next() override;

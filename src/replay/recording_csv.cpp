@@ -138,23 +138,13 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
   throw RecordingError(error.what());
 }
 
-SourceFrame placed(const JointsFrame& joints, const Pose& device_in_world) {
-  SourceFrame result;
-  result.frame = complete_frame(joints, device_in_world, result.left_out);
-  if (!result.frame) {
-    result.reason = "unusable hand";
-    result.detail = result.left_out.front();
-    result.left_out.clear();
-  }
-  return result;
-}
-
-CsvInput::CsvInput(const std::string& file, const Pose& device_in_world)
-    : frames_(read_recording_csv(file)), device_in_world_(device_in_world) {}
+CsvInput::CsvInput(const std::string& file, const Pose& device_in_world, double scale)
+    : frames_(read_recording_csv(file)), device_in_world_(device_in_world), input_(scale) {}
 
 std::optional<SourceFrame> CsvInput::next() {
   if (position_ == frames_.size()) return std::nullopt;
-  return placed(frames_[position_++], device_in_world_);
+  TrackerFrame frame{"", frames_[position_++], {}, {}, false};
+  return input_.take(std::move(frame), [this](Nanoseconds) { return device_in_world_; });
 }
 
 }  // namespace mrhi

@@ -85,6 +85,11 @@ void ReplayRun::reject(const std::string& reason, const std::string& detail) {
   progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
 }
 
+void ReplayRun::correct(const std::string& kind, const std::string& detail) {
+  if (++summary.corrected[kind] > 1) return;
+  progress.line("replay: " + kind + ": " + detail + " (more of the kind are counted only)");
+}
+
 void ReplayRun::check_end() {
   if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
   writer_->flush();

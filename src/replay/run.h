@@ -49,6 +49,8 @@ class ReplayRun {
   void result(const Simulation& simulation);
   /// Counts a rejected frame or change; the first of each kind is printed.
   void reject(const std::string& reason, const std::string& detail);
+  /// Counts a fault of the input that was put right; the first of each kind is printed.
+  void correct(const std::string& kind, const std::string& detail);
   /// Throws std::runtime_error if no frame was taken, or if the disk does not take the tables.
   void check_end();
   /// Writes summary.json; `error`: why the run ended early, or empty.

@@ -11,9 +11,11 @@ constexpr double kLate = 0.05;  // a frame that is done with so long after it ca
 
 }  // namespace
 
-InputStatistics::InputStatistics(const std::vector<std::string>& reasons)
+InputStatistics::InputStatistics(const std::vector<std::string>& reasons,
+                                 const std::vector<std::string>& corrections)
     : period_start_(ros::WallTime::now()) {
   for (const std::string& reason : reasons) rejected_[reason];
+  for (const std::string& kind : corrections) corrected_[kind];
 }
 
 void InputStatistics::taken(double latency) {
@@ -36,6 +38,10 @@ void InputStatistics::rejected(const std::string& reason, const std::string& det
   if (!refusals.logged.isZero() && now - refusals.logged < kQuiet) return;
   refusals.logged = now;
   ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
+}
+
+void InputStatistics::corrected(const std::string& kind, const std::string& detail) {
+  if (++corrected_[kind] == 1) ROS_INFO_STREAM(kind << ": " << detail << " (more are counted only)");
 }
 
 void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -62,6 +68,7 @@ void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status
       status.mergeSummary(DiagnosticStatus::WARN, reason + ": " + refusals.last);
     refusals.reported = refusals.count;
   }
+  for (const auto& [kind, count] : corrected_) status.add(kind, count);
   period_start_ = now;
   taken_in_period_ = 0;
   latency_sum_ = latency_max_ = 0.0;

@@ -54,7 +54,8 @@ class Live {
     for (const JointsFrame& joints : frames) {
       const double time = to_seconds(joints.stamp - frames.front().stamp);
       if (time < from || time >= to) continue;
-      HandFrame hands = *placed(joints, default_device_mount()).frame;
+      std::vector<std::string> defects;
+      HandFrame hands = complete_frame(joints, default_device_mount(), defects).value();
       hands.stamp = joints.stamp + 1'000'000'000;
       if (live_.simulation().begin(hands, hands.stamp) != Rejection::none)
         throw std::runtime_error("frame refused");
