@@ -48,9 +48,10 @@ void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status
   using diagnostic_msgs::DiagnosticStatus;
   const ros::WallTime now = ros::WallTime::now();
   const double frames = static_cast<double>(taken_in_period_);
+  const ros::WallDuration period = now - period_start_;
   status.summary(DiagnosticStatus::OK, taken_in_period_ > 0 ? "frames are coming" : "no frames");
   status.add("frames taken", taken_);
-  status.add("rate [Hz]", frames / std::max((now - period_start_).toSec(), 1e-3));
+  status.add("rate [Hz]", frames / std::max(period.toSec(), 1e-3));
   status.add("latency mean [ms]", taken_in_period_ > 0 ? 1e3 * latency_sum_ / frames : 0.0);
   status.add("latency max [ms]", 1e3 * latency_max_);
   status.add("frames lost by queue", lost_);

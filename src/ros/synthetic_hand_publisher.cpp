@@ -73,7 +73,8 @@ void SyntheticHandPublisher::wait_for_listener() const {
   }
 }
 
-/// The run moves along with a clock that leaps, either way: it neither makes up for the time nor waits for it.
+/// The run moves along with a clock that leaps, either way: it neither makes up for the time nor waits for
+/// it.
 void SyntheticHandPublisher::wait_for_next() {
   constexpr Nanoseconds kLeap = 1'000'000'000, kLongestSleep = 50'000'000, kLookAtClock = 1'000'000;
   const Nanoseconds longest = ros::Time::isSimTime() ? kLookAtClock : kLongestSleep;

@@ -16,7 +16,7 @@ struct LeapHumanTracker {
     TrackedHands tracked;
     tracked.header.frame_id = frame.frame_id;
     tracked.header.seq = frame.sequence;
-    tracked.header.stamp.fromNSec(static_cast<std::uint64_t>(frame.joints.stamp));
+    tracked.header.stamp = to_ros_time(frame.joints.stamp);
     tracked.hands = std::move(frame.joints.hands);
     tracked.tells_sides = true;
     return tracked;
