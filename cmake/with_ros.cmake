@@ -31,7 +31,7 @@ install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthe
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
 set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export
-  leapc_bridge plan_study power_study run_when set training_keys)
+  leapc_bridge mediapipe_bridge plan_study power_study run_when set training_keys)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build

@@ -150,8 +150,13 @@ TEST(Replay, a_recording_without_a_usable_frame_is_an_error) {
   frames.resize(1);
   frames[0].hands[0].palm_centre = Vector3(50, 0, 0);
   test::write_recording(replayed.arguments.input, frames);
+  replayed.arguments.output = replayed.folder / "new/out";
   EXPECT_THROW(replay(replayed.arguments), std::runtime_error);
-  EXPECT_NE(test::text_of(replayed.folder / "out/summary.json").find("\"error\""), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(replayed.folder / "new"));
+  // A folder that was there before stays, with the reason.
+  std::filesystem::create_directories(replayed.arguments.output);
+  EXPECT_THROW(replay(replayed.arguments), std::runtime_error);
+  EXPECT_NE(test::text_of(replayed.folder / "new/out/summary.json").find("\"error\""), std::string::npos);
 }
 
 }  // namespace
