@@ -9,7 +9,7 @@ from . import bars, demographics, dictionary, distributions, learning, progress,
 from .analysis import analyse
 from .measures import COMPARED, CONDITIONS, MAIN, OF, QUESTIONS, in_order, plain
 from .report import write_report
-from .session_folder import StudyError, find_sessions, read_session
+from .session_folder import StudyError, begins_a_formula, find_sessions, read_session
 from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, measures_in, of_part, parts
 
 
@@ -102,9 +102,17 @@ def _write_tables(output, data, results, notes, blocks, people, of_r):
         tables['r_models'] = of_r
     tables['data_dictionary'] = dictionary.table(tables)
     for name, table in tables.items():
-        table.to_csv(os.path.join(output, name + '.csv'), index=False, float_format='%.10g')
+        _without_formulas(table).to_csv(os.path.join(output, name + '.csv'), index=False, float_format='%.10g')
     with open(os.path.join(output, 'left_out.txt'), 'w', encoding='utf-8') as file:
         file.writelines(note + '\n' for note in notes)
+
+
+def _without_formulas(table):
+    """Texts come from files of others: after an apostrophe a spreadsheet shows them as they are."""
+    def shown(value):
+        return "'" + value if isinstance(value, str) and begins_a_formula(value) else value
+    texts = [column for column in table.columns if table[column].dtype == object]
+    return table.assign(**{column: table[column].map(shown) for column in texts})
 
 
 def _tidy(data):

@@ -42,9 +42,18 @@ class _Loader(yaml.SafeLoader):
 
 
 def name(text):
-    if not text.strip():
+    text = text.strip()
+    if not text:
         raise ValueError('is empty')
-    return text.strip()
+    if begins_a_formula(text):
+        raise ValueError("'%s' begins as a spreadsheet's formula does; allowed: names that begin with a letter, a digit or '_'"
+                         % text)
+    return text
+
+
+def begins_a_formula(text):
+    """What a spreadsheet would compute in place of showing it."""
+    return text[:1] in ('=', '+', '-', '@', '\t', '\r')
 
 
 def one_of(*allowed):

@@ -13,12 +13,17 @@ constexpr const char* kUsage =
 Takes what hand trackers publish, and publishes the hands in world on hand_frame.
 
   /leap_motion/leap_device                      leap_motion/Human, any published version
+  /leapmotion/hands/left, /leapmotion/hands/right
+                                                leap_motion_controller/Hand
   hands/pose_array, hands/left/pose_array, hands/right/pose_array
-                                                geometry_msgs/PoseArray of 21, 25 or 26 joints; see docs/trackers.md
+                                                geometry_msgs/PoseArray of 21, 24, 25 or 26 joints; see docs/trackers.md
   hands/point_cloud, hands/left/point_cloud, hands/right/point_cloud
-                                                sensor_msgs/PointCloud, the same
+                                                sensor_msgs/PointCloud, the same, with channels radius and confidence
+  Each topic takes each of these messages.
   ~fixed_frame   where hands are placed by tf; default world
   ~side          of a hand on hands/pose_array or hands/point_cloud; left or right, default right
+  ~order         of joints: a name of docs/trackers.md; default none: recognised by the lengths of bones
+  ~scale         metres per unit of the tracker's lengths; default 1
 )";
 
 }  // namespace

@@ -120,6 +120,10 @@ std::string text_in(const YAML::Node& node, const char* key) {
   return value.Scalar();
 }
 
+void refuse_form() {
+  refuse("a part has another form than it needs");
+}
+
 const RecordedFile* find_file(const RecordedFiles& files, const std::string& name) {
   for (const RecordedFile& file : files)
     if (file.name == name) return &file;
@@ -252,15 +256,17 @@ RecordedFiles files_of(const Change& change) {
 
 Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
   const YAML::Node node = recorded_yaml(yaml);
-  if (!node.IsMap()) throw std::invalid_argument("recorded change: is no map; allowed: one");
-  if (node["spawn"]) return Spawn{request_in(node["spawn"], files)};
-  if (node["delete"]) return Delete{text_in(node, "delete")};
-  if (node["set"]) return values_in(node["set"]);
-  if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
-  if (node["reset"]) return Reset{};
-  if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
-  throw std::invalid_argument(
-      "recorded change: is not known; allowed: spawn, delete, set, place, reset, pause");
+  if (!node.IsMap()) refuse("is no map");
+  return in_form([&]() -> Change {
+    if (node["spawn"]) return Spawn{request_in(node["spawn"], files)};
+    if (node["delete"]) return Delete{text_in(node, "delete")};
+    if (node["set"]) return values_in(node["set"]);
+    if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
+    if (node["reset"]) return Reset{};
+    if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
+    throw std::invalid_argument(
+        "recorded change: is not known; allowed: spawn, delete, set, place, reset, pause");
+  });
 }
 
 }  // namespace mrhi

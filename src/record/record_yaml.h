@@ -21,6 +21,18 @@ Pose pose_in(const YAML::Node& node);
 Twist twist_in(const YAML::Node& node);
 ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files);
 
+/// What `read` gives; where a part has another form than it needs, as a text where a map should be, that is
+/// reported in our words.
+[[noreturn]] void refuse_form();
+template <class Read>
+auto in_form(const Read& read) {
+  try {
+    return read();
+  } catch (const YAML::Exception&) {
+    refuse_form();
+  }
+}
+
 /// Of recorded YAML, which may be long.
 YAML::Node recorded_yaml(const std::string& yaml);
 /// Text of a node that must be there.

@@ -122,19 +122,22 @@ std::string to_yaml(const World& world) {
 
 World world_from_yaml(const std::string& yaml, const RecordedFiles& files) {
   const YAML::Node node = recorded_yaml(yaml);
-  World world;
-  world.version = text_in(node, "version");
-  world.scene = fs::path(text_in(node, "scene")).filename().string();
-  world.files = files;
-  for (const auto& entry : node["object_twist"]) world.twists[entry.first.Scalar()] = twist_in(entry.second);
-  for (const auto& entry : node["parameters"]) {
-    if (!entry.second.IsScalar())
-      throw std::invalid_argument("recorded parameters: no text; allowed: YAML in text");
-    world.parameters[entry.first.Scalar()] = entry.second.Scalar();
-  }
-  for (const YAML::Node& name : node["removed"]) world.removed.push_back(name.Scalar());
-  for (const YAML::Node& request : node["added"]) world.added.push_back(request_in(request, files));
-  return world;
+  return in_form([&] {
+    World world;
+    world.version = text_in(node, "version");
+    world.scene = fs::path(text_in(node, "scene")).filename().string();
+    world.files = files;
+    for (const auto& entry : node["object_twist"])
+      world.twists[entry.first.Scalar()] = twist_in(entry.second);
+    for (const auto& entry : node["parameters"]) {
+      if (!entry.second.IsScalar())
+        throw std::invalid_argument("recorded parameters: no text; allowed: YAML in text");
+      world.parameters[entry.first.Scalar()] = entry.second.Scalar();
+    }
+    for (const YAML::Node& name : node["removed"]) world.removed.push_back(name.Scalar());
+    for (const YAML::Node& request : node["added"]) world.added.push_back(request_in(request, files));
+    return world;
+  });
 }
 
 Configuration configuration_of(const World& world, std::vector<std::string>& unknown) {

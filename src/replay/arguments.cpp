@@ -5,6 +5,7 @@
 #include "../scene/limits.h"
 #include "../text/command_line.h"
 #include "../text/text.h"
+#include "../tracking/joint_orders.h"
 
 namespace mrhi {
 namespace {
@@ -35,6 +36,14 @@ std::string object_name(const Given& given) {
   const std::string name = text::split(given.text).front();
   if (name.empty()) given.fail("the object's name is missing");
   return name;
+}
+
+std::string order(const Given& given) {
+  try {
+    return joint_order(given.text).name;
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(given.option + ": " + error.what());
+  }
 }
 
 double rate(const Given& given) {
@@ -68,6 +77,14 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
             [&a](const Given& given) { a.object_twists.emplace_back(object_name(given), twist(given)); });
   line.once("--hand-transform", "x,y,z,qx,qy,qz,qw",
             [&a](const Given& given) { a.hand_transform = pose(given, 0); });
+  line.once("--hand-order", "NAME", [&a](const Given& given) { a.hands.order = order(given); });
+  line.once("--hand-scale", "FACTOR", [&a](const Given& given) { a.hands.scale = given.number(1e-6, 1e6); });
+  for (const char* const side : {"left", "right", "both"}) {
+    const std::string stands_for = std::string("hands/") + (side[0] == 'b' ? "" : side + std::string("/"));
+    line.once(std::string("--") + side, "TOPIC", [&a, stands_for](const Given& given) {
+      a.hands.topics[given.text] = stands_for + "pose_array";
+    });
+  }
   return line;
 }
 
@@ -87,6 +104,8 @@ void check(ReplayArguments& arguments) {
     throw UsageError("--input " + arguments.input + ": unknown kind of file; allowed: FILE.bag or FILE.csv");
   }
   if (arguments.topic && !bag) throw UsageError("--topic: only a bag has topics");
+  if (!arguments.hands.topics.empty() && (!bag || arguments.topic))
+    throw UsageError("--left, --right and --both: only a bag has topics, and --topic chooses them too");
   if (!bag) require("--scene", arguments.scene);
   if (!bag) require("--output", arguments.output);
   if (arguments.output.empty())
@@ -135,7 +154,8 @@ Does again what a live simulation did, from a bag of record.launch; or runs a re
 fast as the machine goes; needs no ROS master.
 
   --scene NAME|FILE         a shipped scene, or a URDF file; else as recorded
-  --input FILE              a CSV recording, or a bag (leap_motion/Human, PoseArray, PointCloud or HandFrame)
+  --input FILE              a CSV recording, or a bag (leap_motion/Human, leap_motion_controller/Hand,
+                            PoseArray, PointCloud or HandFrame)
   --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json;
                             of a bag FILE_replay where none is given
   --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array or point_cloud, or the only fitting
@@ -148,6 +168,10 @@ fast as the machine goes; needs no ROS master.
   --hand-transform x,y,z,qx,qy,qz,qw
                             pose of the device frame in world; else as the bag's /tf_static and /tf have it, else at the origin
                             and turned by +90 degrees about x
+  --left TOPIC, --right TOPIC, --both TOPIC
+                            of the bag, where joints of hands are on topics of other names
+  --hand-order NAME         order of the joints in PoseArray and PointCloud; else recognised; docs/trackers.md has them
+  --hand-scale FACTOR       metres per unit of the recording's lengths, as 0.001 for millimetres
   --export HZ               scripts/export afterwards: demonstration.csv and demonstration.bag, of standard messages
                             alone; 0: a row for each frame
   --explain                 scripts/explain afterwards: explain.html and explain.json, when each object was held, how, and

@@ -6,42 +6,42 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
+#include <deque>
 #include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
-#include "../ros/tracker_messages.h"
+#include "../ros/tracker_reader.h"
 #include "../ros/transform_memory.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "mr_hand_interaction/tracking/hand_pairs.h"
-#include "mr_hand_interaction/tracking/joint_gaps.h"
 
 namespace mrhi {
 namespace {
 
+const char* const kLeapTopic = "/leap_motion/leap_device";
+const char* const kFirstOff = "first stamp of another clock";
+const char* const kHandFrame = "mr_hand_interaction/HandFrame";
+
 std::set<std::string> known_types() {
-  std::set<std::string> types{"leap_motion/Human", "mr_hand_interaction/HandFrame"};
-  for_each_tracker([&types](auto tracker) {
-    types.insert(ros::message_traits::datatype<typename decltype(tracker)::Message>());
-  });
+  std::set<std::string> types = TrackerReader::types();
+  types.insert(kHandFrame);
   return types;
 }
 
 /// What other trackers' hands are on belongs together.
 std::set<std::string> known_point_topics() {
   std::set<std::string> topics;
-  for_each_tracker([&topics](auto tracker) {
-    for (const std::string& topic : topics_of(tracker)) topics.insert("/" + topic);
-  });
+  for (const std::string& topic : TrackerReader::topics())
+    topics.insert(topic[0] == '/' ? topic : "/" + topic);
+  topics.erase(kLeapTopic);
   return topics;
 }
 
 const std::set<std::string> kTypes = known_types();
 const std::set<std::string> kPointTopics = known_point_topics();
-const std::string kLeapTopic = "/leap_motion/leap_device";
 std::string joined(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -49,16 +49,22 @@ std::string joined(const std::set<std::string>& names) {
 }
 
 std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& bag,
-                                    const std::optional<std::string>& wanted) {
+                                    const std::optional<std::string>& wanted, const HandOptions& hands) {
   std::set<std::string> fitting;
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
     if (kTypes.count(connection->datatype) > 0) fitting.insert(connection->topic);
   }
-  if (wanted) {
-    for (const std::string& topic : {*wanted, "/" + *wanted}) {
-      if (fitting.count(topic) > 0) return {topic};
+  const auto found = [&](const std::string& name) {
+    for (const std::string& topic : {name, "/" + name}) {
+      if (fitting.count(topic) > 0) return topic;
     }
-    throw BagError(file + ": no topic '" + *wanted + "' with hands; allowed: " + joined(fitting));
+    throw BagError(file + ": no topic '" + name + "' with hands; allowed: " + joined(fitting));
+  };
+  if (wanted) return {found(*wanted)};
+  if (!hands.topics.empty()) {
+    std::set<std::string> named;
+    for (const auto& [topic, stands_for] : hands.topics) named.insert(found(topic));
+    return named;
   }
   if (fitting.count(kLeapTopic) > 0) return {kLeapTopic};
   std::set<std::string> points;
@@ -144,37 +150,37 @@ class DeviceFrames {
 
 struct BagInput::Impl {
   Impl(const std::string& of_file, const std::optional<std::string>& wanted,
-       const std::optional<Pose>& device)
+       const std::optional<Pose>& device, const HandOptions& of_hands)
       : file(of_file),
         bag(readable(file), rosbag::bagmode::Read),
-        topics(chosen_topics(file, bag, wanted)),
+        topics(chosen_topics(file, bag, wanted, of_hands)),
         topic(joined(topics)),
         view(bag, rosbag::TopicQuery(std::vector<std::string>(topics.begin(), topics.end()))),
+        options(of_hands),
+        reader({Side::right, options.order, options.scale}),
         devices(bag, device),
         at(view.begin()) {}
 
-  SourceFrame place(JointsFrame joints, const std::string& frame_id, const ros::Time& receipt) {
-    if (joints.stamp == 0) joints.stamp = from_ros_time(receipt);
-    const bool empty = joints.hands.empty();
-    return placed(joints, empty ? Pose{} : devices.pose(frame_id, joints.stamp, receipt));
+  SourceFrame read_tracker(const rosbag::MessageInstance& message) {
+    TrackerReader::Message arrived{stands_for(message.getTopic()),
+                                   message.getCallerId(),
+                                   message.getDataType(),
+                                   message.getMD5Sum(),
+                                   std::vector<std::uint8_t>(message.size()),
+                                   from_ros_time(message.getTime())};
+    ros::serialization::OStream stream(arrived.bytes.data(), message.size());
+    message.write(stream);
+    return reader.read(std::move(arrived), [&](const std::string& frame_id, Nanoseconds stamp) {
+      return devices.pose(frame_id, stamp, message.getTime());
+    });
   }
 
-  template <class Tracker>
-  SourceFrame read_points(const rosbag::MessageInstance& message) {
-    const auto found = message.instantiate<typename Tracker::Message>();
-    if (!found) return refused("unknown version", message.getDataType() + " with md5 " + message.getMD5Sum());
-    const TrackedPoints tracked = Tracker::read(*found);
-    const std::string& frame_id = tracked.header.frame_id;
-    const std::optional<Side> of_topic = side_of_topic(message.getTopic());
-    const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(Side::right);
-    JointsFrame joints = joints_from_points(tracked, side);
-    if (joints.stamp == 0) joints.stamp = from_ros_time(message.getTime());
-    gaps.fill(joints);
-    SourceFrame frame = place(std::move(joints), frame_id, message.getTime());
-    if (!frame.frame || has_both_hands(tracked)) return frame;
-    frame.frame = pairs.take(side, *frame.frame);
-    frame.waits = !frame.frame;
-    return frame;
+  /// The topic's name by which a live node would tell the side.
+  std::string stands_for(const std::string& recorded) const {
+    for (const std::string& name : {recorded, recorded.substr(1)}) {
+      if (const auto found = options.topics.find(name); found != options.topics.end()) return found->second;
+    }
+    return recorded;
   }
 
   SourceFrame read_hand_frame(const rosbag::MessageInstance& message) {
@@ -197,27 +203,29 @@ struct BagInput::Impl {
 
   SourceFrame read_hands(const rosbag::MessageInstance& message) {
     try {
-      if (message.getDataType() == "leap_motion/Human") {
-        LeapFrame frame = read_leap(message);
-        return place(std::move(frame.joints), frame.frame_id, message.getTime());
-      }
-      if (message.getDataType() == "mr_hand_interaction/HandFrame") return read_hand_frame(message);
-      SourceFrame frame =
-          refused("unknown version", "type " + message.getDataType() + "; allowed: " + joined(kTypes));
-      for_each_tracker([&](auto tracker) {
-        using Tracker = decltype(tracker);
-        if (message.getDataType() == ros::message_traits::datatype<typename Tracker::Message>())
-          frame = read_points<Tracker>(message);
-      });
-      return frame;
-    } catch (const DecodeError& error) {
-      return refused(error.reason(), error.what());
+      return message.getDataType() == kHandFrame ? read_hand_frame(message) : read_tracker(message);
     } catch (const ros::serialization::StreamOverrunException& error) {
       return refused("malformed", error.what());
     } catch (const NoTransform& error) {
       return refused("no transform", error.what());
     } catch (const std::invalid_argument& error) {
-      return refused("unusable hand", error.what());
+      return refused(JointsInput::kUnusable, error.what());
+    }
+  }
+
+  /// The next messages, as far ahead as a stream's third is likely to be: only then it is known whether its
+  /// first one is of another clock.
+  void look_ahead() {
+    constexpr std::size_t kMessages = 12;
+    while (at != view.end() && ahead.size() < kMessages) {
+      const std::string stream = at->getCallerId() + " " + at->getTopic();
+      SourceFrame frame = read(*at);
+      ++at;
+      const auto first =
+          std::find_if(ahead.begin(), ahead.end(), [&](const auto& one) { return one.first == stream; });
+      if (frame.first_was_off && position + ahead.size() < kMessages && first != ahead.end())
+        first->second = refused(kFirstOff, "the first frame of " + stream);
+      ahead.emplace_back(stream, std::move(frame));
     }
   }
 
@@ -226,16 +234,17 @@ struct BagInput::Impl {
   std::set<std::string> topics;
   std::string topic;
   rosbag::View view;
-  JointGaps gaps;
-  HandPairs pairs;
+  HandOptions options;
+  TrackerReader reader;
   DeviceFrames devices;
   rosbag::View::iterator at;
+  std::deque<std::pair<std::string, SourceFrame>> ahead;  // with their streams
   std::size_t position = 0;
 };
 
 BagInput::BagInput(const std::string& file, const std::optional<std::string>& topic,
-                   const std::optional<Pose>& device_in_world) try
-    : impl_(std::make_unique<Impl>(file, topic, device_in_world)) {
+                   const std::optional<Pose>& device_in_world, const HandOptions& hands) try
+    : impl_(std::make_unique<Impl>(file, topic, device_in_world, hands)) {
 } catch (...) {
   refuse_bag(file);
 }
@@ -243,14 +252,14 @@ BagInput::BagInput(const std::string& file, const std::optional<std::string>& to
 BagInput::~BagInput() = default;
 
 std::optional<SourceFrame> BagInput::next() try {
-  while (impl_->at != impl_->view.end()) {
-    SourceFrame frame = impl_->read(*impl_->at);
-    ++impl_->at;
+  for (impl_->look_ahead(); !impl_->ahead.empty(); impl_->look_ahead()) {
+    SourceFrame frame = std::move(impl_->ahead.front().second);
+    impl_->ahead.pop_front();
     ++impl_->position;
     if (!frame.waits) return frame;
   }
   SourceFrame last;
-  last.frame = impl_->pairs.rest();
+  last.frame = impl_->reader.rest();
   if (!last.frame) return std::nullopt;
   return last;
 } catch (...) {
@@ -268,7 +277,8 @@ const std::string& BagInput::topic() const {
 }
 
 ReplayInput open_bag(const ReplayArguments& arguments) {
-  auto bag = std::make_unique<BagInput>(arguments.input, arguments.topic, arguments.hand_transform);
+  auto bag =
+      std::make_unique<BagInput>(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
   const std::string topic = bag->topic();
   return {std::move(bag), topic};
 }

@@ -15,9 +15,8 @@ class BagError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Hands from one topic of a bag: leap_motion/Human in any version (by the definition that the bag carries),
-/// a message of joints (ros/tracker_messages.h; of a right hand where neither topic nor frame names a side),
-/// or HandFrame in world. Reads message by message.
+/// Hands from topics of a bag: a tracker's message (ros/tracker_messages.h; of a right hand where neither
+/// topic nor frame names a side), or HandFrame in world. Reads a few messages ahead.
 class BagInput : public FrameSource {
  public:
   /// Without a topic: /leap_motion/leap_device, else those of joints, hands/[left/|right/]..., together, else
@@ -25,7 +24,7 @@ class BagInput : public FrameSource {
   /// Without a device pose: the bag's /tf_static and /tf at the frames' stamps, as live; the Leap's own frame
   /// has a default mount, hands in any other that nothing places are refused. Throws BagError.
   BagInput(const std::string& file, const std::optional<std::string>& topic,
-           const std::optional<Pose>& device_in_world);
+           const std::optional<Pose>& device_in_world, const HandOptions& hands = {});
   ~BagInput() override;
 
   std::optional<SourceFrame> next() override;

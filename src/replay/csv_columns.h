@@ -26,6 +26,7 @@ class CsvColumns {
 
  private:
   std::string file_;
+  char separator_;
   std::vector<std::string> names_, cells_;
   std::size_t line_number_ = 1;
 };

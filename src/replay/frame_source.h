@@ -7,23 +7,10 @@
 #include <vector>
 
 #include "../record/log.h"
+#include "../tracking/joints_input.h"
 #include "mr_hand_interaction/replay/replay.h"
-#include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
-
-/// One frame of a recording, or why it cannot be used.
-struct SourceFrame {
-  std::optional<HandFrame> frame;
-  std::optional<Nanoseconds> arrival;  ///< when it was received, by the recorder's clock, where that is known
-  bool waits = false;                  ///< for the other hand's, with which it comes
-  std::string reason;                  ///< kind of refusal, for counting; empty if there is a frame
-  std::string detail;                  ///< the particular case
-  std::vector<std::string> left_out;   ///< hands of the frame that cannot be used, each with its defect
-};
-
-/// Places a tracker's frame in world.
-SourceFrame placed(const JointsFrame& joints, const Pose& device_in_world);
 
 /// The frames of a recording in the order in which they were recorded.
 class FrameSource {
@@ -40,7 +27,7 @@ class FrameSource {
 class CsvInput : public FrameSource {
  public:
   /// Throws RecordingError.
-  CsvInput(const std::string& file, const Pose& device_in_world);
+  CsvInput(const std::string& file, const Pose& device_in_world, double scale);
 
   std::optional<SourceFrame> next() override;
   std::size_t position() const override { return position_; }
@@ -49,6 +36,7 @@ class CsvInput : public FrameSource {
  private:
   std::vector<JointsFrame> frames_;
   Pose device_in_world_;
+  JointsInput input_;
   std::size_t position_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,9 +12,21 @@
 namespace mrhi {
 namespace {
 
-std::vector<std::string> split(std::string line) {
+/// Where cells are apart by semicolons or tabs, as spreadsheets of some countries write them, a comma is the
+/// decimal point.
+std::vector<std::string> split(std::string line, char separator) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
+  if (separator != ',') {
+    std::replace(line.begin(), line.end(), ',', '.');
+    std::replace(line.begin(), line.end(), separator, ',');
+  }
   return text::split(line);
+}
+
+char separator_of(const std::string& header) {
+  for (const char separator : {',', ';', '\t'})
+    if (header.find(separator) != std::string::npos) return separator;
+  return ',';
 }
 
 constexpr double kLongestRecording = 1e9;  // [s]
@@ -78,11 +91,11 @@ HandJoints read_hand(const CsvColumns& row, std::uint32_t id) {
 }  // namespace
 
 CsvColumns::CsvColumns(std::string file, const std::string& header)
-    : file_(std::move(file)), names_(split(header)) {}
+    : file_(std::move(file)), separator_(separator_of(header)), names_(split(header, separator_)) {}
 
 void CsvColumns::take(const std::string& line, std::size_t line_number) {
   line_number_ = line_number;
-  cells_ = split(line);
+  cells_ = split(line, separator_);
   if (cells_.size() != names_.size())
     throw RecordingError(file_ + ":" + std::to_string(line_number_) + ": has " +
                          std::to_string(cells_.size()) + " cells; the header names " +
@@ -101,6 +114,10 @@ std::optional<double> CsvColumns::number(const std::string& column) const {
 }
 
 double CsvColumns::required(const std::string& column) const {
+  if (std::find(names_.begin(), names_.end(), column) == names_.end())
+    throw RecordingError(file_ + ":1: has no column '" + column +
+                         "'; allowed: a header with time_s, hand_id, is_left and joints; it begins with '" +
+                         text::one_line(names_.front(), 40) + "'");
   const auto value = number(column);
   if (!value) fail(column, "a number is needed");
   return *value;
@@ -138,23 +155,13 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
   throw RecordingError(error.what());
 }
 
-SourceFrame placed(const JointsFrame& joints, const Pose& device_in_world) {
-  SourceFrame result;
-  result.frame = complete_frame(joints, device_in_world, result.left_out);
-  if (!result.frame) {
-    result.reason = "unusable hand";
-    result.detail = result.left_out.front();
-    result.left_out.clear();
-  }
-  return result;
-}
-
-CsvInput::CsvInput(const std::string& file, const Pose& device_in_world)
-    : frames_(read_recording_csv(file)), device_in_world_(device_in_world) {}
+CsvInput::CsvInput(const std::string& file, const Pose& device_in_world, double scale)
+    : frames_(read_recording_csv(file)), device_in_world_(device_in_world), input_(scale) {}
 
 std::optional<SourceFrame> CsvInput::next() {
   if (position_ == frames_.size()) return std::nullopt;
-  return placed(frames_[position_++], device_in_world_);
+  TrackerFrame frame{"", frames_[position_++], {}, {}, false};
+  return input_.take(std::move(frame), [this](Nanoseconds) { return device_in_world_; });
 }
 
 }  // namespace mrhi

@@ -66,9 +66,10 @@ bool is_csv(const std::string& file) {
 
 ReplayInput open_input(const ReplayArguments& arguments) {
   if (is_csv(arguments.input))
-    return {std::make_unique<CsvInput>(arguments.input,
-                                       arguments.hand_transform.value_or(default_device_mount())),
-            ""};
+    return {
+        std::make_unique<CsvInput>(arguments.input, arguments.hand_transform.value_or(default_device_mount()),
+                                   arguments.hands.scale),
+        ""};
   return open_bag(arguments);
 }
 
@@ -77,7 +78,9 @@ OpenLog open_log_of(const ReplayArguments& arguments) {
   OpenLog log;
   log.why_not = "it has hands alone";
   if (is_csv(arguments.input)) return log;
-  if (!arguments.topic && !arguments.hand_transform) return open_log(arguments);
+  const HandOptions& hands = arguments.hands;
+  const bool as_recorded = hands.topics.empty() && hands.order.empty() && hands.scale == 1.0;
+  if (as_recorded && !arguments.topic && !arguments.hand_transform) return open_log(arguments);
   log.why_not = "its hands are taken from another topic, or placed anew";
   return log;
 }
@@ -106,6 +109,7 @@ void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
   RecordersClock clock;
   while (const std::optional<SourceFrame> input = source.next()) {
     run.progress.show(source.position(), source.size());
+    for (const auto& [kind, what] : input->corrected) run.correct(kind, what);
     if (!input->frame) {
       run.reject(input->reason, input->detail);
       continue;

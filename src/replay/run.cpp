@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -28,6 +29,16 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
+/// The outermost folder on the way to this one that is not there; empty: all are.
+std::string first_missing(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path missing;
+  for (std::filesystem::path at = folder.lexically_normal();
+       !at.empty() && !std::filesystem::exists(at, error); at = at.parent_path())
+    missing = at;
+  return missing.string();
+}
+
 }  // namespace
 
 ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic) : output_(arguments.output) {
@@ -40,7 +51,10 @@ ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
 
 void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {
   const Configuration& configuration = simulation.configuration();
-  if (!writer_) writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
+  if (!writer_) {
+    made_ = first_missing(output_);
+    writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
+  }
   writer_->follow(simulation.scene());
   summary.scene = scene;
   summary.contact_model = configuration.contact_model.name;
@@ -85,12 +99,23 @@ void ReplayRun::reject(const std::string& reason, const std::string& detail) {
   progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
 }
 
+void ReplayRun::correct(const std::string& kind, const std::string& detail) {
+  if (++summary.corrected[kind] > 1) return;
+  progress.line("replay: " + kind + ": " + detail + " (more of the kind are counted only)");
+}
+
 void ReplayRun::check_end() {
   if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
   writer_->flush();
 }
 
 void ReplayRun::end(const Simulation& simulation, const std::string& error) {
+  if (!error.empty() && summary.frames == 0 && !made_.empty()) {
+    writer_.reset();
+    std::error_code ignored;
+    std::filesystem::remove_all(made_, ignored);
+    return;
+  }
   const Scene& scene = simulation.scene();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);

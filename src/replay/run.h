@@ -49,9 +49,12 @@ class ReplayRun {
   void result(const Simulation& simulation);
   /// Counts a rejected frame or change; the first of each kind is printed.
   void reject(const std::string& reason, const std::string& detail);
+  /// Counts a fault of the input that was put right; the first of each kind is printed.
+  void correct(const std::string& kind, const std::string& detail);
   /// Throws std::runtime_error if no frame was taken, or if the disk does not take the tables.
   void check_end();
-  /// Writes summary.json; `error`: why the run ended early, or empty.
+  /// Writes summary.json; `error`: why the run ended early, or empty. If it ended before its first frame,
+  /// removes the folders that it has made instead.
   void end(const Simulation& simulation, const std::string& error);
 
   /// Since the first result [s].
@@ -62,6 +65,7 @@ class ReplayRun {
 
  private:
   std::string output_;
+  std::string made_;  ///< the outermost folder that this run has made; empty: none
   std::unique_ptr<ResultWriter> writer_;
   std::unique_ptr<MarkerBag> markers_;
   std::optional<Nanoseconds> first_stamp_, last_stamp_;

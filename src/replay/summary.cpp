@@ -71,7 +71,8 @@ std::string lost(const ReplaySummary& summary) {
   };
   return object({{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
                  {"by_order", count("stamp not increasing")},
-                 {"by_stamp", count("stamp far ahead") + count("stamp out of range")}});
+                 {"by_stamp", count("stamp far ahead") + count("stamp out of range") +
+                                  count("first stamp of another clock")}});
 }
 
 }  // namespace
@@ -96,6 +97,7 @@ std::string to_json(const ReplaySummary& summary) {
       {"restarts", std::to_string(summary.restarts)},
       {"rejected", object(summary.rejected)},
       {"frames_lost", lost(summary)},
+      {"corrected", object(summary.corrected)},
       {"hands_left_out", std::to_string(summary.hands_left_out)},
       {"events", object(summary.events)},
       {"objects_held_at_end", list(summary.held_at_end)},

@@ -36,10 +36,11 @@ struct ReplaySummary {
   double simulated_seconds = 0.0;
   std::uint64_t steps = 0;
   DurationHistogram step_time;
-  double deepest_rendered = 0.0;                  ///< [m]
-  std::uint64_t restarts = 0;                     ///< times that the recording's stamps began anew
-  std::map<std::string, std::uint64_t> rejected;  ///< frames, by reason
-  std::uint64_t hands_left_out = 0;               ///< unusable hands in frames that were taken
+  double deepest_rendered = 0.0;                   ///< [m]
+  std::uint64_t restarts = 0;                      ///< times that the recording's stamps began anew
+  std::map<std::string, std::uint64_t> rejected;   ///< frames, by reason
+  std::map<std::string, std::uint64_t> corrected;  ///< faults of the input that were put right, by kind
+  std::uint64_t hands_left_out = 0;                ///< unusable hands in frames that were taken
   std::map<std::string, std::uint64_t> events;
   std::vector<std::string> held_at_end;
   std::uint64_t state_hash = 0;

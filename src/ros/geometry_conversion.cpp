@@ -59,4 +59,8 @@ Nanoseconds from_ros_time(const ros::Time& stamp) {
   return static_cast<Nanoseconds>(stamp.toNSec());
 }
 
+double seconds_between(const ros::Time& from, const ros::Time& to) {
+  return to_seconds(from_ros_time(to) - from_ros_time(from));
+}
+
 }  // namespace mrhi

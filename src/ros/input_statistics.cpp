@@ -11,9 +11,11 @@ constexpr double kLate = 0.05;  // a frame that is done with so long after it ca
 
 }  // namespace
 
-InputStatistics::InputStatistics(const std::vector<std::string>& reasons)
+InputStatistics::InputStatistics(const std::vector<std::string>& reasons,
+                                 const std::vector<std::string>& corrections)
     : period_start_(ros::WallTime::now()) {
   for (const std::string& reason : reasons) rejected_[reason];
+  for (const std::string& kind : corrections) corrected_[kind];
 }
 
 void InputStatistics::taken(double latency) {
@@ -38,13 +40,18 @@ void InputStatistics::rejected(const std::string& reason, const std::string& det
   ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
 }
 
+void InputStatistics::corrected(const std::string& kind, const std::string& detail) {
+  if (++corrected_[kind] == 1) ROS_INFO_STREAM(kind << ": " << detail << " (more are counted only)");
+}
+
 void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const ros::WallTime now = ros::WallTime::now();
   const double frames = static_cast<double>(taken_in_period_);
+  const ros::WallDuration period = now - period_start_;
   status.summary(DiagnosticStatus::OK, taken_in_period_ > 0 ? "frames are coming" : "no frames");
   status.add("frames taken", taken_);
-  status.add("rate [Hz]", frames / std::max((now - period_start_).toSec(), 1e-3));
+  status.add("rate [Hz]", frames / std::max(period.toSec(), 1e-3));
   status.add("latency mean [ms]", taken_in_period_ > 0 ? 1e3 * latency_sum_ / frames : 0.0);
   status.add("latency max [ms]", 1e3 * latency_max_);
   status.add("frames lost by queue", lost_);
@@ -62,6 +69,7 @@ void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status
       status.mergeSummary(DiagnosticStatus::WARN, reason + ": " + refusals.last);
     refusals.reported = refusals.count;
   }
+  for (const auto& [kind, count] : corrected_) status.add(kind, count);
   period_start_ = now;
   taken_in_period_ = 0;
   latency_sum_ = latency_max_ = 0.0;

@@ -14,12 +14,16 @@ namespace mrhi {
 /// seconds.
 class InputStatistics {
  public:
-  /// Reasons that are listed from the start; others are added as they occur.
-  explicit InputStatistics(const std::vector<std::string>& reasons);
+  /// Reasons and corrections that are listed from the start; others are added as they occur.
+  explicit InputStatistics(const std::vector<std::string>& reasons,
+                           const std::vector<std::string>& corrections = {});
 
   /// Latency: from the frame's stamp until now.
   void taken(double latency);
   void rejected(const std::string& reason, const std::string& detail);
+  /// A fault of the input that was put right: counted, and logged as information when it is the first of its
+  /// kind.
+  void corrected(const std::string& kind, const std::string& detail);
   /// Frames that were sent and have not arrived.
   void lost(std::uint64_t frames) { lost_ += frames; }
   std::uint64_t lost() const { return lost_; }
@@ -40,6 +44,7 @@ class InputStatistics {
   std::uint64_t lost_ = 0, late_ = 0;
   std::uint64_t lost_reported_ = 0, late_reported_ = 0;
   std::map<std::string, Refusals> rejected_;
+  std::map<std::string, std::uint64_t> corrected_;
   std::uint64_t taken_in_period_ = 0;
   double latency_sum_ = 0.0, latency_max_ = 0.0;
   ros::WallTime period_start_;

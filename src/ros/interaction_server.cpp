@@ -236,7 +236,7 @@ void InteractionServer::Impl::take(const mr_hand_interaction::HandFrame& message
   results_.publish_picture(result);
   if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
   const ros::Time now = ros::Time::now();
-  diagnostics_.waited((now - arrival).toSec());
+  diagnostics_.waited(seconds_between(arrival, now));
   diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
   clock_.take(stamp, now);
 }

@@ -1,42 +1,22 @@
 #include "mr_hand_interaction/ros/leap_human.h"
 
 #include <mr_hand_interaction/LeapAugust2019Human.h>
+#include <mr_hand_interaction/LeapControllerHand.h>
 #include <mr_hand_interaction/LeapFebruary2020Human.h>
 #include <mr_hand_interaction/LeapHuman.h>
 #include <mr_hand_interaction/LeapMelodicHuman.h>
 
 #include <map>
-#include <memory>
-#include <new>
 #include <optional>
+
+#include "../text/text.h"
+#include "bounded_message.h"
+#include "leap_controller.h"
 
 namespace mrhi {
 namespace {
 
 namespace msg = mr_hand_interaction;
-
-/// Longest list or text of a message [bytes]; a driver's have less than 1 KB.
-constexpr std::size_t kMaxListBytes = 64 * 1024;
-
-/// Refuses lists longer than kMaxListBytes. roscpp resizes a list to the length that a message states before
-/// it looks for the elements, so four bytes could claim all memory.
-template <class T>
-struct BoundedAllocator : std::allocator<T> {
-  template <class U>
-  struct rebind {
-    using other = BoundedAllocator<U>;
-  };
-
-  BoundedAllocator() = default;
-  template <class U>
-  BoundedAllocator(const BoundedAllocator<U>& /*other*/) {}
-
-  T* allocate(std::size_t count) {
-    if (count > kMaxListBytes / sizeof(T)) throw std::bad_alloc();
-    return std::allocator<T>::allocate(count);
-  }
-};
-using Allocator = BoundedAllocator<char>;
 
 [[noreturn]] void wrong_count(const std::string& what) {
   throw DecodeError(DecodeError::Kind::wrong_count, what);
@@ -70,7 +50,7 @@ std::array<const typename List::value_type*, Size> by_type(const List& list, con
   return found;
 }
 
-Vector3 wrist_of(const msg::LeapHand_<Allocator>& hand) {
+Vector3 wrist_of(const msg::LeapHand_<Bounded>& hand) {
   return vector(hand.arm.wrist.position);
 }
 template <class Hand>
@@ -81,6 +61,44 @@ Vector3 wrist_of(const Hand& hand) {
     wrong_count("leap_motion/Hand.wrist_position has " + std::to_string(wrist.size()) +
                 " numbers; 3, or none if it is not known");
   return {wrist[0], wrist[1], wrist[2]};
+}
+
+Vector3 position(const geometry_msgs::Pose_<Bounded>& pose) {
+  return vector(pose.position);
+}
+Vector3 position(const geometry_msgs::Point_<Bounded>& point) {
+  return vector(point);
+}
+
+float width_of(const msg::LeapControllerFinger_<Bounded>&) {
+  return 0.0f;
+}
+float width_of(const msg::LeapControllerBone_<Bounded>&) {
+  return 0.0f;
+}
+template <class Part>
+float width_of(const Part& part) {
+  return part.width;
+}
+
+/// Joints of the fingers as both drivers' messages have them. What they leave at zero stays so: it is a
+/// placeholder.
+template <class Hand>
+void read_fingers(const Hand& message, const std::string& type, HandJoints& hand) {
+  const auto fingers = by_type<kFingers>(message.finger_list, type + "/Hand.finger_list");
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    if (fingers[f] == nullptr) continue;
+    hand.finger_width[f] = known(width_of(*fingers[f]));
+    const auto bones = by_type<kBonesPerFinger>(fingers[f]->bone_list, type + "/Finger.bone_list");
+    for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
+      if (bones[b] == nullptr) continue;
+      // A bone starts where the one before it ends; what is not finite must not be covered up.
+      auto& joint = hand.joints[f][b];
+      if (!joint || joint->allFinite()) joint = position(bones[b]->bone_start);
+      hand.joints[f][b + 1] = position(bones[b]->bone_end);
+      hand.bone_width[f][b] = known(width_of(*bones[b]));
+    }
+  }
 }
 
 template <class Hand>
@@ -94,46 +112,13 @@ HandJoints joints_of(const Hand& message, Side side) {
   hand.palm_centre = known(vector(message.palm_center));
   hand.palm_width = known(message.palm_width);
   hand.wrist = known(wrist_of(message));
-  const auto fingers = by_type<kFingers>(message.finger_list, "leap_motion/Hand.finger_list");
-  for (std::size_t f = 0; f < kFingers; ++f) {
-    if (fingers[f] == nullptr) continue;
-    hand.finger_width[f] = known(fingers[f]->width);
-    const auto bones = by_type<kBonesPerFinger>(fingers[f]->bone_list, "leap_motion/Finger.bone_list");
-    for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
-      if (bones[b] == nullptr) continue;
-      // A bone starts where the one before it ends; what is not finite must not be covered up.
-      auto& joint = hand.joints[f][b];
-      if (!joint || joint->allFinite()) joint = vector(bones[b]->bone_start.position);
-      hand.joints[f][b + 1] = vector(bones[b]->bone_end.position);
-    }
-  }
+  read_fingers(message, "leap_motion", hand);
   return hand;
 }
 
 template <class Human>
-Human deserialised(std::vector<std::uint8_t>& bytes) {
-  const auto refuse = [&](const std::string& what) {
-    throw DecodeError(DecodeError::Kind::malformed,
-                      "leap_motion/Human of " + std::to_string(bytes.size()) + " bytes " + what);
-  };
-  Human human;
-  ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  try {
-    if (bytes.empty()) ros::serialization::throwStreamOverrun();  // roscpp would add to a null pointer
-    ros::serialization::deserialize(stream, human);
-  } catch (const ros::serialization::StreamOverrunException&) {
-    refuse("ends before all of its fields");
-  } catch (const std::bad_alloc&) {
-    refuse("has a list or text of more than " + std::to_string(kMaxListBytes) + " bytes");
-  }
-  if (stream.getLength() != 0)
-    refuse("has " + std::to_string(stream.getLength()) + " after all of its fields");
-  return human;
-}
-
-template <class Human>
 LeapFrame frame_of(std::vector<std::uint8_t>& bytes) {
-  const auto human = deserialised<Human>(bytes);
+  const auto human = deserialised<Human>("leap_motion/Human", bytes);
   LeapFrame frame;
   frame.frame_id.assign(human.header.frame_id.begin(), human.header.frame_id.end());
   frame.sequence = human.header.seq;
@@ -154,7 +139,25 @@ std::pair<const std::string, Read> version() {
   return {ros::message_traits::MD5Sum<Human>::value(), &frame_of<Human>};
 }
 
+constexpr const char* kController = "leap_motion_controller";
+
 }  // namespace
+
+/// The driver sets no confidence.
+TrackedHands read_leap_controller(std::vector<std::uint8_t>& bytes) {
+  const auto message =
+      deserialised<msg::LeapControllerHand_<Bounded>>(std::string(kController) + "/Hand", bytes);
+  HandJoints hand;
+  hand.id = static_cast<std::uint32_t>(message.lmc_hand_id);
+  hand.grab_strength = message.grab_strength;
+  hand.pinch_strength = message.pinch_strength;
+  hand.palm_centre = known(position(message.palm_center));
+  read_fingers(message, kController, hand);
+  TrackedHands tracked;
+  tracked.header = header_of(message.header);
+  tracked.hands.push_back(std::move(hand));
+  return tracked;
+}
 
 const char* DecodeError::reason() const {
   switch (kind_) {
@@ -164,20 +167,34 @@ const char* DecodeError::reason() const {
       return "malformed message";
     case Kind::wrong_count:
       return "wrong finger or bone count";
+    case Kind::unknown_order:
+      return "unknown order of joints";
   }
   return "";
 }
 
+namespace {
+
+const std::map<std::string, Read>& versions() {
+  static const std::map<std::string, Read> all{
+      version<msg::LeapHuman_<Bounded>>(), version<msg::LeapFebruary2020Human_<Bounded>>(),
+      version<msg::LeapAugust2019Human_<Bounded>>(), version<msg::LeapMelodicHuman_<Bounded>>()};
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> leap_versions() {
+  std::vector<std::string> md5s;
+  for (const auto& [md5, read] : versions()) md5s.push_back(md5);
+  return md5s;
+}
+
 LeapFrame read_leap(const std::string& md5, std::vector<std::uint8_t> bytes) {
-  static const std::map<std::string, Read> versions{
-      version<msg::LeapHuman_<Allocator>>(), version<msg::LeapFebruary2020Human_<Allocator>>(),
-      version<msg::LeapAugust2019Human_<Allocator>>(), version<msg::LeapMelodicHuman_<Allocator>>()};
-  const auto found = versions.find(md5);
-  if (found != versions.end()) return found->second(bytes);
-  std::string allowed;
-  for (const auto& [known_md5, read] : versions) allowed += (allowed.empty() ? "" : ", ") + known_md5;
-  throw DecodeError(DecodeError::Kind::unknown_version,
-                    "unknown version of leap_motion/Human: md5 " + md5 + "; allowed: " + allowed);
+  const auto found = versions().find(md5);
+  if (found != versions().end()) return found->second(bytes);
+  throw DecodeError(DecodeError::Kind::unknown_version, "unknown version of leap_motion/Human: md5 " + md5 +
+                                                            "; allowed: " + text::joined(leap_versions()));
 }
 
 }  // namespace mrhi

@@ -127,7 +127,7 @@ void Markers::update_rest(const FrameResult& result, const SimulationState& stat
   hands_->repaint(result.rendered);
   array.markers.clear();
   const bool all = std::exchange(all_of_rest_, false);
-  const double since = (header.stamp - rest_sent_).toSec();
+  const double since = seconds_between(rest_sent_, header.stamp);
   if (!all && since >= 0.0 && since < kRestPeriod) return;
   rest_sent_ = header.stamp;
   MarkerLayer capsules(array, header, "capsules", kPassing), shadows(array, header, "shadows", kPassing),
@@ -148,7 +148,7 @@ void Markers::update_rest(const FrameResult& result, const SimulationState& stat
 
 /// Twice a second, for a viewer that came later or has lost an array.
 bool Markers::all_due(const ros::Time& stamp) {
-  const double since = (stamp - all_sent_).toSec();
+  const double since = seconds_between(all_sent_, stamp);
   const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;
   if (due) all_sent_ = stamp, all_of_rest_ = true;
   all_ = false;

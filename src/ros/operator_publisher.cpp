@@ -87,7 +87,7 @@ bool OperatorPublisher::at_work() const {
 
 void OperatorPublisher::tick() {
   const ros::Time now = ros::Time::now();
-  const double since = std::clamp((now - ticked_).toSec(), 0.0, kLongestMove / rate_);
+  const double since = std::clamp(seconds_between(ticked_, now), 0.0, kLongestMove / rate_);
   ticked_ = now;
   if (const auto fixed = fixed_.find(status_.object); fixed != fixed_.end()) {
     object_.name = fixed->first;

@@ -2,6 +2,11 @@
 
 #include <std_srvs/Trigger.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "node.h"
 
@@ -56,17 +61,17 @@ SyntheticHandPublisher::SyntheticHandPublisher(ros::NodeHandle node, const ros::
 void SyntheticHandPublisher::run() {
   wait_for_listener();
   if (!ros::Time::waitForValid()) return;
-  const auto start = static_cast<Nanoseconds>(ros::Time::now().toNSec());
+  looked_ = start_ = from_ros_time(ros::Time::now());
   for (int run = 0; node_.ok();) {
     if (hand_.next_run() != run) {
       if (!loop_) return;
       run = hand_.next_run();
       reset_scene();
     }
-    ros::Time::sleepUntil(ros::Time().fromNSec(static_cast<std::uint64_t>(start + hand_.next_stamp())));
+    wait_for_next();
     if (node_.ok()) {
       JointsFrame frame = hand_.next();
-      frame.stamp += start;
+      frame.stamp += start_;
       publisher_.publish(frame);
     }
     ros::spinOnce();
@@ -78,6 +83,20 @@ void SyntheticHandPublisher::wait_for_listener() const {
   while (node_.ok() && !publisher_.has_listener() && ros::WallTime::now() < latest) {
     ros::WallDuration(0.005).sleep();
     ros::spinOnce();
+  }
+}
+
+/// The run moves along with a clock that leaps, either way: it neither makes up for the time nor waits for
+/// it.
+void SyntheticHandPublisher::wait_for_next() {
+  constexpr Nanoseconds kLeap = 1'000'000'000, kLongestSleep = 50'000'000, kLookAtClock = 1'000'000;
+  const Nanoseconds longest = ros::Time::isSimTime() ? kLookAtClock : kLongestSleep;
+  while (node_.ok()) {
+    const Nanoseconds now = from_ros_time(ros::Time::now()), passed = now - std::exchange(looked_, now);
+    if (std::abs(passed) > kLeap) start_ += passed;
+    const Nanoseconds left = start_ + hand_.next_stamp() - now;
+    if (left <= 0) return;
+    ros::WallDuration().fromNSec(std::min(left, longest)).sleep();
   }
 }
 

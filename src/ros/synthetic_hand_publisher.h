@@ -28,11 +28,13 @@ class SyntheticHandPublisher {
 
  private:
   void wait_for_listener() const;
+  void wait_for_next();
   void reset_scene();
 
   ros::NodeHandle node_;
   SyntheticHand hand_;
   bool loop_;
+  Nanoseconds start_ = 0, looked_ = 0;  // ROS time of the first run, and of the last look at the clock
   std::string reset_service_;
   LeapHumanPublisher publisher_;
 };

@@ -1,8 +1,6 @@
 #include "tracked_points.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/leap_human.h"
@@ -10,36 +8,26 @@
 namespace mrhi {
 namespace {
 
-/// Of index to little; all have four of the thumb.
-struct JointOrder {
-  std::size_t joints, wrist, of_a_finger;
-};
-constexpr JointOrder kOrders[] = {{21, 0, 4}, {25, 0, 5}, {26, 1, 5}};
-
-const JointOrder* order_of(std::size_t joints) {
-  const auto found = std::find_if(std::begin(kOrders), std::end(kOrders),
-                                  [=](const JointOrder& order) { return order.joints == joints; });
-  return found == std::end(kOrders) ? nullptr : found;
+bool has_size(std::size_t joints) {
+  const auto& orders = joint_orders();
+  return std::any_of(orders.begin(), orders.end(),
+                     [=](const JointOrder& order) { return order.size == joints; });
 }
 
-std::optional<Vector3> joint(const Vector3& point) {
-  if (point.hasNaN()) return std::nullopt;
-  return point;
+const JointOrder& usual_order(std::size_t joints, const Vector3*) {
+  const auto& orders = joint_orders();
+  return *std::find_if(orders.begin(), orders.end(),
+                       [=](const JointOrder& order) { return order.size == joints; });
 }
 
-void add_hand(const Vector3* points, const JointOrder& order, Side side, JointsFrame& frame) {
-  if (std::all_of(points, points + order.joints, [](const Vector3& point) { return point.hasNaN(); })) return;
-  HandJoints hand;
-  hand.id = 1u + static_cast<std::uint32_t>(side);
-  hand.side = side;
-  hand.wrist = joint(points[order.wrist]);
-  const Vector3* next = points + order.wrist + 1;
-  for (std::size_t finger = 0; finger < kFingers; ++finger) {
-    auto& joints = hand.joints[finger];
-    for (std::size_t j = joints.size() - (finger == 0 ? 4 : order.of_a_finger); j < joints.size(); ++j)
-      joints[j] = joint(*next++);
-  }
-  frame.hands.push_back(hand);
+void add_hand(const TrackedPoints& tracked, std::size_t first, std::size_t joints, Side side,
+              const OrderOf& order_of, JointsFrame& frame) {
+  const Vector3* const points = tracked.points.data() + first;
+  if (std::all_of(points, points + joints, [](const Vector3& point) { return point.hasNaN(); })) return;
+  const bool has_radii = tracked.radii.size() == tracked.points.size();
+  frame.hands.push_back(hand_in_order(order_of(joints, points), points,
+                                      has_radii ? tracked.radii.data() + first : nullptr, side));
+  frame.hands.back().confidence = tracked.confidence;
 }
 
 bool ends_with(const std::string& name, const std::string& end) {
@@ -48,36 +36,38 @@ bool ends_with(const std::string& name, const std::string& end) {
 
 }  // namespace
 
-JointsFrame joints_from_points(const TrackedPoints& tracked, Side side) {
+JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of) {
   JointsFrame frame;
   frame.stamp = from_ros_time(tracked.header.stamp);
-  const Vector3* const points = tracked.points.data();
   const std::size_t joints = tracked.points.size();
+  const OrderOf& order = order_of ? order_of : OrderOf(usual_order);
   if (joints == 0) return frame;
-  if (const JointOrder* const order = order_of(joints)) {
-    add_hand(points, *order, side, frame);
+  if (has_size(joints)) {
+    add_hand(tracked, 0, joints, side, order, frame);
   } else if (has_both_hands(tracked)) {
-    add_hand(points, *order_of(joints / 2), Side::left, frame);
-    add_hand(points + joints / 2, *order_of(joints / 2), Side::right, frame);
+    add_hand(tracked, 0, joints / 2, Side::left, order, frame);
+    add_hand(tracked, joints / 2, joints / 2, Side::right, order, frame);
   } else {
     throw DecodeError(
         DecodeError::Kind::wrong_count,
         std::to_string(joints) +
-            " joints; 21, 25 or 26 of a hand, twice as many of both, or none for a frame with no hand");
+            " joints; 21, 24, 25 or 26 of a hand, twice as many of both, or none for a frame with no hand");
   }
   return frame;
 }
 
 bool has_both_hands(const TrackedPoints& tracked) {
   const std::size_t joints = tracked.points.size();
-  return joints % 2 == 0 && order_of(joints) == nullptr && order_of(joints / 2) != nullptr;
+  return joints % 2 == 0 && !has_size(joints) && has_size(joints / 2);
 }
 
 std::optional<Side> side_of_topic(const std::string& name) {
-  const std::size_t slash = name.rfind('/');
-  const std::string folder = "/" + name.substr(0, slash == std::string::npos ? 0 : slash);
-  if (ends_with(folder, "/left")) return Side::left;
-  if (ends_with(folder, "/right")) return Side::right;
+  std::string rest = "/" + name;
+  for (int part = 0; part < 2; ++part) {
+    if (ends_with(rest, "/left")) return Side::left;
+    if (ends_with(rest, "/right")) return Side::right;
+    rest.erase(rest.rfind('/') == std::string::npos ? 0 : rest.rfind('/'));
+  }
   return std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -8,21 +9,14 @@
 
 namespace mrhi {
 
-// TrackerMessages is every message that trackers may give hands in besides the Leap's. Each has a file,
-// tracker_NAME.h, with a struct NAMETracker: the type, Message, how its topics end, kTopic, and what it says,
-// read(). The build finds it.
+// TrackerMessages is every message that trackers may give hands in. Each has a file, tracker_NAME.h, with a
+// struct NAMETracker: the message's type, kType, and its versions, md5s(); the topics where it is looked for;
+// and what it says, read(). The build finds it.
 
 /// Calls `use` with one of each.
 template <class Use>
 void for_each_tracker(Use use) {
   std::apply([&use](auto... tracker) { (use(tracker), ...); }, TrackerMessages());
-}
-
-/// One hand or both, the left hand, the right.
-template <class Tracker>
-std::vector<std::string> topics_of(const Tracker&) {
-  const std::string end = Tracker::kTopic;
-  return {"hands/" + end, "hands/left/" + end, "hands/right/" + end};
 }
 
 }  // namespace mrhi

@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/PoseArray.h>
 
+#include "bounded_message.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "tracked_points.h"
 
@@ -9,14 +10,19 @@ namespace mrhi {
 
 /// Orientations are not used.
 struct PoseArrayTracker {
-  using Message = geometry_msgs::PoseArray;
-  static constexpr const char* kTopic = "pose_array";
+  static constexpr const char* kType = "geometry_msgs/PoseArray";
+  static std::vector<std::string> topics() { return hands_topics("pose_array"); }
+  static std::vector<std::string> md5s() { return {ros::message_traits::md5sum<geometry_msgs::PoseArray>()}; }
 
+  template <class Message>
   static TrackedPoints read(const Message& message) {
-    TrackedPoints tracked{message.header, {}};
-    for (const geometry_msgs::Pose& pose : message.poses)
-      tracked.points.push_back(from_message(pose.position));
+    TrackedPoints tracked{header_of(message.header), {}, {}};
+    for (const auto& pose : message.poses)
+      tracked.points.emplace_back(pose.position.x, pose.position.y, pose.position.z);
     return tracked;
+  }
+  static TrackerMessage read(const std::string& /*md5*/, std::vector<std::uint8_t>& bytes) {
+    return read(deserialised<geometry_msgs::PoseArray_<Bounded>>(kType, bytes));
   }
 };
 

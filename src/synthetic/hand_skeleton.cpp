@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../tracking/hand_anatomy.h"
+
 namespace mrhi {
 namespace {
 
@@ -17,7 +19,7 @@ Matrix3 about(const Vector3& axis, double angle) {
 
 /// Degrees and millimetres, for a table that reads like the anatomy.
 struct Anatomy {
-  std::array<double, kBonesPerFinger> bones;  ///< metacarpal to distal; the thumb's first is Leap's empty one
+  const double (&bones)[kBonesPerFinger];  ///< metacarpal to distal; the thumb's first is Leap's empty one
   double radius;
   Vector3 base;
   double metacarpal_yaw, metacarpal_pitch;  ///< towards the thumb, towards the palm
@@ -50,14 +52,12 @@ HandSkeleton make_human_hand() {
       thumb_high{{55, 40, 60, 80, 50}};
   HandSkeleton hand;
   hand.palm_width = kPalmWidth;
-  hand.fingers[0] = skeleton_of(
-      {{{0.0, 46.22, 31.57, 21.67}}, 9.4, {2, 26, -10}, 0, 0, 38, 18, -60, thumb_low, thumb_high});
-  hand.fingers[1] = skeleton_of({{{68.12, 39.78, 22.38, 15.82}}, 9.0, {8, 19, 7}, 8, 8, 4, 0, 0, low, high});
-  hand.fingers[2] = skeleton_of({{{64.60, 44.63, 26.33, 17.40}}, 8.8, {10, 8, 9}, 0, 8, 0, 0, 0, low, high});
-  hand.fingers[3] =
-      skeleton_of({{{58.00, 41.37, 25.65, 17.30}}, 8.4, {10, -3.5, 8}, -9, 7, -4, 0, 0, low, high});
-  hand.fingers[4] =
-      skeleton_of({{{53.69, 32.74, 18.11, 15.96}}, 7.4, {8, -15, 3}, -17, 4, -9, 0, 0, low, high});
+  hand.fingers[0] =
+      skeleton_of({anatomy::kBoneLengths[0], 9.4, {2, 26, -10}, 0, 0, 38, 18, -60, thumb_low, thumb_high});
+  hand.fingers[1] = skeleton_of({anatomy::kBoneLengths[1], 9.0, {8, 19, 7}, 8, 8, 4, 0, 0, low, high});
+  hand.fingers[2] = skeleton_of({anatomy::kBoneLengths[2], 8.8, {10, 8, 9}, 0, 8, 0, 0, 0, low, high});
+  hand.fingers[3] = skeleton_of({anatomy::kBoneLengths[3], 8.4, {10, -3.5, 8}, -9, 7, -4, 0, 0, low, high});
+  hand.fingers[4] = skeleton_of({anatomy::kBoneLengths[4], 7.4, {8, -15, 3}, -17, 4, -9, 0, 0, low, high});
   return hand;
 }
 

@@ -21,7 +21,7 @@ std::string why_unreadable(const std::string& file);
 /// The first `most` bytes of a regular file, or nothing if it cannot be read.
 std::optional<std::string> file_text(const std::string& file, std::size_t most);
 
-/// The lines of a regular file.
+/// The lines of a regular file, without a byte order mark.
 class FileLines {
  public:
   /// Throws FileError.

@@ -22,8 +22,9 @@ double fraction(float value) {
 
 /// A tracker's width is a diameter and a float; what is put in for it is rounded as if the tracker had given
 /// it.
-double finger_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger) {
-  const auto& width = joints.finger_width[finger];
+double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger, std::size_t bone) {
+  const auto& own = joints.bone_width[finger][bone];
+  const auto& width = own ? own : joints.finger_width[finger];
   return as_float(width ? 0.5 * static_cast<double>(*width) : fit.scale * anatomy::kFingerRadii[finger]);
 }
 
@@ -46,7 +47,7 @@ void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t fing
     const auto& end = completed[bone + 1];
     if (!start || !end || (*end - *start).norm() < kShortestBone) continue;
     hand.capsules[finger * kBonesPerFinger + bone] = {device_in_world * *start, device_in_world * *end,
-                                                      finger_radius(joints, fit, finger)};
+                                                      bone_radius(joints, fit, finger, bone)};
   }
 }
 

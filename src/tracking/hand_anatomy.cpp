@@ -44,7 +44,6 @@ Vector3 PalmFit::place(const Vector3& anatomical) const {
 ///     sum |s R a_i + t - m_i|^2 -> min,   t = mean m - s R mean a
 /// over a scale s, a rotation R and a place t, a_i of the adult's palm, m_i measured in the device's frame
 /// (Umeyama 1991). A left hand is fitted to the mirrored palm, not by a reflection: R is a rotation for both.
-/// Sizes beyond 0.3 to 2.5 of an adult's are wrong units or wrong joints.
 std::optional<PalmFit> fit_palm(const HandJoints& hand) {
   const Correspondences points = correspondences(hand);
   const auto found = registered(points.anatomical.data(), points.measured.data(), points.size);
@@ -54,7 +53,7 @@ std::optional<PalmFit> fit_palm(const HandJoints& hand) {
   fit.scale = found->scale;
   fit.palm.orientation = Quaternion(found->rotation).normalized();
   fit.palm.position = found->to - fit.scale * (found->rotation * found->from);
-  if (!(fit.scale > 0.3 && fit.scale < 2.5)) return std::nullopt;
+  if (!(fit.scale > kSmallestHand && fit.scale < kLargestHand)) return std::nullopt;
   return fit;
 }
 

@@ -20,9 +20,18 @@ inline const std::array<Vector3, 4> kMetacarpalBases{{{-0.0435, 0.012, 0.012},
 inline const std::array<Vector3, 4> kKnuckles{
     {{0.023, 0.023, 0.002}, {0.0235, 0.003, 0.004}, {0.0175, -0.0175, 0.004}, {0.0095, -0.0355, 0.0}}};
 inline const Vector3 kWrist{-0.068, -0.008, 0.003};
+/// Metacarpal to distal [mm]. The thumb has no metacarpal in the palm: its own counts as proximal.
+constexpr double kBoneLengths[kFingers][kBonesPerFinger] = {{0.0, 46.22, 31.57, 21.67},
+                                                            {68.12, 39.78, 22.38, 15.82},
+                                                            {64.60, 44.63, 26.33, 17.40},
+                                                            {58.00, 41.37, 25.65, 17.30},
+                                                            {53.69, 32.74, 18.11, 15.96}};
 constexpr double kPalmWidth = 0.0842;
 constexpr std::array<double, kFingers> kFingerRadii{{0.0094, 0.0090, 0.0088, 0.0084, 0.0074}};
 }  // namespace anatomy
+
+/// A hand's size as a factor on the adult's. Beyond these it is in a wrong unit, or of wrong joints.
+constexpr double kSmallestHand = 0.3, kLargestHand = 2.5;
 
 /// Where the anatomical palm lies in the device's frame.
 struct PalmFit {

@@ -1,9 +1,13 @@
 #include "mr_hand_interaction/tracking/joints.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "../text/text.h"
 #include "hand_anatomy.h"
+#include "joint_check.h"
 
 namespace mrhi {
 namespace {
@@ -48,6 +52,35 @@ std::string finger_defect(const HandJoints& hand, std::size_t finger) {
   return width_defect(name + " width", hand.finger_width[finger], kWidestFinger);
 }
 
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr Unit kUnits[] = {
+    {"millimetres", 0.001}, {"centimetres", 0.01}, {"inches", 0.0254}, {"decimetres", 0.1}, {"feet", 0.3048}};
+
+/// The unit in which a hand would be so many times as large as an adult's.
+const Unit& likely_unit(double size) {
+  const auto error = [size](const Unit& unit) { return std::abs(std::log(size * unit.metres)); };
+  return *std::min_element(std::begin(kUnits), std::end(kUnits),
+                           [&](const Unit& a, const Unit& b) { return error(a) < error(b); });
+}
+
+std::string size_defect(const HandJoints& hand) {
+  const auto fit = proportions(hand);
+  if (!fit || (fit->size > kSmallestHand && fit->size < kLargestHand)) return "";
+  std::string text = "its bones are " + text::number(fit->size) + " times as long as an adult's";
+  if (fit->size > 1.0) {
+    const Unit& unit = likely_unit(fit->size);
+    const std::string factor = text::number(unit.metres);
+    text += std::string(", as of ") + unit.name + "; allowed: metres; scale:=" + factor +
+            " (replay: --hand-scale " + factor + ") converts";
+  } else {
+    text += "; allowed: metres; scale:=FACTOR (replay: --hand-scale FACTOR) converts";
+  }
+  return text;
+}
+
 /// A metacarpal alone, b = 0, is within the palm.
 bool has_bone(const HandJoints& hand) {
   for (const auto& joints : hand.joints)
@@ -66,6 +99,7 @@ std::string defect(const HandJoints& hand) {
                                                      {"pinch strength", hand.pinch_strength}};
   for (const auto& [name, value] : strengths)
     if (!std::isfinite(value)) return std::string(name) + " is not finite";
+  if (std::string found = size_defect(hand); !found.empty()) return found;
   for (std::string found : {point_defect("palm centre", hand.palm_centre), point_defect("wrist", hand.wrist),
                             width_defect("palm width", hand.palm_width, kWidestPalm)})
     if (!found.empty()) return found;

@@ -253,6 +253,64 @@ TEST(BagInput, hands_on_topics_of_their_sides_come_together) {
   }
 }
 
+TEST(BagInput, joints_on_topics_of_other_names_are_of_the_side_that_is_told) {
+  for (const bool is_left : {false, true}) {
+    TestBag bag("names.bag");
+    bag.add("/headset/joints", frames()[0].stamp, pose_array(frames()[0]));
+    bag.add("/other/joints", frames()[1].stamp, pose_array(frames()[1]));
+    bag.bag.close();
+    HandOptions hands;
+    hands.topics["headset/joints"] = is_left ? "hands/left/pose_array" : "hands/right/pose_array";
+    BagInput input(bag.file, {}, {}, hands);
+    const auto frame = input.next();
+    ASSERT_TRUE(frame && frame->frame);
+    EXPECT_EQ(frame->frame->hands.at(0).side, is_left ? Side::left : Side::right);
+    EXPECT_FALSE(input.next());
+  }
+}
+
+TEST(BagInput, lengths_in_another_unit_are_converted) {
+  TestBag bag("unit.bag");
+  geometry_msgs::PoseArray millimetres = pose_array(frames()[0]);
+  for (auto& pose : millimetres.poses) {
+    pose.position.x *= 1000.0;
+    pose.position.y *= 1000.0;
+    pose.position.z *= 1000.0;
+  }
+  bag.add("/hands/right/pose_array", kBegin, millimetres);
+  bag.bag.close();
+  HandOptions hands;
+  hands.scale = 0.001;
+  BagInput converted(bag.file, {}, {}, hands), as_it_is(bag.file, {}, {});
+  EXPECT_TRUE(converted.next()->frame);
+  EXPECT_NE(as_it_is.next()->detail.find("as of millimetres"), std::string::npos);
+}
+
+/// With receipts 16 ms apart.
+TEST(BagInput, a_first_frame_of_another_clock_is_left_out_and_a_step_is_taken_out) {
+  TestBag bag("clock.bag");
+  constexpr std::size_t kFrames = 60, kStep = 30;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    JointsFrame frame = frames()[i];
+    if (i == 0) frame.stamp = 500'000'000'000'000'000;
+    if (i >= kStep) frame.stamp -= 2'000'000'000;
+    topic_tools::ShapeShifter message;
+    write_leap(frame, "leap_hands", 0, 60.0f, message);
+    bag.add("/leap_motion/leap_device", frames()[i].stamp, message);
+  }
+  const auto read = bag.read();
+  ASSERT_EQ(read.size(), kFrames);
+  EXPECT_EQ(read[0].reason, "first stamp of another clock");
+  int steps = 0;
+  for (std::size_t i = 1; i < kFrames; ++i) {
+    for (const auto& [kind, what] : read[i].corrected) steps += kind == JointsInput::kStep;
+    if (i == kStep) continue;  // keeps its stamp, and is left out by the simulation
+    ASSERT_TRUE(read[i].frame);
+    EXPECT_EQ(read[i].frame->stamp, frames()[i].stamp) << i;
+  }
+  EXPECT_EQ(steps, 1);
+}
+
 TEST(BagInput, hand_frames_in_world_keep_their_bits) {
   const HandFrame frame{kBegin, {complete_hand(frames()[0].hands[0], default_device_mount())}};
   TestBag bag("hand_frame.bag");

@@ -53,6 +53,25 @@ TEST(RecordingCsv, ColumnsAreFoundByNameAndEmptyCellsAreAbsent) {
   EXPECT_FALSE(hand.joints[1][0]);
 }
 
+TEST(RecordingCsv, AsASpreadsheetSavesItIsTheSame) {
+  const std::string plain = std::string(kHeader) + "1,0.016001,5,12,,,,0.018,0.1,-0.2,3e-1\n";
+  const auto with = [&plain](char separator, char point) {
+    std::string text = plain;
+    for (char& c : text) c = c == ',' ? separator : c == '.' ? point : c;
+    return text;
+  };
+  const std::string mark = "\xEF\xBB\xBF";
+  for (const std::string& text :
+       {mark + plain, with(';', ','), mark + with(';', ','), with(';', '.'), with('\t', ',')}) {
+    const CsvFile file(text);
+    const auto frames = read_recording_csv(file.path());
+    ASSERT_EQ(frames.size(), 1u) << text;
+    EXPECT_EQ(frames[0].stamp, 16001000);
+    EXPECT_EQ(*frames[0].hands.at(0).joints[1][1], Vector3(0.1, -0.2, 0.3));
+  }
+  EXPECT_EQ(error_of("time|hand\n1|2\n").find(":1: has no column 'time_s'; allowed:"), 0u);
+}
+
 TEST(RecordingCsv, RowsOfOneTimeAndFrameAreOneFrameAndMinusOneIsNoHand) {
   const CsvFile file(std::string(kHeader) +
                      "0,0,1,4,,,,,,,\n1,0,1,5,,,,,,,\n,0.01,2,-1,,,,,,,\n0,0.01,3,4,,,,,,,\n");

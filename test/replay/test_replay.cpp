@@ -79,7 +79,7 @@ TEST(Replay, unusable_frames_are_counted_and_the_run_goes_on) {
   Replayed replayed("nudge");
   auto frames = test::motion_frames("nudge", kRate, 0);
   frames[10].stamp = frames[9].stamp;
-  frames[20].hands[0].joints[1][4] = Vector3(50, 0, 0);
+  frames[20].hands[0].palm_centre = Vector3(50, 0, 0);
   test::write_recording(replayed.arguments.input, frames);
   const YAML::Node summary = replayed.run("out");
   EXPECT_EQ(summary["frames"].as<std::size_t>(), frames.size() - 2);
@@ -148,10 +148,15 @@ TEST(Replay, a_recording_without_a_usable_frame_is_an_error) {
   Replayed replayed("nudge");
   auto frames = test::motion_frames("nudge", kRate, 0);
   frames.resize(1);
-  frames[0].hands[0].joints[1][4] = Vector3(50, 0, 0);
+  frames[0].hands[0].palm_centre = Vector3(50, 0, 0);
   test::write_recording(replayed.arguments.input, frames);
+  replayed.arguments.output = replayed.folder / "new/out";
   EXPECT_THROW(replay(replayed.arguments), std::runtime_error);
-  EXPECT_NE(test::text_of(replayed.folder / "out/summary.json").find("\"error\""), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(replayed.folder / "new"));
+  // A folder that was there before stays, with the reason.
+  std::filesystem::create_directories(replayed.arguments.output);
+  EXPECT_THROW(replay(replayed.arguments), std::runtime_error);
+  EXPECT_NE(test::text_of(replayed.folder / "new/out/summary.json").find("\"error\""), std::string::npos);
 }
 
 }  // namespace

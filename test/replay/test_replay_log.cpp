@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <functional>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -54,7 +55,8 @@ class Live {
     for (const JointsFrame& joints : frames) {
       const double time = to_seconds(joints.stamp - frames.front().stamp);
       if (time < from || time >= to) continue;
-      HandFrame hands = *placed(joints, default_device_mount()).frame;
+      std::vector<std::string> defects;
+      HandFrame hands = complete_frame(joints, default_device_mount(), defects).value();
       hands.stamp = joints.stamp + 1'000'000'000;
       if (live_.simulation().begin(hands, hands.stamp) != Rejection::none)
         throw std::runtime_error("frame refused");
@@ -345,6 +347,33 @@ TEST(ReplayLog, changes_keep_their_bits_as_text) {
        {"", "[", "jump: 1", "place: x", "place: x\npose: [1, 2]", "set: [a]", "spawn: {name: x}",
         "spawn: {name: x, urdf: nowhere, pose: [0,0,0,0,0,0,1], twist: [0,0,0,0,0,0]}"})
     EXPECT_THROW(change_from_yaml(bad, {}), std::invalid_argument) << bad;
+}
+
+std::string refusal_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  } catch (const std::exception& error) {
+    return std::string("of another kind: ") + error.what();
+  }
+  return "none";
+}
+
+TEST(ReplayLog, recorded_yaml_of_another_form_is_refused_in_our_words) {
+  for (const char* bad : {"5", "[1]", "set: {a: 1}", "set: 5", "spawn: 5", "spawn: [1]", "place: {x: 1}",
+                          "delete: [a]", "spawn: {name: {a: b}}", "pause: [on]"}) {
+    const std::string why = refusal_of([bad] { change_from_yaml(bad, {}); });
+    if (std::string(bad) == "set: 5") continue;  // no values: nothing is set
+    EXPECT_EQ(why.find("recorded change: "), 0u) << bad << ": " << why;
+    EXPECT_NE(why.find("; allowed: "), std::string::npos) << bad << ": " << why;
+  }
+  const std::string begin = "version: 1\nscene: a\n";
+  for (const char* bad :
+       {"object_twist: [1]", "parameters: [1]", "removed: {a: b}", "added: {a: b}", "added: [1]"}) {
+    const std::string why = refusal_of([&] { world_from_yaml(begin + bad, {}); });
+    EXPECT_EQ(why.find("recorded change: "), 0u) << bad << ": " << why;
+  }
 }
 
 }  // namespace

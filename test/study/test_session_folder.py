@@ -150,6 +150,7 @@ class Refusals(Folders):
     def test_session_without_what_is_needed(self):
         for key, replacement, words in (('participant', '', "no 'participant'"),
                                         ('group', 'group: " "', "group: is empty"),
+                                        ('participant', 'participant: "=1+1"', "'=1+1' begins as a spreadsheet's formula does"),
                                         ('version', 'version: 2', "'2' is not 1"),
                                         ('gravity', 'gravity: 9.81', 'is not three numbers'),
                                         ('simulated', 'simulated: perhaps', 'is not true or false'),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +12,13 @@
 #include "mr_hand_interaction/usage_error.h"
 
 namespace mrhi {
+
+/// How the hands of a tracker are read from a recording.
+struct HandOptions {
+  std::map<std::string, std::string> topics;  ///< of a bag, and the usual topic for which each stands
+  std::string order;                          ///< of joints; empty: recognised
+  double scale = 1.0;                         ///< metres per unit of the recording's lengths
+};
 
 /// The command line of `replay`.
 struct ReplayArguments {
@@ -29,6 +37,7 @@ struct ReplayArguments {
   std::vector<std::pair<std::string, Pose>> object_poses;     ///< of the centre of mass, in world
   std::vector<std::pair<std::string, Twist>> object_twists;   ///< world axes
   std::optional<Pose> hand_transform;                         ///< of the device frame in world
+  HandOptions hands;
 };
 
 /// Arguments without the program's name. Throws UsageError. Whether scene, objects and parameters exist is

@@ -36,5 +36,8 @@ Pose from_message(const geometry_msgs::Transform& transform);
 /// What no header can hold becomes the nearest that one can.
 ros::Time to_ros_time(Nanoseconds stamp);
 Nanoseconds from_ros_time(const ros::Time& stamp);
+/// Of either sign [s]. The difference as a ros::Duration throws beyond 2^31 s, which a stamp or /clock may
+/// reach.
+double seconds_between(const ros::Time& from, const ros::Time& to);
 
 }  // namespace mrhi

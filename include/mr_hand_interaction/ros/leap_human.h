@@ -17,7 +17,8 @@ class DecodeError : public std::runtime_error {
   enum class Kind : std::uint8_t {
     unknown_version,  ///< of no version of leap_motion/Human that we know
     malformed,        ///< the bytes do not fit the type
-    wrong_count       ///< fingers, bones or joints: too many, twice the same, or of no known kind
+    wrong_count,      ///< fingers, bones or joints: too many, twice the same, or of no known kind
+    unknown_order     ///< joints in no order in which they are a hand
   };
 
   DecodeError(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
@@ -35,6 +36,9 @@ struct LeapFrame {
   std::uint32_t sequence = 0;  ///< of the header
   JointsFrame joints;  ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
 };
+
+/// MD5 of each of its four published versions.
+std::vector<std::string> leap_versions();
 
 /// Reads a serialised leap_motion/Human of any of its four published versions, which `md5` identifies. Throws
 /// DecodeError.

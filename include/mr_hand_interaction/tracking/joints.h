@@ -24,6 +24,8 @@ struct HandJoints {
   /// j0..j4).
   std::array<std::array<std::optional<Vector3>, 5>, kFingers> joints;
   std::array<std::optional<float>, kFingers> finger_width;  ///< diameter
+  /// Diameter of single bones; it goes before the finger's.
+  std::array<std::array<std::optional<float>, kBonesPerFinger>, kFingers> bone_width;
 };
 
 struct JointsFrame {

@@ -1,0 +1,40 @@
+"""ROS's times are subtracted and made by one checked function each: ros::Time's own arithmetic throws where a stamp or /clock
+is beyond 2^31 s, and ended nodes."""
+import pathlib
+import re
+import unittest
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2]
+ALLOWED = {"src/ros/geometry_conversion.cpp",  # to_ros_time, from_ros_time, seconds_between
+           "src/ros/panel/training_panel.cpp"}  # the machine's own clock alone
+# A difference of times or a time and a duration; a time made of a number that may be too large; a sleep or a timer by
+# ROS's clock, which subtract themselves.
+FORBIDDEN = re.compile(r"\([^()]+-[^()]+\)\.toSec\(\)|ros::Duration\([a-z]|ros::Time\([a-z]|\.fromNSec\(|\.fromSec\(|ros::Time::sleepUntil|"
+                       r"createTimer\(|ros::Rate|ros::Duration\([^)]*\)\.sleep")
+WALL = re.compile(r"Wall")  # the machine's own clock, which no message sets
+CONSTANT = re.compile(r"marker\.lifetime = ros::Duration\(lifetime_\)")  # of a layer, half a second or for ever
+
+
+def offences(text):
+    lines = [line for line in text.splitlines() if not WALL.search(line) and not CONSTANT.search(line)]
+    return [line.strip() for line in lines if FORBIDDEN.search(line)]
+
+
+class RosTimeTest(unittest.TestCase):
+    def test_no_arithmetic_that_throws_is_left(self):
+        files = [file for folder in ("src/ros", "src/nodes", "src/replay", "src/record") for file in (PACKAGE / folder).rglob("*")
+                 if file.suffix in (".cpp", ".h") and str(file.relative_to(PACKAGE)) not in ALLOWED]
+        self.assertGreater(len(files), 50)
+        found = {str(file.relative_to(PACKAGE)): offences(file.read_text(encoding="utf-8")) for file in files}
+        self.assertEqual({file: lines for file, lines in found.items() if lines}, {})
+
+    def test_it_would_be_found(self):
+        for line in ("double since = (now - last).toSec();", "header.stamp = ros::Time().fromNSec(start);",
+                     "ros::Time(seconds)", "x += ros::Duration(period);", "ros::Time::sleepUntil(end);"):
+            self.assertEqual(offences(line), [line])
+        for line in ("(ros::WallTime::now() - time).toSec() > kOld", "ros::Time(0)", "ros::Time::now()"):
+            self.assertEqual(offences(line), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
