@@ -30,6 +30,9 @@ constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
 constexpr double kOpensFraction = 0.5, kOpensSpeed = 0.35;
 /// A hand that is farther from a body than this has left it, whatever its fingers do [m].
 constexpr double kMaxDistance = 0.02;
+/// A grip waits for a lost hand so long [s], and goes on if the hand returns within this of the pose in which
+/// it held the body [m], [rad].
+constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
 /// Stiffness of a grip over that of a touch: several fingers, on two sides.
 constexpr double kStiffnessRatio = 5.0;
 /// Limits of the distance from the springs to their middle [m].
@@ -53,6 +56,13 @@ bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
     return other.key.hand == contact.key.hand && other.key.body == contact.key.body && !other.ignored &&
            other.normal.dot(contact.normal) < kOpposite;
+  });
+}
+
+/// True if the hand overlapped the body as it appeared, and has not left it since.
+bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) {
+  return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
+    return contact.ignored && contact.key.hand == slot && contact.key.body == body;
   });
 }
 
@@ -133,13 +143,16 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   closing_.clear();
   const auto over = [&](Grip& grip) { return ends(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), over), state.grips.end());
-  for (Grip& grip : state.grips) follow(state, grip);
+  for (Grip& grip : state.grips)
+    if (!grip.lost) follow(state, grip);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    if (!state.hands[slot].active || state.hands[slot].appeared || is_buried(slot, state)) continue;
+    const HandTrack& track = state.hands[slot];
+    if (!track.active || track.appeared || track.emerged || is_buried(slot, state)) continue;
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
       const auto body = static_cast<std::size_t>(near.body);
       const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
-      if (!appeared && !scene_.bodies[body].fixed && !is_known(slot, body, state))
+      if (!appeared && !overlaps_since_it_appeared(slot, body, state) && !scene_.bodies[body].fixed &&
+          !is_known(slot, body, state))
         look_at(slot, near.body, state);
     }
   }
@@ -160,16 +173,47 @@ bool GraspAssist::is_known(std::size_t slot, std::size_t body, const SimulationS
   });
 }
 
-void GraspAssist::drop_lost_hands(SimulationState& state) {
+void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
   closing_.clear();
-  const auto lost = [&](const Grip& grip) { return !state.hands[grip.hand].active; };
-  state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), lost), state.grips.end());
+  const auto is_over = [&](Grip& grip) {
+    const HandTrack& track = state.hands[grip.hand];
+    if (track.active) return false;
+    if (!grip.lost) {
+      grip.lost = track.last_seen;
+      grip.body_in_palm = track.current.palm.inverse() * state.bodies[grip.body].pose;
+      grip.active = false;
+    }
+    return grip.released || to_seconds(now - *grip.lost) > kMaxLoss;
+  };
+  state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
+}
+
+/// True if a hand that was lost has returned about as it held the body: the grip goes on, from where the body
+/// is in the hand now.
+bool GraspAssist::holds_again(const SimulationState& state, Grip& grip) const {
+  const HandTrack& track = state.hands[grip.hand];
+  const Pose& pose = state.bodies[grip.body].pose;
+  const Pose in_palm = track.current.palm.inverse() * pose;
+  const double now = aperture(grip, track.current);
+  if ((in_palm.position - grip.body_in_palm.position).norm() > kReturnDistance ||
+      in_palm.orientation.angularDistance(grip.body_in_palm.orientation) > kReturnAngle ||
+      now - grip.min_aperture > kMinRelease)
+    return false;
+  grip.lost.reset();
+  grip.mean_aperture = now;
+  grip.pads = distal_ends(track.current);
+  grip.in_palm = Pose();
+  for (std::size_t i = 0; i < kGripPoints; ++i)
+    grip.in_hand[i] = track.current.palm.to_local(pose * grip.in_body[i]);
+  grip.active = true;
+  return true;
 }
 
 /// True if the grip is over. A hand that lets go of a body that it supported is still in it: it exerts no
 /// force until it has left the body, or closes on it again.
 bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
+  if (grip.lost) return track.active && !holds_again(state, grip);
   if (!track.active || track.appeared) return true;
   const TouchingSides touching(grip, state.contacts);
   if (grip.released) return touching.none() || still_closes(track, grip);
@@ -319,7 +363,7 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   for (Grip& grip : state.grips) {
     const bool touching = TouchingSides(grip, state.contacts).both();
     const bool lost = touching ? slips(state.contacts, grip) : grip.opened <= kMinOpening;
-    if (!grip.active && (!lost || grip.opens || grip.released)) continue;
+    if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;

@@ -22,8 +22,8 @@ class GraspAssist {
 
   /// Call once a frame of `seconds`, when the hands' next poses are known: begins and ends grips.
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
-  /// Ends the grips of hands that are lost.
-  void drop_lost_hands(SimulationState& state);
+  /// Call at `now` when hands may have been lost: their grips wait for kMaxLoss, and then end.
+  void lose_hands(Nanoseconds now, SimulationState& state);
   /// Call every step of `step` seconds, `fraction` of the way into the frame: sets compliance depths and the
   /// grips' springs.
   void begin_step(double fraction, double step, SimulationState& state) const;
@@ -44,6 +44,7 @@ class GraspAssist {
     bool none() const { return !base && !fingers; }
   };
   bool ends(const SimulationState& state, Grip& grip) const;
+  bool holds_again(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   void look_at(std::size_t slot, int body, SimulationState& state);

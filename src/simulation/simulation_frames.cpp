@@ -91,7 +91,7 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
     if (track.active && unseen) end_interactions(slot, now, state, result.events);
   }
   lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
-  assist.drop_lost_hands(state);
+  assist.lose_hands(now, state);
 }
 
 void Simulation::Impl::report(Nanoseconds stamp) {

@@ -144,10 +144,11 @@ void add_contact(const ContactMemory& contact, Fnv1a& hash) {
 
 void add_grip(const Grip& grip, Fnv1a& hash) {
   const auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness,
-               active, released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
-               in_body, force, point, velocity] = grip;
-  leave_out(stiffness, closes, opened, opens, in_palm_before, slips, force, point, velocity);
+               active, released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm,
+               slips, in_hand, in_body, force, point, velocity] = grip;
+  leave_out(stiffness, lost, closes, opened, opens, in_palm_before, slips, force, point, velocity);
   hash.all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
+  if (lost) hash.add(body_in_palm);
   for (const Vector3& pad : pads) hash.add(pad);
   hash.add(in_palm);
   for (const Vector3& end : in_hand) hash.add(end);

@@ -263,11 +263,11 @@ class Parts {
   }
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-           released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force,
-           point, velocity] = part;
+           released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
+           in_body, force, point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-        released, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand, in_body, force, point,
-        velocity);
+        released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
+        in_body, force, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;

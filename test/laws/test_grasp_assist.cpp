@@ -234,6 +234,32 @@ TEST(GraspAssist, ends_within_a_millimetre_of_clearance) {
   }
 }
 
+/// What a cube does whose hand is lost at 0.8 s for `loss` seconds, returns shifted by `shift` and still
+/// closed, and carries it by 10 cm along y: how far it is off the hand then.
+double off_after_a_loss(double loss, const Vector3& shift) {
+  constexpr double kRate = 115.0, kLost = 0.8;
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1)),
+                        Configuration());
+  Vector3 way = Vector3::Zero();
+  for (int i = 0; i < static_cast<int>(3.5 * kRate); ++i) {
+    const double t = i / kRate;
+    const bool back = t >= kLost + loss;
+    way = 0.1 * testing::smooth(t - 2.2, 0.6) * Vector3::UnitY() + (back ? shift : Vector3::Zero());
+    HandFrame frame{testing::at(t), {}};
+    if (t < kLost || back) frame.hands.push_back(reaching(std::min(t / 0.2, 1.0), 0.012, 0.0, way));
+    simulation.advance(frame);
+  }
+  return (simulation.state().bodies[0].pose.position - (way - shift)).norm();
+}
+
+// As hold_time ships.
+TEST(GraspAssist, a_hand_that_returns_as_it_held_holds_again) {
+  for (const double loss : {0.1, 0.25, 0.5, 1.0})
+    EXPECT_LT(off_after_a_loss(loss, Vector3::Zero()), 0.005) << loss;
+  EXPECT_GT(off_after_a_loss(0.5, Vector3(0, 0.015, 0.034)), 0.05) << "a hand that merely overlaps";
+  EXPECT_GT(off_after_a_loss(1.5, Vector3::Zero()), 0.05) << "after too long";
+}
+
 TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {
   Configuration configuration = testing::implicit_configuration();
   configuration.contact.grasp_assist = true;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "mr_hand_interaction/tracking/hand.h"
 
@@ -15,21 +16,23 @@ using DistalEnds = std::array<Vector3, 2 * kFingers>;
 /// A hand that has a body between its fingers and its thumb or palm. While it is active, springs between hand
 /// and body support what the contacts lack. Each spring yields at its bond, and starts without force.
 struct Grip {
-  std::uint16_t body = 0;       ///< index in Scene::bodies
-  std::uint8_t hand = 0;        ///< index of the hand's track
-  bool by_palm = false;         ///< the fingers close against the palm; false: against the thumb
-  std::uint8_t fingers = 0;     ///< those that close, a bit each
-  double touch_aperture = 0.0;  ///< aperture at which both sides just touch the body [m]
-  double mean_aperture = 0.0;   ///< exponential mean over kMeanAperture [m]
-  double min_aperture = 0.0;    ///< smallest since the grip began, without the tracker's noise [m]
-  double bond = 0.0;            ///< largest force of each spring [N]
-  double stiffness = 0.0;       ///< of each spring [N/m]
-  bool active = false;          ///< the springs act: the contacts alone did not hold the body
-  bool released = false;        ///< the hand has let go: no force on the body until it has left it
-  bool closes = true;           ///< the hand is still closing
-  double opened = 0.0;          ///< by how much the hand has opened since it was most closed [m]
-  bool opens = false;           ///< the hand is opening: the grip does not follow its fingers
-  DistalEnds pads{};            ///< as the grip began, palm frame [m]
+  std::uint16_t body = 0;           ///< index in Scene::bodies
+  std::uint8_t hand = 0;            ///< index of the hand's track
+  bool by_palm = false;             ///< the fingers close against the palm; false: against the thumb
+  std::uint8_t fingers = 0;         ///< those that close, a bit each
+  double touch_aperture = 0.0;      ///< aperture at which both sides just touch the body [m]
+  double mean_aperture = 0.0;       ///< exponential mean over kMeanAperture [m]
+  double min_aperture = 0.0;        ///< smallest since the grip began, without the tracker's noise [m]
+  double bond = 0.0;                ///< largest force of each spring [N]
+  double stiffness = 0.0;           ///< of each spring [N/m]
+  bool active = false;              ///< the springs act: the contacts alone did not hold the body
+  bool released = false;            ///< the hand has let go: no force on the body until it has left it
+  std::optional<Nanoseconds> lost;  ///< stamp at which the hand was last seen: the grip waits for its return
+  Pose body_in_palm;                ///< then
+  bool closes = true;               ///< the hand is still closing
+  double opened = 0.0;              ///< by how much the hand has opened since it was most closed [m]
+  bool opens = false;               ///< the hand is opening: the grip does not follow its fingers
+  DistalEnds pads{};                ///< as the grip began, palm frame [m]
   Pose in_palm_before;  ///< at the frame's start: where the palm's frame of that time is now, in the palm
   Pose in_palm;         ///< the same at the frame's end
   bool slips = false;   ///< a spring yielded in the last step
