@@ -132,7 +132,10 @@ std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
 /// lies within: one search through the tree of all faces finds it. What is inside a part has to leave that,
 /// and is as deep as in the part that it is deepest in.
 struct MeshCollider::Impl {
-  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {}
+  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
+    for (const MeshShape& part : parts)
+      deepest = std::max(deepest, 0.5 * (part.surface.max() - part.surface.min()).minCoeff());
+  }
 
   MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
     if (&of != &shape) return MeshNearest(of.surface, of.tree, segment, range, -1);
@@ -161,6 +164,7 @@ struct MeshCollider::Impl {
 
   MeshShape shape;
   std::vector<MeshShape> parts;
+  double deepest = 0.0;  // nothing within a part is farther from its surface [m]
   mutable GuessMemory guesses;
   mutable NearMemory memory;
 };
@@ -184,16 +188,16 @@ ClosestFeatures MeshCollider::Impl::leave(const MeshShape& of, const Segment& se
 
 /// A part's faces have numbers of their own: none is told.
 std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& segment) const {
-  std::optional<ClosestFeatures> deepest;
+  std::optional<ClosestFeatures> best;
   for (const MeshShape& part : parts) {
     if (part.surface.is_beyond(segment, kOnSurface)) continue;
     const MeshNearest search = nearest(part, segment, kUnlimited);
     if (!has_to_leave(part, search)) continue;
     const ClosestFeatures way = leave(part, segment, search.nearest());
-    if (!deepest || way.distance < deepest->distance) deepest = way;
+    if (!best || way.distance < best->distance) best = way;
   }
-  if (deepest) deepest->face = -1;
-  return deepest;
+  if (best) best->face = -1;
+  return best;
 }
 
 /// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
@@ -225,16 +229,18 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const MeshSurface& surface = impl_->shape.surface;
   const Segment segment(capsule);
   if (surface.is_beyond(segment, capsule.radius + margin)) return std::nullopt;
-  std::optional<ClosestFeatures> leaves;
-  if (!impl_->parts.empty()) leaves = impl_->leave_parts(segment);
-  if (leaves) {
-    leaves->distance -= capsule.radius;
-    return leaves;
-  }
-  const bool may_be_deep = impl_->parts.empty() && surface.closed() && surface.in_bounds(segment.middle());
-  const double reach = may_be_deep ? kUnlimited : capsule.radius + margin;
-  const MeshNearest search = impl_->nearest(impl_->shape, segment, reach);
+  const bool has_parts = !impl_->parts.empty();
+  const bool may_be_deep = surface.closed() && surface.in_bounds(segment.middle());
+  const double deep = has_parts ? std::max(capsule.radius + margin, impl_->deepest) : kUnlimited;
+  const MeshNearest search =
+      impl_->nearest(impl_->shape, segment, may_be_deep ? deep : capsule.radius + margin);
   if (!search.found()) return std::nullopt;
+  if (has_parts && search.nearest().distance <= impl_->deepest) {
+    if (std::optional<ClosestFeatures> leaves = impl_->leave_parts(segment)) {
+      leaves->distance -= capsule.radius;
+      return leaves;
+    }
+  }
 
   // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
   // gap has no direction, and for what is inside, where it points inwards.
@@ -247,7 +253,7 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
     features.normal = normal.dot(features.normal) < 0.0 ? Vector3(-normal) : normal;
     features.face = nearest.index;
   }
-  if (impl_->parts.empty() && Impl::has_to_leave(impl_->shape, search)) {
+  if (!has_parts && Impl::has_to_leave(impl_->shape, search)) {
     features = impl_->leave(impl_->shape, segment, nearest);
   } else if (nearest.distance < kOnSurface) {
     features.normal = surface.outward(nearest).normalized();

@@ -53,6 +53,39 @@ TEST(MeshCollision, capsule_along_a_face_touches_in_the_middle_of_the_stretch) {
   }
 }
 
+// As pieces of a convex decomposition overlap: outside, through them and inside the solid is their union.
+TEST(MeshCollision, mesh_of_parts_is_as_far_as_the_nearer_and_as_deep_as_the_deeper_of_them) {
+  TriangleMesh both;
+  for (int i = 0; i < 2; ++i) {
+    const TriangleMesh box = box_mesh(kArmHalf[i]);
+    const int first = static_cast<int>(both.vertices.size());
+    both.parts.push_back(static_cast<int>(both.triangles.size()));
+    for (const Vector3& vertex : box.vertices) both.vertices.push_back(vertex + kArmCentre[i]);
+    for (const auto& t : box.triangles)
+      both.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
+  }
+  const MeshCollider collider(both);
+  Random random(9);
+  int inside = 0;
+  for (int i = 0; i < 50000 && !HasFailure(); ++i) {
+    const Vector3 along = random.between(0.0, 0.05) * random.direction();
+    const Capsule capsule =
+        capsule_about(random.in_box({0.06, 0.06, 0.04}), along, random.between(0.0, 0.01));
+    const double expected = std::min(arm(capsule, 0).distance, arm(capsule, 1).distance);
+    SCOPED_TRACE(i);
+    for (const double margin : {0.0, 0.005, kFar}) {
+      const auto features = collider.closest(capsule, margin);
+      if (std::abs(expected - margin) < kRounding) continue;
+      ASSERT_EQ(features.has_value(), expected < margin) << expected;
+      if (features) {
+        EXPECT_NEAR(features->distance, expected, kRounding);
+      }
+    }
+    inside += expected < -capsule.radius ? 1 : 0;
+  }
+  EXPECT_GT(inside, 5000);
+}
+
 TEST(MeshCollision, hollow_solid_is_as_far_as_the_nearer_of_its_parts) {
   Random random(5);
   const MeshCollider collider(angle_mesh());

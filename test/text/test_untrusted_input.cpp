@@ -73,6 +73,13 @@ TEST(XmlDanger, elements_are_counted) {
   EXPECT_EQ(xml_danger("<r>" + many + "<a/></r>"), "100001 elements; allowed: at most 100000");
 }
 
+TEST(XmlDanger, attributes_of_an_element_are_counted) {
+  std::string many;
+  for (int i = 0; i < 64; ++i) many += " a='=\"='";
+  EXPECT_FALSE(xml_danger("<r" + many + "><a b='1'/></r>"));
+  EXPECT_EQ(xml_danger("<r><a" + many + " b='1'/></r>"), "an element has 65 attributes; allowed: at most 64");
+}
+
 TEST(XmlDanger, text_is_utf8_without_control_characters) {
   // One of each length, at both ends of what each may hold.
   for (const char* good : {"\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xEF\xBF\xBD", "\xF0\x90\x80\x80",
@@ -81,7 +88,7 @@ TEST(XmlDanger, text_is_utf8_without_control_characters) {
   // A continuation alone, an overlong form, a lead that none has, each cut short, and one not continued.
   for (const char* bad : {"\x80", "\xC1\x80", "\xF5\x80\x80\x80", "\xC2", "\xE2\x82", "\xF0\x9F\x98",
                           "\xC2\x41", "\xE2\x82\xC0", "\xE2\x41\x80", "\x01", "\x1B"})
-    EXPECT_EQ(xml_danger(bad), "is no text; allowed: UTF-8 without control characters") << bad;
+    EXPECT_EQ(xml_danger(bad), "is no text; allowed: UTF-8 or ISO-8859-1 without control characters") << bad;
   EXPECT_TRUE(xml_danger(std::string("a\0b", 3)));
 }
 
