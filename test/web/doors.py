@@ -46,7 +46,7 @@ class RecordingPort(server.Port):
 
 
 class RunningDoor:
-    """For the length of a block. `call` runs a function in its loop."""
+    """For the length of a block. `call` runs a function in its thread."""
 
     def __init__(self, folder, context=None, three=None, **options):
         """`three`: folder of three.js; none: something stands for it."""
@@ -66,6 +66,9 @@ class RunningDoor:
         self.door = server.Door(self.port, self.picture, os.path.join(PACKAGE, 'web'), self._three, TOKEN,
                                 **self._options)
         return await self.door.start('127.0.0.1', 0, self._context)
+
+    def call(self, function, *arguments):
+        self._loop.call_soon_threadsafe(function, *arguments)
 
     def changed(self):
         self._loop.call_soon_threadsafe(self.door.changed)
