@@ -52,8 +52,12 @@ def name(text):
 
 
 def begins_a_formula(text):
-    """What a spreadsheet would compute in place of showing it."""
-    return text[:1] in ('=', '+', '-', '@', '\t', '\r')
+    """What a spreadsheet would compute in place of showing it. A number is none."""
+    try:
+        float(text)
+        return False
+    except ValueError:
+        return text[:1] in ('=', '+', '-', '@', '\t', '\r')
 
 
 def one_of(*allowed):

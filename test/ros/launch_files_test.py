@@ -20,7 +20,8 @@ from tf2_msgs.msg import TFMessage
 PACKAGE = "mr_hand_interaction"
 FOLDER = os.path.join(rospkg.RosPack().get_path(PACKAGE), "launch")
 FILES = sorted(os.path.basename(path) for path in glob.glob(os.path.join(FOLDER, "*.launch")))
-NEEDED = {"playback.launch": ["bag:=/tmp/a.bag"], "training.launch": ["participant:=P01"]}
+NEEDED = {"playback.launch": ["bag:=/tmp/a.bag"], "webcam.launch": ["model:=/tmp/hand_landmarker.task"],
+          "training.launch": ["participant:=P01"]}
 SHELLS = ("sh", "bash", "dash", "zsh", "env", "xterm")
 
 
