@@ -21,7 +21,7 @@ from launching import Launch  # noqa: E402
 from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, shortened, to_run  # noqa: E402
 
 PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "compare", "doctor",
-            "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node", "marker_relay_node", "plan_study",
+            "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node", "plan_study",
             "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
             "training_keys", "training_node")
 
