@@ -1,8 +1,8 @@
 # Messages, services and sliders, and what other catkin packages are told.
 add_message_files(FILES
   Contact.msg ContactArray.msg Hand.msg HandFrame.msg HandHaptics.msg HapticsArray.msg InteractionEvent.msg
-  ObjectState.msg ObjectStateArray.msg Phalanx.msg PhalanxHaptics.msg RecordedFile.msg SimulationInput.msg
-  TrainingEvent.msg TrainingStatus.msg)
+  ObjectState.msg ObjectStateArray.msg Phalanx.msg PhalanxHaptics.msg RecordedFile.msg SceneBody.msg
+  SceneDescription.msg SceneShape.msg SimulationInput.msg TrainingEvent.msg TrainingStatus.msg)
 # leap_motion/Human of the Leap's driver in its four versions, and leap_motion_controller/Hand: an MD5 does not depend on the package's name.
 add_message_files(DIRECTORY msg/leap FILES
   LeapArm.msg LeapBone.msg LeapControllerBone.msg LeapControllerFinger.msg LeapControllerHand.msg LeapFinger.msg LeapGesture.msg LeapHand.msg LeapHuman.msg

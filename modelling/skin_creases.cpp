@@ -6,9 +6,7 @@
 namespace mrhi {
 namespace {
 
-using SkinCreases = std::vector<std::array<SkinModel::Crossing, 2>>;
-
-constexpr float kHalfWidth = 0.00050f;  // of the deepest [m]
+constexpr double kHalfWidth = 0.0009;  // of a crease [m]
 
 // A crease is a curve on the rest hand's skin: where `beyond` changes its sign, as deep as `depth` says, 0
 // to 1.
@@ -57,42 +55,60 @@ class PalmCrease {
   double radius_ = 0.0, reach_ = 0.0;
 };
 
-template <typename Crease>
-void add(const TriangleMesh& skin, const Crease& crease, SkinCreases& parts) {
-  for (const auto& triangle : skin.triangles) {
-    std::vector<SkinModel::Crossing> crossings;
-    for (std::size_t i = 0; i < 3; ++i) {
-      // From the lower index, so that both triangles at the edge are crossed at the same place.
-      const auto [a, b] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      const Vector3 &from = skin.vertices[static_cast<std::size_t>(a)],
-                    &to = skin.vertices[static_cast<std::size_t>(b)];
-      const double before = crease.beyond(from), after = crease.beyond(to);
-      if ((before < 0.0) == (after < 0.0)) continue;
-      const double fraction = before / (before - after);
-      const auto depth = static_cast<float>(crease.depth(from + fraction * (to - from)));
-      crossings.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                           static_cast<float>(fraction), depth * kHalfWidth});
-    }
-    if (crossings.size() == 2 && crossings[0].half_width + crossings[1].half_width > 0.0f)
-      parts.push_back({crossings[0], crossings[1]});
-  }
-}
+struct Creases {
+  std::vector<FingerCrease> fingers;
+  std::vector<PalmCrease> palm;
+};
 
-}  // namespace
-
-SkinCreases skin_creases(const TriangleMesh& skin) {
-  SkinCreases creases;
+Creases make_creases() {
+  Creases creases;
   constexpr double kBase = 0.42;  // of a finger's first bone: where it leaves the palm
   for (int finger = 0; finger < kFingers; ++finger) {
     for (int b = finger == 0 ? 2 : 1; b < kBonesPerFinger; ++b) {
       const SkinBone& bone = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, b))];
-      add(skin, FingerCrease{bone, b == 1 ? kBase * bone.length : 0.0}, creases);
+      creases.fingers.push_back({bone, b == 1 ? kBase * bone.length : 0.0});
     }
   }
-  add(skin, PalmCrease({0.052, -0.038}, {0.060, -0.008}, {0.079, 0.015}), creases);
-  add(skin, PalmCrease({0.056, 0.037}, {0.049, 0.008}, {0.033, -0.025}), creases);
-  add(skin, PalmCrease({0.056, 0.037}, {0.036, 0.015}, {0.008, 0.006}), creases);
+  creases.palm.push_back({{0.052, -0.038}, {0.060, -0.008}, {0.079, 0.015}});
+  creases.palm.push_back({{0.056, 0.037}, {0.049, 0.008}, {0.033, -0.025}});
+  creases.palm.push_back({{0.056, 0.037}, {0.036, 0.015}, {0.008, 0.006}});
   return creases;
+}
+
+const Creases& all_creases() {
+  static const Creases creases = make_creases();
+  return creases;
+}
+
+/// Calls `visit(beyond, depth)` for each crease that passes within `margin` of the vertex.
+template <typename Visit>
+void for_each_near(const Vector3& vertex, double margin, const Visit& visit) {
+  const auto look = [&](const auto& crease) {
+    const double beyond = crease.beyond(vertex);
+    if (std::abs(beyond) >= margin) return;
+    const double depth = crease.depth(vertex);
+    if (depth > 0.0) visit(crease, beyond, depth);
+  };
+  for (const FingerCrease& crease : all_creases().fingers) look(crease);
+  for (const PalmCrease& crease : all_creases().palm) look(crease);
+}
+
+}  // namespace
+
+double skin_crease(const Vector3& vertex) {
+  double deepest = 0.0;
+  for_each_near(vertex, kHalfWidth, [&](const auto&, double beyond, double depth) {
+    deepest = std::max(deepest, depth * smooth_step(kHalfWidth, 0.0, std::abs(beyond)));
+  });
+  return deepest;
+}
+
+Vector3 onto_crease(const Vector3& vertex, double margin) {
+  Vector3 place = vertex;
+  for_each_near(vertex, margin, [&](const auto& crease, double beyond, double) {
+    place = vertex - beyond * gradient([&](const Vector3& p) { return crease.beyond(p); }, vertex);
+  });
+  return place;
 }
 
 }  // namespace mrhi

@@ -8,8 +8,9 @@ namespace {
 
 const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
     kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
-constexpr double kFadesFrom = 0.006, kFaded = -0.026;  // x of the rest hand [m]
-constexpr double kRound = 0.85;                        // how far round the finger half a nail goes [rad]
+const Rgb kCreaseTint(0.80f, 0.66f, 0.62f);             // of the skin's colour, in the deepest fold
+constexpr double kFadesFrom = -0.010, kFaded = -0.034;  // x of the rest hand [m]
+constexpr double kRound = 0.85;                         // how far round the finger half a nail goes [rad]
 constexpr double kBegins = 0.42, kPast = 0.72;  // along the bone, of its length; past its end, in its radii
 
 double to_fourth(double x) {
@@ -54,7 +55,7 @@ SkinNail skin_nail(const Vector3& vertex) {
   return {};
 }
 
-SkinModel::Look skin_look(const Vector3& vertex) {
+SkinModel::Look skin_look(const Vector3& vertex, bool creases) {
   const auto shares = capsule_shares(vertex);
   const auto most =
       static_cast<int>(std::max_element(shares.begin(), shares.begin() + kPhalanges) - shares.begin());
@@ -62,6 +63,7 @@ SkinModel::Look skin_look(const Vector3& vertex) {
   const auto palmar = static_cast<float>(smooth_step(0.004, -0.008, vertex.z()));
   Rgb colour = kBack + palmar * (kPalmar - kBack);
   if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex, colour);
+  if (creases) colour *= 1.0f - static_cast<float>(skin_crease(vertex)) * (1.0f - kCreaseTint);
   return {with_nail(vertex, colour), static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x())), most};
 }
 

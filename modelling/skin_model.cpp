@@ -12,9 +12,9 @@
 namespace mrhi {
 namespace {
 
-constexpr double kCell = 0.0026;  // length of the finest triangles' sides [m]
-constexpr double kTipWorth = 4.0, kSleeveWorth = 8.0, kWebWorth = 20.0;
-constexpr double kSleeveEdge = 0.005;  // [m]
+constexpr double kCell = 0.0026, kDetailedCell = 0.0015;  // length of the finest triangles' sides [m]
+constexpr double kOntoCrease = 0.45 * kDetailedCell;
+constexpr double kTipWorth = 4.0, kWebWorth = 20.0;
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
 Hand hand_in(const HandPosture& posture) {
@@ -55,7 +55,7 @@ Hand bent(double even, double odd) {
 
 /// Vertices go along the surface's normal until the triangles about each lie as much outside as inside, but
 /// no farther out than is unseen in what is touched.
-void settle(TriangleMesh& mesh) {
+void settle(const DistanceField& distance, TriangleMesh& mesh) {
   constexpr int kPasses = 6;
   constexpr double kStandsOut = 0.0003;  // [m]
   std::vector<double> off(mesh.vertices.size());
@@ -67,22 +67,21 @@ void settle(TriangleMesh& mesh) {
       const auto corner = [&](std::size_t i) {
         return mesh.vertices[static_cast<std::size_t>(triangle[i % 3])];
       };
-      double sum = skin_distance((corner(0) + corner(1) + corner(2)) / 3.0);
+      double sum = distance((corner(0) + corner(1) + corner(2)) / 3.0);
       for (std::size_t i = 0; i < 3; ++i)
-        sum += skin_distance(corner(i)) / 3.0 + 0.5 * skin_distance(0.5 * (corner(i) + corner(i + 1)));
+        sum += distance(corner(i)) / 3.0 + 0.5 * distance(0.5 * (corner(i) + corner(i + 1)));
       for (const int v : triangle)
         off[static_cast<std::size_t>(v)] += sum / 3.5, ++counts[static_cast<std::size_t>(v)];
     }
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       Vector3& vertex = mesh.vertices[v];
-      const double out = std::min(-off[v] / counts[v], kStandsOut - skin_distance(vertex));
-      vertex += out * skin_normal(vertex);
+      const double out = std::min(-off[v] / counts[v], kStandsOut - distance(vertex));
+      vertex += out * gradient(distance, vertex).normalized();
     }
   }
 }
 
-/// What is looked at, fingers and most of all their ends and the sleeve's edge, and what folds, the webs
-/// between two fingers.
+/// What is looked at, fingers and most of all their ends, and what folds, the webs between two fingers.
 double worth_of(const Vector3& vertex) {
   const auto shares = capsule_shares(vertex);
   const auto share = [&](int finger, int bone) {
@@ -96,17 +95,17 @@ double worth_of(const Vector3& vertex) {
     all += of_finger;
     most = std::max(most, of_finger);
   }
-  if (std::abs(vertex.x() - kSleeveBegins) < kSleeveEdge) worth += kSleeveWorth;
   return worth + kWebWorth * (all - most);
 }
 
-/// Nails raised and their edges sunk: no posture, but what keeps triangles' sides along them.
-Places with_relief(const Skin& skin) {
+/// Nails raised, their edges and the creases sunk: no posture, but what keeps triangles' sides along them.
+Places with_relief(const Skin& skin, bool creases) {
   constexpr double kRelief = 0.0025;  // [m]
   Places places;
   for (const Vector3& vertex : skin.rest()) {
     const SkinNail here = skin_nail(vertex);
-    places.push_back(vertex + kRelief * (here.nail - here.edge) * skin_normal(vertex));
+    places.push_back(vertex + kRelief * (here.nail - here.edge - (creases ? skin_crease(vertex) : 0.0)) *
+                                  skin_normal(vertex));
   }
   return places;
 }
@@ -130,14 +129,15 @@ SkinModel::Influence influence(int bone, double weight, const Vector3& vertex, c
 
 /// What the triangles' normals are off the shape's as they are made is nothing to be seen; what skin that
 /// folds adds to it is. So the bones carry the difference.
-SkinModel skinned(const TriangleMesh& rest) {
-  SkinModel model{rest.vertices, rest.triangles, {}, {}, {}, skin_creases(rest)};
+SkinModel skinned(const TriangleMesh& rest, bool detailed) {
+  const DistanceField distance = detailed ? detailed_skin_distance : skin_distance;
+  SkinModel model{rest.vertices, rest.triangles, {}, {}, {}};
   std::vector<Vector3> facets(rest.vertices.size(), Vector3::Zero());
   add_facets(rest.triangles, rest_hand().hand, rest.vertices, facets);
   for (std::size_t v = 0; v < rest.vertices.size(); ++v) {
     const Vector3& vertex = rest.vertices[v];
-    model.looks.push_back(skin_look(vertex));
-    const Vector3 normal = (1.0 + facets[v].norm()) * skin_normal(vertex) - facets[v];
+    model.looks.push_back(skin_look(vertex, detailed));
+    const Vector3 normal = (1.0 + facets[v].norm()) * gradient(distance, vertex).normalized() - facets[v];
     auto weights = skin_weights(vertex);
     double sum = 0.0;
     for (double& weight : weights) sum += weight = weight < kLeastWeight ? 0.0 : weight;
@@ -150,13 +150,17 @@ SkinModel skinned(const TriangleMesh& rest) {
   return model;
 }
 
-TriangleMesh finest_skin() {
+TriangleMesh finest_skin(bool detailed) {
   const SkinBox box = skin_box();
-  return surface_net(skin_distance, box.lowest, box.highest, kCell);
+  TriangleMesh mesh = surface_net(skin_distance, box.lowest, box.highest, detailed ? kDetailedCell : kCell);
+  if (detailed)
+    for (Vector3& vertex : mesh.vertices) vertex = onto_crease(vertex, kOntoCrease);
+  return mesh;
 }
 
 TriangleMesh modelled_skin(std::size_t triangles) {
-  static const Skin finest(skinned(finest_skin()));
+  const bool detailed = triangles > kHumanTriangles;
+  const Skin finest(skinned(finest_skin(detailed), detailed));
   std::vector<Places> poses{finest.rest()};
   for (const Hand& hand :
        {hand_in(relaxed_posture()), hand_in(pointing_posture()), hand_in(bar_grip()), hand_in(cube_grip()),
@@ -165,11 +169,12 @@ TriangleMesh modelled_skin(std::size_t triangles) {
     finest.pose(hand, surface);
     poses.push_back(surface.vertices);
   }
-  if (triangles > kOutlineTriangles) poses.push_back(with_relief(finest));  // the ghost has no nails
+  if (triangles > kOutlineTriangles)
+    poses.push_back(with_relief(finest, detailed));  // the ghost has no nails
   std::vector<double> worth;
   for (const Vector3& vertex : finest.rest()) worth.push_back(worth_of(vertex));
   TriangleMesh mesh = simplified({finest.rest(), finest.triangles()}, poses, worth, triangles);
-  settle(mesh);
+  settle(detailed ? detailed_skin_distance : skin_distance, mesh);
   return mesh;
 }
 

@@ -5,14 +5,16 @@
 
 namespace mrhi {
 
-/// The rest hand's skin (skin_distance()) as fine as it is made.
-TriangleMesh finest_skin();
-/// With about as many triangles, small where it bends and where it is looked at.
+/// The rest hand's skin (skin_distance()) as fine as it is made; `detailed`: with vertices along creases.
+TriangleMesh finest_skin(bool detailed);
+/// With about as many triangles, small where it bends and where it is looked at; detailed if there are more
+/// than kHumanTriangles.
 TriangleMesh modelled_skin(std::size_t triangles);
 
-/// A skin of a mesh on the rest hand's surface.
-SkinModel skinned(const TriangleMesh& rest);
+/// A skin of a mesh on the rest hand's surface; `detailed`: with creases.
+SkinModel skinned(const TriangleMesh& rest, bool detailed);
 
-constexpr std::size_t kHumanTriangles = 1200, kOutlineTriangles = 400;  ///< of what ships
+constexpr std::size_t kDetailedTriangles = 10000, kHumanTriangles = 1200,
+                      kOutlineTriangles = 400;  ///< of what ships
 
 }  // namespace mrhi

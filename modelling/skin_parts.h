@@ -6,6 +6,7 @@
 #include "mr_hand_interaction/scene/shape.h"
 #include "rendering/skin.h"
 #include "rendering/skin_rig.h"
+#include "skin_shape.h"
 
 namespace mrhi {
 
@@ -24,9 +25,13 @@ struct SkinNail {
 };
 SkinNail skin_nail(const Vector3& vertex);
 
-SkinModel::Look skin_look(const Vector3& vertex);
+/// `creases`: their colour too, of which few triangles would make blots.
+SkinModel::Look skin_look(const Vector3& vertex, bool creases);
 
-/// The folds on the side of the palm: across the fingers at their joints, and the palm's three.
-std::vector<std::array<SkinModel::Crossing, 2>> skin_creases(const TriangleMesh& skin);
+/// How deep a place lies in one of the folds on the side of the palm, 0 to 1: across the fingers at their
+/// joints, and the palm's three.
+double skin_crease(const Vector3& vertex);
+/// The nearest place on the line of a fold that passes within `margin` [m], else the vertex itself.
+Vector3 onto_crease(const Vector3& vertex, double margin);
 
 }  // namespace mrhi

@@ -5,14 +5,18 @@
 #include <vector>
 
 #include "rendering/skin_rig.h"
+#include "skin_parts.h"
 
 namespace mrhi {
 namespace {
 
 constexpr double kWeb = 0.005;         // how far two fingers' skins are rounded into each other [m]
 constexpr double kFlesh = 0.010;       // two parts of the palm [m]
+constexpr double kForearm = 0.006;     // the palm and the forearm [m]
 constexpr double kBetweenWebs = 0.92;  // of a finger's width
-constexpr double kStump = 0.036;       // from the wrist to where the sleeve ends [m]
+constexpr double kCreaseDepth = 0.0003, kNailFoldDepth = 0.0003;  // [m]
+constexpr double kReliefZone = 0.003;                             // about the skin, in which folds count [m]
+constexpr double kStump = 0.036;                                  // from the wrist to where the skin ends [m]
 
 /// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
 /// / 4, and the lesser of both beyond w. Unlike a minimum it is not associative: the order of the parts is
@@ -139,13 +143,14 @@ double skin_distance(const Vector3& point) {
   for (const Cone& cone : palm) distance = smooth_min(distance, cone.distance(point), kFlesh);
   for (const Finger& finger : fingers) distance = smooth_min(distance, finger.distance(point), kWeb);
   for (const Cone& cone : webs) distance = smooth_min(distance, cone.distance(point), kWeb);
-  distance = smooth_min(distance, forearm_distance(point, 0.012, 0.027, 0.0165), kFlesh);
-  distance = smooth_min(distance, forearm_distance(point, kSleeveBegins, 0.032, 0.0205), 0.002);
+  distance = smooth_min(distance, forearm_distance(point, 0.027, 0.0250, 0.0138), kForearm);
   return -smooth_min(-distance, point.x() + kStump, 0.004);
 }
 
-Vector3 skin_normal(const Vector3& point) {
-  return gradient(skin_distance, point).normalized();
+double detailed_skin_distance(const Vector3& point) {
+  const double distance = skin_distance(point);
+  if (std::abs(distance) > kReliefZone) return distance;
+  return distance + kCreaseDepth * skin_crease(point) + kNailFoldDepth * skin_nail(point).edge;
 }
 
 SkinBox skin_box() {

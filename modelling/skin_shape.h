@@ -4,16 +4,12 @@
 
 namespace mrhi {
 
-/// x of the rest hand where a sleeve takes the place of the skin [m].
-constexpr double kSleeveBegins = -0.014;
-
 /// Signed distance, roughly, from the rest hand's skin [m], negative inside: rounded cones smoothly united
 /// (Quilez's polynomial minimum). Fingers have the capsules' surface on the side of the palm and are flatter
 /// at the back.
 double skin_distance(const Vector3& point);
-
-/// Unit, outward: of its gradient.
-Vector3 skin_normal(const Vector3& point);
+/// With the creases and the edges of the nails sunk.
+double detailed_skin_distance(const Vector3& point);
 
 /// A box around it.
 struct SkinBox {
@@ -32,6 +28,11 @@ Vector3 gradient(const Field& distance, const Vector3& point) {
     g[axis] = (distance(point + step) - distance(point - step)) / (2.0 * kStep);
   }
   return g;
+}
+
+/// Unit, outward.
+inline Vector3 skin_normal(const Vector3& point) {
+  return gradient(skin_distance, point).normalized();
 }
 
 }  // namespace mrhi

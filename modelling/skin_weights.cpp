@@ -8,11 +8,12 @@ namespace {
 
 using BoneWeights = std::array<double, kSkinBones>;
 
-constexpr double kSharpness = 6.0;    // of the division between fingers
-constexpr double kLeastShare = 0.05;  // of a finger; less is none
-constexpr double kWristZone = 0.015;  // half of the way over which the wrist hands over to the palm [m]
-constexpr double kThumbZone = 0.018;  // and to the thumb [m]
-constexpr double kPalmZone = 0.010;   // off the palm's capsule, where the skin ceases to be its [m]
+constexpr double kSharpness = 6.0;       // of the division between fingers
+constexpr double kThumbSharpness = 3.0;  // between the thumb and the palm: flesh that gives way widely
+constexpr double kLeastShare = 0.05;     // of a finger; less is none
+constexpr double kWristZone = 0.015;     // half of the way over which the wrist hands over to the palm [m]
+constexpr double kThumbZone = 0.026;     // and to the thumb [m]
+constexpr double kPalmZone = 0.010;      // off the palm's capsule, where the skin ceases to be its [m]
 
 constexpr double kDeepest = 1.6;  // of the inside of a joint that counts [radii]
 constexpr double kEase = 0.4;     // of the way round a joint: 0 bends evenly, 1 most in the middle
@@ -37,7 +38,8 @@ std::array<double, kFingers> finger_weights(const Vector3& p) {
   const double nearest = *std::min_element(distance.begin(), distance.end());
   double sum = 0.0;
   for (std::size_t f = 0; f < kFingers; ++f) {
-    const double share = nearest > 0.0 ? std::pow(nearest / distance[f], kSharpness) : distance[f] == nearest;
+    const double sharpness = f == 0 ? kThumbSharpness : kSharpness;
+    const double share = nearest > 0.0 ? std::pow(nearest / distance[f], sharpness) : distance[f] == nearest;
     sum += weight[f] = std::max(0.0, share - kLeastShare);
   }
   for (double& w : weight) w /= sum;

@@ -21,7 +21,6 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from study import program  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
 WIDTH, HEIGHT = 460, 360  # of a picture; drawn twice as large, for smooth edges
 SHOWN_WIDTH = 305  # on the page: three beside each other
 QUALITY = "82"
@@ -29,74 +28,20 @@ KEPT = 0.975  # of the screen; in the rest is the mark of the picture
 MOST = 60  # pictures of a page
 PITCH, DISTANCE = 0.42, 0.42  # of rviz's camera, which stays; what it sees is moved [rad, m]
 LAYERS = ("hand", "ghost", "objects", "fixtures", "friction", "forces", "newtons", "shadows")
+HIDDEN = ("contacts", "share", "impacts", "capsules", "text")
 WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "the last touch"}
-
-
-def missing_tools():
-    """Packages of what is not there."""
-    return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
-
-
-def view_file():
-    for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
-        if os.path.exists(os.path.join(folder, "interaction.rviz")):
-            return os.path.join(folder, "interaction.rviz")
-    raise RuntimeError("rviz/interaction.rviz is not found; allowed: a built or installed package")
-
-
-def free_port():
-    with contextlib.closing(socket.socket()) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class Started:
-    """Programs that end with this."""
-
-    def __init__(self):
-        self.processes = []
-
-    def start(self, command, **options):
-        self.processes.append(subprocess.Popen(command, stdout=options.pop("stdout", subprocess.DEVNULL),
-                                               stderr=subprocess.DEVNULL, **options))
-        return self.processes[-1]
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        for process in reversed(self.processes):
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT if "roscore" in process.args[0] else signal.SIGTERM)
-            try:
-                process.wait(20)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-
-
-def start_screen(started):
-    read, write = os.pipe()
-    started.start(["Xvfb", "-displayfd", str(write), "-noreset", "-screen", "0", "%dx%dx24" % (2 * WIDTH, 2 * HEIGHT), "-nolisten",
-                   "tcp"], pass_fds=[write])
-    os.close(write)
-    with os.fdopen(read) as told:
-        display = told.readline().strip()
-    if not display:
-        raise RuntimeError("Xvfb did not start")
-    os.environ.update(DISPLAY=":" + display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1")
-    for name in ("WAYLAND_DISPLAY", "XAUTHORITY"):
-        os.environ.pop(name, None)
 
 
 def write_config(file):
     import yaml
-    with open(view_file(), encoding="utf-8") as source:
+    from rviz_stage import view_file
+    with open(view_file("interaction"), encoding="utf-8") as source:
         config = yaml.safe_load(source)
     manager = config["Visualization Manager"]
-    manager["Displays"] = [display for display in manager["Displays"] if display["Name"] == "Hands and objects"]
-    namespaces = manager["Displays"][0]["Namespaces"]
-    namespaces.update({name: name in LAYERS for name in namespaces})
+    # Markers, as what is seen is moved before the camera.
+    manager["Displays"] = [{"Class": "rviz/MarkerArray", "Enabled": True, "Value": True, "Marker Topic": "/markers",
+                            "Name": "Hands and objects", "Queue Size": 10,
+                            "Namespaces": {name: name in LAYERS for name in LAYERS + HIDDEN}}]
     eye = manager["Views"]["Current"]
     eye.update({"Yaw": 0.0, "Pitch": PITCH, "Distance": DISTANCE, "Focal Point": {"X": 0, "Y": 0, "Z": 0}})
     config["Window Geometry"].update({"Width": 2 * WIDTH, "Height": 2 * HEIGHT})
@@ -166,8 +111,8 @@ def read_moments(folder, markers):
 
 def draw(moments, folder):
     """Files of the pictures, by number."""
-    from rviz_stage import Stage, drawn, wait_for_rviz
-    stage, files = Stage(), {}
+    from rviz_stage import Stage, Started, drawn, wait_for_rviz
+    stage, files = Stage(["markers"]), {}
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config, Started() as started:
         eye = write_config(config)
@@ -218,18 +163,11 @@ def put_into_page(moments, files, page):
 
 def pictures(folder, markers):
     """How many were drawn."""
-    missing = missing_tools()
-    if missing:
-        raise RuntimeError("rviz draws them on a virtual screen, for which these packages are missing: " + " ".join(missing))
+    from rviz_stage import own_stage
     moments = read_moments(folder, markers)
     if not moments:
         return 0
-    with Started() as started, tempfile.TemporaryDirectory() as scratch:
-        start_screen(started)
-        os.environ.update(ROS_MASTER_URI="http://127.0.0.1:%d" % free_port(), ROS_IP="127.0.0.1")
-        started.start(["roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]])
-        from watch_demo import join_master
-        join_master("explain_pictures", time.monotonic() + 30.0)
+    with own_stage("explain_pictures", 2 * WIDTH, 2 * HEIGHT), tempfile.TemporaryDirectory() as scratch:
         chosen = moments[:MOST]
         put_into_page(chosen, draw(chosen, scratch), os.path.join(folder, "explain.html"))
     return len(chosen)

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Records the markers of each scene from a run of its own, has rviz draw them picture by picture, and makes a film of
-the pictures. scripts/film starts it, with a master and a screen."""
+"""Records the poses of each scene from a run of its own, has rviz draw them picture by picture, and makes a film of the
+pictures: scripts/film starts it, with a master and a screen. Or draws a bag of replay --markers, on a screen of its own."""
 import argparse
 import collections
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -18,10 +19,11 @@ import rospy
 import yaml
 from mr_hand_interaction.msg import HandFrame, TrainingStatus
 
-from rviz_stage import STARTED, Stage, TOPICS, drawn, wait_for_rviz
-from screenshot import FONT, REPOSITORY
+from rviz_stage import POSES, STARTED, Stage, drawn, own_stage, view_file, wait_for_rviz
+from screenshot import FONT
 from watch_demo import join_master
 
+TOPICS = list(POSES) + ["training/markers"]
 Scene = collections.namedtuple("Scene", "caption launch view lead")  # lead: seconds before the moment that it is about
 DEMO = ["demo.launch", "rviz:=false"]
 SCENES = {
@@ -34,15 +36,17 @@ SCENES = {
 }
 WIDER = 1.2  # farther away than rviz begins
 BACKGROUND = "#3a3f47"
+WRITERS = {".webp": ("img2webp", "webp"), ".mp4": ("ffmpeg", "ffmpeg")}  # program and package
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="film")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=[])
-    parser.add_argument("--output", default="out/film.webp")
+    parser.add_argument("--bag", help="of replay --markers: all of it")
+    parser.add_argument("--output", default="out/film.webp", help="ends in .webp or .mp4")
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--rate", type=float, default=10.0)
-    parser.add_argument("--size", default="480x300")
+    parser.add_argument("--size", default="960x600")
     parser.add_argument("--quality", type=float, default=50.0)
     parser.add_argument("--print-screen", action="store_true", help="the size of the screen that is needed, and no more")
     options = parser.parse_args(arguments)
@@ -50,6 +54,8 @@ def parse(arguments):
         if scene not in SCENES:
             parser.error("unknown scene '%s'; allowed: %s" % (scene, ", ".join(SCENES)))
     options.scenes = options.scenes or list(SCENES)
+    if os.path.splitext(options.output)[1] not in WRITERS:
+        parser.error("'%s' is no film; allowed: a file that ends in %s" % (options.output, " or ".join(WRITERS)))
     return options
 
 
@@ -99,9 +105,13 @@ class Recorder:
         self.process.wait(60)
 
     def shown(self, until):
-        with rosbag.Bag(self.bag) as bag:
-            return [(stamp.to_sec(), topic.lstrip("/"), message) for topic, message, stamp in bag.read_messages()
-                    if stamp.to_sec() < until]
+        return [entry for entry in read_bag(self.bag) if entry[0] < until]
+
+
+def read_bag(file):
+    with rosbag.Bag(file) as bag:
+        return [(stamp.to_sec(), topic.lstrip("/"), message)
+                for topic, message, stamp in bag.read_messages(["/" + topic for topic in TOPICS])]
 
 
 def record(scene, seconds, folder):
@@ -120,15 +130,17 @@ def record(scene, seconds, folder):
     return begin, recorder.shown(begin + seconds)
 
 
-def write_config(view, size, file):
-    with open(os.path.join(REPOSITORY, "rviz", view + ".rviz"), encoding="utf-8") as source:
+def write_config(view, focus, size, file):
+    with open(view_file(view), encoding="utf-8") as source:
         config = yaml.safe_load(source)
     for display in config["Visualization Manager"]["Displays"]:
         if display["Name"] == "Hands and objects":
-            display["Namespaces"]["text"] = False
+            display["Text"] = False
     eye = config["Visualization Manager"]["Views"]["Current"]
     if view != "training":
         eye["Distance"] *= WIDER
+    if focus:
+        eye["Focal Point"], eye["Distance"] = focus
     width, height = (2 * int(number) for number in size.split("x"))
     config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)
@@ -136,16 +148,26 @@ def write_config(view, size, file):
     return eye, width / height
 
 
-def draw(scene, begin, shown, options, folder):
+def focus_on(shown):
+    """A place and a distance from which all of a run's hands are seen, and objects near them."""
+    palms = [hand.palm.position for _, topic, message in shown if topic == "rendered_hands" for hand in message.hands]
+    if not palms:
+        return None
+    spans = [(min(getattr(palm, axis) for palm in palms), max(getattr(palm, axis) for palm in palms)) for axis in "xyz"]
+    middle = {axis.upper(): 0.5 * sum(span) for axis, span in zip("xyz", spans)}
+    return middle, 0.42 + max(high - low for low, high in spans)
+
+
+def draw(scene, begin, shown, options, folder, focus=None):
     """Files of the pictures, one after the other."""
-    stage, files = Stage(), []
+    stage, files = Stage(TOPICS), []
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
-        eye, aspect = write_config(scene.view, options.size, config)
+        eye, aspect = write_config(scene.view, focus, options.size, config)
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            wait_for_rviz(stage, shown, folder, rviz)
+            wait_for_rviz(stage, shown[:len(TOPICS)], folder, rviz)
             stage.clear()
             since = 0.0
             for picture in range(int(options.seconds * options.rate)):
@@ -153,7 +175,7 @@ def draw(scene, begin, shown, options, folder):
                 stage.show([entry for entry in shown if since < entry[0] <= until])
                 stage.tick(picture, eye, aspect)
                 since = until
-                drawn(picture, before, now, rviz)
+                drawn(picture, before, now, rviz, stage)
                 files.append(os.path.join(folder, "%04d.png" % picture))
                 finish(now, scene.caption, options.size, files[-1])
         finally:
@@ -177,23 +199,49 @@ def main():
         return sys.exit("film: %s" % program.one_line(str(error)))
 
 
+def film_of_bag(options, folder):
+    width, height = (2 * int(number) for number in options.size.split("x"))
+    shown = read_bag(options.bag)
+    if not shown:
+        raise RuntimeError("'%s' has no poses; allowed: a bag of replay --markers" % options.bag)
+    options.seconds = shown[-1][0] - shown[0][0]
+    with own_stage("film", width, height):
+        return draw(Scene("", None, "interaction", 0.0), shown[0][0], shown, options, folder, focus_on(shown))
+
+
+def film_of_scenes(options, parent):
+    join_master("film", time.monotonic() + STARTED)
+    files = []
+    for name in options.scenes:
+        folder = os.path.join(parent, name)
+        os.mkdir(folder)
+        begin, shown = record(SCENES[name], options.seconds, folder)
+        files += draw(SCENES[name], begin, shown, options, folder)
+        print("film: %s, %d pictures" % (name, len(files)), flush=True)
+    return files
+
+
+def write(files, options):
+    if options.output.endswith(".mp4"):
+        command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "concat", "-safe", "0", "-r", "%g" % options.rate, "-i", "-",
+                   "-pix_fmt", "yuv420p", "-crf", "20", options.output]
+        subprocess.run(command, input="".join("file '%s'\n" % file for file in files), universal_newlines=True, check=True)
+        return
+    command = ["img2webp", "-loop", "0", "-kmin", "9", "-kmax", "17", "-m", "6", "-q", "%g" % options.quality, "-lossy",
+               "-d", "%d" % round(1000 / options.rate)]
+    subprocess.run(command + files + ["-o", options.output], check=True, stdout=subprocess.DEVNULL)
+
+
 def make(options):
     if options.print_screen:
         print("x".join(str(2 * int(number)) for number in options.size.split("x")))
         return 0
-    join_master("film", time.monotonic() + STARTED)
+    writer, package = WRITERS[os.path.splitext(options.output)[1]]
+    if not shutil.which(writer):
+        raise RuntimeError("the program '%s' is missing; allowed: install the package '%s'" % (writer, package))
     os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
-    with tempfile.TemporaryDirectory() as parent:
-        files = []
-        for name in options.scenes:
-            folder = os.path.join(parent, name)
-            os.mkdir(folder)
-            begin, shown = record(SCENES[name], options.seconds, folder)
-            files += draw(SCENES[name], begin, shown, options, folder)
-            print("film: %s, %d pictures" % (name, len(files)), flush=True)
-        command = ["img2webp", "-loop", "0", "-kmin", "9", "-kmax", "17", "-m", "6", "-q", "%g" % options.quality, "-lossy",
-                   "-d", "%d" % round(1000 / options.rate)]
-        subprocess.run(command + files + ["-o", options.output], check=True, stdout=subprocess.DEVNULL)
+    with tempfile.TemporaryDirectory() as folder:
+        write(film_of_bag(options, folder) if options.bag else film_of_scenes(options, folder), options)
     print("film: %s, %d kB" % (options.output, os.path.getsize(options.output) // 1000))
     return 0
 

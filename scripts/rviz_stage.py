@@ -1,38 +1,122 @@
-"""Has rviz draw markers picture by picture: each picture bears a mark, so that it is known when it has been drawn."""
+"""Has rviz draw poses and markers picture by picture: each picture bears a mark, so that it is known when it has been drawn."""
 import collections
+import contextlib
 import filecmp
 import math
 import os
+import shutil
+import signal
+import socket
 import subprocess
 import time
 
 import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
+from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray, SceneDescription
 from visualization_msgs.msg import Marker, MarkerArray
 
 from screenshot import has_scene
-from watch_demo import grab
+from watch_demo import grab, join_master
 
-TOPICS = ("markers", "training/markers")
+HERE = os.path.dirname(os.path.abspath(__file__))
+PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
+MARKERS = ("markers", "training/markers")
+POSES = {"scene": SceneDescription, "rendered_hands": HandFrame, "tracked_hands": HandFrame, "objects": ObjectStateArray,
+         "contacts": ContactArray}  # in the order in which they are shown
 STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
 DRAWN = 20.0  # s; by then a picture has
 BETWEEN = 0.1  # s, of two grabs that are to be the same
 TICKS = ((0, 255, 0), (255, 0, 255))  # of the corner that tells one picture from the next
 
 
-class Stage:
-    """What rviz shows, marker by marker, as of a time."""
+def missing_tools():
+    """Packages of what is not there."""
+    return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
+
+
+def view_file(name):
+    for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
+        if os.path.exists(os.path.join(folder, name + ".rviz")):
+            return os.path.join(folder, name + ".rviz")
+    raise RuntimeError("rviz/" + name + ".rviz is not found; allowed: a built or installed package")
+
+
+def free_port():
+    with contextlib.closing(socket.socket()) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Started:
+    """Programs that end with this."""
 
     def __init__(self):
-        self.publishers = {topic: rospy.Publisher(topic, MarkerArray, queue_size=10) for topic in TOPICS}
+        self.processes = []
+
+    def start(self, command, **options):
+        self.processes.append(subprocess.Popen(command, stdout=options.pop("stdout", subprocess.DEVNULL),
+                                               stderr=subprocess.DEVNULL, **options))
+        return self.processes[-1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in reversed(self.processes):
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT if "roscore" in process.args[0] else signal.SIGTERM)
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def start_screen(started, width, height):
+    read, write = os.pipe()
+    started.start(["Xvfb", "-displayfd", str(write), "-noreset", "-screen", "0", "%dx%dx24" % (width, height), "-nolisten",
+                   "tcp"], pass_fds=[write])
+    os.close(write)
+    with os.fdopen(read) as told:
+        display = told.readline().strip()
+    if not display:
+        raise RuntimeError("Xvfb did not start")
+    os.environ.update(DISPLAY=":" + display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1")
+    for name in ("WAYLAND_DISPLAY", "XAUTHORITY"):
+        os.environ.pop(name, None)
+
+
+@contextlib.contextmanager
+def own_stage(name, width, height):
+    """A screen and a ROS master of our own, with us as a node."""
+    missing = missing_tools()
+    if missing:
+        raise RuntimeError("rviz draws on a virtual screen, for which these packages are missing: " + " ".join(missing))
+    with Started() as started:
+        start_screen(started, width, height)
+        os.environ.update(ROS_MASTER_URI="http://127.0.0.1:%d" % free_port(), ROS_IP="127.0.0.1")
+        started.start(["roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]])
+        join_master(name, time.monotonic() + STARTED)
+        yield
+
+
+class Stage:
+    """What rviz shows of some topics, as of a time."""
+
+    def __init__(self, topics):
+        self.publishers = {topic: rospy.Publisher(topic, POSES.get(topic, MarkerArray), queue_size=100, latch=topic == "scene")
+                           for topic in topics}
+        self.mark = self.publishers[[topic for topic in MARKERS if topic in topics][-1]]
+        self.poses = {}
 
     def is_watched(self):
-        return self.publishers["markers"].get_num_connections() > 0
+        return all(publisher.get_num_connections() > 0 for publisher in self.publishers.values())
 
     def clear(self):
-        for publisher in self.publishers.values():
-            publisher.publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
+        for topic in MARKERS:
+            if topic in self.publishers:
+                self.publishers[topic].publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
 
     def tick(self, picture, view, aspect):
         """A small mark in the lower right corner."""
@@ -41,12 +125,17 @@ class Stage:
         tick.pose.orientation.w = 1.0
         tick.points = [Point(*corner) for corner in corners_of_mark(view, aspect)]
         tick.colors = [ColorRGBA(*(channel / 255.0 for channel in TICKS[picture % 2]), 1.0)] * 3
-        self.publishers["markers"].publish(MarkerArray([tick]))
+        self.mark.publish(MarkerArray([tick]))
 
     def show(self, messages):
-        """The last of each marker: it stays until the next picture, however long that takes."""
-        last = {topic: collections.OrderedDict() for topic in TOPICS}
+        """The last of all poses and of each marker: it stays until the next picture, however long that takes."""
+        last = {topic: collections.OrderedDict() for topic in MARKERS}
+        contacts = []
         for _, topic, message in messages:
+            if topic in POSES:
+                self.poses[topic] = message
+                contacts += [message] if topic == "contacts" else []
+                continue
             if topic == "training/markers":  # each message has all
                 last[topic] = {None: Marker(action=Marker.DELETEALL)}
             for marker in message.markers:
@@ -54,9 +143,20 @@ class Stage:
                     last[topic] = {None: marker}
                 marker.lifetime, marker.header.stamp = rospy.Duration(), rospy.Time()
                 last[topic][marker.ns, marker.id] = marker
+        if any(topic == "scene" for _, topic, _ in messages):
+            self.publishers["scene"].publish(self.poses["scene"])
+        self.show_again()
+        for message in contacts:  # each: an impact is in one frame
+            self.publishers["contacts"].publish(message)
         for topic, markers in last.items():
             if markers:
                 self.publishers[topic].publish(MarkerArray(list(markers.values())))
+
+    def show_again(self):
+        """rviz takes hands away that nobody speaks of."""
+        for topic in POSES:
+            if topic in self.poses and topic != "scene":
+                self.publishers[topic].publish(self.poses[topic])
 
 
 def corners_of_mark(view, aspect):
@@ -81,11 +181,13 @@ def shows_tick(file, picture):
     return all(abs(channel - wanted[i % 3]) < 60 for i, channel in enumerate(corner))
 
 
-def drawn(picture, before, now, process):
+def drawn(picture, before, now, process, stage=None):
     """Takes the screen's picture when its mark is there and it no longer changes."""
     deadline = time.monotonic() + DRAWN
     grab(before)
     while time.monotonic() < deadline and process.poll() is None:
+        if stage:
+            stage.show_again()
         time.sleep(BETWEEN)
         grab(now)
         if filecmp.cmp(before, now, shallow=False) and shows_tick(now, picture):

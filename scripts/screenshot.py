@@ -23,7 +23,7 @@ REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
-LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "shadows", "text", "Grid")
+LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "impacts", "shadows", "text", "Grid")
 FONT = os.path.join(rospkg.RosPack().get_path("rviz"), "ogre_media", "fonts", "liberation-sans", "LiberationSans-Regular.ttf")
 OFF_AT_FIRST = ("capsules", "newtons", "share")
 
@@ -89,8 +89,8 @@ def write_config(options, focus, file):
         if display["Name"] in options.hide:
             display["Enabled"] = display["Value"] = False
         if display["Name"] == "Hands and objects":
-            display["Namespaces"] = {name: name not in options.hide for name in LAYERS if name != "Grid"}
-            display["Namespaces"].update({name: name in options.show for name in OFF_AT_FIRST})
+            display.update({name.capitalize(): name not in options.hide for name in LAYERS if name != "Grid"})
+            display.update({name.capitalize(): name in options.show for name in OFF_AT_FIRST})
     width, height = (2 * int(number) for number in options.size.split("x"))
     config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)

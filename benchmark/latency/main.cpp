@@ -47,15 +47,17 @@ class Relay {
 /// One way there and back: when what was sent, and how long each took.
 class Track {
  public:
-  void sent(std::uint64_t stamp) {
+  /// `counted`: not of the warm-up.
+  void sent(std::uint64_t stamp, bool counted) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    sent_[stamp] = Clock::now();
+    sent_[stamp] = {Clock::now(), counted};
   }
   void arrived(std::uint64_t stamp, Clock::time_point when, std::size_t bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = sent_.find(stamp);
     if (found == sent_.end()) return;
-    if (counting) times_.push_back(std::chrono::duration<double, std::milli>(when - found->second).count());
+    if (found->second.counted)
+      times_.push_back(std::chrono::duration<double, std::milli>(when - found->second.when).count());
     bytes_ = std::max(bytes_, bytes);
     sent_.erase(found);
   }
@@ -72,11 +74,13 @@ class Track {
                            static_cast<std::size_t>(q * static_cast<double>(times_.size())))];
   }
 
-  bool counting = false;
-
  private:
+  struct Sent {
+    Clock::time_point when;
+    bool counted;
+  };
   std::mutex mutex_;
-  std::map<std::uint64_t, Clock::time_point> sent_;
+  std::map<std::uint64_t, Sent> sent_;
   std::vector<double> times_;  // [ms]
   std::size_t bytes_ = 0;
 };
@@ -123,17 +127,14 @@ class Measurement {
     ros::WallRate half_period(2.0 * kRate);
     const long frames = std::lround((kWarmUp + seconds) * kRate);
     for (long i = 0; i < frames && ros::ok(); ++i) {
-      relayed_.counting = i >= std::lround(kWarmUp * kRate);
+      const bool counted = i >= std::lround(kWarmUp * kRate);
       mrhi::JointsFrame frame = hand_.next();
       prepare(frame);
-      for (auto& [topic, track] : answers_) {
-        track.counting = relayed_.counting;
-        track.sent(frame_stamp_);
-      }
+      for (auto& [topic, track] : answers_) track.sent(frame_stamp_, counted);
       to_node_.publish(message_);
       half_period.sleep();
       prepare(frame);
-      relayed_.sent(frame_stamp_);
+      relayed_.sent(frame_stamp_, counted);
       to_relay_.publish(message_);
       half_period.sleep();
     }
@@ -181,7 +182,7 @@ int main(int argc, char** argv) {
   mrhi::SyntheticHandOptions options;
   options.rate = kRate;
   options.motion = parameters.param<std::string>("motion", options.motion);
-  std::istringstream topics(parameters.param<std::string>("topics", "markers"));
+  std::istringstream topics(parameters.param<std::string>("topics", "rendered_hands"));
   Measurement measurement(node, options, {std::istream_iterator<std::string>(topics), {}});
   ros::AsyncSpinner spinner(1);
   spinner.start();

@@ -50,6 +50,8 @@ int report(const ReplayArguments& arguments) {
     const std::string rate = text::number(*arguments.export_rate);
     status = run_script("export", {arguments.output, "--rate", rate});
   }
+  if (status == 0 && !arguments.film.empty())
+    status = run_script("film.py", {"--bag", arguments.output + "/markers.bag", "--output", arguments.film});
   if (status == 0 && arguments.explain) status = run_script("explain", {arguments.output, "--no-pictures"});
   return status;
 }

@@ -22,22 +22,6 @@ double margin(const HandOffset& offset) {
   return offset.zero() ? kAhead : offset.shift.norm() + kFarthestPush;
 }
 
-/// By the share of each contact. The mean, by shares w, as it goes: m <- m + w / sum w (x - m).
-void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
-  rendered.touching.fill(false);
-  std::array<double, kCapsules> shares{};
-  for (const Contact& contact : contacts) {
-    if (contact.key.hand != slot || !contact.touching()) continue;
-    const std::size_t c = contact.key.capsule;
-    Pressed& pressed = rendered.pressed[c];
-    if (!rendered.touching[c]) pressed = Pressed();
-    rendered.touching[c] = true;
-    pressed.force += std::abs(contact.normal.dot(contact.force));
-    shares[c] += contact.share;
-    if (shares[c] > 0.0) pressed.point += contact.share / shares[c] * (contact.point - pressed.point);
-  }
-}
-
 /// To the bit: what is placed anew from the same numbers is the same.
 bool same_place(const Hand& a, const Hand& b) {
   const auto same = [](const Capsule& x, const Capsule& y) {
@@ -56,6 +40,22 @@ bool same_way(const HandOffset& a, const HandOffset& b) {
 }
 
 }  // namespace
+
+/// By the share of each contact. The mean, by shares w, as it goes: m <- m + w / sum w (x - m).
+void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
+  rendered.touching.fill(false);
+  std::array<double, kCapsules> shares{};
+  for (const Contact& contact : contacts) {
+    if (contact.key.hand != slot || !contact.touching()) continue;
+    const std::size_t c = contact.key.capsule;
+    Pressed& pressed = rendered.pressed[c];
+    if (!rendered.touching[c]) pressed = Pressed();
+    rendered.touching[c] = true;
+    pressed.force += std::abs(contact.normal.dot(contact.force));
+    shares[c] += contact.share;
+    if (shares[c] > 0.0) pressed.point += contact.share / shares[c] * (contact.point - pressed.point);
+  }
+}
 
 HandRenderer::HandRenderer(const Scene& scene, const ContactFinder& finder)
     : impl_(std::make_unique<Impl>(scene, finder)) {}

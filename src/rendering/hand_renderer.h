@@ -31,6 +31,9 @@ class HandRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// What touches, and with what force, by the contacts of the hand in `slot`.
+void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered);
+
 /// Deepest penetration of any of the hand's capsules into any body, but for those that it is shown in
 /// (`interactions`, as in render) [m], >= 0. Looks at the hand as it is: it shares nothing with what made it.
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,

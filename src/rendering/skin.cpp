@@ -21,8 +21,8 @@ Carrier carrier(const SkinBone& bone) {
   return {bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
 }
 
-/// Both, one after the other.
-std::array<Skin, 2> read_skins() {
+/// One after the other.
+std::array<Skin, 3> read_skins() {
   const char* at = shipped_skins().data();
   const auto read = [&at](void* to, std::size_t bytes) {
     std::memcpy(to, at, bytes);
@@ -38,12 +38,12 @@ std::array<Skin, 2> read_skins() {
     });
     return Skin(std::move(model));
   };
-  return {skin(), skin()};
+  return {skin(), skin(), skin()};
 }
 
-const std::array<Skin, 2>& skins() {
-  static const std::array<Skin, 2> both = read_skins();
-  return both;
+const std::array<Skin, 3>& skins() {
+  static const std::array<Skin, 3> all = read_skins();
+  return all;
 }
 
 }  // namespace
@@ -70,12 +70,16 @@ void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& ha
   }
 }
 
-const Skin& Skin::human() {
+const Skin& Skin::detailed() {
   return skins()[0];
 }
 
-const Skin& Skin::outline() {
+const Skin& Skin::human() {
   return skins()[1];
+}
+
+const Skin& Skin::outline() {
+  return skins()[2];
 }
 
 /// Linear blend skinning (Magnenat-Thalmann, Laperriere & Thalmann 1988):

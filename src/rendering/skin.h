@@ -33,24 +33,17 @@ struct SkinModel {
     float wrist;  ///< 0, or how far the vertex has faded away at the wrist, up to 1
     int capsule;  ///< that the vertex belongs to most
   };
-  /// Where a crease crosses an edge of a triangle: the fraction of the way from vertex a to b.
-  struct Crossing {
-    std::uint32_t a, b;
-    float fraction, half_width;  ///< the width in [m]
-  };
 
   std::vector<Vector3> rest;  ///< vertices: right, stretched, fingers along x, back up, wrist at 0 [m]
-  std::vector<std::array<int, 3>> triangles;     ///< counter-clockwise seen from outside
-  std::vector<Influence> influences;             ///< of vertex 0, then of vertex 1, ...
-  std::vector<std::uint32_t> ends;               ///< of each vertex's influences
-  std::vector<Look> looks;                       ///< of each vertex
-  std::vector<std::array<Crossing, 2>> creases;  ///< one in each triangle that is crossed
+  std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<Influence> influences;          ///< of vertex 0, then of vertex 1, ...
+  std::vector<std::uint32_t> ends;            ///< of each vertex's influences
+  std::vector<Look> looks;                    ///< of each vertex
 
   /// Calls `visit` with each of the vectors, in the order in which they ship.
   template <typename Model, typename Visit>
   static void visit_parts(Model& model, Visit visit) {
-    visit(model.rest), visit(model.triangles), visit(model.influences), visit(model.ends), visit(model.looks),
-        visit(model.creases);
+    visit(model.rest), visit(model.triangles), visit(model.influences), visit(model.ends), visit(model.looks);
   }
 };
 
@@ -62,7 +55,8 @@ std::string_view shipped_skins();
 class Skin {
  public:
   explicit Skin(SkinModel model) : model_(std::move(model)) {}
-  /// What all share: a hand's, and a coarser one for what is only to be made out.
+  /// What all share: for who bends it where it is drawn, for who sends its triangles, and for a ghost.
+  static const Skin& detailed();
   static const Skin& human();
   static const Skin& outline();
 

@@ -91,8 +91,8 @@ float SkinPaint::redness(std::size_t vertex, const Vector3& place, const Rendere
   return static_cast<float>(red);
 }
 
-void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface,
-                      std::vector<Rgb>& colours) const {
+void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours,
+                      const SkinTone& tone) const {
   static const std::array<Floats, kCapsules> counts = make_counts();
   const Occluders occluders(rendered.hand);
   std::vector<int> touched;
@@ -103,7 +103,8 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface,
   for (std::size_t v = 0; v < colours.size(); ++v) {
     const SkinModel::Look& look = skin_.model().looks[v];
     const float red = redness(v, surface.vertices[v], rendered, touched);
-    const Rgb colour = look.colour + red * (touching_colour() - look.colour);
+    const Rgb skin = tone.skin * look.colour;
+    const Rgb colour = skin + red * (tone.touching - skin);
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();
     const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
                                         counts[static_cast<std::size_t>(look.capsule)]);

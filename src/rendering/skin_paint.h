@@ -9,6 +9,11 @@
 
 namespace mrhi {
 
+struct SkinTone {
+  Rgb skin = Rgb::Ones();                   ///< times the skin's own colours
+  Rgb touching = Rgb(0.86f, 0.30f, 0.08f);  ///< where it presses
+};
+
 /// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. Less light comes from
 /// around where fingers cover each other or the palm (spheres as occluders). Immutable.
 class SkinPaint {
@@ -17,12 +22,8 @@ class SkinPaint {
 
   /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
   /// presses, and the more so the harder.
-  void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours) const;
-
-  /// How much of a vertex is left to be seen: 1 everywhere but at the wrist, which ends in nothing.
-  float opacity(std::size_t vertex) const { return 1.0f - skin_.model().looks[vertex].wrist; }
-
-  static Rgb touching_colour() { return {0.86f, 0.30f, 0.08f}; }
+  void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours,
+             const SkinTone& tone = {}) const;
 
  private:
   float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,

@@ -53,12 +53,28 @@ double rate(const Given& given) {
   return rate;
 }
 
+double marker_rate(const Given& given) {
+  const double rate = given.numbers(0, 1).front();
+  if (!(rate >= 1.0 && rate <= 1000.0)) given.fail("is no rate from 1 to 1000 Hz");
+  return rate;
+}
+
 std::set<std::size_t> frame_numbers(const Given& given) {
   constexpr long kMaxFrame = 1000000000;
   std::set<std::size_t> frames;
   for (const std::string& number : text::split(given.text))
     frames.insert(static_cast<std::size_t>(Given{given.option, given.form, number}.whole(0, kMaxFrame)));
   return frames;
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string film(const Given& given) {
+  if (!ends_with(given.text, ".webp") && !ends_with(given.text, ".mp4"))
+    given.fail("is no film; allowed: a file that ends in .webp or .mp4");
+  return given.text;
 }
 
 CommandLine command_line(ReplayArguments& a, bool& compare) {
@@ -70,7 +86,10 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
   line.once("--params", "FILE.yaml", [&a](const Given& given) { a.parameter_file = given.text; });
   line.each("--set", "KEY=VALUE", [&a](const Given& given) { a.settings.push_back(given.setting()); });
   line.once("--export", "HZ", [&a](const Given& given) { a.export_rate = rate(given); });
-  line.once("--markers", "FRAME,FRAME,...", [&a](const Given& given) { a.markers = frame_numbers(given); });
+  line.once("--markers", "RATE", [&a](const Given& given) { a.marker_rate = marker_rate(given); });
+  line.once("--marker-frames", "FRAME,FRAME,...",
+            [&a](const Given& given) { a.marker_frames = frame_numbers(given); });
+  line.once("--film", "FILE.webp|FILE.mp4", [&a](const Given& given) { a.film = film(given); });
   line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw",
             [&a](const Given& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
   line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz",
@@ -86,10 +105,6 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
     });
   }
   return line;
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 void require(const char* option, const std::string& value) {
@@ -117,7 +132,9 @@ std::vector<std::string> repeatable(const std::vector<std::string>& words) {
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--explain") continue;
-    if (words[i] == "--output" || words[i] == "--export" || words[i] == "--markers") {
+    static const std::set<std::string> reports{"--output", "--export", "--markers", "--marker-frames",
+                                               "--film"};
+    if (reports.count(words[i]) > 0) {
       ++i;
     } else {
       kept.push_back(words[i]);
@@ -176,7 +193,11 @@ fast as the machine goes; needs no ROS master.
                             alone; 0: a row for each frame
   --explain                 scripts/explain afterwards: explain.html and explain.json, when each object was held, how, and
                             why it was lost
-  --markers FRAME,...       markers.bag too: what rviz shows of these frames, by their numbers in frames.csv
+  --markers RATE            markers.bag too: the markers of a live run at this rate [Hz], for rviz and other viewers, and for
+                            each frame the hands, objects and contacts that rviz's Interaction display draws from
+  --marker-frames FRAME,... markers.bag of these frames alone, by their numbers in frames.csv
+  --film FILE.webp|FILE.mp4 what rviz shows of the run as a film, at a fifth of the speed of the machine or less; needs rviz,
+                            Xvfb and ImageMagick, and webp or ffmpeg
   --compare DIR DIR         scripts/compare: when and where the objects of two runs part, and by how much, and whether the
                             bits are the same
   --tolerance METRES,RADIANS

@@ -4,8 +4,12 @@
 #include <std_msgs/UInt32.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <stdexcept>
+#include <vector>
 
+#include "../ros/result_conversion.h"
+#include "../ros/scene_view.h"
 #include "../text/file_text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
@@ -13,26 +17,53 @@
 namespace mrhi {
 namespace {
 
-visualization_msgs::MarkerArray markers_of(const Simulation& simulation) {
+std_msgs::Header header_of(const Simulation& simulation) {
   std_msgs::Header header;
   header.frame_id = "world";
-  header.stamp = to_ros_time(simulation.result().stamp);
+  // No bag takes a stamp of 0.
+  header.stamp = std::max(to_ros_time(simulation.result().stamp), ros::TIME_MIN);
+  return header;
+}
+
+visualization_msgs::MarkerArray markers_of(const Simulation& simulation) {
   Markers markers(simulation.scene(), simulation.configuration());
-  visualization_msgs::MarkerArray all, rest;
+  visualization_msgs::MarkerArray all;
+  const std_msgs::Header header = header_of(simulation);
+  markers.note(simulation.result(), header.stamp);
   markers.update(simulation.result(), simulation.state(), header, all);
-  markers.update_rest(simulation.result(), simulation.state(), header, rest);
-  all.markers.insert(all.markers.end(), rest.markers.begin(), rest.markers.end());
   for (visualization_msgs::Marker& marker : all.markers) marker.lifetime = ros::Duration();
   return all;
+}
+
+/// rosbag play sends it to each viewer that comes later, too.
+template <typename Message>
+void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& stamp,
+                   const Message& message) {
+  auto connection = boost::make_shared<ros::M_string>();
+  (*connection)["topic"] = topic;
+  (*connection)["latching"] = "1";
+  (*connection)["type"] = ros::message_traits::datatype(message);
+  (*connection)["md5sum"] = ros::message_traits::md5sum(message);
+  (*connection)["message_definition"] = ros::message_traits::definition(message);
+  bag.write(topic, stamp, message, connection);
 }
 
 }  // namespace
 
 struct MarkerBag::Impl {
+  void open();
+  void write_frame(const Simulation& simulation);
+  void write_run(const Simulation& simulation);
+
   std::string file;
   std::set<std::size_t> frames;
+  double rate = 0.0;  ///< [Hz]; 0: the frames alone
   std::size_t frame = 0;
   rosbag::Bag bag;
+  mr_hand_interaction::SceneDescription scene;  ///< the last that was written
+  std::unique_ptr<Markers> markers;             ///< of it
+  const Scene* drawn = nullptr;
+  ros::Time shown;
 };
 
 MarkerBag::MarkerBag(const std::string& file, const std::set<std::size_t>& frames)
@@ -41,24 +72,65 @@ MarkerBag::MarkerBag(const std::string& file, const std::set<std::size_t>& frame
   impl_->frames = frames;
 }
 
+MarkerBag::MarkerBag(const std::string& file, double rate) : impl_(std::make_unique<Impl>()) {
+  impl_->file = file;
+  impl_->rate = rate;
+}
+
 MarkerBag::~MarkerBag() = default;
 
 void MarkerBag::watch(const Simulation& simulation) try {
-  if (!impl_->bag.isOpen()) {
-    check_may_be_written(impl_->file);
-    impl_->bag.open(impl_->file, rosbag::bagmode::Write);
-    impl_->bag.setCompression(rosbag::compression::LZ4);
-  }
-  const std::size_t frame = impl_->frame++;
-  if (impl_->frames.count(frame) == 0) return;
-  const ros::Time stamp =
-      std::max(to_ros_time(simulation.result().stamp), ros::TIME_MIN);  // no bag takes a stamp of 0
-  std_msgs::UInt32 number;
-  number.data = static_cast<std::uint32_t>(frame);
-  impl_->bag.write("/frame", stamp, number);
-  impl_->bag.write("/markers", stamp, markers_of(simulation));
+  impl_->open();
+  impl_->rate > 0.0 ? impl_->write_run(simulation) : impl_->write_frame(simulation);
 } catch (const rosbag::BagException& error) {
   throw std::runtime_error("cannot write " + impl_->file + ": " + error.what());
+}
+
+void MarkerBag::Impl::open() {
+  if (bag.isOpen()) return;
+  check_may_be_written(file);
+  bag.open(file, rosbag::bagmode::Write);
+  bag.setCompression(rosbag::compression::LZ4);
+}
+
+void MarkerBag::Impl::write_frame(const Simulation& simulation) {
+  std_msgs::UInt32 number;
+  number.data = static_cast<std::uint32_t>(frame++);
+  if (frames.count(number.data) == 0) return;
+  const ros::Time stamp = header_of(simulation).stamp;
+  bag.write("/frame", stamp, number);
+  bag.write("/markers", stamp, markers_of(simulation));
+}
+
+void MarkerBag::Impl::write_run(const Simulation& simulation) {
+  const std_msgs::Header header = header_of(simulation);
+  const FrameResult& result = simulation.result();
+  auto now = scene_message(simulation.scene(), simulation.configuration(), header);
+  now.header = scene.header;
+  const auto names = [](const auto& description) {
+    std::vector<std::string> all;
+    for (const auto& body : description.bodies) all.push_back(body.name);
+    return all;
+  };
+  if (!markers || drawn != &simulation.scene() || names(now) != names(scene)) {
+    scene = now;
+    drawn = &simulation.scene();
+    markers = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
+    now.header = header;
+    write_latched(bag, "/scene", header.stamp, now);
+  }
+  bag.write("/contacts", header.stamp,
+            contacts_message(simulation.scene(), result, simulation.state(), header));
+  bag.write("/objects", header.stamp, objects_message(simulation.scene(), simulation.state(), header));
+  bag.write("/rendered_hands", header.stamp, rendered_message(result, header));
+  bag.write("/tracked_hands", header.stamp, tracked_message(result, header));
+  markers->note(result, header.stamp);
+  const double since = (header.stamp - shown).toSec();
+  if (since >= 0.0 && since < (1.0 - 1e-6) / rate) return;
+  shown = header.stamp;
+  visualization_msgs::MarkerArray array;
+  markers->update(result, simulation.state(), header, array);
+  bag.write("/markers", header.stamp, array);
 }
 
 }  // namespace mrhi

@@ -45,8 +45,12 @@ ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
   summary.input = arguments.input;
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
-  if (!arguments.markers.empty())
-    markers_ = std::make_unique<MarkerBag>(output_ + "/markers.bag", arguments.markers);
+  constexpr double kFilmRate = 60.0;  // [Hz]
+  const std::string bag = output_ + "/markers.bag";
+  if (arguments.marker_rate || !arguments.film.empty())
+    markers_ = std::make_unique<MarkerBag>(bag, arguments.marker_rate.value_or(kFilmRate));
+  else if (!arguments.marker_frames.empty())
+    markers_ = std::make_unique<MarkerBag>(bag, arguments.marker_frames);
 }
 
 void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {

@@ -142,6 +142,7 @@ void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, Mar
     const auto& c = visual.rgba;
     Marker& marker = add_shape(visual.shape, look.pose * visual.pose,
                                color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
+    marker.text = body.name;
     if (!visual.has_color && has_materials(marker.mesh_resource)) {
       marker.mesh_use_embedded_materials = true;
       marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
@@ -149,7 +150,8 @@ void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, Mar
   }
   if (!body.visuals.empty()) return;
   for (const PlacedShape& placed : body.shapes)
-    add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer);
+    add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer).text =
+        body.name;
 }
 
 }  // namespace mrhi

@@ -11,14 +11,18 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kLongest = 0.12;       // of an arrow, which no force reaches [m]
-constexpr double kHalfOfLongest = 3.0;  // the force whose arrow is half as long [N]
-constexpr double kLetters = 0.009;      // of a force in numbers [m]
-constexpr double kShortest = 0.004;     // [m]
-constexpr double kGap = 0.002;          // between the arrow and the back of the finger [m]
-constexpr double kPointSize = 0.005;    // [m]
-constexpr double kPieces = 14.0;        // of a ring
-constexpr double kLift = 0.0006;        // of a ring off the surface [m]
+constexpr double kLongest = 0.12;        // of an arrow, which no force reaches [m]
+constexpr double kHalfOfLongest = 3.0;   // the force whose arrow is half as long [N]
+constexpr double kLetters = 0.009;       // of a force in numbers [m]
+constexpr double kShortest = 0.004;      // [m]
+constexpr double kGap = 0.002;           // between the arrow and the back of the finger [m]
+constexpr double kPointSize = 0.005;     // [m]
+constexpr double kPieces = 14.0;         // of a ring
+constexpr double kLift = 0.0006;         // of a ring off the surface [m]
+constexpr double kLeastImpulse = 0.002;  // of an impact that is seen [N s]
+constexpr double kHalfOfWidest = 0.02;   // the impulse whose ring is half as wide as the widest [N s]
+constexpr double kWidest = 0.03;         // that a ring's radius grows by [m]
+constexpr double kBroad = 0.004;         // of an impact's ring as it begins [m]
 
 enum FrictionState { kSticks, kSlips, kStruck, kFrictionStates };
 
@@ -27,39 +31,43 @@ FrictionState friction_state(const Contact& contact) {
   return contact.friction == Friction::sticking ? kSticks : kSlips;
 }
 
-std_msgs::ColorRGBA friction_color(FrictionState state) {
+std_msgs::ColorRGBA friction_color(FrictionState state, const PictureStyle& style) {
   if (state == kStruck) return color(1.0, 1.0, 1.0);
-  return state == kSticks ? color(0.000, 0.620, 0.451) : color(0.941, 0.894, 0.259);
+  return state == kSticks ? style.sticks : style.slips;
+}
+
+Pose on_surface(const Vector3& point, const Vector3& normal) {
+  return {point + kLift * normal, Quaternion::FromTwoVectors(Vector3::UnitZ(), normal)};
 }
 
 /// The rings of one colour. It is also each corner's, or rviz would light them and leave their sides black.
-void add_rings(const std::vector<Contact>& contacts, FrictionState state, MarkerLayer& layer) {
+void add_rings(const std::vector<Contact>& contacts, FrictionState state, const PictureStyle& style,
+               MarkerLayer& layer) {
   Marker* rings = nullptr;
   for (const Contact& contact : contacts) {
     if (friction_state(contact) != state) continue;
     if (!rings)
-      rings = &layer.add(state, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), friction_color(state));
-    const Pose place{contact.point + kLift * contact.normal,
-                     Quaternion::FromTwoVectors(Vector3::UnitZ(), contact.normal)};
-    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces}, place, *rings);
+      rings = &layer.add(state, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), friction_color(state, style));
+    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces},
+             on_surface(contact.point, contact.normal), *rings);
   }
-  if (rings) rings->colors.resize(rings->points.size(), friction_color(state));
+  if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
 }
 
-void add_force(const Contact& contact, int id, ContactLayers layers) {
+void add_force(const Contact& contact, const PictureStyle& style, int id, ContactLayers layers) {
   const double newtons = contact.force.norm();
+  if (newtons < style.least_force) return;
   const double length = kLongest * newtons / (newtons + kHalfOfLongest);
   if (length < kShortest) return;
   const Vector3 direction = contact.force / newtons;
   const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
   const Vector3 begin = end - length * direction;
-  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, color(0.97, 0.97, 0.97), id,
-            layers.forces);
+  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, style.forces, id, layers.forces);
   char text[32];
   std::snprintf(text, sizeof text, "%.1f N", newtons);
   layers.newtons
       .add(id, Marker::TEXT_VIEW_FACING, {Vector3(begin - kLetters * direction), Quaternion::Identity()},
-           Vector3::Constant(kLetters), color(0.97, 0.97, 0.97))
+           Vector3::Constant(kLetters), style.forces)
       .text = text;
 }
 
@@ -84,16 +92,53 @@ void add_shares(const Scene& scene, const FrameResult& result, MarkerLayer& laye
 
 }  // namespace
 
-void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers layers) {
+void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
+                  ContactLayers layers) {
   if (result.contacts.empty()) return;
   Marker& points =
-      layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), color(1.0, 1.0, 1.0));
+      layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
   for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
   for (int state = 0; state < kFrictionStates; ++state)
-    add_rings(result.contacts, static_cast<FrictionState>(state), layers.friction);
+    add_rings(result.contacts, static_cast<FrictionState>(state), style, layers.friction);
   add_shares(scene, result, layers.share);
   int id = 0;
-  for (const Contact& contact : result.contacts) add_force(contact, id++, layers);
+  for (const Contact& contact : result.contacts) add_force(contact, style, id++, layers);
+}
+
+/// An impact that lasts for more than a frame is one.
+void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& stamp) {
+  for (const Contact& contact : contacts) {
+    const double impulse = contact.impulse.norm();
+    if (impulse < kLeastImpulse) continue;
+    const auto known = std::find_if(impacts_.begin(), impacts_.end(), [&](const Impact& impact) {
+      return impact.key.same_pair(contact.key) && (stamp - impact.last).toSec() < 0.5 * kSeen;
+    });
+    if (known != impacts_.end()) {
+      known->last = stamp;
+      known->impulse = std::max(known->impulse, impulse);
+    } else {
+      impacts_.push_back({stamp, stamp, contact.key, contact.point, contact.normal, contact.radius, impulse});
+    }
+  }
+}
+
+void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, MarkerLayer& layer) {
+  const auto age = [&](const Impact& impact) { return (now - impact.begin).toSec(); };
+  impacts_.erase(
+      std::remove_if(impacts_.begin(), impacts_.end(),
+                     [&](const Impact& impact) { return age(impact) < 0.0 || age(impact) >= kSeen; }),
+      impacts_.end());
+  int id = 0;
+  for (const Impact& impact : impacts_) {
+    const double gone = age(impact) / kSeen;
+    const double strength = impact.impulse / (impact.impulse + kHalfOfWidest);
+    const double inner = impact.radius + (0.35 + gone) * strength * kWidest;
+    Marker& ring = layer.add(id++, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), style.impacts);
+    add_ring({inner, inner + (1.0 - 0.6 * gone) * kBroad}, on_surface(impact.point, impact.normal), ring);
+    std_msgs::ColorRGBA paint = style.impacts;
+    paint.a *= static_cast<float>((1.0 - gone) * (1.0 - gone));
+    ring.colors.assign(ring.points.size(), paint);
+  }
 }
 
 }  // namespace mrhi

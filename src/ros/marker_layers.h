@@ -3,14 +3,17 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
 
-/// Adds markers of one layer to an array. Okabe & Ito's colours (2008), which colour-blind people tell apart.
+/// Adds markers of one layer to an array.
 class MarkerLayer {
  public:
   MarkerLayer(visualization_msgs::MarkerArray& array, std_msgs::Header header, std::string name,
@@ -29,8 +32,6 @@ class MarkerLayer {
   std::string name_;
   double lifetime_;  ///< [s], 0: for ever
 };
-
-std_msgs::ColorRGBA color(double r, double g, double b, double a = 1.0);
 
 constexpr int kIdsPerHand = 100;
 
@@ -68,7 +69,8 @@ struct ContactLayers {
   MarkerLayer& newtons;   ///< the force in numbers, at the arrow's end
   MarkerLayer& share;  ///< a ball: how much of what friction bears is used, from blue (none) to orange (all)
 };
-void add_contacts(const Scene& scene, const FrameResult& result, ContactLayers layers);
+void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
+                  ContactLayers layers);
 
 /// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
 /// z, starting at x.
@@ -101,9 +103,44 @@ void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer
 /// z = 0.1 m, where rviz has its grid, or lower where something is free there.
 double ground_height(const Scene& scene);
 
+/// Where hands have struck bodies: a ring on the surface that widens and fades within kSeen.
+class ImpactMarkers {
+ public:
+  static constexpr double kSeen = 0.15;  ///< [s]
+  /// Impacts of a frame, at its stamp.
+  void note(const std::vector<Contact>& contacts, const ros::Time& stamp);
+  void add(const ros::Time& now, const PictureStyle& style, MarkerLayer& layer);
+
+ private:
+  struct Impact {
+    ros::Time begin, last;
+    ContactKey key;
+    Vector3 point, normal;
+    double radius, impulse;
+  };
+  std::vector<Impact> impacts_;
+};
+
 /// The shadows of hands and of the first free bodies, straight below them on the ground: the higher a thing
 /// is, the softer and fainter.
-void add_shadows(const Scene& scene, const SimulationState& state, const FrameResult& result, double ground,
-                 MarkerLayer& layer);
+class ShadowMarkers {
+ public:
+  /// Keeps a reference. `ground`: height of what they fall on [m].
+  ShadowMarkers(const Scene& scene, double ground) : scene_(scene), ground_(ground) {}
+  /// Those of what has moved since they were last added, or all; those of hands that are gone are deleted.
+  void add(const SimulationState& state, const FrameResult& result, bool all, MarkerLayer& layer);
+
+ private:
+  struct Cast {
+    std::vector<Vector3> from;  ///< places of what casts it, as it was last added
+    visualization_msgs::Marker marker;
+  };
+  template <typename Outlines>
+  void add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all, MarkerLayer& layer);
+
+  const Scene& scene_;
+  const double ground_;
+  std::map<int, Cast> casts_;
+};
 
 }  // namespace mrhi

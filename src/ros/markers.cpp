@@ -9,7 +9,6 @@
 #include "hand_markers.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "result_conversion.h"
 
 namespace mrhi {
 namespace {
@@ -19,7 +18,6 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kPassing = 0.5;  // hands and contacts go if the node does; the rest is sent again [s]
 constexpr double kForEver = 0.0;
-constexpr double kRestPeriod = 1.0 / 30;  // [s]
 
 /// Under all that is there at the start, where no hand comes between.
 Vector3 below(const Scene& scene) {
@@ -31,7 +29,7 @@ Vector3 below(const Scene& scene) {
   return place - kClearance * Vector3::UnitZ();
 }
 
-std::string heads_up(const Scene& scene, const Configuration& configuration, const SimulationState& state) {
+std::string held_by_hands(const Scene& scene, const SimulationState& state) {
   std::string held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!is_held(i, state)) continue;
@@ -39,11 +37,7 @@ std::string heads_up(const Scene& scene, const Configuration& configuration, con
                                       [i](const Grip& grip) { return grip.active && grip.body == i; });
     held += (held.empty() ? "" : ", ") + scene.bodies[i].name + (assisted ? " (with grasp assist)" : "");
   }
-  const double g = configuration.gravity.value_or(scene.gravity).norm();
-  char gravity[32];
-  std::snprintf(gravity, sizeof gravity, "%.2f m/s2", g);
-  return "holding: " + (held.empty() ? "nothing" : held) + "  |  " +
-         std::string(configuration.contact_model.name) + "  |  gravity: " + (g > 0.0 ? gravity : "none");
+  return "holding: " + (held.empty() ? "nothing" : held);
 }
 
 void add_deleting(int action, const std::pair<std::string, int>& key, const std_msgs::Header& header,
@@ -85,21 +79,36 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
   return marker;
 }
 
-Markers::Markers(const Scene& scene, const Configuration& configuration)
-    : Markers(scene, configuration, Skin::human()) {}
-Markers::Markers(const Scene& scene, const Configuration& configuration, const Skin& skin)
+std::string caption(const std::string& contact_model, const Vector3& gravity) {
+  const double g = gravity.norm();
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m/s2", g);
+  return contact_model + "  |  gravity: " + (g > 0.0 ? text : "none");
+}
+
+Markers::Markers(const Scene& scene, std::string caption, PictureStyle style)
     : scene_(scene),
-      configuration_(configuration),
+      caption_(std::move(caption)),
+      style_(style),
       text_place_(below(scene)),
-      ground_(ground_height(scene)),
-      hands_(std::make_unique<HandMarkers>(skin)),
-      bodies_(std::make_unique<BodyMarkers>(scene)) {}
+      hands_(std::make_unique<HandMarkers>(Skin::human())),
+      bodies_(std::make_unique<BodyMarkers>(scene)),
+      shadows_(std::make_unique<ShadowMarkers>(scene, ground_height(scene))),
+      impacts_(std::make_unique<ImpactMarkers>()) {}
+Markers::Markers(const Scene& scene, const Configuration& configuration, PictureStyle style)
+    : Markers(scene,
+              mrhi::caption(std::string(configuration.contact_model.name),
+                            configuration.gravity.value_or(scene.gravity)),
+              style) {}
 Markers::~Markers() = default;
 
 void Markers::clear() {
-  picture_.shown.clear();
-  rest_.shown.clear();
+  shown_.clear();
   cleared_ = true;
+}
+
+void Markers::note(const FrameResult& result, const ros::Time& stamp) {
+  impacts_->note(result.contacts, stamp);
 }
 
 void Markers::update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
@@ -108,61 +117,49 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   array.markers.clear();
   const bool all = all_due(header.stamp);
   if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
-  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing);
+  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing),
+      capsules(array, header, "capsules", kPassing);
   MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
   MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
       forces(array, header, "forces", kPassing), newtons(array, header, "newtons", kPassing),
-      share(array, header, "share", kPassing);
+      share(array, header, "share", kPassing), impacts(array, header, "impacts", kPassing);
+  MarkerLayer shadows(array, header, "shadows", kForEver), texts(array, header, "text", kForEver);
   int first_id = 0;
   for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
-    hands_->add(result.rendered[i], result.tracked[i], first_id, {hands, ghosts});
-  }
-  add_contacts(scene_, result, {points, friction, forces, newtons, share});
-  picture_.delete_gone(header, array);
-  bodies_->add(state, result.contacts, all, {objects, fixtures});
-}
-
-void Markers::update_rest(const FrameResult& result, const SimulationState& state,
-                          const std_msgs::Header& header, MarkerArray& array) {
-  hands_->repaint(result.rendered);
-  array.markers.clear();
-  const bool all = std::exchange(all_of_rest_, false);
-  const double since = seconds_between(rest_sent_, header.stamp);
-  if (!all && since >= 0.0 && since < kRestPeriod) return;
-  rest_sent_ = header.stamp;
-  MarkerLayer capsules(array, header, "capsules", kPassing), shadows(array, header, "shadows", kPassing),
-      texts(array, header, "text", kForEver);
-  int first_id = 0;
-  for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
+    hands_->add(result.rendered[i], result.tracked[i], result, state, style_, first_id, {hands, ghosts});
     add_simulated(result.rendered[i], first_id, capsules);
   }
-  add_shadows(scene_, state, result, ground_, shadows);
-  rest_.delete_gone(header, array);
-  std::string text = heads_up(scene_, configuration_, state);
+  add_contacts(scene_, result, style_, {points, friction, forces, newtons, share});
+  impacts_->add(header.stamp, style_, impacts);
+  delete_gone(header, array);
+  bodies_->add(state, result.contacts, all, {objects, fixtures});
+  shadows_->add(state, result, all, shadows);
+  std::string text = held_by_hands(scene_, state) + "  |  " + caption_;
   if (!all && text == text_) return;
   text_ = std::move(text);
-  Marker& marker = texts.add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()},
-                             Vector3::Constant(0.011), color(0.9, 0.9, 0.9));
-  marker.text = text_;
+  texts
+      .add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
+           color(0.9, 0.9, 0.9))
+      .text = text_;
 }
 
 /// Twice a second, for a viewer that came later or has lost an array.
 bool Markers::all_due(const ros::Time& stamp) {
   const double since = seconds_between(all_sent_, stamp);
   const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;
-  if (due) all_sent_ = stamp, all_of_rest_ = true;
+  if (due) all_sent_ = stamp;
   all_ = false;
   return due;
 }
 
-void Markers::Passing::delete_gone(const std_msgs::Header& header, MarkerArray& array) {
-  now.clear();
-  for (const Marker& marker : array.markers) now.emplace_back(marker.ns, marker.id);
-  std::sort(now.begin(), now.end());
-  for (const Key& key : shown) {
-    if (!std::binary_search(now.begin(), now.end(), key)) add_deleting(Marker::DELETE, key, header, array);
+void Markers::delete_gone(const std_msgs::Header& header, MarkerArray& array) {
+  now_.clear();
+  for (const Marker& marker : array.markers) now_.emplace_back(marker.ns, marker.id);
+  std::sort(now_.begin(), now_.end());
+  for (const Key& key : shown_) {
+    if (!std::binary_search(now_.begin(), now_.end(), key)) add_deleting(Marker::DELETE, key, header, array);
   }
-  shown.swap(now);
+  shown_.swap(now_);
 }
 
 }  // namespace mrhi

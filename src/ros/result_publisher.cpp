@@ -10,11 +10,11 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <boost/make_shared.hpp>
-#include <chrono>
-#include <thread>
+#include <utility>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "result_conversion.h"
+#include "scene_view.h"
 
 // In memory these are what goes over the wire: roscpp copies a vector of them in one go.
 static_assert(sizeof(geometry_msgs::Point) == 3 * sizeof(double), "a point has padding");
@@ -35,7 +35,6 @@ namespace {
 
 constexpr int kQueue = 10;
 constexpr int kEventQueue = 100;
-constexpr std::chrono::microseconds kWayOfPicture(250);
 
 /// Shared, so that a subscriber in the same process gets it without a copy.
 template <class Message>
@@ -61,6 +60,11 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
                                                           [this](const ros::SingleSubscriberPublisher&) {
                                                             if (markers_) markers_->send_all();
                                                           })),
+      scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>(
+          "scene", kQueue,
+          [this](const ros::SingleSubscriberPublisher& viewer) {
+            if (simulation_) viewer.publish(scene_now());
+          })),
       picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
 
 void ResultPublisher::add_standard_outputs(const ros::NodeHandle& node) {
@@ -70,6 +74,8 @@ void ResultPublisher::add_standard_outputs(const ros::NodeHandle& node) {
 void ResultPublisher::show(const Simulation& simulation) {
   simulation_ = &simulation;
   markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
+  markers_shown_ = ros::WallTime();
+  scene_changed_ = true;
 }
 
 void ResultPublisher::note_step() {
@@ -83,6 +89,7 @@ void ResultPublisher::publish(const FrameResult& result) {
 
 void ResultPublisher::publish_response(const FrameResult& result) {
   const std_msgs::Header when = header(result);
+  publish_scene_description();
   haptics_.publish(*simulation_, result, when);
   publish_contacts(result, when);
   publish_objects(when);
@@ -91,23 +98,42 @@ void ResultPublisher::publish_response(const FrameResult& result) {
 
 void ResultPublisher::publish_picture(const FrameResult& result) {
   const std_msgs::Header when = header(result);
-  publish_markers(result, when);
-  let_picture_go();
+  publish_hands(result, when);
   publish_transforms(when);
   if (standard_) standard_->publish_hands(result, when);
-  if (rendered_hands_.getNumSubscribers() > 0)
-    publish_shared(rendered_hands_, rendered_message(result, when));
-  if (tracked_hands_.getNumSubscribers() > 0) publish_shared(tracked_hands_, tracked_message(result, when));
   publish_events(result.events);
-  publish_rest(result, when);
+  publish_markers(result, when);
 }
 
 void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& stamp) {
-  publish_markers(result, header(stamp));
+  publish_scene_description();
+  if (!result.rendered.empty()) {
+    publish_contacts(result, header(result));
+    publish_hands(result, header(result));
+  }
   publish_objects(header(stamp));
   publish_transforms(header(stamp));
   if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
-  publish_rest(result, header(stamp));
+  publish_markers(result, header(stamp));
+  shown_ = ros::WallTime::now();
+}
+
+mr_hand_interaction::SceneDescription ResultPublisher::scene_now() const {
+  return scene_message(simulation_->scene(), simulation_->configuration(),
+                       header(to_ros_time(clock_.to_stamp(simulation_->time()))));
+}
+
+/// Before all that is of the scene.
+void ResultPublisher::publish_scene_description() {
+  if (!std::exchange(scene_changed_, false) || scene_publisher_.getNumSubscribers() == 0) return;
+  publish_shared(scene_publisher_, scene_now());
+}
+
+void ResultPublisher::publish_hands(const FrameResult& result, const std_msgs::Header& header) {
+  if (rendered_hands_.getNumSubscribers() > 0)
+    publish_shared(rendered_hands_, rendered_message(result, header));
+  if (tracked_hands_.getNumSubscribers() > 0) publish_shared(tracked_hands_, tracked_message(result, header));
+  shown_ = ros::WallTime::now();
 }
 
 void ResultPublisher::publish_contacts(const FrameResult& result, const std_msgs::Header& header) {
@@ -134,27 +160,15 @@ std_msgs::Header ResultPublisher::header(const FrameResult& result) const {
 }
 
 void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs::Header& header) {
-  if (marker_publisher_.getNumSubscribers() > 0) {
-    // Nobody in this process still has the one before: its memory serves again.
-    if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
-    markers_->update(result, simulation_->state(), header, *picture_);
-    marker_publisher_.publish(picture_);
-  }
-  shown_ = ros::WallTime::now();
-}
-
-/// roscpp's thread sends the picture and the viewer's takes it: on few cores all that is left to do would be
-/// in their way.
-void ResultPublisher::let_picture_go() const {
-  static const bool few_cores = std::thread::hardware_concurrency() < 4;
-  if (few_cores && marker_publisher_.getNumSubscribers() > 0) std::this_thread::sleep_for(kWayOfPicture);
-}
-
-void ResultPublisher::publish_rest(const FrameResult& result, const std_msgs::Header& header) {
   if (marker_publisher_.getNumSubscribers() == 0) return;
-  visualization_msgs::MarkerArray rest;
-  markers_->update_rest(result, simulation_->state(), header, rest);
-  if (!rest.markers.empty()) publish_shared(marker_publisher_, std::move(rest));
+  markers_->note(result, header.stamp);
+  const ros::WallTime now = ros::WallTime::now();
+  if ((now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
+  markers_shown_ = now;
+  // Nobody in this process still has the one before: its memory serves again.
+  if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
+  markers_->update(result, simulation_->state(), header, *picture_);
+  marker_publisher_.publish(picture_);
 }
 
 void ResultPublisher::publish_objects(const std_msgs::Header& header) {

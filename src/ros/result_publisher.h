@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mr_hand_interaction/SceneDescription.h>
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -32,23 +33,25 @@ class ResultPublisher {
   /// What robots and gloves wait for, under the result's own stamp: haptics, contacts, objects. Its rendered
   /// hands are not looked at.
   void publish_response(const FrameResult& result);
-  /// What eyes wait for, then what may come later.
+  /// What eyes wait for: hands, then transforms, events and, at most kMarkerRate times a second, markers.
   void publish_picture(const FrameResult& result);
   /// Both.
   void publish(const FrameResult& result);
-  /// What may be shown again at any time: markers, objects, transforms.
+  /// What may be shown again at any time: hands and contacts as they were, markers, objects, transforms.
   void publish_scene(const FrameResult& result, const ros::Time& stamp);
   void publish_events(const std::vector<Event>& events);
 
   /// When something was last shown.
   ros::WallTime shown() const { return shown_; }
+  static constexpr double kMarkerRate = 60.0;  ///< [Hz]
 
  private:
   std_msgs::Header header(const ros::Time& stamp) const;
   std_msgs::Header header(const FrameResult& result) const;
+  mr_hand_interaction::SceneDescription scene_now() const;
+  void publish_scene_description();
+  void publish_hands(const FrameResult& result, const std_msgs::Header& header);
   void publish_markers(const FrameResult& result, const std_msgs::Header& header);
-  void let_picture_go() const;
-  void publish_rest(const FrameResult& result, const std_msgs::Header& header);
   void publish_contacts(const FrameResult& result, const std_msgs::Header& header);
   void publish_objects(const std_msgs::Header& header);
   void publish_transforms(const std_msgs::Header& header);
@@ -60,11 +63,12 @@ class ResultPublisher {
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
   ros::Publisher rendered_hands_, tracked_hands_, objects_, joint_states_, contacts_, events_,
-      marker_publisher_;
+      marker_publisher_, scene_publisher_;
+  bool scene_changed_ = false;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   tf2_ros::TransformBroadcaster transforms_;
   ros::Time transforms_stamp_;
-  ros::WallTime shown_;
+  ros::WallTime shown_, markers_shown_;
 };
 
 }  // namespace mrhi

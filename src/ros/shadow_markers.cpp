@@ -14,15 +14,17 @@ using Point = Eigen::Vector2d;
 using visualization_msgs::Marker;
 
 constexpr int kMostBodies = 8;
-constexpr double kGrid = 0.1;        // where rviz has its grid [m]
-constexpr double kClearance = 0.05;  // of what is free from the ground [m]
-constexpr double kCell = 0.008;      // [m]
-constexpr double kLift = 0.001;      // off the ground and its grid [m]
-constexpr double kWide = 0.1;        // half of what a ground is at least across [m]
-constexpr double kDark = 0.5;        // opacity of what lies on the ground
-constexpr double kFaintAt = 0.3;     // height at which half of that is left [m]
-constexpr double kSoft = 0.006;      // width of the rim of what lies on the ground [m]
-constexpr double kSoftening = 0.05;  // and more for each metre of height
+constexpr int kFirstBody = kIdsPerHand;  // id of a shadow; those below are of hands
+constexpr double kStays = 0.0005;        // [m]
+constexpr double kGrid = 0.1;            // where rviz has its grid [m]
+constexpr double kClearance = 0.05;      // of what is free from the ground [m]
+constexpr double kCell = 0.008;          // [m]
+constexpr double kLift = 0.001;          // off the ground and its grid [m]
+constexpr double kWide = 0.1;            // half of what a ground is at least across [m]
+constexpr double kDark = 0.5;            // opacity of what lies on the ground
+constexpr double kFaintAt = 0.3;         // height at which half of that is left [m]
+constexpr double kSoft = 0.006;          // width of the rim of what lies on the ground [m]
+constexpr double kSoftening = 0.05;      // and more for each metre of height
 constexpr double kLeastOpacity = 0.02;
 constexpr double kSunk = 0.02;    // what is deeper in the ground has no shadow [m]
 constexpr double kHighest = 1.0;  // [m]
@@ -236,20 +238,52 @@ double ground_height(const Scene& scene) {
   return ground;
 }
 
-void add_shadows(const Scene& scene, const SimulationState& state, const FrameResult& result, double ground,
-                 MarkerLayer& layer) {
-  int id = 0;
-  const auto add = [&](std::vector<Outline> outlines, int shadow) {
-    Marker& marker =
-        layer.add(shadow, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(0.0, 0.0, 0.0, 0.99));
-    Shadow(std::move(outlines), ground).add_to(marker);
-    if (marker.points.empty()) layer.take_back();
-  };
-  for (const RenderedHand& rendered : result.rendered) add(outlines_of(rendered.hand), id++);
+/// Not worked out anew for less than kStays.
+template <typename Outlines>
+void ShadowMarkers::add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all,
+                            MarkerLayer& layer) {
+  Cast& cast = casts_[id];
+  const bool moved =
+      cast.from.size() != from.size() ||
+      !std::equal(from.begin(), from.end(), cast.from.begin(),
+                  [](const Vector3& a, const Vector3& b) { return (a - b).squaredNorm() < kStays * kStays; });
+  if (!moved && !all) return;
+  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(0.0, 0.0, 0.0, 0.99));
+  if (moved) {
+    cast.from = std::move(from);
+    Shadow(outlines(), ground_).add_to(marker);
+    cast.marker.points = marker.points, cast.marker.colors = marker.colors;
+  } else {
+    marker.points = cast.marker.points, marker.colors = cast.marker.colors;
+  }
+  if (marker.points.empty()) marker.action = Marker::DELETE;
+}
+
+void ShadowMarkers::add(const SimulationState& state, const FrameResult& result, bool all,
+                        MarkerLayer& layer) {
+  const int hands = static_cast<int>(result.rendered.size());
+  for (auto cast = casts_.begin(); cast != casts_.end();) {
+    const bool gone = cast->first >= hands && cast->first < kFirstBody;
+    if (gone)
+      layer.add(cast->first, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), {}).action = Marker::DELETE;
+    cast = gone ? casts_.erase(cast) : std::next(cast);
+  }
+  for (int i = 0; i < hands; ++i) {
+    const Hand& hand = result.rendered[static_cast<std::size_t>(i)].hand;
+    std::vector<Vector3> from;
+    for (const Capsule& capsule : hand.capsules) from.insert(from.end(), {capsule.start, capsule.end});
+    add_one(
+        i, std::move(from), [&] { return outlines_of(hand); }, all, layer);
+  }
   int bodies = 0;
-  for (std::size_t i = 0; i < scene.bodies.size() && bodies < kMostBodies; ++i) {
-    if (scene.bodies[i].fixed) continue;
-    add(outlines_of(scene.bodies[i], state.bodies[i].pose), kIdsPerHand + bodies++);
+  for (std::size_t i = 0; i < scene_.bodies.size() && bodies < kMostBodies; ++i) {
+    const Body& body = scene_.bodies[i];
+    if (body.fixed) continue;
+    const Pose& pose = state.bodies[i].pose;
+    std::vector<Vector3> from{pose.position};
+    for (int axis = 0; axis < 3; ++axis) from.push_back(pose * (body.bounding_radius * Vector3::Unit(axis)));
+    add_one(
+        kFirstBody + bodies++, std::move(from), [&] { return outlines_of(body, pose); }, all, layer);
   }
 }
 

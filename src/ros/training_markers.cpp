@@ -16,7 +16,7 @@ using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
 constexpr double kPassing = 0.5;                       // [s]
-constexpr double kText = 0.0125, kSmallText = 0.0085;  // height of letters [m]
+constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
 constexpr double kTimer = 0.02;                        // of the timer's
 constexpr double kMark = 0.014;                        // of a place's number [m]
 constexpr double kMarkRoom = 1.35;                     // from a place to its number, of its ring's radius

@@ -15,7 +15,8 @@ OpenLog open_log(const ReplayArguments& arguments) {
 
 struct MarkerBag::Impl {};
 
-MarkerBag::MarkerBag(const std::string&, const std::set<std::size_t>&) {
+MarkerBag::MarkerBag(const std::string&, const std::set<std::size_t>&) : MarkerBag("", 0.0) {}
+MarkerBag::MarkerBag(const std::string&, double) {
   throw UsageError("--markers: this replay was built without ROS and writes no bags");
 }
 MarkerBag::~MarkerBag() = default;

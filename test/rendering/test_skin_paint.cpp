@@ -4,6 +4,7 @@
 
 #include "modelling/skin_parts.h"
 #include "rendering/skin_paint.h"
+#include "rendering/skin_press.h"
 #include "rendering/skin_rig.h"
 #include "support/postures.h"
 
@@ -111,6 +112,62 @@ TEST(SkinPaint, every_finger_has_a_nail_on_its_back_lighter_than_the_skin_along_
     ASSERT_GE(nails, 2) << finger;
     ASSERT_GE(edges, 2) << finger;
     EXPECT_GT(nail / static_cast<float>(nails), 1.1f * edge / static_cast<float>(edges)) << finger;
+  }
+}
+
+TEST(SkinPaint, every_finger_has_creases_at_its_joints_darker_than_the_skin_beside_them) {
+  const Skin& skin = Skin::detailed();
+  for (int finger = 0; finger < kFingers; ++finger) {
+    for (int bone = 2; bone < kBonesPerFinger; ++bone) {
+      const SkinBone& rig = rest_hand().rig[static_cast<std::size_t>(capsule_index(finger, bone))];
+      float crease = 0.0f, beside = 0.0f;
+      int creased = 0, plain = 0;
+      for (std::size_t v = 0; v < skin.size(); ++v) {
+        const Vector3 place = rig.axes.transpose() * (skin.rest()[v] - rig.start);
+        const bool palmar = place.z() < -0.6 * rig.radius && std::abs(place.y()) < 0.5 * rig.radius &&
+                            place.norm() < 2.0 * rig.radius;
+        if (!palmar) continue;
+        const float colour = brightness(skin.model().looks[v].colour);
+        if (skin_crease(skin.rest()[v]) > 0.8) crease += colour, ++creased;
+        if (skin_crease(skin.rest()[v]) <= 0.0) beside += colour, ++plain;
+      }
+      ASSERT_GE(creased, 2) << finger << " " << bone;
+      ASSERT_GE(plain, 2) << finger << " " << bone;
+      EXPECT_LT(crease / static_cast<float>(creased), 0.85f * beside / static_cast<float>(plain)) << finger;
+    }
+  }
+}
+
+TEST(SkinPress, a_pad_that_presses_is_flat_where_it_touches_and_the_flatter_the_harder) {
+  const Hand hand = testing::hand_in(testing::open_posture());
+  const int tip = capsule_index(1, 3);
+  const Capsule& pad = hand.capsules[static_cast<std::size_t>(tip)];
+  const Vector3 palmar = hand.palm.orientation * -Vector3::UnitZ();
+  SimulationState state;
+  state.hands.resize(1);
+  Contact contact;
+  contact.key.capsule = static_cast<std::uint8_t>(tip);
+  contact.normal = -palmar;
+  contact.radius = pad.radius;
+  contact.depth = 0.001;
+  contact.point = pad.centre() + pad.radius * palmar;
+  int before = -1;
+  for (const double force : {0.0, 1.0, 6.0}) {
+    contact.force = force * palmar;
+    SkinSurface surface;
+    ASSERT_TRUE(Skin::detailed().pose(hand, surface));
+    const SkinSurface round = surface;
+    press_flat({contact}, state, 0, Skin::detailed(), surface);
+    int flat = 0;
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+      const double height = contact.normal.dot(surface.vertices[v] - contact.point);
+      flat += std::abs(height) < 1e-6;
+      EXPECT_LE((surface.vertices[v] - round.vertices[v]).norm(), kDeepestPress + 1e-9);
+      const bool far = (round.vertices[v] - contact.point).norm() > 2.0 * pad.radius;
+      EXPECT_TRUE(!far || surface.vertices[v] == round.vertices[v]);
+    }
+    EXPECT_GT(flat, before + 10 * (force > 0.0)) << force;
+    before = flat;
   }
 }
 

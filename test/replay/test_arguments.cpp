@@ -127,16 +127,21 @@ TEST(ReplayArguments, a_bag_alone_is_enough) {
 }
 
 TEST(ReplayArguments, what_is_made_of_the_tables_is_read) {
-  const ReplayArguments parsed = parse_replay_arguments(
-      with({"--explain", "--export", "60", "--markers", "7,3,7", "--set", "step=0.002"}));
+  const ReplayArguments parsed =
+      parse_replay_arguments(with({"--explain", "--export", "60", "--marker-frames", "7,3,7", "--markers",
+                                   "30", "--film", "a.mp4", "--set", "step=0.002"}));
   EXPECT_TRUE(parsed.explain);
   EXPECT_EQ(parsed.export_rate, 60.0);
-  EXPECT_EQ(parsed.markers, (std::set<std::size_t>{3, 7}));
+  EXPECT_EQ(parsed.marker_frames, (std::set<std::size_t>{3, 7}));
+  EXPECT_EQ(parsed.marker_rate, 30.0);
+  EXPECT_EQ(parsed.film, "a.mp4");
   EXPECT_EQ(parsed.repeatable, (Arguments{"--scene", "cube", "--input", "a.bag", "--set", "step=0.002"}));
   for (const char* rate : {"0.5", "1001", "nan", "fast"})
     expect_refused(with({"--export", rate}), "--export");
   for (const char* frames : {"x", "-1", "1.5", "1,,2"})
-    expect_refused(with({"--markers", frames}), "--markers");
+    expect_refused(with({"--marker-frames", frames}), "--marker-frames");
+  for (const char* rate : {"0", "1001", "7,3"}) expect_refused(with({"--markers", rate}), "--markers");
+  expect_refused(with({"--film", "a.gif"}), "--film");
 }
 
 TEST(ReplayArguments, a_comparison_stands_alone) {

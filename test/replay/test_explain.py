@@ -244,7 +244,7 @@ class CommandsTest(Folders):
         with open(os.path.join(output, 'summary.json')) as file:
             summary = json.load(file)
         again = os.path.join(self.folder, 'again')
-        done = replay(*summary['arguments'], '--output', again, '--markers', '70,5')
+        done = replay(*summary['arguments'], '--output', again, '--marker-frames', '70,5')
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(os.path.join(again, 'summary.json')) as file:
             self.assertEqual(json.load(file)['state_hash'], summary['state_hash'])
@@ -252,7 +252,7 @@ class CommandsTest(Folders):
             told = [(topic, message) for topic, message, _ in bag.read_messages()]
         self.assertEqual([message.data for topic, message in told if topic == '/frame'], [5, 70])
         self.assertTrue(all(message.markers for topic, message in told if topic == '/markers'))
-        refused = replay(*summary['arguments'], '--output', again, '--markers', '1,x')
+        refused = replay(*summary['arguments'], '--output', again, '--marker-frames', '1,x')
         self.assertEqual((refused.returncode, refused.stderr.count('\n')), (2, 1), refused.stderr)
 
 

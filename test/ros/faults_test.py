@@ -30,7 +30,6 @@ MOUNT = "0 0 0 0.7071067811865476 0 0 0.7071067811865476 world leap_hands".split
 NODES = {
     "hand_tracking_node": [],
     "interaction_node": ["_scene:=cube", "_place_by_mouse:=true"],
-    "marker_relay_node": [],
     "synthetic_hand_node": ["_motion:=nudge", "_reset:=/interaction_node/reset"],
 }
 

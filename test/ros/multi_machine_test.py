@@ -31,9 +31,9 @@ class MultiMachineTest(unittest.TestCase):
         return self.machines.start(machine, "roslaunch", "--wait", "--sigint-timeout", "5", "mr_hand_interaction",
                                    "multi_machine.launch", "role:=" + machine, *arguments)
 
-    def start_all(self, *of_simulation):
+    def start_all(self):
         self.machines.start("simulation", "roscore", stdout=subprocess.DEVNULL)
-        self.launch("simulation", "scene:=cube", *of_simulation)
+        self.launch("simulation", "scene:=cube")
         self.launch("bridge", "hands:=demo")
         viewer = self.machines.start("view", sys.executable, os.path.join(HERE, "multi_machine_viewer.py"),
                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, universal_newlines=True)
@@ -59,18 +59,21 @@ class MultiMachineTest(unittest.TestCase):
                 return total
         raise AssertionError("waited in vain for %s; seen: %s" % (what, dict(total)))
 
-    def watch_grasp(self, *layers):
-        """The cube, taken, lifted and let go, and these layers of the picture."""
-        wanted = ["GRASP_BEGIN", "GRASP_END", "held cube", "lifted cube"] + ["layer " + layer for layer in layers]
+    def watch_grasp(self):
+        """The cube, taken, lifted and let go, and all that is drawn of it."""
+        wanted = ["GRASP_BEGIN", "GRASP_END", "held cube", "lifted cube", "hands", "contacts", "forces"]
         return self.watch_until(lambda seen: all(seen[what] for what in wanted), "all of " + ", ".join(wanted))
 
     def test_the_hand_of_one_machine_grasps_on_another_what_a_third_shows(self):
         self.start_all()
-        self.watch_grasp("hand", "objects", "contacts", "forces")
+        seen = self.watch_grasp()
+        self.assertEqual(seen["shape of cube"], 1)
         before = self.machines.bytes_received("view")
         pictures = sum(self.next_second()["pictures"] for _ in range(5)) / 5
         received = (self.machines.bytes_received("view") - before) / 5
         print("%.1f pictures and %.0f kB a second reach the view" % (pictures, received / 1e3))
+        # Bytes on the wire, for one hand: 5 kB a frame is what is promised, and headers of TCP come on top.
+        self.assertLess(received / pictures, 5500)
 
     def test_the_bridge_s_link_drops_and_comes_back(self):
         self.start_all()
@@ -83,13 +86,12 @@ class MultiMachineTest(unittest.TestCase):
         self.watch_grasp()
 
     def test_the_view_s_link_drops_and_comes_back(self):
-        self.start_all("leave_out:=hand,ghost", "view_rate:=20")
+        self.start_all()
         self.watch_until(lambda seen: seen["pictures"], "pictures")
         self.machines.link("view", False)
         self.watch_until(lambda seen: not self.next_second()["pictures"], "a second without a picture")
         self.machines.link("view", True)
-        seen = self.watch_grasp("capsules")
-        self.assertEqual(seen["layer hand"], 0)
+        self.watch_grasp()
 
 
 if __name__ == "__main__":

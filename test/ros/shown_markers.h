@@ -37,11 +37,9 @@ struct Shown {
   std::map<std::string, int> update() {
     std_msgs::Header header;
     header.frame_id = "world";
-    header.stamp = ros::Time(now += 0.04);  // enough for what is not in a hurry
+    header.stamp = ros::Time(now += 0.04);
+    markers.note(result, header.stamp);
     markers.update(result, state, header, array);
-    MarkerArray rest;
-    markers.update_rest(result, state, header, rest);
-    array.markers.insert(array.markers.end(), rest.markers.begin(), rest.markers.end());
     std::map<std::string, int> added;
     for (const Marker& marker : array.markers) added[marker.ns] += marker.action == Marker::ADD;
     return added;

@@ -12,9 +12,9 @@ namespace mrhi {
 namespace {
 
 constexpr int kWristSides = 6;
-constexpr int kParts = 1 + kWristSides + 1;  // the skin, the sides of its wrist, its creases
+constexpr int kParts = 1 + kWristSides;  // the skin, the sides of its wrist
 
-/// The skin, the wrist's sides, the creases.
+/// The skin, the wrist's sides.
 std::vector<const Marker*> parts_of(const Shown& shown) {
   std::vector<const Marker*> parts;
   for (const Marker& marker : shown.array.markers)
@@ -209,24 +209,6 @@ TEST(HandMarkers, what_touches_is_highlighted) {
     ++changed;
   }
   EXPECT_GT(changed, 100);
-}
-
-TEST(HandMarkers, the_light_on_a_hand_is_that_of_the_frame_before_and_a_still_hand_keeps_it) {
-  Shown shown;
-  shown.see_hands(1);
-  const auto colours = [&] {
-    shown.update();
-    return shown.first("hand").colors;
-  };
-  const auto open = colours();
-  EXPECT_EQ(colours(), open);
-  const Pose turned{Vector3::Zero(), Quaternion(Eigen::AngleAxisd(M_PI, Vector3::UnitX()))};
-  shown.result.rendered[0].hand = complete_hand(adult_hand(Side::right), turned);
-  shown.result.tracked[0] = shown.result.rendered[0].hand;
-  EXPECT_EQ(colours(), open);
-  const auto over = colours();
-  EXPECT_NE(over, open);
-  EXPECT_EQ(colours(), over);
 }
 
 }  // namespace

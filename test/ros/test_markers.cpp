@@ -43,19 +43,41 @@ TEST(Markers, what_stays_as_it_is_is_sent_again_twice_a_second_and_to_who_comes_
   EXPECT_EQ(shown.array.markers.front().action, Marker::ADD);
 }
 
-TEST(Markers, capsules_and_text_come_thirty_times_a_second) {
+TEST(Markers, shadows_are_sent_of_what_moves) {
   Shown shown;
+  shown.state.bodies[0].pose.position = Vector3(0.0, 0.0, 0.2);
   shown.see_hands(1);
+  EXPECT_EQ(shown.update()["shadows"], 2);
+  shown.now += 0.1;
+  EXPECT_EQ(shown.update()["shadows"], 0);
+  shown.state.bodies[0].pose.position.x() += 0.001;
+  EXPECT_EQ(shown.update()["shadows"], 1);
+  shown.see_hands(0);
   shown.update();
-  std_msgs::Header header;
-  MarkerArray rest;
-  int arrays = 0;
-  for (int frame = 0; frame < 120; ++frame) {
-    header.stamp = ros::Time(shown.now + (frame + 1) / 120.0);
-    shown.markers.update_rest(shown.result, shown.state, header, rest);
-    arrays += !rest.markers.empty();
+  EXPECT_EQ(shown.deleted("shadows"), 1);
+}
+
+TEST(Markers, an_impact_is_a_ring_that_widens_and_fades_within_150_ms_and_is_not_lost_between_pictures) {
+  Shown shown;
+  shown.update();
+  Contact contact;
+  contact.radius = 0.008;
+  contact.impulse = {0.0, 0.0, -0.02};
+  shown.result.contacts = {contact};
+  shown.markers.note(shown.result, ros::Time(shown.now += 0.008));
+  shown.result.contacts.clear();
+  double radius = 0.0;
+  float alpha = 1.01f;
+  for (int picture = 0; picture < 3; ++picture) {  // 40 ms apart: at 40, 80 and 120 ms
+    ASSERT_EQ(shown.update()["impacts"], 1);
+    const Marker& ring = shown.first("impacts");
+    const double now = std::hypot(ring.points[0].x, ring.points[0].y);
+    EXPECT_GT(now, radius);
+    EXPECT_LT(ring.colors[0].a, alpha);
+    radius = now, alpha = ring.colors[0].a;
   }
-  EXPECT_NEAR(arrays, 30, 6);
+  EXPECT_EQ(shown.update()["impacts"], 0);
+  EXPECT_EQ(shown.deleted("impacts"), 1);
 }
 
 TEST(Markers, what_moves_is_sent_at_once_and_alone) {
@@ -134,7 +156,7 @@ TEST(Markers, the_text_is_under_everything) {
   shown.scene.bodies[1].start.position.z() = -0.5;
   Markers markers(shown.scene, shown.configuration);
   MarkerArray array;
-  markers.update_rest(shown.result, shown.state, std_msgs::Header(), array);
+  markers.update(shown.result, shown.state, std_msgs::Header(), array);
   for (const Marker& marker : array.markers) {
     if (marker.ns != "text") continue;
     EXPECT_LT(marker.pose.position.z, -0.53);

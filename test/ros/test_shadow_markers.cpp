@@ -23,7 +23,7 @@ struct Shaded {
     for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
     array.markers.clear();
     MarkerLayer layer(array, std_msgs::Header(), "shadows", 0.0);
-    add_shadows(scene, state, result, ground, layer);
+    ShadowMarkers(scene, ground).add(state, result, true, layer);
     return array;
   }
 

@@ -26,7 +26,9 @@ struct ReplayArguments {
   std::vector<std::string> compare;     ///< what scripts/compare is called with; nothing is played then
   std::optional<double> export_rate;    ///< scripts/export is called with it afterwards [Hz]
   bool explain = false;                 ///< scripts/explain is called afterwards
-  std::set<std::size_t> markers;        ///< numbers of the frames in markers.bag
+  std::optional<double> marker_rate;    ///< of the markers in markers.bag [Hz], which has poses too
+  std::set<std::size_t> marker_frames;  ///< numbers of the frames in markers.bag, instead
+  std::string film;                     ///< scripts/film.py draws markers.bag into this file afterwards
   std::vector<std::string> repeatable;  ///< the words that make the same run again, in whatever folder
   std::string scene;                    ///< name or URDF file
   std::string input;                    ///< .bag or .csv

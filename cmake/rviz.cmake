@@ -1,0 +1,15 @@
+# What rviz loads, where rviz can be built against (Debian: librviz-dev): the display and the experimenter's panel.
+find_package(rviz QUIET)
+if(NOT rviz_FOUND)
+  message(STATUS "rviz's development files not found (librviz-dev): no display and no training panel")
+  return()
+endif()
+find_package(Qt5 REQUIRED COMPONENTS Core Widgets)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OGRE REQUIRED OGRE)
+add_library(${PROJECT_NAME}_rviz src/ros/panel/training_panel.cpp
+  src/ros/display/interaction_display.cpp src/ros/display/marker_scene.cpp src/ros/display/skin_object.cpp)
+target_include_directories(${PROJECT_NAME}_rviz SYSTEM PRIVATE ${rviz_INCLUDE_DIRS} ${OGRE_INCLUDE_DIRS})
+target_compile_definitions(${PROJECT_NAME}_rviz PRIVATE QT_NO_KEYWORDS)
+target_link_libraries(${PROJECT_NAME}_rviz PRIVATE ${PROJECT_NAME}_ros ${rviz_LIBRARIES} Qt5::Widgets)
+install(TARGETS ${PROJECT_NAME}_rviz LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})

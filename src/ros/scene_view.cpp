@@ -1,0 +1,209 @@
+#include "scene_view.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "../rendering/hand_renderer.h"
+#include "../text/text.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+
+namespace mrhi {
+namespace {
+
+using mr_hand_interaction::SceneBody;
+using mr_hand_interaction::SceneShape;
+
+constexpr std::size_t kVertices = 300;  // of a mesh, at most about
+
+struct WriteShape {
+  SceneShape& message;
+
+  void operator()(const Sphere& s) const { set(SceneShape::SPHERE, {s.radius}); }
+  void operator()(const Box& b) const {
+    const Vector3 size = 2.0 * b.half_extents;
+    set(SceneShape::BOX, {size.x(), size.y(), size.z()});
+  }
+  void operator()(const Cylinder& c) const { set(SceneShape::CYLINDER, {c.radius, 2.0 * c.half_length}); }
+  void operator()(const Pill& p) const { set(SceneShape::CAPSULE, {p.radius, 2.0 * p.half_length}); }
+  void operator()(const Mesh& m) const {
+    set(SceneShape::MESH, {});
+    message.mesh = m.uri;
+    message.scale = vector_message(m.scale);
+    if (!m.triangles) return;
+    const std::vector<Vector3>& vertices = m.triangles->vertices;
+    for (std::size_t i = 0; i < vertices.size(); i += 1 + vertices.size() / kVertices) {
+      geometry_msgs::Point32 point;
+      point.x = static_cast<float>(vertices[i].x());
+      point.y = static_cast<float>(vertices[i].y());
+      point.z = static_cast<float>(vertices[i].z());
+      message.vertices.push_back(point);
+    }
+  }
+
+ private:
+  void set(std::uint8_t type, std::vector<double> size) const {
+    message.type = type;
+    message.size = std::move(size);
+  }
+};
+
+SceneShape shape_message(const Shape& shape, const Pose& pose) {
+  SceneShape message;
+  std::visit(WriteShape{message}, shape);
+  message.pose = to_message(pose);
+  return message;
+}
+
+Shape shape_of(const SceneShape& message) {
+  const std::vector<double>& size = message.size;
+  constexpr std::size_t kSizes[] = {1, 3, 2, 2, 0};
+  if (message.type > SceneShape::MESH || size.size() != kSizes[message.type])
+    throw std::invalid_argument("shape of type " + std::to_string(message.type) + " with " +
+                                std::to_string(size.size()) +
+                                " sizes is not allowed; allowed: see SceneShape.msg");
+  switch (message.type) {
+    case SceneShape::SPHERE:
+      return Sphere{size[0]};
+    case SceneShape::BOX:
+      return Box{0.5 * Vector3(size[0], size[1], size[2])};
+    case SceneShape::CYLINDER:
+      return Cylinder{size[0], 0.5 * size[1]};
+    case SceneShape::CAPSULE:
+      return Pill{size[0], 0.5 * size[1]};
+    default:
+      break;
+  }
+  auto outline = std::make_shared<TriangleMesh>();
+  for (const auto& point : message.vertices)
+    outline->vertices.push_back(Eigen::Vector3f(point.x, point.y, point.z).cast<double>());
+  return Mesh{std::move(outline), message.mesh, from_message(message.scale)};
+}
+
+Body body_of(const SceneBody& message) {
+  Body body;
+  body.name = message.name;
+  body.fixed = message.fixed;
+  body.start = from_message(message.pose);
+  body.material.static_friction = message.static_friction;
+  body.material.dynamic_friction = message.dynamic_friction;
+  for (const SceneShape& shape : message.shapes) {
+    body.shapes.push_back({shape_of(shape), from_message(shape.pose)});
+    const PlacedShape& placed = body.shapes.back();
+    body.bounding_radius =
+        std::max(body.bounding_radius, placed.pose.position.norm() + bounding_radius(placed.shape));
+  }
+  for (const SceneShape& shape : message.visuals) {
+    const auto& c = shape.color;
+    body.visuals.push_back({shape_of(shape), from_message(shape.pose), {{c.r, c.g, c.b, c.a}}, c.a > 0.0f});
+  }
+  return body;
+}
+
+}  // namespace
+
+mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
+                                                    const std_msgs::Header& header) {
+  mr_hand_interaction::SceneDescription message;
+  message.header = header;
+  message.name = scene.name;
+  message.model = std::string(configuration.contact_model.name);
+  message.gravity = vector_message(configuration.gravity.value_or(scene.gravity));
+  for (const Body& body : scene.bodies) {
+    SceneBody told;
+    told.name = body.name;
+    told.fixed = body.fixed;
+    told.pose = to_message(body.start);
+    told.static_friction = body.material.static_friction;
+    told.dynamic_friction = body.material.dynamic_friction;
+    for (const PlacedShape& placed : body.shapes)
+      told.shapes.push_back(shape_message(placed.shape, placed.pose));
+    for (const Visual& visual : body.visuals) {
+      told.visuals.push_back(shape_message(visual.shape, visual.pose));
+      const bool own = !visual.has_color && std::holds_alternative<Mesh>(visual.shape);
+      const auto& c = visual.rgba;
+      told.visuals.back().color.r = c[0], told.visuals.back().color.g = c[1];
+      told.visuals.back().color.b = c[2], told.visuals.back().color.a = own ? 0.0f : c[3];
+    }
+    message.bodies.push_back(std::move(told));
+  }
+  return message;
+}
+
+void SceneView::take(const mr_hand_interaction::SceneDescription& description) {
+  Scene scene;
+  scene.name = description.name;
+  scene.gravity = from_message(description.gravity);
+  for (const SceneBody& body : description.bodies) scene.bodies.push_back(body_of(body));
+  model_ = description.model;
+  scene_ = std::move(scene);
+  state_ = SimulationState();
+  for (const Body& body : scene_.bodies) state_.bodies.push_back(start_state(body));
+  state_.interactions.resize(scene_.bodies.size());
+  state_.hands.resize(kMaxHands);
+  result_ = FrameResult();
+}
+
+void SceneView::take(const mr_hand_interaction::ObjectStateArray& objects) {
+  for (const auto& object : objects.objects) {
+    const auto index = find_body(scene_, object.name);
+    if (!index) continue;
+    const auto i = static_cast<std::size_t>(*index);
+    state_.bodies[i].pose = from_message(object.pose);
+    state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
+  }
+}
+
+void SceneView::take(const mr_hand_interaction::ContactArray& contacts) {
+  result_.contacts.clear();
+  for (const auto& message : contacts.contacts) {
+    const auto body = find_body(scene_, message.object);
+    std::size_t hand = 0;
+    while (hand < result_.rendered.size() && result_.rendered[hand].hand.id != message.hand_id) ++hand;
+    const int capsule = message.finger == mr_hand_interaction::Phalanx::PALM
+                            ? kPalm
+                            : capsule_index(message.finger, message.bone);
+    if (!body || hand >= result_.rendered.size() || capsule > kPalm) continue;
+    Contact contact;
+    contact.key.body = static_cast<std::uint16_t>(*body);
+    contact.key.hand = static_cast<std::uint8_t>(hand);
+    contact.key.capsule = static_cast<std::uint8_t>(capsule);
+    contact.point = from_message(message.position);
+    contact.normal = from_message(message.normal);
+    contact.depth = message.depth;
+    contact.impulse = from_message(message.impulse);
+    contact.force = from_message(message.force);
+    contact.friction =
+        message.phase == mr_hand_interaction::Contact::SLIPPING ? Friction::slipping : Friction::sticking;
+    contact.radius = result_.rendered[hand].hand.capsules[static_cast<std::size_t>(capsule)].radius;
+    result_.contacts.push_back(contact);
+  }
+}
+
+void SceneView::take_rendered(const mr_hand_interaction::HandFrame& message) {
+  const HandFrame frame = from_message(message);
+  result_.rendered.clear();
+  for (const Hand& hand : frame.hands) {
+    if (result_.rendered.size() == state_.hands.size()) break;
+    state_.hands[result_.rendered.size()].current = hand;
+    result_.rendered.push_back({hand, {}, {}});
+  }
+}
+
+void SceneView::take_tracked(const mr_hand_interaction::HandFrame& message) {
+  tracked_ = from_message(message).hands;
+}
+
+const FrameResult& SceneView::result() {
+  result_.tracked.clear();
+  for (std::size_t i = 0; i < result_.rendered.size(); ++i) {
+    RenderedHand& rendered = result_.rendered[i];
+    note_touches(result_.contacts, static_cast<int>(i), rendered);
+    const auto tracked = std::find_if(tracked_.begin(), tracked_.end(),
+                                      [&](const Hand& hand) { return hand.id == rendered.hand.id; });
+    result_.tracked.push_back(tracked != tracked_.end() ? *tracked : rendered.hand);
+  }
+  return result_;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,132 @@
+#include "ros/scene_view.h"
+
+#include <map>
+#include <set>
+#include <utility>
+
+#include "ros/result_conversion.h"
+#include "shown_markers.h"
+
+namespace mrhi {
+namespace {
+
+using Key = std::pair<std::string, int>;
+
+std::map<Key, Marker> by_key(const MarkerArray& array) {
+  std::map<Key, Marker> markers;
+  for (const Marker& marker : array.markers)
+    if (marker.action == Marker::ADD) markers[{marker.ns, marker.id}] = marker;
+  return markers;
+}
+
+double apart(const geometry_msgs::Point& a, const geometry_msgs::Point& b) {
+  return std::hypot(std::hypot(a.x - b.x, a.y - b.y), a.z - b.z);
+}
+
+void expect_same(const Marker& a, const Marker& b) {
+  constexpr double kFloat = 1e-6;  // radii are floats in messages [m]
+  const std::string what = a.ns + " " + std::to_string(a.id);
+  EXPECT_EQ(a.type, b.type) << what;
+  EXPECT_EQ(a.text, b.text) << what;
+  EXPECT_EQ(a.mesh_resource, b.mesh_resource) << what;
+  EXPECT_LT(apart(a.pose.position, b.pose.position), kFloat) << what;
+  EXPECT_NEAR(a.scale.x, b.scale.x, kFloat) << what;
+  EXPECT_NEAR(a.color.a, b.color.a, 1e-5f) << what;
+  ASSERT_EQ(a.points.size(), b.points.size()) << what;
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    ASSERT_LT(apart(a.points[i], b.points[i]), kFloat) << what;
+  ASSERT_EQ(a.colors.size(), b.colors.size()) << what;
+  for (std::size_t i = 0; i < a.colors.size(); ++i)
+    ASSERT_NEAR(a.colors[i].g, b.colors[i].g, 1e-3f) << what;  // of light on normals of those places
+}
+
+TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
+  Shown shown;
+  shown.see_hands(2);
+  shown.result.tracked[1].id = 12345;
+  shown.result.rendered[1].hand.id = 12345;
+  shown.state.hands[1].current.id = 12345;
+  shown.state.hands[0].current.id = shown.result.rendered[0].hand.id;
+  shown.result.tracked[0].capsules[static_cast<std::size_t>(capsule_index(1, 3))].end.z() -= 0.01;
+  shown.state.bodies[0].pose.position = {0.1, 0.2, 0.3};
+  shown.state.interactions.resize(kMaxHands * shown.scene.bodies.size());
+  shown.state.interactions[0].level = InteractionLevel::grasp;
+  for (const int capsule : {capsule_index(1, 3), kPalm}) {
+    Contact contact;
+    contact.key.hand = 1;
+    contact.key.capsule = static_cast<std::uint8_t>(capsule);
+    contact.point = shown.result.rendered[1].hand.capsules[static_cast<std::size_t>(capsule)].end;
+    contact.radius = shown.result.rendered[1].hand.capsules[static_cast<std::size_t>(capsule)].radius;
+    contact.depth = 0.004;
+    contact.force = {0.3, 0.0, -2.0};
+    contact.impulse = capsule == kPalm ? Vector3(0, 0, -0.05) : Vector3::Zero();
+    shown.result.contacts.push_back(contact);
+    auto& rendered = shown.result.rendered[1];
+    rendered.touching[static_cast<std::size_t>(capsule)] = true;
+    rendered.pressed[static_cast<std::size_t>(capsule)] = {2.0, contact.point};
+  }
+  shown.update();
+
+  std_msgs::Header header;
+  header.stamp = ros::Time(shown.now);
+  SceneView view;
+  view.take(scene_message(shown.scene, shown.configuration, header));
+  view.take_rendered(rendered_message(shown.result, header));
+  view.take_tracked(tracked_message(shown.result, header));
+  view.take(contacts_message(shown.scene, shown.result, shown.state, header));
+  view.take(objects_message(shown.scene, shown.state, header));
+  Markers markers(view.scene(), caption(view.model(), view.scene().gravity));
+  MarkerArray array;
+  markers.note(view.result(), header.stamp);
+  markers.update(view.result(), view.state(), header, array);
+
+  const auto here = by_key(shown.array), there = by_key(array);
+  EXPECT_EQ(here.size(), there.size());
+  for (const auto& [key, marker] : here) {
+    EXPECT_EQ(there.count(key), 1u) << key.first << " " << key.second;
+    if (there.count(key) == 0) continue;
+    if (key.first != "text" && key.first != "shadows") expect_same(marker, there.at(key));
+  }
+  const Marker& text = there.at({"text", 0});
+  EXPECT_EQ(text.text, here.at({"text", 0}).text);
+  EXPECT_NE(text.text.find("holding: object"), std::string::npos) << text.text;
+  std::set<std::string> layers;
+  for (const auto& [key, marker] : there) layers.insert(key.first);
+  EXPECT_EQ(layers,
+            (std::set<std::string>{"capsules", "contacts", "fixtures", "forces", "friction", "ghost", "hand",
+                                   "impacts", "newtons", "objects", "shadows", "share", "text"}));
+}
+
+TEST(SceneView, refuses_shapes_that_are_none_and_keeps_what_it_had) {
+  Shown shown;
+  auto message = scene_message(shown.scene, shown.configuration, {});
+  SceneView view;
+  view.take(message);
+  for (const int wrong : {0, 1}) {
+    auto bad = message;
+    if (wrong == 0) bad.bodies[0].shapes[0].type = 9;
+    if (wrong == 1) bad.bodies[0].shapes[0].size.pop_back();
+    EXPECT_THROW(view.take(bad), std::invalid_argument);
+    EXPECT_EQ(view.scene().bodies.size(), message.bodies.size());
+  }
+}
+
+// 5 kB a frame and hand is what goes over a network.
+TEST(SceneView, a_frame_of_one_hand_that_holds_with_five_fingers_is_less_than_5_kB) {
+  Shown shown;
+  shown.see_hands(1);
+  for (int i = 0; i < 10; ++i) {
+    shown.result.contacts.emplace_back();
+    shown.result.contacts.back().key.capsule = static_cast<std::uint8_t>(capsule_index(i / 2, 3));
+  }
+  std_msgs::Header header;
+  header.frame_id = "world";
+  const auto bytes = [](const auto& message) { return ros::serialization::serializationLength(message); };
+  EXPECT_LT(bytes(rendered_message(shown.result, header)) + bytes(tracked_message(shown.result, header)) +
+                bytes(contacts_message(shown.scene, shown.result, shown.state, header)) +
+                bytes(objects_message(shown.scene, shown.state, header)),
+            5000u);
+}
+
+}  // namespace
+}  // namespace mrhi
