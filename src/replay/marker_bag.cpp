@@ -121,11 +121,12 @@ void MarkerBag::Impl::write_run(const Simulation& simulation) {
   }
   bag.write("/contacts", header.stamp,
             contacts_message(simulation.scene(), result, simulation.state(), header));
-  bag.write("/objects", header.stamp, objects_message(simulation.scene(), simulation.state(), header));
+  bag.write("/objects", header.stamp,
+            objects_message(simulation.scene(), result, simulation.state(), header));
   bag.write("/rendered_hands", header.stamp, rendered_message(result, header));
   bag.write("/tracked_hands", header.stamp, tracked_message(result, header));
   markers->note(result, header.stamp);
-  const double since = (header.stamp - shown).toSec();
+  const double since = seconds_between(shown, header.stamp);
   if (since >= 0.0 && since < (1.0 - 1e-6) / rate) return;
   shown = header.stamp;
   visualization_msgs::MarkerArray array;

@@ -111,7 +111,7 @@ void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& 
     const double impulse = contact.impulse.norm();
     if (impulse < kLeastImpulse) continue;
     const auto known = std::find_if(impacts_.begin(), impacts_.end(), [&](const Impact& impact) {
-      return impact.key.same_pair(contact.key) && (stamp - impact.last).toSec() < 0.5 * kSeen;
+      return impact.key.same_pair(contact.key) && seconds_between(impact.last, stamp) < 0.5 * kSeen;
     });
     if (known != impacts_.end()) {
       known->last = stamp;
@@ -123,7 +123,7 @@ void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& 
 }
 
 void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, MarkerLayer& layer) {
-  const auto age = [&](const Impact& impact) { return (now - impact.begin).toSec(); };
+  const auto age = [&](const Impact& impact) { return seconds_between(impact.begin, now); };
   impacts_.erase(
       std::remove_if(impacts_.begin(), impacts_.end(),
                      [&](const Impact& impact) { return age(impact) < 0.0 || age(impact) >= kSeen; }),
