@@ -5,6 +5,7 @@
 
 #include "../simulation/contact_phase.h"
 #include "marker_layers.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 namespace {

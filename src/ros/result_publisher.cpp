@@ -163,7 +163,7 @@ void ResultPublisher::publish_markers(const FrameResult& result, const std_msgs:
   if (marker_publisher_.getNumSubscribers() == 0) return;
   markers_->note(result, header.stamp);
   const ros::WallTime now = ros::WallTime::now();
-  if ((now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
+  if (ros::WallDuration(now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
   markers_shown_ = now;
   // Nobody in this process still has the one before: its memory serves again.
   if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
