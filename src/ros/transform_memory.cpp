@@ -1,6 +1,5 @@
 #include "transform_memory.h"
 
-
 #include <optional>
 
 #include "../text/text.h"

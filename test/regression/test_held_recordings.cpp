@@ -126,11 +126,12 @@ Outcome hold(const HeldObject& held, const std::string& file, double gravity) {
   Hand before;
   double time_before = 0.0;
   for (const JointsFrame& joints : used_frames(held, file)) {
-    const SourceFrame source = placed(joints, default_device_mount());
+    std::vector<std::string> left_out;
+    const std::optional<HandFrame> frame = complete_frame(joints, default_device_mount(), left_out);
     const double time = to_seconds(joints.stamp);
     if (time >= held.settled && !grip) heavy.set_state(weightless.state());
     Simulation& simulation = time >= held.settled ? heavy : weightless;
-    if (!source.frame || simulation.advance(*source.frame) != Rejection::none) continue;
+    if (!frame || simulation.advance(*frame) != Rejection::none) continue;
     const FrameResult& result = simulation.result();
     const BodyState& object = simulation.state().bodies[0];
     note_events(result, time, held.opens, outcome);
