@@ -74,7 +74,7 @@ TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
   view.take_rendered(rendered_message(shown.result, header));
   view.take_tracked(tracked_message(shown.result, header));
   view.take(contacts_message(shown.scene, shown.result, shown.state, header));
-  view.take(objects_message(shown.scene, shown.state, header));
+  view.take(objects_message(shown.scene, shown.result, shown.state, header));
   Markers markers(view.scene(), caption(view.model(), view.scene().gravity));
   MarkerArray array;
   markers.note(view.result(), header.stamp);
@@ -124,7 +124,7 @@ TEST(SceneView, a_frame_of_one_hand_that_holds_with_five_fingers_is_less_than_5_
   const auto bytes = [](const auto& message) { return ros::serialization::serializationLength(message); };
   EXPECT_LT(bytes(rendered_message(shown.result, header)) + bytes(tracked_message(shown.result, header)) +
                 bytes(contacts_message(shown.scene, shown.result, shown.state, header)) +
-                bytes(objects_message(shown.scene, shown.state, header)),
+                bytes(objects_message(shown.scene, shown.result, shown.state, header)),
             5000u);
 }
 
