@@ -59,11 +59,15 @@ bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
   });
 }
 
-/// True if the hand overlapped the body as it appeared, and has not left it since.
+/// True if all of the hand that touches the body overlapped it as hand or body appeared.
 bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) {
-  return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
-    return contact.ignored && contact.key.hand == slot && contact.key.body == body;
-  });
+  bool overlaps = false;
+  for (const Contact& contact : state.contacts) {
+    if (contact.key.hand != slot || contact.key.body != body || contact.depth <= 0.0) continue;
+    if (!contact.ignored) return false;
+    overlaps = true;
+  }
+  return overlaps;
 }
 
 /// Opening by which the hand releases the body: `fraction` of the way to where both sides just touch it [m].

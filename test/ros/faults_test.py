@@ -88,7 +88,7 @@ class Seen:
         self.counts = {"hands": 0, "objects": 0, "markers": 0}
         self.subscribers = [rospy.Subscriber("rendered_hands", HandFrame, self.take_hands),
                             rospy.Subscriber("objects", ObjectStateArray, lambda _: self.count("objects")),
-                            rospy.Subscriber("view/markers", MarkerArray, lambda _: self.count("markers"))]
+                            rospy.Subscriber("markers", MarkerArray, lambda _: self.count("markers"))]
 
     def count(self, what):
         self.counts[what] += 1

@@ -16,7 +16,7 @@ from standing_clock import StandingClock  # noqa: E402
 from waiting import wait_until  # noqa: E402
 
 STEP = 0.002  # s, of the node that tells by step
-MASS = 0.1  # kg, of the cube
+MASS = 0.1 * 0.02 / (0.1 + 0.02)  # kg, of the cube and a fingertip against each other
 
 
 LEVER = -9.81 * 0.1 * 0.04  # N m: weight of the lever times its arm

@@ -155,7 +155,8 @@ class InteractionTest(unittest.TestCase):
         self.assertEqual(touches[0].phase, Contact.IMPULSE)
         self.assertAlmostEqual(touches[0].position.x, FACE, delta=SPEED * PERIOD)
         impulse = sum(touch.impulse.x for touch in touches)
-        self.assertGreater(impulse, 0.5 * 0.1 * SPEED)
+        both = 0.1 * 0.02 / (0.1 + 0.02)  # kg, of the cube and a fingertip against each other
+        self.assertGreater(impulse, 0.5 * both * SPEED)
 
     def test_events_come_in_order(self):
         self.push()

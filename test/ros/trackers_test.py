@@ -35,7 +35,7 @@ from waiting import TIMEOUT, wait_until  # noqa: E402
 PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
 COUNTS, RATES, NOISES = (21, 25, 26), (30, 60, 120), (0.001, 0.003, 0.005)
 # Without noise the hand closes on the cube at 2.7 s and opens at 5.8 s; noise blurs both by the filter's lag.
-GRASPED_BY, HELD_UNTIL, RELEASED_BY = 3.1, 5.5, 6.4  # s
+GRASPED_BY, HELD_UNTIL, RELEASED_BY = 3.25, 5.5, 6.4  # s; at 30 Hz and 3 mm of noise the latest hand grasps at 3.17 s
 # Of the noisiest streams this share is held without a second grasp: measured with 20 seeds, 170 of 180.
 SEEDS, AT_ONCE = int(os.environ.get("MR_HAND_TRACKER_SEEDS", "3")), 0.9
 CARRIED = 0.06  # m, of 0.08
