@@ -155,8 +155,7 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
       const auto body = static_cast<std::size_t>(near.body);
       const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
-      if (!appeared && !overlaps_since_it_appeared(slot, body, state) && !scene_.bodies[body].fixed &&
-          !is_known(slot, body, state))
+      if (!appeared && !scene_.bodies[body].fixed && !is_known(slot, body, state))
         look_at(slot, near.body, state);
     }
   }
@@ -261,7 +260,8 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   const auto b = static_cast<std::size_t>(body);
   const auto look = closing_hand_.look_at(state.hands[slot], body, state.bodies[b].pose);
-  if (look.opposed && look.opposed->depth > kPadDepth) take(slot, body, *look.opposed, state);
+  if (look.opposed && look.opposed->depth > kPadDepth && !overlaps_since_it_appeared(slot, b, state))
+    take(slot, body, *look.opposed, state);
   if (look.closing != 0 && scene_.bodies[b].flies) closing_.push_back({slot, b});
 }
 
