@@ -27,6 +27,8 @@ PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount"
 
 
 class CommandsTest(unittest.TestCase):
+    maxDiff = None
+
     @classmethod
     def setUpClass(cls):
         rospy.init_node("commands_test")

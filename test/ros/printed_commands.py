@@ -36,6 +36,7 @@ EXCEPTED = (  # what the command begins with, and why it is not run here
     ("roslaunch benchmark/latency", "measures the machine; built by name alone"),
     ("roslaunch --wait .*role:=view|roslaunch .*role:=view", "multi_machine.test runs it"),
     ("roslaunch .*address:=192", "has an address of the user's machine; web.test runs it with this machine's own"),
+    ("roslaunch mr_hand_interaction webcam.launch", "needs a webcam and MediaPipe; mediapipe_bridge.test runs the bridge"),
     ("real_grasps --help", "as rosrun, above"),
     ("benchmark/", "need recordings or results; benchmark/real_grasps/test has its own"),
     ("snakemake", "test_workflow runs it"),
@@ -229,7 +230,7 @@ class User:
             arguments.append("rviz:=false")
         nodes = [node for node in self.nodes_of(file, arguments) if (node.launch_prefix or "").split()[2:3] not in
                  (["message"], ["bag_without"])]
-        names = {"/" + node.name for node in nodes}
+        names = {node.namespace + node.name for node in nodes}
         assert names, command
         master = rosgraph.Master("/printed_commands")
 
