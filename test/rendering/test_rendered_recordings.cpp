@@ -62,8 +62,9 @@ int seeds() {
   return set != nullptr ? std::atoi(set) : 2;
 }
 
-// The way back from beyond a wall, 0.8 mm a frame, takes longer than 1.5 s. Measured: 67 mm in lm_grab_release, which a
-// body carries farther beyond one since a released body exerts no force; 59 mm or less in the others.
+// The way back from beyond a wall, 0.8 mm a frame, takes longer than 1.5 s. Measured: 67 mm in
+// lm_grab_release, which a body carries farther beyond one since a released body exerts no force; 59 mm or
+// less in the others.
 constexpr double kStillAside = 0.07;  // [m]
 
 TEST(RenderedAtRandom, is_one_hand_outside_everything) {
