@@ -16,7 +16,9 @@ struct LeapHumanTracker {
     TrackedHands tracked;
     tracked.header.frame_id = frame.frame_id;
     tracked.header.seq = frame.sequence;
-    tracked.header.stamp = to_ros_time(frame.joints.stamp);
+    // As it came: what is no stamp is refused where frames are corrected.
+    tracked.header.stamp.sec = static_cast<std::uint32_t>(frame.joints.stamp / 1'000'000'000);
+    tracked.header.stamp.nsec = static_cast<std::uint32_t>(frame.joints.stamp % 1'000'000'000);
     tracked.hands = std::move(frame.joints.hands);
     tracked.tells_sides = true;
     return tracked;
