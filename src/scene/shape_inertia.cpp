@@ -38,6 +38,7 @@ Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
 
 bool may_overlap(const std::vector<PlacedShape>& shapes) {
   std::vector<Eigen::AlignedBox3d> boxes;
+  boxes.reserve(shapes.size());
   for (const PlacedShape& shape : shapes) boxes.push_back(box_of(shape));
   for (std::size_t a = 0; a < boxes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)

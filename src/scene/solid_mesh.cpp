@@ -10,6 +10,8 @@
 namespace mrhi {
 namespace {
 
+const char* const kNoVolume = "has no volume; allowed for collision: a surface around a volume";
+
 using Triangle = std::array<int, 3>;
 using Triangles = std::vector<Triangle>;
 
@@ -223,6 +225,7 @@ struct Solid {
 /// The largest first: what is within another one is its cavity if it is turned against it, else a part of it.
 std::vector<Solid> nested(const TriangleMesh& mesh, std::vector<Triangles> parts) {
   std::vector<std::pair<double, Triangles*>> by_size;
+  by_size.reserve(parts.size());
   for (Triangles& part : parts) by_size.emplace_back(-std::abs(volume_of(mesh, part)), &part);
   std::stable_sort(by_size.begin(), by_size.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -318,7 +321,7 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     if (are_solid(mesh, parts)) return put(parts, mesh), std::vector<std::string>{};
   }
   const double extent = extent_of(mesh, mesh.triangles);
-  if (!(extent > 0.0)) throw NoVolume("has no volume; allowed for collision: a surface around a volume");
+  if (!(extent > 0.0)) throw NoVolume(kNoVolume);
   TriangleMesh best = mesh;
   for (const double seam : kSeams) {
     TriangleMesh welded = mesh;
@@ -336,7 +339,15 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     return put(parts, mesh), std::vector<std::string>{};
   }
   mesh = best;
-  return put_with_hull(parts_of(mesh.triangles), mesh);
+  std::vector<std::string> warnings = put_with_hull(parts_of(mesh.triangles), mesh);
+  const auto has_area = [&](const Triangle& t) {
+    const auto corner = [&](std::size_t i) -> const Vector3& {
+      return mesh.vertices[static_cast<std::size_t>(t[i])];
+    };
+    return (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 0.0;
+  };
+  if (std::none_of(mesh.triangles.begin(), mesh.triangles.end(), has_area)) throw NoVolume(kNoVolume);
+  return warnings;
 }
 
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes) {

@@ -129,7 +129,8 @@ Closing narrowest(const Body& body, const Surface& surface) {
     for (int i = 0; i < 2 * kTurns; ++i) {
       Matrix3 axes;
       axes.col(1) = i % 2 == 0 ? along : Vector3(-along);
-      axes.col(2) = Eigen::AngleAxisd(2.0 * M_PI * (i / 2) / kTurns, along) * side;
+      const int turn = i / 2;
+      axes.col(2) = Eigen::AngleAxisd(2.0 * M_PI * turn / kTurns, along) * side;
       axes.col(0) = axes.col(1).cross(axes.col(2));
       auto found = closing(surface, axes);
       if (!found) continue;

@@ -4,7 +4,6 @@ import asyncio
 import csv
 import glob
 import json
-import math
 import os
 import signal
 import socket
@@ -14,26 +13,23 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 import urllib.request
 
 import aiohttp
 import numpy
 import rosbag
-import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose, PoseArray
 from sensor_msgs.msg import PointCloud
 from tf2_msgs.msg import TFMessage
 
-from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
+from mr_hand_interaction.msg import InteractionEvent, ObjectStateArray
 from mr_hand_interaction.srv import DeleteObject, SpawnObject, SpawnObjectRequest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web")]
-import doors  # noqa: E402
 import emulated_headset  # noqa: E402
 from launching import Launch  # noqa: E402
 from tracker_hands import joints, program, recording  # noqa: E402

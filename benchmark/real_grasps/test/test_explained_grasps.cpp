@@ -187,8 +187,8 @@ void keep_fingers_closed(const Setting& setting, Tally& tally) {
   }
 }
 
-// Of more than 20 cubes and of 17 spheres. Where it is not so, fingers went through the body and it is out before they open for
-// good.
+// Of more than 20 cubes and of 17 spheres. Where it is not so, fingers went through the body and it is out
+// before they open for good.
 TEST(ExplainedGrasps, WhatIsLetGoByAHandThatOpensStaysInOneThatDoesNot) {
   MRHI_NEED_RECORDINGS(testing::recordings());
   for (const Setting& setting : {Setting{{"cube", Kind::pinch, false, 0.04, 0.1}, 0.8, true},
