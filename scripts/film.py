@@ -158,6 +158,12 @@ def focus_on(shown):
     return middle, 0.42 + max(high - low for low, high in spans)
 
 
+def up_to_first_hand(shown):
+    """An empty scene has too few colours to tell that rviz has drawn it."""
+    first = next((k for k, (_, topic, message) in enumerate(shown) if topic == "rendered_hands" and message.hands), 0)
+    return shown[:first + len(TOPICS)]
+
+
 def draw(scene, begin, shown, options, folder, focus=None):
     """Files of the pictures, one after the other."""
     stage, files = Stage(TOPICS), []
@@ -167,7 +173,7 @@ def draw(scene, begin, shown, options, folder, focus=None):
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            wait_for_rviz(stage, shown[:len(TOPICS)], folder, rviz)
+            wait_for_rviz(stage, up_to_first_hand(shown), folder, rviz)
             stage.clear()
             since = 0.0
             for picture in range(int(options.seconds * options.rate)):

@@ -27,6 +27,7 @@ POSES = {"scene": SceneDescription, "rendered_hands": HandFrame, "tracked_hands"
 STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
 DRAWN = 20.0  # s; by then a picture has
 BETWEEN = 0.1  # s, of two grabs that are to be the same
+TRIES = 10  # grabs of a scene until it is shown once more from its beginning
 TICKS = ((0, 255, 0), (255, 0, 255))  # of the corner that tells one picture from the next
 
 
@@ -201,8 +202,11 @@ def wait_for_rviz(stage, shown, folder, process):
     while process.poll() is None and time.monotonic() < deadline:
         if stage.is_watched():
             stage.show(shown)
-            grab(file)
-            if has_scene(file):
-                return
+            for _ in range(TRIES):  # hands that are not sent again pass while rviz draws
+                time.sleep(BETWEEN)
+                stage.show_again()
+                grab(file)
+                if has_scene(file):
+                    return
         time.sleep(0.5)
     raise RuntimeError("rviz has not started")

@@ -196,8 +196,7 @@ fast as the machine goes; needs no ROS master.
   --markers RATE            markers.bag too: the markers of a live run at this rate [Hz], for rviz and other viewers, and for
                             each frame the hands, objects and contacts that rviz's Interaction display draws from
   --marker-frames FRAME,... markers.bag of these frames alone, by their numbers in frames.csv
-  --film FILE.webp|FILE.mp4 what rviz shows of the run as a film (not yet tried on all machines); needs rviz, Xvfb,
-                            ImageMagick, and webp or ffmpeg
+  --film FILE.webp|FILE.mp4 what rviz shows of the run as a film; needs rviz, Xvfb, ImageMagick, and webp or ffmpeg
   --compare DIR DIR         scripts/compare: when and where the objects of two runs part, and by how much, and whether the
                             bits are the same
   --tolerance METRES,RADIANS

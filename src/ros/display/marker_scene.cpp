@@ -55,6 +55,8 @@ Ogre::MaterialPtr vertex_colour_material(bool blended, bool both_sides) {
   if (blended) {
     material->setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
     material->setDepthWriteEnabled(!both_sides);
+    // Ogre draws what writes depth among the solid, where it would hide what lies behind it.
+    material->getTechnique(0)->getPass(0)->setTransparentSortingForced(true);
   }
   return material;
 }
