@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """interaction_node while it runs: objects that come and go, parameters that change, an object moved by the mouse."""
+import math
 import os
+import struct
 import sys
 import tempfile
+import threading
 import unittest
 
 import rospkg
@@ -44,6 +47,24 @@ class Viewer:
 
     def objects(self):
         return sum(layer == "objects" for layer, _ in self.shown)
+
+
+BALL = '<robot name="ball"><link name="ball"><collision><geometry><mesh filename="file://%s"/></geometry></collision></link></robot>'
+
+
+def write_ball(path, rows, columns, radius=0.04):
+    def point(row, column):
+        up, turn = math.pi * row / rows, 2.0 * math.pi * (column % columns) / columns
+        return radius * math.sin(up) * math.cos(turn), radius * math.sin(up) * math.sin(turn), radius * math.cos(up)
+    triangles = []
+    for row in range(rows):
+        for column in range(columns):
+            a, b, c, d = point(row, column), point(row + 1, column), point(row + 1, column + 1), point(row, column + 1)
+            triangles += [(a, b, c)] * (row < rows - 1) + [(a, c, d)] * (row > 0)
+    with open(path, "wb") as stream:
+        stream.write(bytes(80) + struct.pack("<I", len(triangles)))
+        for corners in triangles:
+            stream.write(struct.pack("<12fH", 0, 0, 0, *(number for corner in corners for number in corner), 0))
 
 
 class LiveChangesTest(unittest.TestCase):
@@ -108,6 +129,27 @@ class LiveChangesTest(unittest.TestCase):
         self.clock.go_on(INSTANT)
         self.assertNotIn("box", self.objects)
         wait_until(lambda: self.viewer.objects() == 1, "its marker gone")
+
+    def test_hands_do_not_wait_while_a_large_mesh_is_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = os.path.join(folder, "ball.stl")
+            write_ball(mesh, 160, 303)
+            answers = []
+            request = SpawnUrdfRequest(urdf=BALL % mesh)
+            request.pose.position.y, request.pose.position.z = 0.3, 0.3
+            caller = threading.Thread(target=lambda: answers.append(self.spawn_urdf(request)))
+            caller.start()
+            answered = 0
+            while not answers:
+                self.hands.publish(frame(self.clock.next_stamp(PERIOD), hand(-0.3)))
+                self.clock.keep_up()
+                answered += 1
+            caller.join()
+            self.assertTrue(answers[0].success, answers[0].message)
+            self.clock.go_on(INSTANT)
+            self.assertIn("ball", self.objects)
+            # Reading it takes a third of a second or longer, so that a server that waits answers one frame, or two.
+            self.assertGreater(answered, 5)
 
     def test_with_joints_a_urdf_comes_and_goes_and_the_world_is_saved_as_it_is(self):
         with open(os.path.join(rospkg.RosPack().get_path("mr_hand_interaction"), "config/scenes/tongs.urdf")) as urdf:
