@@ -16,7 +16,9 @@
 #include <string>
 #include <vector>
 
+#include "../text/safe_yaml.h"
 #include "../text/text.h"
+#include "../text/yaml_values.h"
 #include "between_frames.h"
 #include "input_log.h"
 #include "input_statistics.h"
@@ -48,6 +50,20 @@ SceneOptions options_of(const Configuration& configuration) {
 
 std::string without_slash(const std::string& frame_id) {
   return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
+}
+
+/// One parameter; of a request without a name, all of the map that its value is.
+Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& request) {
+  if (!request.name.empty()) return {{request.name, request.value}};
+  return read_yaml<ParameterError>("value", [&] {
+    const YAML::Node map = load_yaml("value", request.value);
+    if (!map.IsMap() || map.size() == 0)
+      throw ParameterError("value: " + text::one_line(yaml_text(map), 60) +
+                           " is not allowed without a name; allowed: a map of names and values");
+    Tuning::Values values;
+    for (const auto& entry : map) values.emplace_back(yaml_text(entry.first), yaml_text(entry.second));
+    return values;
+  });
 }
 
 /// An object's pose is in tf by its name: with a name of these a tracker would go where the object goes.
@@ -373,9 +389,14 @@ bool InteractionServer::Impl::remove(const std::string& name,
 bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Request& request,
                                   mr_hand_interaction::SetParameter::Response& response) {
   return answer(response, [&] {
-    change_parameters({{request.name, request.value}});
+    const Tuning::Values values = values_of(request);
+    change_parameters(values);
     tuning_.show();
-    return request.name + " is " + parameter_text(live_.simulation().configuration(), request.name);
+    std::string message;
+    for (const auto& [name, value] : values)
+      message += (message.empty() ? "" : ", ") + name + " is " +
+                 parameter_text(live_.simulation().configuration(), name);
+    return message;
   });
 }
 

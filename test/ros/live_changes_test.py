@@ -3,6 +3,7 @@
 import math
 import os
 import struct
+import subprocess
 import sys
 import tempfile
 import threading
@@ -209,6 +210,28 @@ class LiveChangesTest(unittest.TestCase):
             self.assertIn(name, answer.message)
             self.assertNotIn("\n", answer.message)
         self.assertTrue(self.set("material/static_friction", "0.8").success)
+
+    def test_several_parameters_change_at_once_or_not_at_all(self):
+        def run(*words):
+            done = subprocess.run(["rosrun", "mr_hand_interaction", "set", "--node", "/interaction_node"] + list(words), timeout=60,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+            return done.returncode, done.stdout
+        status, said = run("material/static_friction", "0.2")
+        self.assertEqual(status, 1)  # the dynamic friction is 0.6
+        self.assertIn("both set at once", said)
+        friction = ("material/static_friction", "0.2", "material/dynamic_friction", "0.1")
+        status, said = run(*friction, "step", "-1")
+        self.assertEqual(status, 1)
+        self.assertIn("step", said)
+        self.assertEqual(self.set("material/dynamic_friction", "0.6").message, "material/dynamic_friction is 0.6")
+        self.assertEqual(run(*friction),
+                         (0, "material/static_friction is 0.2, material/dynamic_friction is 0.1\n"))
+        self.assertEqual(run("gravity", "[0, 0, -1.5]", "filter/type", "none")[0], 0)
+        for words in (("step",), ("step", "0.001", "filter/type"), ("step", "0.001", "step", "0.002"), ("step", "[")):
+            status, said = run(*words)
+            self.assertEqual((status, said.count("\n")), (2, 1), said)
+        self.assertEqual(run("material/static_friction", "0.8", "material/dynamic_friction", "0.6", "filter/type",
+                             "constant_velocity", "gravity", "[0, 0, 0]")[0], 0)
 
     def test_dynamic_reconfigure_changes_what_flies_without_a_jump(self):
         client = Client("interaction_node/tune", timeout=30.0)
