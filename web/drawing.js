@@ -90,12 +90,23 @@ function line(shape, Kind) {
   return new Kind(geometry, new THREE.LineBasicMaterial({color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a}));
 }
 
-// A visualization_msgs/Marker; null for a type that nobody sends.
+function capsule([radius, length]) {
+  const steps = 16, outline = [];
+  for (let i = 0; i < steps; ++i) {
+    const up = Math.PI * (i / (steps - 1) - 0.5);
+    outline.push(new THREE.Vector2(radius * Math.cos(up), radius * Math.sin(up) + (i < steps / 2 ? -0.5 : 0.5) * length));
+  }
+  return new THREE.LatheBufferGeometry(outline, 24).rotateX(Math.PI / 2);
+}
+
+// A visualization_msgs/Marker or a capsule; null for a type that nobody sends.
 function drawn(shape) {
   let object = null;
   if (ROUND[shape.type]) {
     object = new THREE.Mesh(ROUND[shape.type](), material(shape.color));
     object.scale.set(...shape.scale);
+  } else if (shape.type === 'capsule') {
+    object = new THREE.Mesh(capsule(shape.scale), material(shape.color));
   } else if (shape.type === 4) {
     object = line(shape, THREE.Line);
   } else if (shape.type === 5) {
@@ -275,6 +286,7 @@ export class Drawing {
         if (object) group.add(object);
       }
       group.visible = !body.free; // until it is known where it is
+      if (!body.free) place(group, ...length(body.pose.slice(0, 3)).toArray(), ...body.pose.slice(3));
       this.objects.add(group);
       this.bodies.set(body.id, group);
       if (body.free && this.poses.has(body.id)) this.move(this.poses.get(body.id));
