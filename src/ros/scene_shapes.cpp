@@ -92,6 +92,8 @@ MarkerArray scene_shapes(const Scene& scene, const Configuration& configuration,
     MarkerLayer layer(array, header, body.name, 0.0);
     const Pose frame = body.fixed ? body.start : Pose{};
     int id = 0;
+    // Where hands and headsets are tracked: for viewers that move with the operator.
+    if (body.is_operator) layer.add(id++, Marker::ARROW, body.link_in_body, Vector3::Zero(), color(0, 0, 0));
     for (const Visual& visual : body.visuals) add_visual(visual, frame, id++, layer);
     if (!body.visuals.empty()) continue;
     for (const PlacedShape& placed : body.shapes) add_visual({placed.shape, placed.pose}, frame, id++, layer);

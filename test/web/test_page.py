@@ -113,6 +113,30 @@ class PageTest(unittest.TestCase):
         self.wait(lambda: self.headset.run('return page.drawing.training.children.length') == 0, 'the end of a training')
         self.assertEqual(self.share(is_cube), 0.0)
 
+    def show_operator(self, x):
+        """With the frame of its hands at x, 0.4 m before its centre of mass, turned by a right angle about z."""
+        half = math.sqrt(0.5)
+        pose = types.SimpleNamespace(position=point(x + 0.4), orientation=point(z=half, w=half))
+        self.door.picture.take_objects(types.SimpleNamespace(
+            objects=[types.SimpleNamespace(name='operator', held=False, pose=pose)]))
+        self.door.changed()
+
+    def test_the_view_goes_with_the_operator_and_shows_its_speed(self):
+        self.show([marker(1), marker(0, name='operator', free=True, size=0.0, at=(0.0, 0.4, 0.0))])
+        self.show_operator(0.3)
+        self.wait(lambda: self.headset.run('return !document.getElementById("ride").hidden'), 'the button')
+        self.assertAlmostEqual(self.headset.run('return page.drawing.world.matrix.elements[12]'), 0.0)
+        self.press('ride')
+        # World's origin is 0.3 m behind the frame's, whose x is world's y: 0.3 m along y, which the page has upright as -z.
+        self.wait(lambda: abs(self.headset.run('return page.drawing.world.matrix.elements[14]') + 0.3) < 1e-3, 'the ride')
+        self.show_operator(0.4)
+        self.wait(lambda: self.headset.run('return document.getElementById("motion").textContent').endswith('/s'), 'the read-out')
+        self.enter('immersive-vr')
+        self.press('vignette')
+        apart = ('const a = page.placing.world, b = page.drawing.world.matrix;'
+                 'return Math.hypot(a.elements[12] - b.elements[12], a.elements[14] - b.elements[14])')
+        self.wait(lambda: abs(self.headset.run(apart) - 0.4) < 1e-3, 'the headset to go along')
+
     def mounts(self):
         return [pose for transforms in self.door.port.mounted for _, pose in transforms[-1:]]
 
