@@ -15,8 +15,9 @@ set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_stud
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
 
-foreach(node hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
-    merge_hands scene_shapes_node simulated_operator_node simulated_study check_scene)
+set(nodes hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
+  merge_hands simulated_operator_node simulated_study check_scene)
+foreach(node ${nodes})
   add_executable(${node} src/nodes/${node}.cpp)
   target_link_libraries(${node} ${PROJECT_NAME}_ros)
 endforeach()
@@ -25,9 +26,7 @@ install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
-    merge_hands scene_shapes_node simulated_operator_node simulated_study check_scene
-  RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(TARGETS ${nodes} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
 set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export

@@ -90,12 +90,23 @@ function line(shape, Kind) {
   return new Kind(geometry, new THREE.LineBasicMaterial({color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a}));
 }
 
-// A visualization_msgs/Marker; null for a type that nobody sends.
+function capsule([radius, length]) {
+  const steps = 16, outline = [];
+  for (let i = 0; i < steps; ++i) {
+    const up = Math.PI * (i / (steps - 1) - 0.5);
+    outline.push(new THREE.Vector2(radius * Math.cos(up), radius * Math.sin(up) + (i < steps / 2 ? -0.5 : 0.5) * length));
+  }
+  return new THREE.LatheBufferGeometry(outline, 24).rotateX(Math.PI / 2);
+}
+
+// A visualization_msgs/Marker or a capsule; null for a type that nobody sends.
 function drawn(shape) {
   let object = null;
   if (ROUND[shape.type]) {
     object = new THREE.Mesh(ROUND[shape.type](), material(shape.color));
     object.scale.set(...shape.scale);
+  } else if (shape.type === 'capsule') {
+    object = new THREE.Mesh(capsule(shape.scale), material(shape.color));
   } else if (shape.type === 4) {
     object = line(shape, THREE.Line);
   } else if (shape.type === 5) {
@@ -265,20 +276,17 @@ export class Vignette extends THREE.Mesh {
   }
 }
 
-const ARROW = 0; // a marker that nothing draws: the frame of an operator's hands in the operator's body
 const AVERAGED = 250; // over which speed and spin are read [ms]
 
 // The frame in which an operator's hands and headset are tracked, which moves.
 class Carrier {
-  constructor(group, pose) {
-    Object.assign(this, {group, inBody: new THREE.Group(), past: [], motion: {speed: 0, spin: 0}});
-    place(this.inBody, ...pose);
-    this.inBody.updateMatrix();
+  constructor(group, origin) {
+    Object.assign(this, {group, origin, past: [], motion: {speed: 0, spin: 0}});
   }
 
   get matrix() {
     this.group.updateMatrix();
-    return this.group.matrix.clone().multiply(this.inBody.matrix);
+    return this.group.matrix.clone().multiply(new THREE.Matrix4().makeTranslation(...this.origin.toArray()));
   }
 
   read(time) {
@@ -325,9 +333,10 @@ export class Drawing {
       for (const shape of body.shapes) {
         const object = drawn(shape);
         if (object) group.add(object);
-        if (shape.type === ARROW) this.carriers.push(new Carrier(group, shape.pose));
       }
+      if (body.carries) this.carriers.push(new Carrier(group, length(body.carries)));
       group.visible = !body.free; // until it is known where it is
+      if (!body.free) place(group, ...length(body.pose.slice(0, 3)).toArray(), ...body.pose.slice(3));
       this.objects.add(group);
       this.bodies.set(body.id, group);
       if (body.free && this.poses.has(body.id)) this.move(this.poses.get(body.id));

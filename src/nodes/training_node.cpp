@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/node.h"
 #include "../ros/training_server.h"
 
@@ -26,18 +24,9 @@ all that it needs. Publishes training/status and training/markers. Services: ~ne
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "training_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const mrhi::TrainingServer server(ros::NodeHandle(), private_node,
-                                      mrhi::read_training_parameters(private_node));
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    const mrhi::TrainingServer server(node, private_node, mrhi::read_training_parameters(private_node));
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "training_node", kUsage, body);
 }

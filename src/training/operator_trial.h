@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../synthetic/operator.h"
-#include "../synthetic/practised_person.h"
+#include "../synthetic/person.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/session.h"
