@@ -36,6 +36,7 @@ struct Making {
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
   void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
+  void operator()(const Restrain& restrain) const { simulation.restrain(restrain.on); }
   void operator()(const Reset&) const { simulation.reset(); }
   void operator()(const Pause&) const {}
 };
@@ -49,6 +50,7 @@ struct InWords {
     return text;
   }
   std::string operator()(const PlaceObject& place) const { return "place '" + place.name + "'"; }
+  std::string operator()(const Restrain& restrain) const { return restrain.on ? "restrain" : "release"; }
   std::string operator()(const Reset&) const { return "reset"; }
   std::string operator()(const Pause& pause) const { return pause.on ? "pause" : "go on"; }
 };
@@ -68,6 +70,7 @@ struct AsNode {
     node["place"] = place.name;
     node["pose"] = pose_node(place.pose);
   }
+  void operator()(const Restrain& restrain) { node["restrain"] = restrain.on ? "on" : "off"; }
   void operator()(const Reset&) { node["reset"] = "all"; }
   void operator()(const Pause& pause) { node["pause"] = pause.on ? "on" : "off"; }
 };
@@ -266,10 +269,11 @@ Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
     if (node["delete"]) return Delete{text_in(node, "delete")};
     if (node["set"]) return values_in(node["set"]);
     if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
+    if (node["restrain"]) return Restrain{text_in(node, "restrain") == "on"};
     if (node["reset"]) return Reset{};
     if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
     throw std::invalid_argument(
-        "recorded change: is not known; allowed: spawn, delete, set, place, reset, pause");
+        "recorded change: is not known; allowed: spawn, delete, set, place, restrain, reset, pause");
   });
 }
 

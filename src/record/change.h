@@ -51,12 +51,16 @@ struct PlaceObject {
   std::string name;
   Pose pose;  ///< of the centre of mass, in world
 };
+/// Restraints of operators hold, or release.
+struct Restrain {
+  bool on = true;
+};
 struct Reset {};
 /// Stops the clock; the simulation itself is not told.
 struct Pause {
   bool on = true;
 };
-using Change = std::variant<Spawn, Delete, SetParameters, PlaceObject, Reset, Pause>;
+using Change = std::variant<Spawn, Delete, SetParameters, PlaceObject, Restrain, Reset, Pause>;
 
 /// The one way by which the node and a replay make a change. Throws as LiveSimulation does, or SceneError;
 /// then nothing has changed.

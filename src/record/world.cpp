@@ -73,6 +73,7 @@ struct Following {
     set_parameters(simulation.simulation().configuration(), world);
   }
   void operator()(const PlaceObject&) const {}
+  void operator()(const Restrain&) const {}
   void operator()(const Reset&) const {}
   void operator()(const Pause&) const {}
 };

@@ -219,6 +219,13 @@ void InteractionServer::Impl::advertise_services(ros::NodeHandle& private_node) 
       advertise<std_srvs::SetBool>(
           private_node, "pause",
           [this](auto& request, auto& response) { return pause(request.data, response); }),
+      advertise<std_srvs::SetBool>(private_node, "restrain",
+                                   [this](auto& request, auto& response) {
+                                     return answer(response, [&] {
+                                       make(Restrain{request.data != 0});
+                                       return std::string(request.data != 0 ? "restrained" : "free");
+                                     });
+                                   }),
       advertise<SaveWorld>(private_node, "save",
                            [this](auto& request, auto& response) { return save(request.file, response); }),
       advertise<DeleteObject>(

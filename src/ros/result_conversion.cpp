@@ -42,6 +42,7 @@ mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const 
     object.twist.angular = vector_message(twist.angular);
     object.mass = body.mass;
     object.held = is_held(i, state);
+    object.is_operator = body.is_operator;
     const std::optional<Vector3> assist = assist_force(i, result);
     object.assisted = assist.has_value();
     object.assist_force = vector_message(assist.value_or(Vector3::Zero()));

@@ -171,7 +171,8 @@ void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
 
 void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) {
   std::set<std::string> names;
-  for (const auto& object : message.objects) names.insert(object.name);
+  for (const auto& object : message.objects)
+    if (!object.is_operator) names.insert(object.name);
   scene_.note_objects(std::move(names));
   fixed_frame_ = message.header.frame_id;
   seen_ = object_of(message, watched().name);

@@ -154,7 +154,7 @@ const Body& only_free_body(const Scene& scene) {
   const Body* found = nullptr;
   int free = 0;
   for (const Body& body : scene.bodies)
-    if (body.flies) found = &body, ++free;
+    if (body.flies && !body.is_operator) found = &body, ++free;
   if (free != 1)
     throw std::invalid_argument("scene '" + scene.name + "' has " + std::to_string(free) +
                                 " free objects; allowed: one, for a hand to grasp");
