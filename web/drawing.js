@@ -252,6 +252,53 @@ class ContactMark extends THREE.Group {
   }
 }
 
+// Darkens the rim of what an eye sees while the view moves: many people bear that better.
+export class Vignette extends THREE.Mesh {
+  constructor() {
+    super(new THREE.SphereBufferGeometry(0.1, 32, 20), new THREE.ShaderMaterial({
+      side: THREE.BackSide, transparent: true, depthTest: false, depthWrite: false, uniforms: {strength: {value: 0}},
+      vertexShader: 'varying vec3 ray; void main() { ray = position;' +
+        ' gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+      fragmentShader: 'uniform float strength; varying vec3 ray; void main() {' +
+        ' float off = acos(clamp(-normalize(ray).z, -1.0, 1.0));' +
+        ' gl_FragColor = vec4(0.0, 0.0, 0.0, strength * smoothstep(0.3, 0.75, off)); }',
+    }));
+    Object.assign(this, {frustumCulled: false, renderOrder: 2, matrixAutoUpdate: false, visible: false});
+  }
+
+  // At an eye; speed and spin of the view [m/s], [rad/s].
+  show(on, eye, {speed, spin}) {
+    const wanted = on ? Math.min(1, speed / 0.5 + spin / 0.5) : 0, {strength} = this.material.uniforms;
+    strength.value += 0.05 * (wanted - strength.value); // slowly: a rim that flickers is worse than none
+    this.visible = strength.value > 0.01;
+    this.matrix.copy(eye.matrixWorld);
+    this.matrixWorldNeedsUpdate = true;
+  }
+}
+
+const AVERAGED = 250; // over which speed and spin are read [ms]
+
+// The frame in which an operator's hands and headset are tracked, which moves.
+class Carrier {
+  constructor(group, origin) {
+    Object.assign(this, {group, origin, past: [], motion: {speed: 0, spin: 0}});
+  }
+
+  get matrix() {
+    this.group.updateMatrix();
+    return this.group.matrix.clone().multiply(new THREE.Matrix4().makeTranslation(...this.origin.toArray()));
+  }
+
+  read(time) {
+    const {position, quaternion} = this.group;
+    this.past.push({time, position: position.clone(), quaternion: quaternion.clone()});
+    while (this.past.length > 2 && time - this.past[0].time > AVERAGED) this.past.shift();
+    const [first] = this.past, seconds = (time - first.time) / 1000;
+    if (seconds <= 0) return;
+    this.motion = {speed: position.distanceTo(first.position) / seconds, spin: quaternion.angleTo(first.quaternion) / seconds};
+  }
+}
+
 const READ = ['instructions', 'timer', 'result']; // training's texts, which stand before rviz's eye
 
 export class Drawing {
@@ -267,6 +314,7 @@ export class Drawing {
     this.instructions = '';
     this.changed = false; // there is something else to be seen
     this.bodies = new Map();
+    this.carriers = []; // by operator; empty: hands are tracked in world
     this.poses = new Map(); // latest entries, also of what has no shape yet
     this.touching = false;
     this.frames = 0;
@@ -276,6 +324,7 @@ export class Drawing {
   scene({title, bodies}) {
     clear(this.objects);
     this.bodies.clear();
+    this.carriers = [];
     this.title = title;
     this.changed = true;
     for (const body of bodies) {
@@ -285,6 +334,7 @@ export class Drawing {
         const object = drawn(shape);
         if (object) group.add(object);
       }
+      if (body.carries) this.carriers.push(new Carrier(group, length(body.carries)));
       group.visible = !body.free; // until it is known where it is
       if (!body.free) place(group, ...length(body.pose.slice(0, 3)).toArray(), ...body.pose.slice(3));
       this.objects.add(group);
@@ -327,6 +377,7 @@ export class Drawing {
       if (mark.visible) mark.show(contacts[i]);
     });
     for (const entry of objects) this.move(entry);
+    for (const carrier of this.carriers) carrier.read(performance.now());
   }
 
   // Whether it is known where everything is.

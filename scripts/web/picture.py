@@ -114,6 +114,8 @@ class Picture:
             pose = _pose(body.pose)
             bodies.append({'id': self._id(body.name), 'name': body.name, 'free': not body.fixed, 'pose': pose,
                            'shapes': [_shape(shape) for shape in body.visuals or body.shapes]})
+            if body.is_operator:
+                bodies[-1]['carries'] = _point(body.link)
         there = {body['id'] for body in bodies}
         self._objects = {id_: entry for id_, entry in self._objects.items() if id_ in there}
         self.scene = _text('scene', {'title': _title(message), 'bodies': bodies})

@@ -83,6 +83,8 @@ Body body_of(const SceneBody& message) {
   Body body;
   body.name = message.name;
   body.fixed = message.fixed;
+  body.is_operator = message.is_operator;
+  body.link_in_body.position = from_message(message.link);
   body.start = from_message(message.pose);
   body.material.static_friction = message.static_friction;
   body.material.dynamic_friction = message.dynamic_friction;
@@ -112,6 +114,8 @@ mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Co
     SceneBody told;
     told.name = body.name;
     told.fixed = body.fixed;
+    told.is_operator = body.is_operator;
+    if (body.is_operator) told.link = to_message(body.link_in_body.position);
     told.pose = to_message(body.start);
     told.static_friction = body.material.static_friction;
     told.dynamic_friction = body.material.dynamic_friction;

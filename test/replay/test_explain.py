@@ -180,6 +180,7 @@ class ExplainTest(Folders):
         self.assertLessEqual({'free', 'contact', 'slip', 'drop'}, {part['state'] for part in told['objects'][0]['line']})
         page = page_of(story)
         self.assertIn('too slippery', page)
+        self.assertIn('<h3>object, %.2f s' % story.losses[0].until, page)  # as its text has it
         self.assertIn('<svg', page)
         for other in ('http:', 'https:', 'src=', '<script'):
             self.assertNotIn(other, page)
