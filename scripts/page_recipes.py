@@ -137,7 +137,7 @@ def stability():
         lines.append(['`%s`' % model] + [share(cells, outcome) for outcome in ('stable', 'let_go', 'ejected', 'diverged')] +
                      ['%s of %s' % (grips, of)])
     fastest = max(float(row['largest_speed_m_s']) for row in rows if row['model'] == 'implicit')
-    return {'models': table(['model', 'stable', 'let go', 'ejected', 'diverged', 'grips held'], lines),
+    return {'counts': '```\n' + counts.strip() + '\n```', 'models': table(['model', 'stable', 'let go', 'ejected', 'diverged', 'grips held'], lines),
             'fastest': '%.3f m/s' % fastest}, {}
 
 
@@ -145,7 +145,7 @@ def study():
     from study import calibration
     import scipy
     import statsmodels
-    rows = calibration.table(('3v20', '8v22', '15v15'), 400, 1)
+    rows = calibration.table(('3v20', '8v22', '15v15'), 300, 1)
     return study_figures(rows), {'scipy': scipy.__version__, 'statsmodels': statsmodels.__version__}
 
 
@@ -218,6 +218,6 @@ RECIPES = {
     'filters': Recipe('15 minutes', ['src/tracking', 'benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
     'stability': Recipe('3 minutes', ['src/response', 'benchmark/stability_map.cpp'], stability),
-    'study': Recipe('10 minutes', ['scripts/study/' + name for name in (
+    'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }

@@ -107,6 +107,7 @@ def write_obj(path, scale=1.0):
     text(path, ''.join('v %.6f %.6f %.6f\n' % tuple(v) for v in cube(scale)))
 
 
+@unittest.skipUnless(hasattr(Rotation, 'as_matrix'), 'scipy is older than 1.4')
 class MadeUp(unittest.TestCase):
     def setUp(self):
         stand_in_modules()
