@@ -123,21 +123,17 @@ class _Terms:
     def derivatives(self):
         """Score and expected information of the variances; P and Q of Kenward and Roger."""
         g, phi = self.data.g, self.phi
-        between = np.einsum('knij,njp->knip', g, self.weighted)
-        p = -np.einsum('nip,knjq,nij->kpq', self.weighted, between, self._eye(), optimize=True)
-        q = np.einsum('knip,nij,lnjq->klpq', between, self.inverse, between, optimize=True)
+        between, rows = g @ self.weighted, len(self.phi)
+        flat, by_row = between.reshape(len(g), -1, rows), self.weighted.reshape(-1, rows)
+        p = -by_row.T @ flat
+        q = flat.transpose(0, 2, 1)[:, None] @ (self.inverse @ between).reshape(len(g), -1, rows)
         vg = self.inverse @ g
-        traces = np.einsum('knij,lnji->kl', vg, vg, optimize=True)
+        traces = vg.reshape(len(g), -1) @ vg.transpose(0, 1, 3, 2).reshape(len(g), -1).T
         phi_p = phi @ p
-        information = 0.5 * (traces - 2 * np.einsum('pq,klqp->kl', phi, q) +
-                             np.einsum('kpq,lqp->kl', phi_p, phi_p))
-        score = -0.5 * (np.einsum('knii->k', vg) + np.einsum('kpp->k', phi_p) -
-                        np.einsum('ni,knij,nj->k', self.residual, g, self.residual, optimize=True))
+        information = 0.5 * (traces - 2 * np.tensordot(q, phi, ([2, 3], [1, 0])) + np.einsum('kpq,lqp->kl', phi_p, phi_p))
+        score = -0.5 * (np.trace(vg, axis1=2, axis2=3).sum(axis=1) + np.trace(phi_p, axis1=1, axis2=2) -
+                        np.sum((g @ self.residual[:, :, None])[..., 0] * self.residual, axis=(1, 2)))
         return score, information, p, q
-
-    def _eye(self):
-        m = self.data.y.shape[1]
-        return np.broadcast_to(np.eye(m), (len(self.data.y), m, m))
 
     def adjusted(self):
         _, information, p, q = self.derivatives()

@@ -47,7 +47,7 @@ def new_figure(panels, width, height, **arguments):
 
 def panel_title(axes, text):
     """A title that ends where its panel ends."""
-    width = axes.figure.get_figwidth() / axes.get_subplotspec().get_gridspec().ncols
+    width = axes.figure.get_figwidth() / axes.get_subplotspec().get_gridspec().get_geometry()[1]
     axes.set_title('\n'.join(textwrap.wrap(text, int(TITLE_LETTERS * (width - 0.6)))), loc='left')
 
 
