@@ -15,6 +15,10 @@ Recipe = collections.namedtuple('Recipe', 'time sources measure')
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
 CORE = ['src/collision', 'src/response', 'src/simulation', 'src/integration', 'src/tracking', 'config/default.yaml']
 
+FILTER_SOURCES = ['src/tracking/%s' % name for name in (
+    'constant_velocity_filter.cpp', 'filter_memory.cpp', 'hand_filter.cpp', 'hand_filter.h', 'hand_track.cpp', 'noise_estimate.cpp',
+    'noise_estimate.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp', 'window_filter.cpp')]
+
 
 class MeasurementError(Exception):
     pass
@@ -100,7 +104,7 @@ def filters():
         for name, label in FILTERS.items():
             row = {key: value for key, value in of_panel[name].items()}
             lines.append([label, '%.3f' % float(row['jitter_mm']),
-                          '%.1f (%.1f)' % (float(row['lag_ms']), float(row['lag_p90_ms'])),
+                          '%.1f (%.1f)' % (abs(round(float(row['lag_ms']), 1)), float(row['lag_p90_ms'])),
                           *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm', 'bone_error_mm')]])
     of_held = {_filter_name(row): row for row in held}
     grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
@@ -215,7 +219,7 @@ def operators_figures(folder, sessions):
 
 RECIPES = {
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
-    'filters': Recipe('15 minutes', ['src/tracking', 'benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
+    'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
     'stability': Recipe('3 minutes', ['src/response', 'benchmark/stability_map.cpp'], stability),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
