@@ -126,25 +126,6 @@ def _grasps(rows, correlation):
         for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
 
 
-def stability():
-    with tempfile.TemporaryDirectory() as folder:
-        run('stability_map', '--output', folder)
-        rows = rows_of_file(folder, 'stability_map.csv')
-        counts = _done([os.path.join(PACKAGE, 'benchmark', 'count_stability_map.py'), os.path.join(folder, 'stability_map.csv')])
-    held = re.findall(r'^(\w+), .*\n  grips held: (\d+) of (\d+)', counts, re.MULTILINE)
-
-    def share(cells, outcome='stable'):
-        return '%.4g %%' % (100.0 * sum(row['outcome'] == outcome for row in cells) / len(cells))
-    lines = []
-    for model, grips, of in held:
-        cells = [row for row in rows if row['model'] == model]
-        lines.append(['`%s`' % model] + [share(cells, outcome) for outcome in ('stable', 'let_go', 'ejected', 'diverged')] +
-                     ['%s of %s' % (grips, of)])
-    fastest = max(float(row['largest_speed_m_s']) for row in rows if row['model'] == 'implicit')
-    return {'counts': '```\n' + counts.strip() + '\n```', 'models': table(['model', 'stable', 'let go', 'ejected', 'diverged', 'grips held'], lines),
-            'fastest': '%.3f m/s' % fastest}, {}
-
-
 def study():
     from study import calibration
     import scipy
@@ -221,7 +202,6 @@ RECIPES = {
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
-    'stability': Recipe('3 minutes', ['src/response', 'benchmark/stability_map.cpp'], stability),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }
