@@ -106,6 +106,7 @@ class SystemsTest(unittest.TestCase):
         version = xml.etree.ElementTree.parse(os.path.join(PACKAGE, "package.xml")).getroot().findtext("version")
         self.assertIn("\nversion: %s\n" % version, text_of("CITATION.cff"))
         self.assertIn("project(mr_hand_interaction VERSION %s " % version, text_of("CMakeLists.txt"))
+        self.assertIn("\n%s (" % version, text_of("CHANGELOG.rst"))
 
 
 if __name__ == "__main__":
