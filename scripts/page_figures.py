@@ -66,11 +66,14 @@ def measured():
     return sorted(name[:-5] for name in os.listdir(os.path.join(PACKAGE, RESULTS)) if name.endswith('.json'))
 
 
-def save(name, sources, figures, engines):
-    write(results_path(name), json.dumps({
-        'command': 'scripts/figures --page ' + name, 'revision': revision(), 'date': datetime.date.today().isoformat(),
-        'engines': engines, 'sources': {'paths': sources, 'sha256': hash_of(sources)}, 'figures': figures,
-    }, indent=1, ensure_ascii=False) + '\n')
+def begin(name, sources):
+    """What a results file says of the code and the day; to be taken before measuring."""
+    return {'command': 'scripts/figures --page ' + name, 'revision': revision(), 'date': datetime.date.today().isoformat(),
+            'sources': {'paths': sources, 'sha256': hash_of(sources)}}
+
+
+def save(name, begun, figures, engines):
+    write(results_path(name), json.dumps(dict(begun, engines=engines, figures=figures), indent=1, ensure_ascii=False) + '\n')
 
 
 def revision():
@@ -113,6 +116,15 @@ def wrong_pages():
 
 
 def is_stale(name):
-    """True if the code that a results file depends on is not what it was measured with."""
-    sources = load(name)['sources']
-    return hash_of(sources['paths']) != sources['sha256']
+    """True if the code that a results file depends on is neither what it was measured with nor accepted since."""
+    result = load(name)
+    sources = result['sources']
+    return hash_of(sources['paths']) not in (sources['sha256'], result.get('accepted', {}).get('sha256'))
+
+
+def accept(name, reason):
+    """Notes that the code as it is now gives the same figures, and why. Measuring again takes the note away."""
+    result = load(name)
+    result['accepted'] = {'because': reason, 'revision': revision(), 'date': datetime.date.today().isoformat(),
+                          'sha256': hash_of(result['sources']['paths'])}
+    write(results_path(name), json.dumps(result, indent=1, ensure_ascii=False) + '\n')

@@ -15,6 +15,10 @@ Recipe = collections.namedtuple('Recipe', 'time sources measure')
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
 CORE = ['src/collision', 'src/response', 'src/simulation', 'src/integration', 'src/tracking', 'config/default.yaml']
 
+FILTER_SOURCES = ['src/tracking/%s' % name for name in (
+    'constant_velocity_filter.cpp', 'filter_memory.cpp', 'hand_filter.cpp', 'hand_filter.h', 'hand_track.cpp', 'noise_estimate.cpp',
+    'noise_estimate.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp', 'window_filter.cpp')]
+
 
 class MeasurementError(Exception):
     pass
@@ -100,7 +104,7 @@ def filters():
         for name, label in FILTERS.items():
             row = {key: value for key, value in of_panel[name].items()}
             lines.append([label, '%.3f' % float(row['jitter_mm']),
-                          '%.1f (%.1f)' % (float(row['lag_ms']), float(row['lag_p90_ms'])),
+                          '%.1f (%.1f)' % (abs(round(float(row['lag_ms']), 1)), float(row['lag_p90_ms'])),
                           *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm', 'bone_error_mm')]])
     of_held = {_filter_name(row): row for row in held}
     grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
@@ -120,25 +124,6 @@ def _grasps(rows, correlation):
     return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns], [
         ['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
         for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
-
-
-def stability():
-    with tempfile.TemporaryDirectory() as folder:
-        run('stability_map', '--output', folder)
-        rows = rows_of_file(folder, 'stability_map.csv')
-        counts = _done([os.path.join(PACKAGE, 'benchmark', 'count_stability_map.py'), os.path.join(folder, 'stability_map.csv')])
-    held = re.findall(r'^(\w+), .*\n  grips held: (\d+) of (\d+)', counts, re.MULTILINE)
-
-    def share(cells, outcome='stable'):
-        return '%.4g %%' % (100.0 * sum(row['outcome'] == outcome for row in cells) / len(cells))
-    lines = []
-    for model, grips, of in held:
-        cells = [row for row in rows if row['model'] == model]
-        lines.append(['`%s`' % model] + [share(cells, outcome) for outcome in ('stable', 'let_go', 'ejected', 'diverged')] +
-                     ['%s of %s' % (grips, of)])
-    fastest = max(float(row['largest_speed_m_s']) for row in rows if row['model'] == 'implicit')
-    return {'counts': '```\n' + counts.strip() + '\n```', 'models': table(['model', 'stable', 'let go', 'ejected', 'diverged', 'grips held'], lines),
-            'fastest': '%.3f m/s' % fastest}, {}
 
 
 def study():
@@ -215,9 +200,8 @@ def operators_figures(folder, sessions):
 
 RECIPES = {
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
-    'filters': Recipe('15 minutes', ['src/tracking', 'benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
+    'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
-    'stability': Recipe('3 minutes', ['src/response', 'benchmark/stability_map.cpp'], stability),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }

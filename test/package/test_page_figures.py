@@ -19,7 +19,8 @@ class Pages(unittest.TestCase):
 
     def test_were_measured_with_the_code_that_is_here(self):
         stale = [name for name in page_figures.measured() if page_figures.is_stale(name)]
-        self.assertEqual(stale, [], "measure them again: scripts/figures --stale")
+        self.assertEqual(stale, [], "measure them again: scripts/figures --stale; or, if their figures cannot have changed: "
+                         "scripts/figures --accept NAME --because REASON")
 
     def test_every_result_says_how_when_and_with_what_it_was_measured(self):
         for name in page_figures.measured():
@@ -43,7 +44,7 @@ class Mechanism(unittest.TestCase):
             os.makedirs(os.path.dirname(os.path.join(self.root, path)) or self.root, exist_ok=True)
             page_figures.write(path, text)
         os.makedirs(os.path.join(self.root, page_figures.RESULTS))
-        page_figures.save("speed", ["src"], {"step": "2 s"}, {})
+        page_figures.save("speed", page_figures.begin("speed", ["src"]), {"step": "2 s"}, {})
 
     def test_a_page_that_differs_from_its_file_is_named_and_mended(self):
         self.assertEqual(len(page_figures.wrong_pages()), 1)
@@ -63,6 +64,14 @@ class Mechanism(unittest.TestCase):
         self.assertTrue(page_figures.is_stale("speed"))
         page_figures.write("src/a.cpp", "int a = 1;\n")
         page_figures.write("src/b.cpp", "int b;\n")
+        self.assertTrue(page_figures.is_stale("speed"))
+
+    def test_code_that_is_accepted_is_not_stale_until_it_changes_again(self):
+        page_figures.write("src/a.cpp", "int renamed = 1;\n")
+        page_figures.accept("speed", "a name")
+        self.assertFalse(page_figures.is_stale("speed"))
+        self.assertEqual(page_figures.load("speed")["accepted"]["because"], "a name")
+        page_figures.write("src/a.cpp", "int renamed = 3;\n")
         self.assertTrue(page_figures.is_stale("speed"))
 
 
