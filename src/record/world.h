@@ -16,6 +16,7 @@ struct World {
   RecordedFiles files;                            ///< scene.urdf, scene.yaml, meshes, spawned URDFs
   std::map<std::string, Twist> twists;            ///< at the start, by object
   std::map<std::string, std::string> parameters;  ///< all that there are, as YAML
+  std::map<std::string, std::string> grasps;      ///< modes that were set while it ran, by object
   std::vector<std::string> removed;               ///< objects of the scene that are gone
   std::vector<ObjectRequest> added;               ///< objects that have come and are there, in their order
 };

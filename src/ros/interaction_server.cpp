@@ -365,7 +365,7 @@ bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Reque
   return answer(response, [&] {
     change_parameters({{request.name, request.value}});
     tuning_.show();
-    return request.name + " is " + parameter_text(live_.simulation().configuration(), request.name);
+    return request.name + " is " + live_.parameter(request.name);
   });
 }
 

@@ -65,7 +65,8 @@ struct Shown {
     return true;
   }
   bool operator()(const SetParameters& set) const {
-    for (const auto& [name, value] : set.values) world.parameters[name] = value;
+    for (const auto& [name, value] : set.values)
+      if (!grasp_parameter(name)) world.parameters[name] = value;
     return true;
   }
   template <class Other>

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000005ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000006ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -188,7 +188,7 @@ class Parts {
     all(from, begin, duration);
   }
   void one(FilterConfiguration& part) {
-    one(part.type);
+    all(part.type, part.as_printed);
     for (const FilterSetting& setting : filter_settings()) {
       std::visit([&](auto value) { one(part.*value); }, setting.value);
       if (const auto* whole = std::get_if<int FilterConfiguration::*>(&setting.value))
