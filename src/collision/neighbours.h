@@ -38,6 +38,12 @@ struct NearBody {
   const std::uint8_t* end() const { return capsules.data() + count; }
 };
 
+/// Hands that are carried through a frame, in world at its start and, as far as it is known, at its end.
+struct CarriedHands {
+  std::array<Hand, kMaxHands> from, to;
+  double margin = 0.0;  ///< largest distance of what the carrier does from that [m]
+};
+
 /// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
 /// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
 /// not part of it: what it lists may be more than needed, never less.
@@ -45,8 +51,9 @@ class Neighbours {
  public:
   explicit Neighbours(const Scene& scene);  ///< keeps a reference
 
-  /// Once a frame: the hands' way in it.
-  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies);
+  /// Once a frame: the hands' way in it. `carried`: where the hands are in world, if their tracks are not.
+  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
+                   const CarriedHands* carried = nullptr);
   /// Every step, of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
@@ -84,7 +91,8 @@ class Neighbours {
     Vector3 min, max;  // of a hand in this frame; min > max without a hand
     std::vector<Way> ways;
   };
-  static void measure(const HandTrack& hand, Reach& reach);
+  static void measure(const HandTrack& hand, const Hand& before, const Hand& now, double margin,
+                      Reach& reach);
   /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
   /// followed.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;

@@ -6,7 +6,7 @@ namespace mrhi {
 namespace {
 
 /// The paper's two phases: an impulse when a phalanx strikes (3.4.1), then penetration forces with Coulomb
-/// friction while it touches (3.4.2), as docs/equations.md reads the equations.
+/// friction while it touches (3.4.2), as docs/contact.md reads the equations.
 class SeedModel : public ContactModel {
  public:
   explicit SeedModel(const PenetrationLaw& law) : law_(law) {}

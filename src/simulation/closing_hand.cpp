@@ -54,13 +54,13 @@ bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) {
 }
 
 std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule, const Object& object,
-                                                         const States& states, double margin) const {
+                                                         const Poses& poses, double margin) const {
   std::optional<Nearest> result;
-  for (const int body : object) {
-    const auto b = static_cast<std::size_t>(body);
-    const auto shapes = static_cast<int>(scene_.bodies[b].shapes.size());
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    const int body = object[i];
+    const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
     for (int shape = 0; shape < shapes; ++shape) {
-      const auto features = finder_.closest(capsule, body, shape, states[b].pose, margin);
+      const auto features = finder_.closest(capsule, body, shape, poses[i], margin);
       if (features && (!result || features->distance < result->features.distance))
         result = Nearest{*features, body};
     }
@@ -69,19 +69,19 @@ std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule,
 }
 
 double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Object& object,
-                        const std::vector<BodyState>& states, double limit) const {
+                        const Poses& poses, double limit) const {
   for (int c = 0; c < kCapsules; ++c) {
     if (!hand.has(c) || is_base(by_palm, c) != of_base) continue;
-    const auto found = nearest(hand.capsules[static_cast<std::size_t>(c)], object, states, limit);
+    const auto found = nearest(hand.capsules[static_cast<std::size_t>(c)], object, poses, limit);
     if (found) limit = std::min(limit, found->features.distance);
   }
   return limit;
 }
 
 bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
-                                    const States& states) const {
+                                    const Poses& poses) const {
   const auto under = [&](int capsule) {
-    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, states, kFar);
+    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, poses, kFar);
   };
   const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
   return tip && base && tip->features.normal.dot(base->features.normal) < kOpposite;
@@ -89,20 +89,21 @@ bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, 
 
 /// What a finger does about an object that is near the line to what it closes against.
 void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, const Object& object,
-                             const States& states, Look& look) const {
+                             const Poses& poses, Look& look) const {
   const Hand& hand = track.current;
   const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
-  const bool is_far = std::none_of(object.begin(), object.end(), [&](int body) {
-    const auto b = static_cast<std::size_t>(body);
-    return distance_from_axis(states[b].pose.position, line) <= scene_.bodies[b].bounding_radius + kBeside;
-  });
+  bool is_far = true;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    const Body& body = scene_.bodies[static_cast<std::size_t>(object[i])];
+    is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kBeside;
+  }
   if (is_far) return;
-  const auto beside = nearest(line, object, states, kBeside);
+  const auto beside = nearest(line, object, poses, kBeside);
   if (!beside) return;
-  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, object, states))
+  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, object, poses))
     look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
   if (beside->features.distance > 0.0 || closing_speed(track, by_palm, finger) < -kMaxOpeningSpeed) return;
-  if (!look.touches) look.touches = touches(hand, object, states);
+  if (!look.touches) look.touches = touches(hand, object, poses);
   const auto here = opposed(*look.touches, by_palm, finger);
   std::optional<Opposed>& found = look.opposed;
   if (!here || (found && found->by_palm != by_palm)) return;
@@ -112,23 +113,22 @@ void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, c
 }
 
 ClosingHand::Look ClosingHand::look_at(const HandTrack& track, const Object& object,
-                                       const std::vector<BodyState>& states) const {
+                                       const Poses& poses) const {
   Look look;
   for (const bool by_palm : {false, true}) {
     for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger) {
       if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)))
-        look_along(track, by_palm, finger, object, states, look);
+        look_along(track, by_palm, finger, object, poses, look);
     }
   }
   return look;
 }
 
-ClosingHand::Touches ClosingHand::touches(const Hand& hand, const Object& object,
-                                          const States& states) const {
+ClosingHand::Touches ClosingHand::touches(const Hand& hand, const Object& object, const Poses& poses) const {
   Touches result;
   for (std::size_t c = 0; c < kCapsules; ++c) {
     if (hand.capsules[c].radius <= 0.0) continue;
-    const auto found = nearest(hand.capsules[c], object, states, 0.0);
+    const auto found = nearest(hand.capsules[c], object, poses, 0.0);
     if (!found) continue;
     const ClosestFeatures& features = found->features;
     result[c] = {true, found->body, -features.distance, features.normal, features.point};

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "../collision/contact_finder.h"
-#include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
@@ -22,6 +21,7 @@ class ClosingHand {
  public:
   /// Indices in Scene::bodies.
   using Object = std::vector<int>;
+  using Poses = std::vector<Pose>;
   /// Two sides of a hand that could hold an object between them. World.
   struct Opposed {
     double depth;           ///< of the deeper side [m]
@@ -48,11 +48,11 @@ class ClosingHand {
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  Look look_at(const HandTrack& track, const Object& object, const std::vector<BodyState>& states) const;
+  Look look_at(const HandTrack& track, const Object& object, const Poses& poses) const;
   /// Distance of a side of a grip, its base or its fingers, from the object; negative inside; at most `limit`
   /// [m].
-  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object,
-             const std::vector<BodyState>& states, double limit) const;
+  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses,
+             double limit) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
   /// the hand moves.
   static bool closes(const HandTrack& track, bool by_palm, int finger);
@@ -65,14 +65,13 @@ class ClosingHand {
     ClosestFeatures features;
     int body;
   };
-  using States = std::vector<BodyState>;
-  void look_along(const HandTrack& track, bool by_palm, int finger, const Object& object,
-                  const States& states, Look& look) const;
-  std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const States& states,
+  void look_along(const HandTrack& track, bool by_palm, int finger, const Object& object, const Poses& poses,
+                  Look& look) const;
+  std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const Poses& poses,
                                  double margin) const;
   bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
-                         const States& states) const;
-  Touches touches(const Hand& hand, const Object& object, const States& states) const;
+                         const Poses& poses) const;
+  Touches touches(const Hand& hand, const Object& object, const Poses& poses) const;
   std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger) const;
 
   const Scene& scene_;

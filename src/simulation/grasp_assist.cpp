@@ -110,9 +110,14 @@ void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
 }  // namespace
 
 /// Contact models other than `implicit` know neither grips nor compliance.
-GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Configuration& configuration)
-    : scene_(scene), closing_hand_(scene, finder), configuration_(configuration.contact) {
+GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
+                         const Configuration& configuration)
+    : scene_(scene),
+      operators_(operators),
+      closing_hand_(scene, finder),
+      configuration_(configuration.contact) {
   closing_.reserve(kMaxHands * scene.bodies.size());
+  poses_.reserve(scene.bodies.size());
   const bool implicit = configuration.contact_model == ContactModelKind::implicit;
   std::vector<std::size_t> by_root(scene.bodies.size(), scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -162,6 +167,15 @@ bool GraspAssist::overlaps_since_it_appeared(std::size_t slot, std::size_t body,
     overlaps = true;
   }
   return overlaps;
+}
+
+/// Poses of the object's bodies in the frame that the hand in `slot` moves in. Until the next call.
+const std::vector<Pose>& GraspAssist::poses_of(std::size_t slot, std::size_t body,
+                                               const SimulationState& state) const {
+  poses_.clear();
+  for (const int part : object_of(body))
+    poses_.push_back(operators_.in_hands_frame(slot, static_cast<std::size_t>(part), state));
+  return poses_;
 }
 
 /// True if a part of the object appeared where the hand is.
@@ -219,7 +233,8 @@ void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
     if (track.active) return false;
     if (!grip.lost) {
       grip.lost = track.last_seen;
-      grip.body_in_palm = track.current.palm.inverse() * state.bodies[grip.body].pose;
+      grip.body_in_palm =
+          track.current.palm.inverse() * operators_.in_hands_frame(grip.hand, grip.body, state);
       grip.active = false;
     }
     return grip.released || to_seconds(now - *grip.lost) > kMaxLoss;
@@ -231,7 +246,7 @@ void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
 /// is in the hand now.
 bool GraspAssist::holds_again(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  const Pose& pose = state.bodies[grip.body].pose;
+  const Pose pose = operators_.in_hands_frame(grip.hand, grip.body, state);
   const Pose in_palm = track.current.palm.inverse() * pose;
   const double now = aperture(grip, track.current);
   if ((in_palm.position - grip.body_in_palm.position).norm() > kReturnDistance ||
@@ -277,8 +292,8 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
   if (touching.both() && !is_wide) return false;
   const auto gap = [&](bool of_base) {
-    return closing_hand_.gap(track.current, grip.by_palm, of_base, object_of(grip.body), state.bodies,
-                             kMaxDistance);
+    return closing_hand_.gap(track.current, grip.by_palm, of_base, object_of(grip.body),
+                             poses_of(grip.hand, grip.body, state), kMaxDistance);
   };
   const double base = gap(true), fingers = gap(false);
   const double room = base + fingers - 0.5 * noise_margin(track);
@@ -303,7 +318,7 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
 /// No compliance on bodies that hang on joints: tongs are closed by one side of each arm.
 void GraspAssist::look_at(std::size_t slot, std::size_t body, SimulationState& state) {
   const bool never = mode_of(body) == GraspMode::never;
-  const auto look = closing_hand_.look_at(state.hands[slot], object_of(body), state.bodies);
+  const auto look = closing_hand_.look_at(state.hands[slot], object_of(body), poses_of(slot, body, state));
   if (look.opposed && (never || look.opposed->depth > kPadDepth) && !state.hands[slot].emerged &&
       !overlaps_since_it_appeared(slot, body, state))
     take(slot, *look.opposed, state);
@@ -319,7 +334,7 @@ void GraspAssist::take(std::size_t slot, const ClosingHand::Opposed& opposed, Si
   const bool is_new = known == state.grips.end();
   const auto b = is_new ? static_cast<std::size_t>(opposed.body) : known->body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
-  const Pose& pose = state.bodies[b].pose;
+  const Pose pose = operators_.in_hands_frame(slot, b, state);
   const Material& material = scene_.bodies[b].material;
   Grip grip;
   grip.hand = static_cast<std::uint8_t>(slot);
@@ -397,6 +412,10 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
     const Vector3 start_bend = bend(track.path.start_bend), end_bend = bend(track.path.end_bend);
     grip.point[i] = start + PathWeights::at(fraction)(chord, start_bend, end_bend);
     grip.velocity[i] = PathWeights::between(fraction, until, seconds_)(chord, start_bend, end_bend);
+    if (const CarrierMotion* carrier = operators_.carrier(grip.hand)) {
+      grip.point[i] = carrier->to_world(grip.point[i]);
+      grip.velocity[i] = carrier->rotation * grip.velocity[i] + carrier->velocity(grip.point[i]);
+    }
   }
 }
 

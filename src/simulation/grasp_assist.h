@@ -4,6 +4,7 @@
 
 #include "closing_hand.h"
 #include "mr_hand_interaction/simulation_state.h"
+#include "operators.h"
 
 namespace mrhi {
 
@@ -21,7 +22,8 @@ namespace mrhi {
 class GraspAssist {
  public:
   /// Keeps references.
-  GraspAssist(const Scene& scene, const ContactFinder& finder, const Configuration& configuration);
+  GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
+              const Configuration& configuration);
 
   /// Call once a frame of `seconds`, when the hands' next poses are known: begins and ends grips.
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
@@ -43,6 +45,7 @@ class GraspAssist {
   bool is_in(const Grip& grip, std::size_t hand, std::size_t body) const {
     return grip.hand == hand && object_index_[grip.body] == object_index_[body];
   }
+  const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool slips(const std::vector<Contact>& contacts, const Grip& grip) const;
   bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
@@ -67,12 +70,14 @@ class GraspAssist {
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;
 
   const Scene& scene_;
+  const Operators& operators_;
   ClosingHand closing_hand_;
   const ContactConfiguration configuration_;
   std::vector<Object> objects_;
   std::vector<std::size_t> object_index_;  // by body, in objects_
   std::vector<GraspMode> modes_;           // of objects: free, assist or never
   bool acts_ = false;                      // there is an object that is not free
+  mutable std::vector<Pose> poses_;        // of poses_of()
   double seconds_ = 0.0;                   // of the frame
   std::vector<ClosingPair> closing_;       // in this frame
 };
