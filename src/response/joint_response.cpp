@@ -143,6 +143,7 @@ void JointedModel::solve(ContactStep& step) {
     LinkageProblem& problem = *problems_[i];
     if (!problem.acts()) continue;
     const bool agree = Newton<LinkageProblem>(problem).solve();
+    if (!agree) problem.keep_to_energy(step, island);
     problem.finish(agree, step, island, state_.joints);
     for (std::size_t l = 0; l < linkages_.size(); ++l) {
       if (has(island, groups_[l].front())) solved_[l] = 1;
