@@ -15,8 +15,9 @@ set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_stud
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
 
-foreach(node hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
-    merge_hands scene_shapes_node simulated_operator_node simulated_study check_scene)
+set(nodes hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
+  merge_hands simulated_operator_node simulated_study check_scene)
+foreach(node ${nodes})
   add_executable(${node} src/nodes/${node}.cpp)
   target_link_libraries(${node} ${PROJECT_NAME}_ros)
 endforeach()
@@ -25,20 +26,21 @@ install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hand_interaction_node hand_tracking_node interaction_node synthetic_hand_node training_node replay
-    merge_hands scene_shapes_node simulated_operator_node simulated_study check_scene
-  RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(TARGETS ${nodes} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
-set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export
+set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export import_captures
   leapc_bridge mediapipe_bridge plan_study power_study run_when set training_keys web_door)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
+# What draws rviz on a virtual screen; `setup` is no program.
+install(PROGRAMS scripts/film scripts/screenshot DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES scripts/setup scripts/virtual_screen DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY scripts/runs scripts/study scripts/web DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY scripts/captures scripts/runs scripts/study scripts/web DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/rviz.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz web DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -5,7 +5,6 @@
 
 #include "mr_hand_interaction/scene/shape.h"
 #include "rendering/skin.h"
-#include "rendering/skin_rig.h"
 #include "skin_shape.h"
 
 namespace mrhi {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "rendering/skin_rig.h"
+#include "rendering/skin.h"
 #include "skin_parts.h"
 
 namespace mrhi {

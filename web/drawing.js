@@ -90,12 +90,23 @@ function line(shape, Kind) {
   return new Kind(geometry, new THREE.LineBasicMaterial({color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a}));
 }
 
-// A visualization_msgs/Marker; null for a type that nobody sends.
+function capsule([radius, length]) {
+  const steps = 16, outline = [];
+  for (let i = 0; i < steps; ++i) {
+    const up = Math.PI * (i / (steps - 1) - 0.5);
+    outline.push(new THREE.Vector2(radius * Math.cos(up), radius * Math.sin(up) + (i < steps / 2 ? -0.5 : 0.5) * length));
+  }
+  return new THREE.LatheBufferGeometry(outline, 24).rotateX(Math.PI / 2);
+}
+
+// A visualization_msgs/Marker or a capsule; null for a type that nobody sends.
 function drawn(shape) {
   let object = null;
   if (ROUND[shape.type]) {
     object = new THREE.Mesh(ROUND[shape.type](), material(shape.color));
     object.scale.set(...shape.scale);
+  } else if (shape.type === 'capsule') {
+    object = new THREE.Mesh(capsule(shape.scale), material(shape.color));
   } else if (shape.type === 4) {
     object = line(shape, THREE.Line);
   } else if (shape.type === 5) {
@@ -241,6 +252,53 @@ class ContactMark extends THREE.Group {
   }
 }
 
+// Darkens the rim of what an eye sees while the view moves: many people bear that better.
+export class Vignette extends THREE.Mesh {
+  constructor() {
+    super(new THREE.SphereBufferGeometry(0.1, 32, 20), new THREE.ShaderMaterial({
+      side: THREE.BackSide, transparent: true, depthTest: false, depthWrite: false, uniforms: {strength: {value: 0}},
+      vertexShader: 'varying vec3 ray; void main() { ray = position;' +
+        ' gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+      fragmentShader: 'uniform float strength; varying vec3 ray; void main() {' +
+        ' float off = acos(clamp(-normalize(ray).z, -1.0, 1.0));' +
+        ' gl_FragColor = vec4(0.0, 0.0, 0.0, strength * smoothstep(0.3, 0.75, off)); }',
+    }));
+    Object.assign(this, {frustumCulled: false, renderOrder: 2, matrixAutoUpdate: false, visible: false});
+  }
+
+  // At an eye; speed and spin of the view [m/s], [rad/s].
+  show(on, eye, {speed, spin}) {
+    const wanted = on ? Math.min(1, speed / 0.5 + spin / 0.5) : 0, {strength} = this.material.uniforms;
+    strength.value += 0.05 * (wanted - strength.value); // slowly: a rim that flickers is worse than none
+    this.visible = strength.value > 0.01;
+    this.matrix.copy(eye.matrixWorld);
+    this.matrixWorldNeedsUpdate = true;
+  }
+}
+
+const AVERAGED = 250; // over which speed and spin are read [ms]
+
+// The frame in which an operator's hands and headset are tracked, which moves.
+class Carrier {
+  constructor(group, origin) {
+    Object.assign(this, {group, origin, past: [], motion: {speed: 0, spin: 0}});
+  }
+
+  get matrix() {
+    this.group.updateMatrix();
+    return this.group.matrix.clone().multiply(new THREE.Matrix4().makeTranslation(...this.origin.toArray()));
+  }
+
+  read(time) {
+    const {position, quaternion} = this.group;
+    this.past.push({time, position: position.clone(), quaternion: quaternion.clone()});
+    while (this.past.length > 2 && time - this.past[0].time > AVERAGED) this.past.shift();
+    const [first] = this.past, seconds = (time - first.time) / 1000;
+    if (seconds <= 0) return;
+    this.motion = {speed: position.distanceTo(first.position) / seconds, spin: quaternion.angleTo(first.quaternion) / seconds};
+  }
+}
+
 const READ = ['instructions', 'timer', 'result']; // training's texts, which stand before rviz's eye
 
 export class Drawing {
@@ -256,6 +314,7 @@ export class Drawing {
     this.instructions = '';
     this.changed = false; // there is something else to be seen
     this.bodies = new Map();
+    this.carriers = []; // by operator; empty: hands are tracked in world
     this.poses = new Map(); // latest entries, also of what has no shape yet
     this.touching = false;
     this.frames = 0;
@@ -265,6 +324,7 @@ export class Drawing {
   scene({title, bodies}) {
     clear(this.objects);
     this.bodies.clear();
+    this.carriers = [];
     this.title = title;
     this.changed = true;
     for (const body of bodies) {
@@ -274,7 +334,9 @@ export class Drawing {
         const object = drawn(shape);
         if (object) group.add(object);
       }
+      if (body.carries) this.carriers.push(new Carrier(group, length(body.carries)));
       group.visible = !body.free; // until it is known where it is
+      if (!body.free) place(group, ...length(body.pose.slice(0, 3)).toArray(), ...body.pose.slice(3));
       this.objects.add(group);
       this.bodies.set(body.id, group);
       if (body.free && this.poses.has(body.id)) this.move(this.poses.get(body.id));
@@ -315,6 +377,7 @@ export class Drawing {
       if (mark.visible) mark.show(contacts[i]);
     });
     for (const entry of objects) this.move(entry);
+    for (const carrier of this.carriers) carrier.read(performance.now());
   }
 
   // Whether it is known where everything is.

@@ -2,7 +2,7 @@
 
 import * as THREE from './three/build/three.module.js';
 import {OrbitControls} from './three/examples/jsm/controls/OrbitControls.js';
-import {Drawing, lights} from './drawing.js';
+import {Drawing, Vignette, lights} from './drawing.js';
 import {Hands} from './hands.js';
 import {Link} from './link.js';
 import {Placing, Z_UP} from './placing.js';
@@ -13,15 +13,17 @@ const element = (id) => document.getElementById(id);
 
 const renderer = new THREE.WebGLRenderer({canvas: element('view'), antialias: true, alpha: true});
 const stage = new THREE.Scene(), drawing = new Drawing();
+const vignette = new Vignette();
 const grid = new THREE.GridHelper(1, 20, 0x777777, 0x555555);
 const camera = new THREE.PerspectiveCamera(45, 1, 0.01, 20), eye = new THREE.PerspectiveCamera();
 const orbit = new OrbitControls(camera, renderer.domElement);
-stage.add(...lights(), drawing.world, grid);
+stage.add(...lights(), drawing.world, grid, vignette);
 orbit.addEventListener('start', () => { turned = true; });
 drawing.world.matrixAutoUpdate = false;
 grid.position.y = 0.1; // where rviz has it
 eye.matrixAutoUpdate = false;
 let hold = '', session = null, space = null, claimed = false, turned = false;
+let ridden = 0, rides = false, darkens = false; // the operator whom the view goes with, if it does
 
 function say(text) {
   element('message').textContent = text;
@@ -43,7 +45,7 @@ const link = new Link({
     const left = link.unsent ? `, ${link.unsent} frames of hands left out` : '';
     element('link').textContent = `round trip ${trip.toFixed(1)} ms${clock}${left}`;
   },
-  person: (number) => { say(`your hands are person ${number}'s`); if (placing.scene) placing.report(performance.now()); },
+  person: (number) => { ridden = number - 1; say(`your hands are person ${number}'s`); if (placing.scene) placing.report(performance.now()); },
   refused: (line) => say(line),
 }, say);
 const hands = new Hands();
@@ -72,11 +74,32 @@ function label(text, instructions) {
   element('instructions').textContent = instructions;
 }
 
+function carrier() {
+  return drawing.carriers[ridden % drawing.carriers.length];
+}
+
+// World as it is seen from the operator's frame.
+function carried(world) {
+  const by = carrier();
+  return by ? world.multiply(new THREE.Matrix4().getInverse(by.matrix)) : world;
+}
+
+function readOut() {
+  const by = carrier();
+  for (const id of ['ride', 'vignette']) element(id).hidden = !by || (id === 'ride' && session !== null);
+  element('motion').textContent = by ?
+    `${by.motion.speed.toFixed(3)} m/s, ${(by.motion.spin * 180 / Math.PI).toFixed(1)} °/s` : '';
+}
+
 function drawPage() {
   requestAnimationFrame(drawPage);
   label(drawing.text, drawing.instructions);
+  readOut();
   if (session) return;
   orbit.update();
+  drawing.world.matrix.copy(rides ? carried(Z_UP.clone()) : Z_UP);
+  camera.updateMatrixWorld();
+  vignette.show(darkens && rides && carrier(), camera, carrier() ? carrier().motion : {speed: 0, spin: 0});
   renderer.render(stage, camera);
 }
 
@@ -136,14 +159,15 @@ function drawXr(time, frame) {
   hands.read(frame, space, frame.predictedDisplayTime || time);
   placing.update(frame, space, viewer, hands, drawing.touching, time);
   sendHands();
-  drawing.world.matrix.copy(placing.world);
+  drawing.world.matrix.copy(carried(placing.world));
+  const by = carrier();
   drawing.label.position.set(0, 0, 0.05);
   drawing.label.say([drawing.instructions, drawing.text].filter((text) => text).join('\n'));
   const layer = frame.session.renderState.baseLayer;
   renderer.setFramebuffer(layer.framebuffer);
   renderer.setRenderTarget(null);
   renderer.clear();
-  for (const view of viewer.views) drawView(view, layer.getViewport(view));
+  for (const view of viewer.views) drawView(view, layer.getViewport(view), by);
 }
 
 // Those without hands look on, and take nobody's place.
@@ -155,13 +179,14 @@ function sendHands() {
   link.sendHands(hands.data);
 }
 
-function drawView(view, port) {
+function drawView(view, port, by) {
   if (!port) return;
   renderer.setViewport(port.x, port.y, port.width, port.height);
   eye.projectionMatrix.fromArray(view.projectionMatrix);
   eye.projectionMatrixInverse.getInverse(eye.projectionMatrix);
   eye.matrix.fromArray(view.transform.matrix);
   eye.updateMatrixWorld(true);
+  vignette.show(darkens && by, eye, by ? by.motion : {speed: 0, spin: 0});
   renderer.render(stage, eye);
 }
 
@@ -179,6 +204,8 @@ for (const mode of ['immersive-ar', 'immersive-vr']) element(mode).onclick = () 
 element('place').onclick = () => placing.inFront();
 element('leave').onclick = () => session.end();
 element('home').onclick = home;
+element('ride').onclick = () => { rides = !rides; element('ride').classList.toggle('on', rides); };
+element('vignette').onclick = () => { darkens = !darkens; element('vignette').classList.toggle('on', darkens); };
 element('buttons').addEventListener('beforexrselect', (event) => event.preventDefault()); // a tap on a button is no select
 window.addEventListener('resize', resize);
 if (navigator.xr) navigator.xr.addEventListener('devicechange', showButtons);

@@ -34,6 +34,9 @@ class LiveSimulation {
   /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
   /// place out of bounds.
   void place(const std::string& name, const Pose& pose);
+  /// Lets restraints hold the operators who have one, or releases them. Throws std::invalid_argument if none
+  /// has one, or if an operator is out of its reach.
+  void restrain(bool on);
   /// Everything back to its start. Hands are found anew; of one that a free body comes back in neither is
   /// pushed aside until they have separated.
   void reset();

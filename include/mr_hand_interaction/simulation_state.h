@@ -25,6 +25,7 @@ struct SimulationState {
   std::vector<BodyState> bodies;               ///< one per Scene::bodies, fixtures too
   std::vector<JointState> joints;              ///< one per Scene::joints
   std::vector<char> asleep;                    ///< likewise: lies still, and is not looked at until disturbed
+  std::vector<char> restrained;                ///< one per Scene::operators: a restraint holds the operator
   std::vector<HandTrack> hands;                ///< slots; see HandTrack::active
   std::vector<Contact> contacts;               ///< of hands with bodies, sorted by key
   std::vector<BodyContact> body_contacts;      ///< of bodies with each other, sorted by key
@@ -48,6 +49,9 @@ void forget_contacts(std::size_t body, SimulationState& state);
 /// The body is where it was not before: a hand that it overlaps there neither pushes it nor is shown pushed
 /// aside until they have separated.
 void mark_appeared(std::size_t body, SimulationState& state);
+/// All hands are where they were not before, as an operator was put somewhere: they touch nothing there until
+/// they have been clear of it.
+void mark_hands_appeared(SimulationState& state);
 /// Puts a body somewhere: its contacts are forgotten, and it has appeared there.
 void place(std::size_t body, const BodyState& placed, SimulationState& state);
 

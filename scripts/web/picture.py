@@ -3,6 +3,7 @@
 import array
 import base64
 import json
+import math
 import time
 
 MAX_FRAME = 5000  # bytes: what does not fit comes with the next frame
@@ -10,6 +11,9 @@ MAX_CONTACTS = 30  # of a frame
 STALE = 0.5  # [s]: hands and contacts are gone if nobody publishes them any more
 LENGTH, DIRECTION, FORCE = 1e4, 1e3, 1e2  # whole numbers are 0.1 mm, 0.001 and 0.01 N
 QUATERNION = 1e4
+SPHERE, BOX, CYLINDER, CAPSULE, MESH = range(5)  # SceneShape's types
+TYPES = 2, 1, 3, 'capsule', 11  # the marker's that looks the same
+GREY = 0.7, 0.7, 0.7, 1.0
 BONES = 4  # of a finger: a phalanx is finger * 4 + bone
 
 
@@ -43,10 +47,38 @@ def _base64(numbers):
     return base64.b64encode(array.array('f', numbers).tobytes()).decode()
 
 
+def _placed(type_, pose, scale, color):
+    p, q = pose.position, pose.orientation
+    return {'type': type_, 'pose': [p.x, p.y, p.z, q.x, q.y, q.z, q.w], 'scale': list(scale),
+            'color': [round(part, 4) for part in color]}
+
+
+def _scale(type_, size):
+    if type_ == SPHERE:
+        return 3 * [2.0 * size[0]]
+    if type_ == CYLINDER:
+        return [2.0 * size[0], 2.0 * size[0], size[1]]
+    return size if type_ in (BOX, CAPSULE) else (1.0, 1.0, 1.0)
+
+
+def _shape(shape):
+    """A SceneShape as a marker, and a capsule by radius and length. A mesh's own materials do not cross: it is grey."""
+    c = shape.color
+    placed = _placed(TYPES[shape.type], shape.pose, _scale(shape.type, shape.size), (c.r, c.g, c.b, c.a) if c.a > 0 else GREY)
+    if shape.type == MESH:
+        corners = [shape.vertices[i] for i in shape.triangles]
+        placed['points'] = _base64([number for p in corners for number in (p.x, p.y, p.z)])
+    return placed
+
+
+def _title(scene):
+    g = math.sqrt(sum(part * part for part in (scene.gravity.x, scene.gravity.y, scene.gravity.z)))
+    return '%s  |  %s  |  gravity: %s' % (scene.name, scene.model, '%.2f m/s2' % g if g > 0.0 else 'none')
+
+
 def _marker(marker):
-    p, q, s, c = marker.pose.position, marker.pose.orientation, marker.scale, marker.color
-    shape = {'type': marker.type, 'pose': [p.x, p.y, p.z, q.x, q.y, q.z, q.w], 'scale': [s.x, s.y, s.z],
-             'color': [round(part, 4) for part in (c.r, c.g, c.b, c.a)]}
+    s, c = marker.scale, marker.color
+    shape = _placed(marker.type, marker.pose, (s.x, s.y, s.z), (c.r, c.g, c.b, c.a))
     if marker.points:
         shape['points'] = _base64([number for point in marker.points for number in (point.x, point.y, point.z)])
     if marker.colors:
@@ -76,18 +108,17 @@ class Picture:
         return self._ids.setdefault(name, len(self._ids))
 
     def take_scene(self, message):
-        """scene_shapes."""
-        bodies, title = {}, ''
-        for marker in message.markers:
-            if marker.ns == 'text':
-                title = marker.text
-                continue
-            free = marker.header.frame_id == marker.ns
-            body = bodies.setdefault(marker.ns, {'id': self._id(marker.ns), 'name': marker.ns, 'free': free, 'shapes': []})
-            body['shapes'].append(_marker(marker))
-        there = {body['id'] for body in bodies.values()}
+        """scene: bodies, and for each its pose at the start, where a fixture stays."""
+        bodies = []
+        for body in message.bodies:
+            pose = _pose(body.pose)
+            bodies.append({'id': self._id(body.name), 'name': body.name, 'free': not body.fixed, 'pose': pose,
+                           'shapes': [_shape(shape) for shape in body.visuals or body.shapes]})
+            if body.is_operator:
+                bodies[-1]['carries'] = _point(body.link)
+        there = {body['id'] for body in bodies}
         self._objects = {id_: entry for id_, entry in self._objects.items() if id_ in there}
-        self.scene = _text('scene', {'title': title, 'bodies': list(bodies.values())})
+        self.scene = _text('scene', {'title': _title(message), 'bodies': bodies})
 
     def take_training(self, message):
         """training/markers: each array has all that is shown."""

@@ -145,7 +145,7 @@ void place(const Press& press, double s, const Contact* memory, Contact& contact
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
   contact.share = contact.grip = 1.0;
   contact.impulse.setZero();
-  contact.time_of_impact = 0.0;
+  contact.time_of_impact = contact.torque = 0.0;
   const bool held = pressed && refinements.swing_back && contact.friction == Friction::sticking;
   swing_back(press.pair, held ? memory : nullptr, contact);
 }

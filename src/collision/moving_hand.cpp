@@ -54,6 +54,14 @@ void HandMotion::move_to(double fraction, double until) {
   hand_.emerged = emerged_ && fraction == 0.0;
   hand_.palm = palm_orientation(fraction);
   hand_.palm_spin = hand_.rate(palm_turn_, turn_start_bend_, turn_end_bend_);
+  const CarrierMotion* carrier = hand_.carrier;
+  if (carrier == nullptr) return;
+  hand_.palm = carrier->rotation * hand_.palm;
+  hand_.palm_spin = carrier->rotation * hand_.palm_spin + carrier->twist.angular;
+}
+
+void HandMotion::carry(const CarrierMotion* carrier) {
+  hand_.carrier = carrier;
 }
 
 }  // namespace mrhi

@@ -27,6 +27,18 @@ struct PhalanxMotion {
   }
 };
 
+/// The frame in which an operator's hands are tracked, as it moves at a step's start.
+struct CarrierMotion {
+  Matrix3 rotation;  ///< of the frame in world
+  Vector3 origin;    ///< of the frame [m]
+  Vector3 centre;    ///< of the operator's mass [m]
+  Twist twist;       ///< of that centre, world axes
+
+  Vector3 to_world(const Vector3& local) const { return rotation * local + origin; }
+  /// Of a point that moves with the frame [m/s].
+  Vector3 velocity(const Vector3& point) const { return twist.linear + twist.angular.cross(point - centre); }
+};
+
 /// The path of one end of a capsule through a frame; see HandPath [m].
 struct EndPath {
   Vector3 from, chord, start_bend, end_bend;
@@ -51,18 +63,35 @@ struct MovingHand {
   Matrix3 palm = Matrix3::Identity();   ///< orientation
   Vector3 palm_spin = Vector3::Zero();  ///< angular velocity of the palm [rad/s]
 
+  const CarrierMotion* carrier = nullptr;  ///< what the paths are in; null: world
+
   /// At the step's start.
   Capsule capsule(int c) const {
     const auto i = static_cast<std::size_t>(c);
-    return {start[i].from + start[i].displacement(place), end[i].from + end[i].displacement(place),
-            radius[i]};
+    const Capsule own{start[i].from + start[i].displacement(place), end[i].from + end[i].displacement(place),
+                      radius[i]};
+    if (carrier == nullptr) return own;
+    return {carrier->to_world(own.start), carrier->to_world(own.end), radius[i]};
+  }
+  /// Limit of what the carrier adds to `speed`, of a phalanx that comes within `distance` of a point [m/s].
+  double carried_speed(const Vector3& point, double distance) const {
+    constexpr double kPhalanx = 0.3;  // longer than any, with its radius [m]
+    if (carrier == nullptr) return 0.0;
+    return carrier->twist.linear.norm() +
+           carrier->twist.angular.norm() * ((point - carrier->centre).norm() + distance + kPhalanx);
+  }
+  /// Of an end that is at `point` [m/s].
+  Vector3 velocity(const EndPath& path, const Vector3& point) const {
+    const Vector3 own = path.displacement(rate);
+    if (carrier == nullptr) return own;
+    return carrier->rotation * own + carrier->velocity(point);
   }
   /// `later` [s] than the step's start.
   Capsule capsule(int c, double later) const {
     const auto i = static_cast<std::size_t>(c);
     Capsule result = capsule(c);
-    result.start += later * start[i].displacement(rate);
-    result.end += later * end[i].displacement(rate);
+    result.start += later * velocity(start[i], result.start);
+    result.end += later * velocity(end[i], result.end);
     return result;
   }
   PhalanxMotion motion(int c, const Capsule& now) const;
@@ -72,8 +101,8 @@ inline PhalanxMotion MovingHand::motion(int c, const Capsule& now) const {
   const auto i = static_cast<std::size_t>(c);
   PhalanxMotion motion;
   motion.axis = now.end - now.start;
-  motion.velocity = start[i].displacement(rate);
-  motion.spread = end[i].displacement(rate) - motion.velocity;
+  motion.velocity = velocity(start[i], now.start);
+  motion.spread = velocity(end[i], now.end) - motion.velocity;
   motion.spin = palm_spin;
   const double length_squared = motion.axis.squaredNorm();
   if (length_squared > 0.0) {
@@ -90,6 +119,8 @@ class HandMotion {
   /// `seconds` may be 0 for a hand that keeps still.
   HandMotion(const HandTrack& track, int slot, double seconds);
 
+  /// The paths are in the frame of `carrier`, which is of the step's start in each move_to().
+  void carry(const CarrierMotion* carrier);
   /// Moves the hand on to a step from `fraction` of the frame to `until`.
   void move_to(double fraction, double until);
   const MovingHand& hand() const { return hand_; }

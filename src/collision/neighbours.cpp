@@ -30,15 +30,16 @@ Neighbours::Neighbours(const Scene& scene)
   pairs_.reserve(4 * scene.bodies.size());
 }
 
-void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], reaches_[slot]);
+void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
+                             const Carried& carried) {
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], carried[slot], reaches_[slot]);
   if (place_those_leaving(bodies, 0.0)) list_pairs();
   list_near_hands(bodies);
 }
 
 /// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place half-way at the part f of
 /// the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
-void Neighbours::measure(const HandTrack& hand, Reach& reach) {
+void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach) {
   reach.min.setConstant(std::numeric_limits<double>::max());
   reach.max = -reach.min;
   reach.ways.clear();
@@ -48,10 +49,20 @@ void Neighbours::measure(const HandTrack& hand, Reach& reach) {
     const Capsule& to = hand.current.capsules[ci];
     const Capsule& from = hand.previous.capsules[ci].radius > 0.0 ? hand.previous.capsules[ci] : to;
     if (to.radius <= 0.0) continue;
-    const Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
+    Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
     const double longer_way =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
-    const Way way{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
+    Way way{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
+    if (carried != nullptr) {
+      start = carried->rotation * start + carried->origin;
+      end = carried->rotation * end + carried->origin;
+      way.start = start, way.along = end - start;
+      // Half of the displacement, and all of the turn, whose rotation is that of the start; of both ends.
+      const double arm = std::sqrt(std::max((start - carried->centre).squaredNorm(),
+                                            (end - carried->centre).squaredNorm())) +
+                         way.reach;
+      way.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
+    }
     reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
     reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));
     reach.ways.push_back(way);
@@ -108,6 +119,7 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
   bool any = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = scene_.bodies[b];
+    if (body.is_operator) continue;  // never placed, never found
     Room& room = rooms_[b];
     const double travel = body.fixed ? 0.0 : step / body.mass;
     const Vector3& position = bodies[b].pose.position;

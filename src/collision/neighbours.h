@@ -38,6 +38,15 @@ struct NearBody {
   const std::uint8_t* end() const { return capsules.data() + count; }
 };
 
+/// The frame in which a hand is tracked, half-way through a frame of input.
+struct CarriedFrame {
+  Matrix3 rotation;                ///< in world, at the start
+  Vector3 origin, centre;          ///< of the frame half-way, of the carrier's mass at the start [m]
+  double speed = 0.0, spin = 0.0;  ///< of the carrier [m/s], [rad/s]
+  double seconds = 0.0;            ///< of the frame of input
+  double margin = 0.0;             ///< largest distance of what the carrier does from that [m]
+};
+
 /// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
 /// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
 /// not part of it: what it lists may be more than needed, never less.
@@ -45,8 +54,10 @@ class Neighbours {
  public:
   explicit Neighbours(const Scene& scene);  ///< keeps a reference
 
-  /// Once a frame: the hands' way in it.
-  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies);
+  /// Once a frame: the hands' way in it. `carried`: by slot, null for a hand that is tracked in world.
+  using Carried = std::array<const CarriedFrame*, kMaxHands>;
+  void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
+                   const Carried& carried = {});
   /// Every step, of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
@@ -84,7 +95,7 @@ class Neighbours {
     Vector3 min, max;  // of a hand in this frame; min > max without a hand
     std::vector<Way> ways;
   };
-  static void measure(const HandTrack& hand, Reach& reach);
+  static void measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach);
   /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
   /// followed.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;

@@ -1,7 +1,6 @@
 #include <ros/ros.h>
 
 #include <cstdint>
-#include <exception>
 #include <utility>
 
 #include "../ros/node.h"
@@ -22,13 +21,7 @@ parameters are those of both; tracking's parameters are in ~hand_tracking. See t
 /// hand_tracking_node and interaction_node in one process and one thread: a frame goes from one to the other
 /// by a call. Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "interaction_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const ros::NodeHandle node;
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
     mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
     std::uint64_t lost = 0;  // that the server has been told of
@@ -37,9 +30,6 @@ int main(int argc, char** argv) {
       server.take(frame, arrival);
     });
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "interaction_node", kUsage, body);
 }

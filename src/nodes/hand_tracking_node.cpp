@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
@@ -29,17 +27,9 @@ Takes what hand trackers publish, and publishes the hands in world on hand_frame
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "hand_tracking_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const mrhi::HandTracking tracking(ros::NodeHandle(), private_node);
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    const mrhi::HandTracking tracking(node, private_node);
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "hand_tracking_node", kUsage, body);
 }

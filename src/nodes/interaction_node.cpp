@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
@@ -25,19 +23,10 @@ and all that config/default.yaml lists, such as _contact_model:=seed.
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "interaction_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    ros::NodeHandle node;
+  const auto body = [](ros::NodeHandle node, const ros::NodeHandle& private_node) {
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
     server.subscribe(node);
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "interaction_node", kUsage, body);
 }

@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/hand_merging.h"
 #include "../ros/node.h"
 
@@ -21,17 +19,9 @@ their hands in one frame.
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "merge_hands");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const mrhi::HandMerging merging(ros::NodeHandle(), private_node);
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    const mrhi::HandMerging merging(node, private_node);
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "merge_hands", kUsage, body);
 }

@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/node.h"
 #include "../ros/operator_publisher.h"
 
@@ -23,17 +21,9 @@ hand on /leap_motion/leap_device.
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "simulated_operator_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle node, parameters("~");  // outlive what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const mrhi::OperatorPublisher publisher(node, parameters);
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    const mrhi::OperatorPublisher publisher(node, private_node);
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "simulated_operator_node", kUsage, body);
 }

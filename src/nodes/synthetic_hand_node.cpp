@@ -73,16 +73,7 @@ int main(int argc, char** argv) {
       return write_recording({arguments.begin() + 1, arguments.end()});
     });
   }
-  ros::init(argc, argv, "synthetic_hand_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle node,
-      parameters("~");  // the last handle to go would close the log before it is written to
-  const mrhi::MasterWatch master;
-  try {
-    mrhi::SyntheticHandPublisher(node, parameters).run();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
+    mrhi::SyntheticHandPublisher(node, private_node).run();
+  });
 }

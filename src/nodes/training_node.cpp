@@ -1,7 +1,5 @@
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "../ros/node.h"
 #include "../ros/training_server.h"
 
@@ -19,25 +17,16 @@ all that it needs. Publishes training/status and training/markers. Services: ~ne
                                such as beginner; right or left; what they work with, such as implicit
   ~task                        NAME|FILE; default pick_and_place
   ~auto_next                   break between trials, at most 3600 s; below 0: each waits for ~next; default 3
-  ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_start
+  ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_start, ~operator
                                see docs/training.md
 )";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto status = mrhi::status_of_arguments(argc, argv, kUsage)) return *status;
-  ros::init(argc, argv, "training_node");
-  mrhi::end_in_order();
-  const ros::NodeHandle private_node("~");  // outlives what may throw: without a node nothing is logged
-  const mrhi::MasterWatch master;
-  try {
-    const mrhi::TrainingServer server(ros::NodeHandle(), private_node,
-                                      mrhi::read_training_parameters(private_node));
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    const mrhi::TrainingServer server(node, private_node, mrhi::read_training_parameters(private_node));
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  };
+  return mrhi::run_node(argc, argv, "training_node", kUsage, body);
 }

@@ -29,13 +29,14 @@ struct Making {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const {
-    simulation.add(
-        spawn.part ? *spawn.part
-                   : requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
+    simulation.add(spawn.prepared ? spawn.prepared->part
+                                  : requested_scene(spawn.request,
+                                                    scene_options(simulation.simulation().configuration())));
   }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
   void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
+  void operator()(const Restrain& restrain) const { simulation.restrain(restrain.on); }
   void operator()(const Reset&) const { simulation.reset(); }
   void operator()(const Pause&) const {}
 };
@@ -49,6 +50,7 @@ struct InWords {
     return text;
   }
   std::string operator()(const PlaceObject& place) const { return "place '" + place.name + "'"; }
+  std::string operator()(const Restrain& restrain) const { return restrain.on ? "restrain" : "release"; }
   std::string operator()(const Reset&) const { return "reset"; }
   std::string operator()(const Pause& pause) const { return pause.on ? "pause" : "go on"; }
 };
@@ -68,6 +70,7 @@ struct AsNode {
     node["place"] = place.name;
     node["pose"] = pose_node(place.pose);
   }
+  void operator()(const Restrain& restrain) { node["restrain"] = restrain.on ? "on" : "off"; }
   void operator()(const Reset&) { node["reset"] = "all"; }
   void operator()(const Pause& pause) { node["pause"] = pause.on ? "on" : "off"; }
 };
@@ -231,6 +234,9 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   return request;
 }
 
+PreparedSpawn::PreparedSpawn(const ObjectRequest& request, const SceneOptions& options)
+    : part(requested_scene(request, options)), geometry(part), files(contents_of(part.mesh_files)) {}
+
 void make(const Change& change, LiveSimulation& simulation) {
   std::visit(Making{simulation}, change);
 }
@@ -248,8 +254,9 @@ std::string to_yaml(const Change& change) {
 RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
-  RecordedFiles files = contents_of(
-      spawn->part ? spawn->part->mesh_files : requested_scene(spawn->request, scene_options({})).mesh_files);
+  RecordedFiles files = spawn->prepared
+                            ? spawn->prepared->files
+                            : contents_of(requested_scene(spawn->request, scene_options({})).mesh_files);
   files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }
@@ -262,10 +269,11 @@ Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
     if (node["delete"]) return Delete{text_in(node, "delete")};
     if (node["set"]) return values_in(node["set"]);
     if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
+    if (node["restrain"]) return Restrain{text_in(node, "restrain") == "on"};
     if (node["reset"]) return Reset{};
     if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
     throw std::invalid_argument(
-        "recorded change: is not known; allowed: spawn, delete, set, place, reset, pause");
+        "recorded change: is not known; allowed: spawn, delete, set, place, restrain, reset, pause");
   });
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "hand_chain.h"
+#include "finger_chain.h"
 #include "mr_hand_interaction/collision/contact.h"
 
 namespace mrhi {

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
+#include "../simulation/contact_phase.h"
 #include "light.h"
-#include "skin_rig.h"
+#include "skin.h"
 
 namespace mrhi {
 namespace {
@@ -110,6 +113,90 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, 
                                         counts[static_cast<std::size_t>(look.capsule)]);
     colours[v] = (colour * light_on(normal, around)).min(1.0f);
   }
+}
+
+namespace {
+
+constexpr double kYieldingForce = 2.0;  // force with which 63 % of the deepest compression is reached [N]
+constexpr double kAround = 1.3;         // radii of the phalanx about the contact, in which skin is flattened
+
+bool is_palm(int capsule) {
+  return capsule == kPalm || bone_of(capsule) == 0;
+}
+
+bool same_part(int a, int b) {
+  return is_palm(a) ? is_palm(b) : !is_palm(b) && finger_of(a) == finger_of(b);
+}
+
+/// Height h over the plane becomes 0 up to the depth d, h from 3 d on, and 3/2 (h - d) between.
+double flattened(double height, double depth) {
+  if (height >= 3.0 * depth) return height;
+  return std::max(0.0, 1.5 * (height - depth));
+}
+
+}  // namespace
+
+void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
+                const Skin& skin, SkinSurface& surface) {
+  for (const Contact& contact : contacts) {
+    if (!contact.touching() || hand_id(contact, state) != hand) continue;
+    const double force = std::abs(contact.normal.dot(contact.force));
+    const double depth = kDeepestPress * (1.0 - std::exp(-force / kYieldingForce));
+    const double around = kAround * contact.radius;
+    for (std::size_t v = 0; v < skin.size(); ++v) {
+      if (!same_part(contact.key.capsule, skin.model().looks[v].capsule)) continue;
+      const Vector3 out = surface.vertices[v] - contact.point;
+      const double height = contact.normal.dot(out);
+      const bool near = height < 3.0 * depth && height > -depth && out.squaredNorm() < around * around;
+      if (near) surface.vertices[v] += (flattened(height, depth) - height) * contact.normal;
+    }
+  }
+}
+
+namespace {
+
+constexpr double kLidDepth = 0.01;  // from the rim to the lid's middle [m]
+
+}  // namespace
+
+/// The rim is one loop of edges. From its middle: the loop is jagged, and a fan from one of its own corners
+/// would stand out between its teeth.
+SkinWrist::SkinWrist(const Skin& skin) : skin_(skin) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& t : skin.triangles()) {
+    const Triangle triangle{static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                            static_cast<std::uint32_t>(t[2])};
+    const bool fades =
+        std::any_of(triangle.begin(), triangle.end(), [this](std::uint32_t v) { return opacity(v) < 1.0f; });
+    (fades ? fading_ : opaque_).push_back(triangle);
+    for (std::size_t i = 0; i < 3 && !fades; ++i) {
+      const std::uint32_t a = triangle[i], b = triangle[(i + 1) % 3];
+      if (edges.erase({b, a}) == 0) edges.insert({a, b});
+    }
+  }
+  for (const auto& [a, b] : edges) {
+    opaque_.push_back({static_cast<std::uint32_t>(skin.size()), b, a});
+    rim_.push_back(a);
+  }
+}
+
+/// Within the wrist: level with the rim, flat stretches of skin would be above the lid. In the light that its
+/// side of the hand is in: the end of a wrist looks round.
+void SkinWrist::add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const {
+  Vector3 rim = Vector3::Zero(), faded = Vector3::Zero();
+  Rgb colour = Rgb::Zero(), light = Rgb::Zero();
+  for (const std::uint32_t vertex : rim_) {
+    rim += surface.vertices[vertex] / static_cast<double>(rim_.size());
+    colour += colours[vertex];
+    light += light_on(surface.normals[vertex].cast<float>());
+  }
+  for (const Triangle& triangle : fading_)
+    for (const std::uint32_t v : triangle)
+      faded += surface.vertices[v] / (3.0 * static_cast<double>(fading_.size()));
+  const Vector3 outward = (faded - rim).normalized();
+  surface.vertices.push_back(rim + kLidDepth * outward);
+  surface.normals.push_back(outward);
+  colours.push_back((colour / light * light_on(outward.cast<float>())).min(1.0f));
 }
 
 }  // namespace mrhi

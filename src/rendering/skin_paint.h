@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "light.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/simulation_state.h"
 #include "skin.h"
 
 namespace mrhi {
@@ -29,6 +31,37 @@ class SkinPaint {
   float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
                 const std::vector<int>& touched) const;
   const Skin& skin_;
+};
+
+/// Flattens the pads of a hand's skin against what they press: skin that is nearer to the touched plane than
+/// the pad's compression lies on it, and skin up to three times as far comes nearer. The compression grows
+/// with the force as a fingertip's does, to kDeepestPress.
+void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
+                const Skin& skin, SkinSurface& surface);
+
+constexpr double kDeepestPress = 0.0018;  ///< [m]
+
+/// A skin's triangles by how they are drawn: opaque up to a rim, and fading from there to nothing along the
+/// wrist. A lid about one more vertex, skin.size(), closes the opaque part: who looks through the wrist sees
+/// no inside. Immutable.
+class SkinWrist {
+ public:
+  explicit SkinWrist(const Skin& skin);  ///< keeps a reference
+
+  using Triangle = std::array<std::uint32_t, 3>;
+  const std::vector<Triangle>& opaque() const { return opaque_; }  ///< the lid included
+  const std::vector<Triangle>& fading() const { return fading_; }
+  /// How much of a vertex is seen: 1 everywhere but at the wrist.
+  float opacity(std::size_t vertex) const {
+    return vertex < skin_.size() ? 1.0f - skin_.model().looks[vertex].wrist : 1.0f;
+  }
+  /// Adds the lid's vertex to a surface of the skin and its colours.
+  void add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const;
+
+ private:
+  const Skin& skin_;
+  std::vector<Triangle> opaque_, fading_;
+  std::vector<std::uint32_t> rim_;
 };
 
 }  // namespace mrhi

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "../ros/result_conversion.h"
@@ -50,6 +53,9 @@ void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& 
 
 }  // namespace
 
+/// What a change of the scene can change of a body: its name and both frictions.
+using Look = std::tuple<std::string, double, double>;
+
 struct MarkerBag::Impl {
   void open();
   void write_frame(const Simulation& simulation);
@@ -60,9 +66,8 @@ struct MarkerBag::Impl {
   double rate = 0.0;  ///< [Hz]; 0: the frames alone
   std::size_t frame = 0;
   rosbag::Bag bag;
-  mr_hand_interaction::SceneDescription scene;  ///< the last that was written
-  std::unique_ptr<Markers> markers;             ///< of it
-  const Scene* drawn = nullptr;
+  std::vector<Look> drawn;  ///< the scene that was last written
+  std::unique_ptr<Markers> markers;
   ros::Time shown;
 };
 
@@ -105,19 +110,14 @@ void MarkerBag::Impl::write_frame(const Simulation& simulation) {
 void MarkerBag::Impl::write_run(const Simulation& simulation) {
   const std_msgs::Header header = header_of(simulation);
   const FrameResult& result = simulation.result();
-  auto now = scene_message(simulation.scene(), simulation.configuration(), header);
-  now.header = scene.header;
-  const auto names = [](const auto& description) {
-    std::vector<std::string> all;
-    for (const auto& body : description.bodies) all.push_back(body.name);
-    return all;
-  };
-  if (!markers || drawn != &simulation.scene() || names(now) != names(scene)) {
-    scene = now;
-    drawn = &simulation.scene();
+  std::vector<Look> looks;
+  for (const Body& body : simulation.scene().bodies)
+    looks.emplace_back(body.name, body.material.static_friction, body.material.dynamic_friction);
+  if (!markers || looks != drawn) {
+    drawn = std::move(looks);
     markers = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
-    now.header = header;
-    write_latched(bag, "/scene", header.stamp, now);
+    write_latched(bag, "/scene", header.stamp,
+                  scene_message(simulation.scene(), simulation.configuration(), header));
   }
   bag.write("/contacts", header.stamp,
             contacts_message(simulation.scene(), result, simulation.state(), header));

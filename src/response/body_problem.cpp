@@ -1,9 +1,15 @@
 #include "body_problem.h"
 
+#include "impact.h"
 #include "spring_contact.h"
 
 namespace mrhi {
 namespace {
+
+/// An object that is heavier than this, in masses of the operator who holds it, is solved together with the
+/// operator. A lighter one hardly moves a person: there the operator's velocity of the step's start is stable
+/// at any step.
+constexpr double kMinCoupled = 0.02;
 
 /// Fills the last four up.
 template <typename Touch>
@@ -47,7 +53,72 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
   }
 
   step_ = step.step;
-  begin_body(step.scene.bodies[touched.body], step.bodies[touched.body], step.gravity);
+  const Body& body = step.scene.bodies[touched.body];
+  const BodyState& state = step.bodies[touched.body];
+  begin_body(body, state, step.gravity);
+  coupled_ = false;
+  if (step.operators == nullptr || !objects_.empty()) return;
+  const int op = sole_operator(step);
+  if (op >= 0 && body.mass > kMinCoupled * step.scene.bodies[static_cast<std::size_t>(op)].mass)
+    couple(step, body, state, static_cast<std::size_t>(op));
+}
+
+/// The operator of all hands that press the body; -1 if there are several.
+int BodyProblem::sole_operator(const ContactStep& step) const {
+  int op = -1;
+  bool several = false;
+  const auto see = [&](std::size_t hand) {
+    several = several || (op >= 0 && op != (*step.operators)[hand]);
+    op = (*step.operators)[hand];
+  };
+  for (const Contact* contact : hands_)
+    if (contact != &no_contact_) see(contact->key.hand);
+  for (const Grip* grip : grips_) see(grip->hand);
+  return several ? -1 : op;
+}
+
+namespace {
+
+/// The drive of springs without the motion of what carries their ends, a twist at the centre of their arms.
+void leave_carrier(const Twist& carrier, SpringContact<Wide>& four) {
+  const Triple<Wide> spin = everywhere<Wide>(carrier.angular);
+  four.drive = four.drive - everywhere<Wide>(carrier.linear) - spin.cross(four.arm);
+  four.drive_spin = four.drive_spin - four.spring.normal.dot(spin);
+}
+
+}  // namespace
+
+// The wrench of the springs acts on the body and, opposite, on the operator. So the velocity W of the body
+// against the operator, both at the body's centre, is that of one body of the reduced mass:
+//
+//     M_r (W - W*) = h sum J' f(W),     M_r^-1 = M^-1 + X M_p^-1 X'
+//
+// and a heavy object is as stable in the hands of a person as a light one. X M_p^-1 X' has, with d from the
+// operator's centre to the body's, the blocks 1/m - [d]I^-1[d], -[d]I^-1, I^-1[d] and I^-1.
+void BodyProblem::couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op) {
+  const Body& person = step.scene.bodies[op];
+  const BodyState& person_state = step.bodies[op];
+  const Vector3 offset = state.pose.position - person_state.pose.position;
+  const Twist twist = twist_of(person, person_state);
+  carrier_ = {twist.linear + twist.angular.cross(offset), twist.angular};
+  for (SpringContact<Lanes>& four : springs_) leave_carrier(carrier_, wide(four));
+  const Matrix3 across = cross_matrix(offset);
+  const Matrix3 inverse_inertia = world_inverse_inertia(person, person_state.pose.orientation);
+  Matrix6 inverse;
+  inverse.topLeftCorner<3, 3>() =
+      collision_matrix(1.0 / person.mass + 1.0 / body.mass, inverse_inertia, offset);
+  inverse.bottomLeftCorner<3, 3>() = inverse_inertia * across;
+  inverse.topRightCorner<3, 3>() = -across * inverse_inertia;
+  inverse.bottomRightCorner<3, 3>() = inverse_inertia + world_inverse_inertia(body, state.pose.orientation);
+  reduced_ = inverse.llt().solve(Matrix6::Identity());
+  reduced_ = (0.5 * (reduced_ + reduced_.transpose())).eval();
+  // Both fall alike, so that gravity has no part in the velocity against each other.
+  free_.head<3>() = start_.head<3>() -= carrier_.linear;
+  free_.tail<3>() = start_.tail<3>() -= carrier_.angular;
+  velocity_.head<3>() = free_.head<3>() + step_ * state.pushed.linear;
+  velocity_.tail<3>() = free_.tail<3>() + step_ * state.pushed.angular;
+  gravity_ = step.gravity;
+  coupled_ = true;
 }
 
 // The unknown is V = (v, w), world axes, w about the centre of mass, with M = diag(m 1, R I R') at the
@@ -82,6 +153,12 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
 void BodyProblem::evaluate(bool renew_limits) {
   lanes_.respond(springs_.data(), springs_.data() + springs_.size(), velocity_.data(), renew_limits, sum_);
   const Vector6 change = velocity_ - free_;
+  if (coupled_) {
+    gradient_ = reduced_ * change;
+    gradient_.head<3>() -= step_ * Eigen::Map<const Vector3>(sum_.force);
+    gradient_.tail<3>() -= step_ * Eigen::Map<const Vector3>(sum_.torque);
+    return;
+  }
   gradient_.head<3>() = mass_ * change.head<3>() - step_ * Eigen::Map<const Vector3>(sum_.force);
   gradient_.tail<3>() = inertia_ * change.tail<3>() - step_ * Eigen::Map<const Vector3>(sum_.torque);
 }
@@ -92,7 +169,10 @@ void BodyProblem::factorise() {
   SpringSlope slope;
   lanes_.slope(springs_.data(), springs_.data() + springs_.size(), slope);
   for (double& entry : slope.entry) entry *= step_;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; coupled_ && i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) slope.entry[Cholesky6::at(i, j)] += reduced_(i, j);
+  }
+  for (int i = 0; !coupled_ && i < 3; ++i) {
     slope.entry[Cholesky6::at(i, i)] += mass_;
     for (int j = 0; j <= i; ++j) slope.entry[Cholesky6::at(3 + i, 3 + j)] += inertia_(i, j);
   }
@@ -109,8 +189,9 @@ double BodyProblem::error_squared() const {
 // potential's gradient by u is the force on 2. Only a line search asks for it, contact by contact.
 double BodyProblem::energy() const {
   const Vector6 change = velocity_ - free_;
-  double energy =
-      0.5 * (mass_ * change.head<3>().squaredNorm() + change.tail<3>().dot(inertia_ * change.tail<3>()));
+  double energy = coupled_ ? 0.5 * change.dot(reduced_ * change)
+                           : 0.5 * (mass_ * change.head<3>().squaredNorm() +
+                                    change.tail<3>().dot(inertia_ * change.tail<3>()));
   const Triple<double> linear = triple(velocity_.head<3>()), angular = triple(velocity_.tail<3>());
   for (const SpringContact<Lanes>& four : springs_) {
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -123,8 +204,15 @@ double BodyProblem::energy() const {
   return energy;
 }
 
-void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) const {
-  BodyState& state = step.bodies[island.bodies.begin()[0].body];
+void BodyProblem::finish_body(bool agree, BodyState& state) const {
+  if (coupled_) {
+    const Vector3 impulse = step_ * Eigen::Map<const Vector3>(sum_.force),
+                  turn = step_ * Eigen::Map<const Vector3>(sum_.torque);
+    state.pushed = {(velocity_ - free_).head<3>() / step_, (velocity_ - free_).tail<3>() / step_};
+    state.linear_momentum += impulse + step_ * mass_ * gravity_;
+    state.angular_momentum += turn;
+    return;
+  }
   state.pushed.linear = (velocity_ - free_).head<3>() / step_;
   state.pushed.angular = (velocity_ - free_).tail<3>() / step_;
   state.linear_momentum = mass_ * velocity_.head<3>();
@@ -135,6 +223,10 @@ void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) co
     state.linear_momentum -= gradient_.head<3>();
     state.angular_momentum -= gradient_.tail<3>();
   }
+}
+
+void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) const {
+  finish_body(agree, step.bodies[island.bodies.begin()[0].body]);
   auto spring = springs_.begin();
   for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, *spring++, &hands_[i]);
   for (std::size_t i = 0; i < objects_.size(); i += kLanes) settle(step, *spring++, &objects_[i]);
@@ -143,6 +235,55 @@ void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) co
       settle_grip(step, contact_in(point, *spring), point, *grip);
     ++spring;
   }
+}
+
+namespace {
+
+/// The same with the opposite momenta.
+BodyState opposite(const BodyState& state) {
+  BodyState result = state;
+  result.linear_momentum = -state.linear_momentum;
+  result.angular_momentum = -state.angular_momentum;
+  result.pushed = {-state.pushed.linear, -state.pushed.angular};
+  return result;
+}
+
+}  // namespace
+
+// A hand's point has the velocity d + v + w x r, where v and w are the operator's, r the arm from its centre
+// and d its own. A fixture's point stands still, so
+//
+//     u = d + v + w x r = d - (V + W x r),      V = -v,  W = -w
+//
+// which is u of a body with the velocity V and a hand with the velocity d. The force f on the fixture changes
+// the operator's momentum by -h f, and the opposite momentum by h f, as it would the body's.
+void BodyProblem::begin_operator(ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
+                                 const Twist& carrier, const ContactConfiguration& configuration) {
+  hands_.clear(), objects_.clear(), grips_.clear();
+  for (Contact* contact : contacts) {
+    if (!hands_.empty() && hands_.back()->key.body != contact->key.body) fill_up(no_contact_, hands_);
+    hands_.push_back(contact);
+  }
+  fill_up(no_contact_, hands_);
+  springs_.resize(hands_.size() / kLanes);
+  const Vector3& centre = step.bodies[body].pose.position;
+  for (std::size_t i = 0; i < hands_.size(); i += kLanes) {
+    make_springs(step, configuration, &hands_[i], springs_[i / kLanes]);
+    SpringContact<Wide>& four = wide(springs_[i / kLanes]);
+    four.arm = four.arm + everywhere<Wide>(step.bodies[hands_[i]->key.body].pose.position - centre);
+    leave_carrier(carrier, four);
+  }
+  coupled_ = false;
+  step_ = step.step;
+  begin_body(step.scene.bodies[body], opposite(step.bodies[body]), -step.gravity);
+}
+
+void BodyProblem::finish_operator(bool agree, ContactStep& step, std::size_t body) {
+  BodyState state = opposite(step.bodies[body]);
+  if (!agree) evaluate(true);  // it has moved on since
+  finish_body(true, state);
+  step.bodies[body] = opposite(state);
+  for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, springs_[i / kLanes], &hands_[i]);
 }
 
 }  // namespace mrhi

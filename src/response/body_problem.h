@@ -19,6 +19,14 @@ class BodyProblem {
   BodyProblem();
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
+  /// The body of an operator whose hands touch fixtures. The operator moves against the fixtures as a body
+  /// moves against hands, with the opposite velocity and momenta: these are the ones solved for. `contacts`
+  /// are with fixtures, sorted by key; hands are carried with `carrier`.
+  void begin_operator(ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
+                      const Twist& carrier, const ContactConfiguration& configuration);
+  /// Gives the contacts what they have become, and the operator the momenta at the step's end.
+  void finish_operator(bool agree, ContactStep& step, std::size_t body);
+
   static Effort effort() { return {}; }
   void restart() { velocity_ = start_; }
   void evaluate(bool renew_limits);
@@ -28,7 +36,11 @@ class BodyProblem {
   void factorise();
   void find_direction() { direction_ = factors_.solve(-gradient_); }
   void move(double part) { velocity_ += part * direction_; }
-  Twist velocity() const { return {velocity_.head<3>(), velocity_.tail<3>()}; }
+  /// Of the body; of one that is coupled to an operator as seen from where the operator was going.
+  Twist velocity() const {
+    if (!coupled_) return {velocity_.head<3>(), velocity_.tail<3>()};
+    return {velocity_.head<3>() + carrier_.linear, velocity_.tail<3>() + carrier_.angular};
+  }
   double energy() const;
   double descent() const { return gradient_.dot(direction_); }
 
@@ -39,7 +51,12 @@ class BodyProblem {
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+  using Matrix6 = BlockSystem::Matrix6;
+
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
+  int sole_operator(const ContactStep& step) const;
+  void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
+  void finish_body(bool agree, BodyState& state) const;
 
   const SpringLanes& lanes_ = spring_lanes();
   // What presses the body, filled up to fours, and all of it as springs.
@@ -57,6 +74,11 @@ class BodyProblem {
   Vector6 start_, free_;           // velocity at the step's start, and at its end without contact
   Vector6 velocity_, direction_, gradient_;
   SpringSum sum_;
+  bool coupled_ =
+      false;  ///< to the operator whose hands press the body: velocities are those against the operator
+  Matrix6 reduced_;  ///< mass of body and operator against each other
+  Twist carrier_;    ///< of the operator, at the body's centre
+  Vector3 gravity_;
   Cholesky6 factors_;
 };
 

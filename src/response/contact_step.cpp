@@ -47,6 +47,13 @@ void StepChanges::forget(int body) {
   if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
 }
 
+double StepChanges::mean_impact_time(std::size_t body) const {
+  const int place = body < places_.size() ? places_[body] : -1;
+  if (place < 0) return 0.0;
+  const Struck& struck = struck_[static_cast<std::size_t>(place)];
+  return struck.size_moment > 0.0 ? struck.size_moment / struck.size : 0.0;
+}
+
 // Flight has moved the body by h times the velocity of the step's end, as if J had been there from its start.
 // It had h - t: so x -= sum t J / m, and the same of the turn. Springs answer the blow within the same solve;
 // what they gave (all that is neither J nor gravity) is taken to begin at the blows' mean time.

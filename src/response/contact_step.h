@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -34,6 +36,10 @@ class StepChanges {
 
   /// A body that something else has moved on through the step, impacts and all.
   void forget(int body);
+
+  /// When what springs do to the body begins to act, from the step's start: 0, or the mean time of impacts
+  /// [s].
+  double mean_impact_time(std::size_t body) const;
 
   /// Call when free flight has moved the bodies by `step` seconds: takes back what the impacts' changes of
   /// velocity did before their times, so that an object is not pushed ahead of the hand. What springs did
@@ -69,6 +75,9 @@ struct ContactStep {
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
   StepChanges& changes;
   std::vector<Grip>& grips;  ///< what hands hold, by hand and body; `implicit` alone knows them
+  /// The bodies of the operators whom hands push back, by hand; null where hands are of the world. Contacts
+  /// and grips then tell the forces that momenta are made of.
+  const std::array<int, kMaxHands>* operators = nullptr;
 };
 
 /// How an object answers a touch. All memory is in the contacts: a model keeps nothing but scratch space.

@@ -198,7 +198,7 @@ void ImpactSolver::add(ContactStep& step, Contact& contact) {
   if (strike.time >= step.step) return;
   contact.time_of_impact = strike.time;
   strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
-  strike.a.inverse_mass = contact.inverse_mass;
+  strike.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
   strike.by_hand = true;
   strike.gap = -contact.depth;
   strike.drive = contact.hand_velocity;

@@ -85,7 +85,11 @@ void ImplicitModel::press(ContactStep& step) {
 // flight has gravity to give: the parabola is exact, where M v = p + h m g here would be backward Euler's.
 void ImplicitModel::solve_one(ContactStep& step, const Island& island) {
   one_.begin(step, island, configuration_);
-  const bool agree = Newton<BodyProblem>(one_).solve();
+  bool agree = Newton<BodyProblem>(one_).solve();
+  if (!agree && step.operators != nullptr) {
+    one_.evaluate(true);  // it has moved on since
+    agree = true;
+  }
   const bool pressed = one_.scale() > 0.0;
   if (pressed) one_.finish(agree, step, island);
   note(step, island, pressed);

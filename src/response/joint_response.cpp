@@ -142,8 +142,12 @@ void JointedModel::solve(ContactStep& step) {
     const Island& island = *islands_apart_[i];
     LinkageProblem& problem = *problems_[i];
     if (!problem.acts()) continue;
-    const bool agree = Newton<LinkageProblem>(problem).solve();
-    if (!agree) problem.keep_to_energy(step, island);
+    bool agree = Newton<LinkageProblem>(problem).solve();
+    if (!agree && step.operators == nullptr) problem.keep_to_energy(step, island);
+    if (!agree && step.operators != nullptr) {
+      problem.evaluate(true);  // it has moved on since
+      agree = true;
+    }
     problem.finish(agree, step, island, state_.joints);
     for (std::size_t l = 0; l < linkages_.size(); ++l) {
       if (has(island, groups_[l].front())) solved_[l] = 1;

@@ -42,7 +42,7 @@ bool LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       strike.gap = -contact.depth;
       strike.restitution = contact.restitution.value_or(material(body.body).restitution);
       strike.friction = material(body.body).static_friction;
-      strike.inverse_mass = contact.inverse_mass;
+      strike.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
       const Vector3 arm = contact.point - step.bodies[body.body].pose.position;
       strike.rows.setZero(3, problem.jacobian().cols());
       add_point_rows(problem, place, arm, -1.0, strike.rows);

@@ -7,7 +7,7 @@ namespace {
 
 /// The paper's two phases, equation by equation: an impulse when a phalanx strikes (3.4.1), then penetration
 /// forces with Coulomb friction while it touches (3.4.2). To the letter with contact/damping and
-/// contact/release_fade false; docs/equations.md has the differences otherwise.
+/// contact/release_fade false; docs/contact.md has the differences otherwise.
 class SeedModel : public ContactModel {
  public:
   explicit SeedModel(const PenetrationLaw& law) : law_(law) {}

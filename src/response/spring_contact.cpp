@@ -187,6 +187,10 @@ void keep_twist(double twist, Contact& contact) {
   contact.twist = twist;
 }
 void keep_twist(double, BodyContact&) {}
+void keep_torque(double torque, Contact& contact) {
+  contact.torque = torque;
+}
+void keep_torque(double, BodyContact&) {}
 
 /// One contact of those that `solved` stands for.
 ///
@@ -251,6 +255,7 @@ void make_springs(const ContactStep& step, const ContactConfiguration& configura
 template <typename Touch>
 void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch) {
   keep_twist(kept_twist(solved, step.step), touch);
+  keep_torque(solved.response.torque, touch);
   settle_lane(step, solved, 0, touch);
 }
 
@@ -259,6 +264,7 @@ void settle(const ContactStep& step, const SpringContact<Lanes>& solved, Touch* 
   const Wide twist = kept_twist(wide(solved), step.step);
   for (int lane = 0; lane < kLanes; ++lane) {
     keep_twist(lane_of(lane, twist), *touches[lane]);
+    keep_torque(lane_of(lane, solved.response.torque), *touches[lane]);
     settle_lane(step, solved, lane, *touches[lane]);
   }
 }
@@ -381,9 +387,11 @@ void settle_grip(const ContactStep& step, const SpringContact<double>& solved, i
   const Vector3 force = vector(response.force);
   if (point == 0) {
     grip.force.setZero();
+    grip.torque.setZero();
     grip.slips = false;
   }
   grip.force += force;
+  grip.torque += vector(solved.arm).cross(force);
   if (response.wanted_squared <= spring.slip_limit * spring.slip_limit) return;
   grip.slips = true;
   // Ideal plasticity: the end on the body goes after by what the force at the limit does not stretch, as far

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "../rendering/skin_paint.h"
-#include "../rendering/skin_wrist.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/markers.h"
 

@@ -7,9 +7,14 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <exception>
 #include <iostream>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace mrhi {
@@ -39,7 +44,24 @@ void tell(Standing before, Standing now) {
   if (now == Standing::known && before == Standing::no_master) ROS_INFO("the ROS master at %s is back", uri);
 }
 
-}  // namespace
+/// Logs when the ROS master is gone, and when one is there again that does not know this node:
+/// what is connected goes on without a master, but nobody new can find the node until it is started again.
+/// Asks in a thread of its own, as a master on a network that is down keeps who asks waiting.
+class MasterWatch {
+ public:
+  MasterWatch();
+  ~MasterWatch();
+  MasterWatch(const MasterWatch&) = delete;
+  MasterWatch& operator=(const MasterWatch&) = delete;
+
+ private:
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool end_ = false;
+  std::thread thread_;
+};
 
 MasterWatch::MasterWatch() : thread_([this] { run(); }) {}
 
@@ -67,6 +89,7 @@ void MasterWatch::run() {
   }
 }
 
+/// What a node's arguments alone decide, before there is a master; nothing: the node is to run.
 std::optional<int> status_of_arguments(int argc, char** argv, const char* usage) {
   std::vector<std::string> words;
   ros::removeROSArgs(argc, argv, words);
@@ -81,10 +104,32 @@ std::optional<int> status_of_arguments(int argc, char** argv, const char* usage)
   return 2;
 }
 
+/// So that what a node has begun is brought to its end. Call after ros::init().
 void end_in_order() {
   struct sigaction action {};
   action.sa_handler = [](int) { ros::requestShutdown(); };  // sets a flag
   for (const int signal : {SIGTERM, SIGHUP, SIGQUIT}) sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body) {
+  if (const auto status = status_of_arguments(argc, argv, usage)) return *status;
+  return run_node(argc, argv, name, body);
+}
+
+int run_node(int argc, char** argv, const char* name, const NodeBody& body) {
+  ros::init(argc, argv, name);
+  end_in_order();
+  const ros::NodeHandle node, private_node("~");  // outlive what may throw: without a node nothing is logged
+  const MasterWatch master;
+  try {
+    body(node, private_node);
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
 }
 
 void refuse_unknown(const ros::NodeHandle& parameters, const std::set<std::string>& known) {

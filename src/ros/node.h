@@ -2,42 +2,24 @@
 
 #include <ros/ros.h>
 
-#include <condition_variable>
-#include <mutex>
-#include <optional>
+#include <functional>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 namespace mrhi {
 
-/// What a node's arguments alone decide, before there is a master: --help prints the usage, 0; an argument
-/// that is not roslaunch's is told in one line, 2. Nothing: the node is to run.
-std::optional<int> status_of_arguments(int argc, char** argv, const char* usage);
+/// A node's handles: of its namespace and of its private one.
+using NodeBody = std::function<void(const ros::NodeHandle& node, const ros::NodeHandle& private_node)>;
 
-/// Says in the log when the ROS master is gone, and when one is there again that does not know this node:
-/// what is connected goes on without a master, but nobody new can find the node until it is started again.
-/// Asks in a thread of its own, as a master on a network that is down keeps who asks waiting.
-class MasterWatch {
- public:
-  MasterWatch();
-  ~MasterWatch();
-  MasterWatch(const MasterWatch&) = delete;
-  MasterWatch& operator=(const MasterWatch&) = delete;
+/// A node's main(): prints the usage for --help, refuses arguments that are not roslaunch's with one line and
+/// 2, then runs `body`, which ends with the node; an exception's text is logged as fatal, and 1 returned.
+/// SIGTERM, SIGHUP and SIGQUIT end ros::spin() as SIGINT does. Logs when the ROS master is gone or has been
+/// started anew.
+int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body);
 
- private:
-  void run();
-
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool end_ = false;
-  std::thread thread_;
-};
-
-/// SIGTERM, SIGHUP and SIGQUIT end ros::spin() as SIGINT does, so that what a node has begun is brought to
-/// its end. Call after ros::init().
-void end_in_order();
+/// The same without a look at arguments.
+int run_node(int argc, char** argv, const char* name, const NodeBody& body);
 
 /// A private parameter of the node, if it is set. Throws std::invalid_argument if it is of another type.
 template <class T>

@@ -63,7 +63,7 @@ void Placing::renew(const Simulation& simulation) {
   server_->clear();
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const Body& body = simulation.scene().bodies[b];
-    if (body.fixed) continue;
+    if (body.fixed || body.is_operator) continue;
     server_->insert(
         marker_of(body, simulation.state().bodies[b].pose, fixed_frame_),
         [this](const visualization_msgs::InteractiveMarkerFeedbackConstPtr& feedback) { take(*feedback); });
@@ -75,7 +75,7 @@ void Placing::follow(const Simulation& simulation) {
   if (!server_) return;
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const Body& body = simulation.scene().bodies[b];
-    if (!body.fixed) server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
+    if (!body.fixed && !body.is_operator) server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
   }
   server_->applyChanges();
 }

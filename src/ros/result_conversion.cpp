@@ -42,6 +42,7 @@ mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const 
     object.twist.angular = vector_message(twist.angular);
     object.mass = body.mass;
     object.held = is_held(i, state);
+    object.is_operator = body.is_operator;
     const std::optional<Vector3> assist = assist_force(i, result);
     object.assisted = assist.has_value();
     object.assist_force = vector_message(assist.value_or(Vector3::Zero()));
@@ -117,6 +118,34 @@ sensor_msgs::JointState joint_states_message(const Scene& scene, const Simulatio
     message.effort.push_back(state.joints[i].effort);
   }
   return message;
+}
+
+ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message) {
+  ObjectRequest request;
+  request.name = message.name;
+  request.urdf = message.urdf;
+  request.shape = message.shape;
+  request.size = message.size;
+  request.mass = message.mass;
+  request.pose = from_message(message.pose);
+  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  request.twist = {from_message(message.twist.linear), from_message(message.twist.angular)};
+  request.material = message.material;
+  const auto& color = message.color;
+  // Opacity 0 is that of a request that says nothing of its colour; what is no number is not.
+  if (color.a != 0.0f) request.rgba = {{color.r, color.g, color.b, color.a}};
+  return request;
+}
+
+ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message) {
+  ObjectRequest request;
+  request.whole = true;
+  request.name = message.name;
+  request.urdf = message.urdf;
+  request.joints = message.joints;
+  request.pose = from_message(message.pose);
+  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  return request;
 }
 
 }  // namespace mrhi

@@ -5,11 +5,14 @@
 #include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/SpawnObject.h>
+#include <mr_hand_interaction/SpawnUrdf.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Header.h>
 
 #include <vector>
 
+#include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
@@ -32,5 +35,8 @@ sensor_msgs::JointState joint_states_message(const Scene& scene, const Simulatio
 std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
                                                                const SimulationState& state,
                                                                const std_msgs::Header& header);
+
+ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message);
+ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message);
 
 }  // namespace mrhi

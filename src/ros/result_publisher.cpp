@@ -60,11 +60,7 @@ ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_
                                                           [this](const ros::SingleSubscriberPublisher&) {
                                                             if (markers_) markers_->send_all();
                                                           })),
-      scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>(
-          "scene", kQueue,
-          [this](const ros::SingleSubscriberPublisher& viewer) {
-            if (simulation_) viewer.publish(scene_now());
-          })),
+      scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
       picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
 
 void ResultPublisher::add_standard_outputs(const ros::NodeHandle& node) {
@@ -118,15 +114,11 @@ void ResultPublisher::publish_scene(const FrameResult& result, const ros::Time& 
   shown_ = ros::WallTime::now();
 }
 
-mr_hand_interaction::SceneDescription ResultPublisher::scene_now() const {
-  return scene_message(simulation_->scene(), simulation_->configuration(),
-                       header(to_ros_time(clock_.to_stamp(simulation_->time()))));
-}
-
 /// Before all that is of the scene.
 void ResultPublisher::publish_scene_description() {
-  if (!std::exchange(scene_changed_, false) || scene_publisher_.getNumSubscribers() == 0) return;
-  publish_shared(scene_publisher_, scene_now());
+  if (!std::exchange(scene_changed_, false)) return;
+  publish_shared(scene_publisher_, scene_message(simulation_->scene(), simulation_->configuration(),
+                                                 header(to_ros_time(clock_.to_stamp(simulation_->time())))));
 }
 
 void ResultPublisher::publish_hands(const FrameResult& result, const std_msgs::Header& header) {

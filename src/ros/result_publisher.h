@@ -48,7 +48,6 @@ class ResultPublisher {
  private:
   std_msgs::Header header(const ros::Time& stamp) const;
   std_msgs::Header header(const FrameResult& result) const;
-  mr_hand_interaction::SceneDescription scene_now() const;
   void publish_scene_description();
   void publish_hands(const FrameResult& result, const std_msgs::Header& header);
   void publish_markers(const FrameResult& result, const std_msgs::Header& header);

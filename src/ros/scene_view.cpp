@@ -14,8 +14,6 @@ namespace {
 using mr_hand_interaction::SceneBody;
 using mr_hand_interaction::SceneShape;
 
-constexpr std::size_t kVertices = 300;  // of a mesh, at most about
-
 struct WriteShape {
   SceneShape& message;
 
@@ -31,14 +29,15 @@ struct WriteShape {
     message.mesh = m.uri;
     message.scale = vector_message(m.scale);
     if (!m.triangles) return;
-    const std::vector<Vector3>& vertices = m.triangles->vertices;
-    for (std::size_t i = 0; i < vertices.size(); i += 1 + vertices.size() / kVertices) {
+    for (const Vector3& vertex : m.triangles->vertices) {
       geometry_msgs::Point32 point;
-      point.x = static_cast<float>(vertices[i].x());
-      point.y = static_cast<float>(vertices[i].y());
-      point.z = static_cast<float>(vertices[i].z());
+      point.x = static_cast<float>(vertex.x());
+      point.y = static_cast<float>(vertex.y());
+      point.z = static_cast<float>(vertex.z());
       message.vertices.push_back(point);
     }
+    for (const auto& triangle : m.triangles->triangles)
+      message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   }
 
  private:
@@ -74,16 +73,18 @@ Shape shape_of(const SceneShape& message) {
     default:
       break;
   }
-  auto outline = std::make_shared<TriangleMesh>();
+  auto mesh = std::make_shared<TriangleMesh>();
   for (const auto& point : message.vertices)
-    outline->vertices.push_back(Eigen::Vector3f(point.x, point.y, point.z).cast<double>());
-  return Mesh{std::move(outline), message.mesh, from_message(message.scale)};
+    mesh->vertices.push_back(Eigen::Vector3f(point.x, point.y, point.z).cast<double>());
+  return Mesh{std::move(mesh), message.mesh, from_message(message.scale)};
 }
 
 Body body_of(const SceneBody& message) {
   Body body;
   body.name = message.name;
   body.fixed = message.fixed;
+  body.is_operator = message.is_operator;
+  body.link_in_body.position = from_message(message.link);
   body.start = from_message(message.pose);
   body.material.static_friction = message.static_friction;
   body.material.dynamic_friction = message.dynamic_friction;
@@ -113,6 +114,8 @@ mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Co
     SceneBody told;
     told.name = body.name;
     told.fixed = body.fixed;
+    told.is_operator = body.is_operator;
+    if (body.is_operator) told.link = to_message(body.link_in_body.position);
     told.pose = to_message(body.start);
     told.static_friction = body.material.static_friction;
     told.dynamic_friction = body.material.dynamic_friction;

@@ -43,6 +43,24 @@ void remove_body(std::size_t body, Scene& scene) {
     joints.push_back(std::move(joint));
   }
   scene.joints = std::move(joints);
+  const auto stays = [&](int b) { return goes[static_cast<std::size_t>(b)] == 0; };
+  std::vector<Operator> operators;
+  for (Operator op : scene.operators) {
+    if (!stays(op.body)) continue;
+    op.body = place[static_cast<std::size_t>(op.body)];
+    if (op.restraint && !stays(*op.restraint)) op.restraint.reset();
+    if (op.restraint) op.restraint = place[static_cast<std::size_t>(*op.restraint)];
+    operators.push_back(op);
+  }
+  scene.operators = std::move(operators);
+  std::vector<Tether> tethers;
+  for (Tether tether : scene.tethers) {
+    if (!stays(tether.body) || !stays(tether.fixture)) continue;
+    tether.body = place[static_cast<std::size_t>(tether.body)];
+    tether.fixture = place[static_cast<std::size_t>(tether.fixture)];
+    tethers.push_back(tether);
+  }
+  scene.tethers = std::move(tethers);
 }
 
 }  // namespace mrhi

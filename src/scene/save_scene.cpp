@@ -89,9 +89,11 @@ class Writer {
   void write_urdf() {
     out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << quoted(scene_.name) << "\">\n  <link name=\""
          << root() << "\"/>\n";
-    for (const Body& body : scene_.bodies) write_link(body);
     for (const Body& body : scene_.bodies) {
-      if (joint_of(body) == nullptr)
+      if (!body.is_operator) write_link(body);
+    }
+    for (const Body& body : scene_.bodies) {
+      if (joint_of(body) == nullptr && !body.is_operator)
         write_joint(root() + "_to_" + body.name, body.fixed ? "fixed" : "floating", root(), body,
                     body.start * body.link_in_body, "");
     }
@@ -215,11 +217,52 @@ class Writer {
           root["materials"][body.name][field.name] = text::exact(body.material.*field.value);
       }
       const Vector3 &v = body.start_twist.linear, &w = body.start_twist.angular;
-      if (!body.fixed && !(v.isZero(0.0) && w.isZero(0.0)))
-        root["twists"][body.name] = list(std::vector<double>{v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+      if (!body.fixed && !body.is_operator && !(v.isZero(0.0) && w.isZero(0.0)))
+        root["twists"][body.name] = six(v, w);
     }
     for (const Joint& joint : scene_.joints) root["joints"][joint.name] = settings(joint);
+    for (const Operator& op : scene_.operators) {
+      const YAML::Node node = settings(op);
+      if (scene_.operators.size() == 1 && name_of(op.body) == "operator") {
+        root["operator"] = node;
+      } else {
+        root["operators"][name_of(op.body)] = node;
+      }
+    }
+    for (const Tether& tether : scene_.tethers) root["tethers"].push_back(settings(tether));
     return YAML::Dump(root) + "\n";
+  }
+
+  static YAML::Node six(const Vector3& a, const Vector3& b) {
+    return list(std::vector<double>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
+  }
+  const std::string& name_of(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].name; }
+
+  YAML::Node settings(const Operator& op) const {
+    const Body& body = scene_.bodies[static_cast<std::size_t>(op.body)];
+    const Pose start = body.start * body.link_in_body;
+    YAML::Node node(YAML::NodeType::Map);
+    node["mass"] = text::exact(body.mass);
+    node["inertia"] = vector_list(body.inertia.diagonal());
+    node["centre"] = vector_list(-body.link_in_body.position);
+    node["start"] = six(start.position, roll_pitch_yaw(start.orientation));
+    node["twist"] = six(body.start_twist.linear, body.start_twist.angular);
+    if (op.restraint) node["restraint"] = name_of(*op.restraint);
+    node["reach"] = text::exact(op.reach);
+    return node;
+  }
+
+  YAML::Node settings(const Tether& tether) const {
+    const auto in_link = [&](int body, const Vector3& point) {
+      return vector_list(scene_.bodies[static_cast<std::size_t>(body)].link_in_body.to_local(point));
+    };
+    YAML::Node node(YAML::NodeType::Map);
+    node["body"] = name_of(tether.body);
+    node["at"] = in_link(tether.body, tether.at);
+    node["fixture"] = name_of(tether.fixture);
+    node["anchor"] = in_link(tether.fixture, tether.anchor);
+    node["length"] = text::exact(tether.length);
+    return node;
   }
 
   static YAML::Node settings(const Joint& joint) {

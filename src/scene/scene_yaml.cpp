@@ -73,8 +73,10 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   read_yaml<SceneError>(yaml_file, [&] {
     const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
-    for (const std::string& key :
-         checked_keys(root, {"gravity", "bounds", "materials", "twists", "joints"})) {
+    const std::vector<std::string> keys = checked_keys(
+        root, {"gravity", "bounds", "materials", "twists", "joints", "operator", "operators", "tethers"});
+    const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
+    for (const std::string& key : keys) {
       const Element element = root.at(key);
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
@@ -82,6 +84,14 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
       if (key == "twists") read_twists(element, scene);
       if (key == "joints") read_joint_settings(element, scene);
     }
+    if (has("operator") && has("operators"))
+      root.fail("has both 'operator' and 'operators'; allowed: one of them");
+    if (has("operator")) read_operator(root.at("operator"), scene);
+    if (has("operators")) read_operators(root.at("operators"), scene);
+    if (has("tethers")) read_tethers(root.at("tethers"), scene);
+    if (!scene.operators.empty() && !scene.gravity.isZero(0.0))
+      scene.warnings.push_back("the operator falls with gravity " + text::vector(scene.gravity) +
+                               " m/s^2 as objects do; set gravity to 0 or use a restraint");
   });
 }
 

@@ -22,4 +22,10 @@ void apply_material_yaml(const std::string& source, const std::string& yaml, Bod
 /// arrange_joints()'s to say. Throws YamlError.
 void read_joint_settings(const YamlElement& element, Scene& scene);
 
+/// Adds the bodies of operators to a scene whose other bodies are known: one named `operator`, or several by
+/// their names; then tethers of all bodies. Throw YamlError.
+void read_operator(const YamlElement& element, Scene& scene);
+void read_operators(const YamlElement& element, Scene& scene);
+void read_tethers(const YamlElement& element, Scene& scene);
+
 }  // namespace mrhi

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "../text/text.h"
+#include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {
 namespace {
@@ -108,6 +109,10 @@ std::optional<GivenShape> from_filename(const std::string& filename) {
   for (std::string word; words >> word;) given.size.push_back(size_in(word));
   given.size.resize(given.kind->sizes.size(), 0.0);
   return given;
+}
+
+double bounding_radius(const Shape& shape) {
+  return std::visit([](const auto& asked) { return asked.bounding_radius(); }, shape);
 }
 
 }  // namespace mrhi

@@ -52,8 +52,8 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
   const bool struck = std::any_of(end.transfer.contacts.begin(), end.transfer.contacts.end(),
                                   [](const Contact& contact) { return !contact.impulse.isZero(0.0); });
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    const HandTrack& track = state.hands[slot];
-    if (!track.active) continue;
+    if (!state.hands[slot].active) continue;
+    const HandTrack& track = end.operators.in_world(slot, state);
     const HandExtent hand(track.current);
     for (std::size_t b = 0; b < bodies; ++b) {
       const int body = static_cast<int>(b);
@@ -61,7 +61,10 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
           hand.reaches(state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || struck;
-      if (end.scene.bodies[b].fixed || (!is_near && !may_end)) continue;
+      const bool is_held_fixture = end.scene.bodies[b].fixed && !end.operators.none();
+      if ((end.scene.bodies[b].fixed && !is_held_fixture) || end.scene.bodies[b].is_operator ||
+          (!is_near && !may_end))
+        continue;
       const auto grip = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& candidate) {
         return candidate.hand == slot && candidate.body == b && (candidate.active || candidate.released);
       });
@@ -86,14 +89,16 @@ void report_frame(const FrameEnd& end, FrameResult& result) {
     result.assists.push_back(assist);
   }
   update_interactions(end, result);
-  for (const HandTrack& track : end.state.hands)
-    if (track.active) result.tracked.push_back(track.current);
+  for (std::size_t slot = 0; slot < end.state.hands.size(); ++slot)
+    if (end.state.hands[slot].active)
+      result.tracked.push_back(end.operators.in_world(slot, end.state).current);
 }
 
-void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& result) {
+void render_hands(HandRenderer& renderer, const Operators& operators, SimulationState& state,
+                  FrameResult& result) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    const HandTrack& track = state.hands[slot];
-    if (!track.active) continue;
+    if (!state.hands[slot].active) continue;
+    const HandTrack& track = operators.in_world(slot, state);
     result.rendered.emplace_back();
     renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
                     state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],

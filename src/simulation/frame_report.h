@@ -5,6 +5,7 @@
 #include "../collision/contact_finder.h"
 #include "../rendering/hand_renderer.h"
 #include "mr_hand_interaction/simulation.h"
+#include "operators.h"
 
 namespace mrhi {
 
@@ -26,6 +27,7 @@ struct FrameEnd {
   std::vector<HandMotion>& hands;  ///< those that can touch
   Neighbours& neighbours;
   ContactFinder& finder;
+  const Operators& operators;
   const FrameTransfer& transfer;
   SimulationState& state;  ///< its interactions are updated
 };
@@ -36,7 +38,8 @@ struct FrameEnd {
 void report_frame(const FrameEnd& end, FrameResult& result);
 
 /// The hands as they are shown, from the contacts of the report; their offsets in the state are updated.
-void render_hands(HandRenderer& renderer, SimulationState& state, FrameResult& result);
+void render_hands(HandRenderer& renderer, const Operators& operators, SimulationState& state,
+                  FrameResult& result);
 
 /// Ends what a hand does with every body, before the hand is lost.
 void end_interactions(std::size_t slot, Nanoseconds now, SimulationState& state, std::vector<Event>& events);

@@ -135,9 +135,9 @@ GraspAssist::TouchingSides::TouchingSides(const Grip& grip, const std::vector<Co
   }
 }
 
-GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder,
+GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
                          const ContactConfiguration& configuration)
-    : scene_(scene), closing_hand_(scene, finder), configuration_(configuration) {
+    : scene_(scene), operators_(operators), closing_hand_(scene, finder), configuration_(configuration) {
   closing_.reserve(kMaxHands * scene.bodies.size());
 }
 
@@ -183,7 +183,8 @@ void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
     if (track.active) return false;
     if (!grip.lost) {
       grip.lost = track.last_seen;
-      grip.body_in_palm = track.current.palm.inverse() * state.bodies[grip.body].pose;
+      grip.body_in_palm =
+          track.current.palm.inverse() * operators_.in_hands_frame(grip.hand, grip.body, state);
       grip.active = false;
     }
     return grip.released || to_seconds(now - *grip.lost) > kMaxLoss;
@@ -195,7 +196,7 @@ void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
 /// is in the hand now.
 bool GraspAssist::holds_again(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  const Pose& pose = state.bodies[grip.body].pose;
+  const Pose pose = operators_.in_hands_frame(grip.hand, grip.body, state);
   const Pose in_palm = track.current.palm.inverse() * pose;
   const double now = aperture(grip, track.current);
   if ((in_palm.position - grip.body_in_palm.position).norm() > kReturnDistance ||
@@ -235,8 +236,8 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
   if (grip.opened > release_opening(grip, kReleaseFraction)) return true;
   if (touching.both()) return false;
   const auto gap = [&](bool of_base) {
-    return closing_hand_.gap(track.current, grip.by_palm, of_base, grip.body, state.bodies[grip.body].pose,
-                             kMaxDistance);
+    return closing_hand_.gap(track.current, grip.by_palm, of_base, grip.body,
+                             operators_.in_hands_frame(grip.hand, grip.body, state), kMaxDistance);
   };
   const double base = gap(true), fingers = gap(false);
   return (grip.opened > kMinOpening && base + fingers > kReleaseClearance + 0.5 * noise_margin(track)) ||
@@ -259,7 +260,7 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
 /// No compliance on bodies that hang on joints: tongs are closed by one side of each arm.
 void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
   const auto b = static_cast<std::size_t>(body);
-  const auto look = closing_hand_.look_at(state.hands[slot], body, state.bodies[b].pose);
+  const auto look = closing_hand_.look_at(state.hands[slot], body, operators_.in_hands_frame(slot, b, state));
   if (look.opposed && look.opposed->depth > kPadDepth && !overlaps_since_it_appeared(slot, b, state))
     take(slot, body, *look.opposed, state);
   if (look.closing != 0 && scene_.bodies[b].flies) closing_.push_back({slot, b});
@@ -270,7 +271,7 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
                        SimulationState& state) const {
   const auto b = static_cast<std::size_t>(body);
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
-  const Pose& pose = state.bodies[b].pose;
+  const Pose pose = operators_.in_hands_frame(slot, b, state);
   const Material& material = scene_.bodies[b].material;
   Grip grip;
   grip.hand = static_cast<std::uint8_t>(slot);
@@ -349,6 +350,10 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
     const Vector3 start_bend = bend(track.path.start_bend), end_bend = bend(track.path.end_bend);
     grip.point[i] = start + PathWeights::at(fraction)(chord, start_bend, end_bend);
     grip.velocity[i] = PathWeights::between(fraction, until, seconds_)(chord, start_bend, end_bend);
+    if (const CarrierMotion* carrier = operators_.carrier(grip.hand)) {
+      grip.point[i] = carrier->to_world(grip.point[i]);
+      grip.velocity[i] = carrier->rotation * grip.velocity[i] + carrier->velocity(grip.point[i]);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "closing_hand.h"
 #include "mr_hand_interaction/simulation_state.h"
+#include "operators.h"
 
 namespace mrhi {
 
@@ -18,7 +19,8 @@ namespace mrhi {
 class GraspAssist {
  public:
   /// Keeps references.
-  GraspAssist(const Scene& scene, const ContactFinder& finder, const ContactConfiguration& configuration);
+  GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
+              const ContactConfiguration& configuration);
 
   /// Call once a frame of `seconds`, when the hands' next poses are known: begins and ends grips.
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
@@ -54,6 +56,7 @@ class GraspAssist {
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;
 
   const Scene& scene_;
+  const Operators& operators_;
   ClosingHand closing_hand_;
   const ContactConfiguration configuration_;
   double seconds_ = 0.0;              // of the frame

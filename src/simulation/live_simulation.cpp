@@ -137,6 +137,8 @@ void LiveSimulation::add(const Scene& part) {
 void LiveSimulation::remove(const std::string& name) {
   Scene scene = simulation_->scene();
   const std::size_t body = known_body(scene, name, false);
+  if (scene.bodies[body].is_operator)
+    throw std::invalid_argument("'" + name + "' is an operator, who cannot be deleted; allowed: objects");
   remove_body(body, scene);
   go_on_with(scene, simulation_->configuration());
 }
@@ -160,6 +162,31 @@ void LiveSimulation::place(const std::string& name, const Pose& pose) {
   at_rest.pose = checked_pose(name, pose, scene.bounds);
   SimulationState state = simulation_->state();
   mrhi::place(body, at_rest, state);
+  if (scene.bodies[body].is_operator) mark_hands_appeared(state);
+  simulation_->set_state(state);
+}
+
+void LiveSimulation::restrain(bool on) {
+  const Scene& scene = simulation_->scene();
+  SimulationState state = simulation_->state();
+  bool any = false;
+  for (std::size_t o = 0; o < scene.operators.size(); ++o) {
+    const Operator& op = scene.operators[o];
+    if (!op.restraint) continue;
+    any = true;
+    const auto place = [&](int body) { return state.bodies[static_cast<std::size_t>(body)].pose.position; };
+    const double distance = (place(op.body) - place(*op.restraint)).norm();
+    if (on && distance > op.reach)
+      throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(op.body)].name + "' is " +
+                                  text::number(distance) + " m from '" +
+                                  scene.bodies[static_cast<std::size_t>(*op.restraint)].name +
+                                  "'; allowed: at most its reach of " + text::number(op.reach) + " m");
+    state.restrained[o] = on;
+  }
+  if (!any)
+    throw std::invalid_argument(
+        "no operator has a restraint; allowed: scenes whose YAML names one, as "
+        "'operator: {restraint: LINK}'");
   simulation_->set_state(state);
 }
 

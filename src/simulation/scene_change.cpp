@@ -87,6 +87,21 @@ void carry_joints(const SimulationState& state, const Scene& before, const Scene
   }
 }
 
+/// By the operators' names.
+void carry_restraints(const SimulationState& state, const Scene& before, const Scene& after,
+                      SimulationState& next) {
+  next.restrained.assign(after.operators.size(), 0);
+  for (std::size_t o = 0; o < after.operators.size(); ++o) {
+    const auto name = [](const Scene& scene, const Operator& op) -> const std::string& {
+      return scene.bodies[static_cast<std::size_t>(op.body)].name;
+    };
+    for (std::size_t was = 0; was < before.operators.size() && after.operators[o].restraint; ++was) {
+      if (name(before, before.operators[was]) == name(after, after.operators[o]))
+        next.restrained[o] = state.restrained[was];
+    }
+  }
+}
+
 }  // namespace
 
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after) {
@@ -103,6 +118,7 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
     was_there[static_cast<std::size_t>(*places[b])] = 1;
   }
   carry_joints(state, before, after, next);
+  carry_restraints(state, before, after, next);
   move(places, next.contacts);
   move(places, next.body_contacts);
   move(places, next.grips);

@@ -58,10 +58,11 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
+      operators(scene, refinements(configuration)),
       alone(scene),
       flights(scene),
       sleeping(scene, configuration.contact.sleep),
-      assist(scene, finder, refinements(configuration)),
+      assist(scene, finder, operators, refinements(configuration)),
       renderer(scene, finder) {
   check_filter(configuration.filter.type);
   reset();
@@ -72,6 +73,7 @@ void Simulation::Impl::reset() {
   for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
   for (const Joint& joint : scene.joints) state.joints.push_back(start_state(joint));
   state.asleep.assign(scene.bodies.size(), 0);
+  state.restrained.assign(scene.operators.size(), 0);
   state.hands.resize(kMaxHands);
   state.offsets.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
@@ -208,6 +210,7 @@ Nanoseconds Simulation::time() const {
 void Simulation::set_state(const SimulationState& state) {
   impl_->state = state;
   impl_->state.asleep.resize(impl_->scene.bodies.size(), 0);
+  impl_->state.restrained.resize(impl_->scene.operators.size(), 0);
   if (state.joints.size() != impl_->scene.joints.size()) {
     impl_->state.joints.clear();
     for (const Joint& joint : impl_->scene.joints) impl_->state.joints.push_back(start_state(joint));

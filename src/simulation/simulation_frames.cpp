@@ -52,17 +52,27 @@ int Simulation::Impl::steps_needed(Nanoseconds frame) {
   if (frame <= quiet_frame) {
     neighbours.begin_step(state.bodies, to_seconds(frame));
     if (alone.begin_frame(neighbours, to_seconds(frame), state)) return 1;
+    if (!may_fly_alone()) alone.nobody();
   }
   return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
 }
 
 void Simulation::Impl::begin_hands(double seconds) {
   hands.clear();
+  operators.begin_frame(seconds > 0.0 ? seconds : to_seconds(step_length), state);
   for (int slot = 0; slot < kMaxHands; ++slot) {
     const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
-    if (track.active && !track.appeared) hands.emplace_back(track, slot, seconds);
+    if (!track.active || track.appeared) continue;
+    hands.emplace_back(track, slot, seconds);
+    hands.back().carry(operators.carrier(static_cast<std::size_t>(slot)));
   }
-  neighbours.begin_frame(state.hands, state.bodies);
+  list_near_hands();
+}
+
+void Simulation::Impl::list_near_hands() {
+  Neighbours::Carried carried{};
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) carried[slot] = operators.carried(slot);
+  neighbours.begin_frame(state.hands, state.bodies, carried);
 }
 
 /// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
@@ -96,13 +106,14 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
 
 void Simulation::Impl::report(Nanoseconds stamp) {
   result.stamp = stamp;
-  report_frame({scene, hands, neighbours, finder, transfer, state}, result);
+  operators.end_frame(state);
+  report_frame({scene, hands, neighbours, finder, operators, transfer, state}, result);
   leave_out_contacts_that_are_not_finite();
   reported = true;
 }
 
 void Simulation::Impl::render() {
-  render_hands(renderer, state, result);
+  render_hands(renderer, operators, state, result);
   show_hands_that_are_finite();
 }
 

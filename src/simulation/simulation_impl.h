@@ -16,6 +16,7 @@
 #include "frame_report.h"
 #include "grasp_assist.h"
 #include "mr_hand_interaction/simulation.h"
+#include "operators.h"
 #include "sleeping.h"
 
 namespace mrhi {
@@ -33,6 +34,7 @@ struct Simulation::Impl {
   void plan(Nanoseconds from, Nanoseconds to);
   int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
+  void list_near_hands();
   void pass_without_frames(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void report(Nanoseconds stamp);
@@ -47,6 +49,7 @@ struct Simulation::Impl {
   double driven(double step) const;
   void advance_step(double fraction, double step);
   void keep_in_bounds();
+  bool may_fly_alone() const { return operators.none() && scene.tethers.empty(); }
 
   const Scene scene;
   const Configuration configuration;
@@ -58,6 +61,7 @@ struct Simulation::Impl {
   Neighbours neighbours;
   ContactFinder finder;
   BodyContactFinder body_finder;
+  Operators operators;
   FlyingAlone alone;
   FreeFlights flights;
   Sleeping sleeping;

@@ -145,8 +145,8 @@ void add_contact(const ContactMemory& contact, Fnv1a& hash) {
 void add_grip(const Grip& grip, Fnv1a& hash) {
   const auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness,
                active, released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm,
-               slips, in_hand, in_body, force, point, velocity] = grip;
-  leave_out(stiffness, lost, closes, opened, opens, in_palm_before, slips, force, point, velocity);
+               slips, in_hand, in_body, force, torque, point, velocity] = grip;
+  leave_out(stiffness, lost, closes, opened, opens, in_palm_before, slips, force, torque, point, velocity);
   hash.all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
   if (lost) hash.add(body_in_palm);
   for (const Vector3& pad : pads) hash.add(pad);
@@ -188,6 +188,12 @@ void mark_appeared(std::size_t body, SimulationState& state) {
     state.interactions[slot * state.bodies.size() + body].shown_in = state.hands[slot].active;
 }
 
+void mark_hands_appeared(SimulationState& state) {
+  state.contacts.clear();
+  state.grips.clear();
+  for (HandTrack& track : state.hands) track.appeared = track.active;
+}
+
 void place(std::size_t body, const BodyState& placed, SimulationState& state) {
   state.bodies[body] = placed;
   forget_contacts(body, state);
@@ -195,14 +201,15 @@ void place(std::size_t body, const BodyState& placed, SimulationState& state) {
 }
 
 std::uint64_t hash(const SimulationState& state) {
-  const auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
-               sleeping_contacts, offsets, grips, interactions] = state;
+  const auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
+               body_contacts, sleeping_contacts, offsets, grips, interactions] = state;
   leave_out(started, stamps, asleep);
   Fnv1a hash;
   hash.add(time - last_frame);
   for (const auto& [pose, linear_momentum, angular_momentum, pushed, appeared] : bodies)
     hash.all(pose, linear_momentum, angular_momentum, pushed.linear, pushed.angular, appeared);
   for (const JointState& joint : joints) add_joint(joint, hash);
+  for (const char held : restrained) hash.add(held);
   for (std::size_t slot = 0; slot < hands.size(); ++slot) {
     add_track(hands[slot], time, hash);
     if (hands[slot].active) add_offset(offsets[slot], time, hash);

@@ -29,6 +29,13 @@ double Simulation::Impl::driven(double step) const {
 /// One step, `fraction` of the way into the frame.
 void Simulation::Impl::advance_step(double fraction, double step) {
   const double until = frame_seconds() > 0.0 ? std::min(1.0, fraction + step / frame_seconds()) : fraction;
+  if (!operators.none()) {
+    const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
+    if (!operators.begin_step(left, state)) {
+      operators.foresee(left);
+      list_near_hands();
+    }
+  }
   for (HandMotion& hand : hands) hand.move_to(fraction, until);
   neighbours.begin_step(state.bodies, step);
   alone.join(neighbours, fraction * frame_seconds(), step, gravity, state);
@@ -36,13 +43,16 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
   assist.begin_step(fraction, step, state);
+  if (!operators.none()) operators.begin_contacts(state, state.contacts);
   end_stage(Stage::hand_contacts);
   body_finder.find(neighbours, state.bodies, state.asleep, step, driven(step), state.body_contacts);
   end_stage(Stage::body_contacts);
   changes.reset(scene.bodies.size());
   ContactStep contact_step{scene,        gravity, step,       state.contacts, state.body_contacts,
                            state.bodies, changes, state.grips};
+  contact_step.operators = operators.bodies_of_hands();
   model->respond(contact_step);
+  if (!may_fly_alone()) operators.respond(contact_step, state.restrained);
   end_stage(Stage::response);
   transfer.add(state, step);
   const bool last = steps_done + 1 >= steps;
@@ -70,6 +80,10 @@ void Simulation::Impl::keep_in_bounds() {
     if (body.fixed) continue;
     if (!sound) result.not_finite.push_back("object '" + body.name + "'");
     put_back(b, scene, state);
+    if (body.is_operator) {
+      mark_hands_appeared(state);
+      hands.clear();
+    }
     result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
   }
 }

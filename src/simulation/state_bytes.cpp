@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000005ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000006ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -236,7 +236,7 @@ class Parts {
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
     all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
-        c.grip, c.share, c.inverse_mass, c.restitution, c.impulse);
+        c.grip, c.share, c.inverse_mass, c.carrier_inverse_mass, c.restitution, c.impulse, c.torque);
     // Found anew in each step, and without limits.
     way_.raw(&c.strength, sizeof c.strength);
     way_.raw(&c.time_of_impact, sizeof c.time_of_impact);
@@ -264,10 +264,10 @@ class Parts {
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
            released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
-           in_body, force, point, velocity] = part;
+           in_body, force, torque, point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
         released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
-        in_body, force, point, velocity);
+        in_body, force, torque, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;
@@ -279,9 +279,9 @@ class Parts {
     all(position, anchor, pushed, effort, still, detent, at_limit, latched);
   }
   void one(SimulationState& part) {
-    auto& [started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
-           sleeping_contacts, offsets, grips, interactions] = part;
-    all(started, time, last_frame, stamps, bodies, joints, asleep, hands, contacts, body_contacts,
+    auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
+           body_contacts, sleeping_contacts, offsets, grips, interactions] = part;
+    all(started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts, body_contacts,
         sleeping_contacts, offsets, grips, interactions);
   }
 
@@ -326,7 +326,7 @@ class Fit {
     const std::size_t bodies = scene_.bodies.size(), hands = kMaxHands;
     return state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == hands &&
            state.offsets.size() == hands && state.interactions.size() == hands * bodies &&
-           state.joints.size() == scene_.joints.size();
+           state.joints.size() == scene_.joints.size() && state.restrained.size() == scene_.operators.size();
   }
   bool is_shape(std::size_t body, std::size_t shape) const {
     return body < scene_.bodies.size() && shape < scene_.bodies[body].shapes.size();

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "motions.h"
 #include "mr_hand_interaction/synthetic/random.h"
+#include "script.h"
 
 namespace mrhi {
 namespace {
@@ -75,6 +77,160 @@ Vector3 Tremor::at(double time) const {
   for (const Wave& wave : waves_)
     sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
   return sum;
+}
+
+namespace {
+
+constexpr double kSlow = 0.05;     // what is faster is left to go [m/s]
+constexpr double kGetReady = 0.9;  // at pace 1, before a motion [s]
+constexpr double kBehind = 0.35;   // where the hand waits, behind what it works on [m]
+
+HandPlace waiting(const Vector3& object) {
+  return {hand_pose(object + Vector3(0.05, -kBehind, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
+          relaxed_posture()};
+}
+
+double half_height(const Body& body) {
+  const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
+  return box != nullptr ? box->half_extents.z() : body.bounding_radius;
+}
+
+std::vector<Keyframe> moved(std::vector<Keyframe> way, const Vector3& by) {
+  for (Keyframe& key : way) {
+    key.wrist.position += by;
+    if (key.centre) *key.centre += by;
+  }
+  return way;
+}
+
+/// Times count from the first that is kept.
+std::vector<Keyframe> until(std::vector<Keyframe> way, double end) {
+  way.erase(std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time > end; }),
+            way.end());
+  return way;
+}
+
+/// The last part, of so many seconds.
+std::vector<Keyframe> last(std::vector<Keyframe> way, double seconds) {
+  const double begin = way.back().time - seconds;
+  way.erase(way.begin(),
+            std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time >= begin; }));
+  for (Keyframe& key : way) key.time -= begin;
+  return way;
+}
+
+std::vector<Keyframe> backwards(const std::vector<Keyframe>& way) {
+  std::vector<Keyframe> back;
+  for (auto key = way.rbegin(); key != way.rend(); ++key) {
+    Keyframe other = *key;
+    other.time = way.back().time - key->time;
+    other.velocity = -key->velocity;
+    other.centre = key == way.rbegin() ? std::nullopt : (key - 1)->centre;
+    other.via_share = key == way.rbegin() ? 0.0 : 1.0 - (key - 1)->via_share;
+    if (key != way.rbegin() && (key - 1)->via_share == 0.0) other.via_share = 0.0;
+    other.via = key == way.rbegin() ? other.via : (key - 1)->via;
+    back.push_back(other);
+  }
+  return back;
+}
+
+/// A finger pushes the object along x of `about`, and the palm waits for it at its place.
+std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place) {
+  const std::vector<Keyframe> nudge = make_motion("nudge").keyframes, slap = make_motion("slap").keyframes;
+  const Vector3 way_to_go = place - object;
+  const Quaternion along(Eigen::AngleAxisd(std::atan2(way_to_go.y(), way_to_go.x()), Vector3::UnitZ()));
+  const auto at = [&](const Vector3& from, const Quaternion& turned, const Pose& wrist) {
+    return Pose{from, along * turned} * Pose{wrist.position - scene_object(), wrist.orientation};
+  };
+  const Quaternion pushes_along_y = turn(-90.0, Vector3::UnitZ());
+  const Pose ready = at(object, pushes_along_y, nudge[1].wrist),
+             pushed = at(object, pushes_along_y, nudge[3].wrist);
+  const Vector3 meeting = 0.5 * (slap[1].wrist.position + slap[3].wrist.position);
+  const Pose stop = at(place, Quaternion::Identity(), {meeting, slap[1].wrist.orientation});
+  const Vector3 up(0.0, 0.0, 0.2), ahead = along * Vector3(0.02, 0.0, 0.0);
+  Script script("cube");
+  script.then(0.0, at(object, pushes_along_y, nudge.front().wrist), relaxed_posture());
+  script.then(1.0, ready, pointing_posture()).then(6.0, pushed, pointing_posture());
+  script.then(0.3, ready, pointing_posture()).then(0.4, shifted(ready, up), flat_posture());
+  script.then(0.5, shifted(stop, up + 2.5 * ahead), flat_posture())
+      .then(0.4, shifted(stop, ahead), flat_posture());
+  script.hold(3.0).then(0.6, shifted(stop, up + ahead), relaxed_posture());
+  return script.motion().keyframes;
+}
+
+}  // namespace
+
+PractisedPerson::PractisedPerson(const OperatorSkill& skill, std::vector<std::optional<PractisedGoal>> goals,
+                                 const Body& object, std::uint64_t seed)
+    : skill_(skill),
+      goals_(std::move(goals)),
+      object_(object),
+      random_(seed),
+      tremor_(skill.tremor, random_),
+      now_(waiting(scene_object())) {}
+
+HandPlace PractisedPerson::move(double time, const Sight& sight) {
+  const bool busy = !way_.empty() && time < began_ + way_.back().time;
+  if (!busy && !looked_) looked_ = Moment{time, sight};
+  if (!busy && looked_ && time >= looked_->time + skill_.reaction_time) {
+    look(time, *looked_);
+    looked_.reset();
+  }
+  if (!way_.empty()) now_ = hand_at(way_, time - began_);
+  HandPlace place = now_;
+  place.wrist.position += tremor_.at(time);
+  return place;
+}
+
+bool PractisedPerson::ready(const PractisedGoal& goal, const Sight& sight) const {
+  return goal.skill == Skilled::catch_ball ? sight.twist.linear.y() < -kSlow
+                                           : sight.twist.linear.norm() < kSlow;
+}
+
+/// Gets the hand to where the motion begins, waits for its time, and makes it.
+void PractisedPerson::look(double time, const Moment& seen) {
+  const std::size_t goal = seen.sight.goal;
+  if (goal >= goals_.size() || !goals_[goal] || !ready(*goals_[goal], seen.sight)) return;
+  double begin = time + kGetReady * skill_.pace;
+  const std::vector<Keyframe> does =
+      moved(motion(*goals_[goal], seen, begin), random_.gaussian_vector(skill_.placing_error));
+  const double earliest = time + kGetReady * skill_.pace;
+  if (begin < earliest) return;
+  way_ = {{0.0, now_.wrist, now_.posture}};
+  for (Keyframe key : does) {
+    key.time += begin - time;
+    way_.push_back(key);
+  }
+  began_ = time;
+}
+
+std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const Moment& seen,
+                                              double& begin) const {
+  constexpr double kCube = 0.025, kByTheHandle = 8.8;  // [m]; [s] the last part of open_hatch
+  const Vector3 object = seen.sight.object.position, off = object - scene_object();
+  switch (goal.skill) {
+    case Skilled::tap:
+      return moved(make_motion("tap").keyframes, off + Vector3(0.0, 0.0, half_height(object_) - kCube));
+    case Skilled::slap:
+      return moved(make_motion("slap").keyframes, off);
+    case Skilled::nudge:
+      return nudge_and_stop(object, goal.place);
+    case Skilled::catch_ball: {
+      const double flight = object.y() / -seen.sight.twist.linear.y();
+      begin = seen.time + flight;
+      const Vector3 met = object + flight * seen.sight.twist.linear;
+      return moved(make_motion("catch_ball").keyframes, met - scene_object());
+    }
+    case Skilled::press_button:
+      return moved(make_motion("press_button").keyframes, Vector3(0.0, 0.0, 0.17 - 0.36));
+    case Skilled::open_hatch:
+      return make_motion("open_hatch").keyframes;
+    case Skilled::pull_hatch:
+      return last(make_motion("open_hatch").keyframes, kByTheHandle);
+    case Skilled::close_hatch:
+      break;
+  }
+  return until(backwards(make_motion("open_hatch").keyframes), kByTheHandle);
 }
 
 }  // namespace mrhi

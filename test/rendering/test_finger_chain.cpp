@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "rendering/hand_chain.h"
+#include "rendering/finger_chain.h"
 #include "support/finger_angles.h"
 #include "support/posed_hand.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "rendering/return_home.h"
+#include "rendering/renderer.h"
 
 namespace mrhi {
 namespace {

@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "modelling/skin_parts.h"
+#include "rendering/skin.h"
 #include "rendering/skin_paint.h"
-#include "rendering/skin_press.h"
-#include "rendering/skin_rig.h"
 #include "support/postures.h"
 
 namespace mrhi {

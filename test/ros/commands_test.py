@@ -22,7 +22,7 @@ from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, 
 
 PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "check_scene", "compare",
             "doctor", "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node",
-            "plan_study", "power_study", "replay", "run_when", "scene_shapes_node", "set",
+            "plan_study", "power_study", "replay", "run_when", "set",
             "simulated_operator_node", "simulated_study", "synthetic_hand_node", "training_keys", "training_node", "web_door")
 
 

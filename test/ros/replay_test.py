@@ -142,6 +142,25 @@ class ReplayTest(unittest.TestCase):
         summary = self.check_it_is_the_live_run(self.bag)
         self.assertIn("GRASP_END", summary["events"])
         self.check_it_is_explained_with_pictures()
+        self.check_a_what_if_is_explained_and_nothing_else_in_its_folder_changes()
+
+    def check_a_what_if_is_explained_and_nothing_else_in_its_folder_changes(self):
+        """Not the recorded run, which the pictures must not bring back either."""
+        def contents(folder):
+            files = {}
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), "rb") as file:
+                    files[name] = file.read()
+            return files
+        _, _, output = self.replay(self.bag, "--set", "material/static_friction=0.1", "--set", "material/dynamic_friction=0.1")
+        before = contents(output)
+        subprocess.run([os.path.join(self.package(), "scripts", "explain"), output], stdout=subprocess.DEVNULL, check=True,
+                       timeout=RUN)
+        after = contents(output)
+        told = json.loads(after.pop("explain.json").decode())
+        del after["explain.html"]
+        self.assertEqual(after, before)
+        self.assertIn("material/dynamic_friction=0.1 instead of 0.6", "\n".join(told["facts"]))
 
     def check_it_is_explained_with_pictures(self):
         output = os.path.join(self.folder, "explained")

@@ -3,7 +3,6 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/synthetic/random.h"
-#include "ros/object_request_message.h"
 #include "ros/result_conversion.h"
 #include "ros/standard_outputs.h"
 #include "support/joints.h"

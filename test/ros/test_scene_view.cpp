@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
 #include "ros/result_conversion.h"
 #include "shown_markers.h"
 
@@ -95,6 +97,28 @@ TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
   EXPECT_EQ(layers,
             (std::set<std::string>{"capsules", "contacts", "fixtures", "forces", "friction", "ghost", "hand",
                                    "impacts", "newtons", "objects", "shadows", "share", "text"}));
+}
+
+TEST(SceneView, a_mesh_crosses_with_its_triangles_as_a_viewer_elsewhere_has_no_file) {
+  const Scene scene = load_scene(find_scene_file("rack", scene_folders()), {});
+  const auto message = scene_message(scene, {}, {});
+  int meshes = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (std::size_t i = 0; i < scene.bodies[b].visuals.size(); ++i) {
+      const Mesh* const mesh = std::get_if<Mesh>(&scene.bodies[b].visuals[i].shape);
+      if (!mesh) continue;
+      ++meshes;
+      const auto& shape = message.bodies[b].visuals[i];
+      ASSERT_EQ(shape.triangles.size(), 3 * mesh->triangles->triangles.size());
+      const auto& last = shape.vertices[shape.triangles.back()];
+      const int vertex = mesh->triangles->triangles.back()[2];
+      EXPECT_LT(
+          (Vector3(last.x, last.y, last.z) - mesh->triangles->vertices[static_cast<std::size_t>(vertex)])
+              .norm(),
+          1e-6);
+    }
+  }
+  EXPECT_GT(meshes, 0);
 }
 
 TEST(SceneView, refuses_shapes_that_are_none_and_keeps_what_it_had) {

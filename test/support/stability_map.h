@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <ostream>
@@ -79,8 +80,11 @@ class StabilityRun {
   /// The springs alone give by 0.8 mm where friction carries twice what is asked for [m].
   static constexpr double kSlid = kOverlap;
 
-  explicit StabilityRun(const StabilityCell& cell)
-      : cell_(cell), simulation_(scene_of(cell), configuration_of(cell)) {
+  using SceneChange = std::function<Scene(const Scene&)>;
+
+  explicit StabilityRun(
+      const StabilityCell& cell, const SceneChange& changed = [](const Scene& s) { return s; })
+      : cell_(cell), simulation_(changed(scene_of(cell)), configuration_of(cell)) {
     // A frame is a whole number of steps, as near to 120 Hz as it can be: every step is as long as the cell
     // says.
     const auto step = static_cast<Nanoseconds>(std::llround(1e9 * cell.step));

@@ -45,6 +45,19 @@ SHAPES = [marker(1), marker(2), marker(3), marker(4, points=TRIANGLE), marker(5,
           marker(9, text='two\nlines')]
 
 
+# Of SceneDescription: sphere, box, cylinder, capsule, mesh
+SIZES = (0.05,), (0.1, 0.1, 0.1), (0.05, 0.1), (0.03, 0.1), ()
+
+
+def scene(*types_):
+    shapes = [types.SimpleNamespace(type=type_, size=SIZES[type_], pose=types.SimpleNamespace(position=point(), orientation=point()),
+                                    color=types.SimpleNamespace(r=CUBE[0], g=CUBE[1], b=CUBE[2], a=1.0),
+                                    vertices=[point(*p) for p in TRIANGLE], triangles=[0, 1, 2]) for type_ in types_]
+    pose = types.SimpleNamespace(position=point(0.0, 0.0, 0.2), orientation=point())
+    body = types.SimpleNamespace(name='cube', fixed=True, pose=pose, visuals=[], shapes=shapes, is_operator=False)
+    return types.SimpleNamespace(name='page', model='implicit', gravity=point(0.0, 0.0, -9.81), bodies=[body] if shapes else [])
+
+
 class PageTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -55,12 +68,12 @@ class PageTest(unittest.TestCase):
         self.addCleanup(self.door.__exit__)
         self.headset = emulated_headset.Headset()
         self.addCleanup(self.headset.close)
-        self.show([marker(1)])
+        self.show(scene(1))
         self.headset.open(self.door.page)
         self.wait(lambda: self.headset.run('return page.drawing.bodies.size'), 'the scene')
 
-    def show(self, shapes, training=()):
-        self.door.picture.take_scene(types.SimpleNamespace(markers=shapes))
+    def show(self, shown, training=()):
+        self.door.picture.take_scene(shown)
         self.door.picture.take_training(types.SimpleNamespace(markers=list(training)))
         self.door.changed()
 
@@ -104,14 +117,42 @@ class PageTest(unittest.TestCase):
         def is_cube(r, g, b):
             return r > 90 and 0.5 * r < g < 0.85 * r and b < 0.2 * r
         self.wait(lambda: self.share(is_cube) > 0.02, 'a box seen on the page')
-        self.show(SHAPES, training=SHAPES)
-        self.wait(lambda: self.headset.run('return page.drawing.objects.children[0].children.length') == len(SHAPES), 'shapes')
+        self.show(scene(*range(len(SIZES))), training=SHAPES)
+        self.wait(lambda: self.headset.run('return page.drawing.objects.children[0].children.length') == len(SIZES), 'shapes')
         self.wait(lambda: self.headset.run('return page.drawing.training.children.length') in (0, len(SHAPES)), 'training')
         self.enter('immersive-vr')
-        self.show([])
+        self.show(scene())
         self.wait(lambda: self.headset.run('return page.drawing.objects.children.length') == 0, 'an empty scene')
         self.wait(lambda: self.headset.run('return page.drawing.training.children.length') == 0, 'the end of a training')
         self.assertEqual(self.share(is_cube), 0.0)
+
+    def show_operator(self, x):
+        """With the frame of its hands at x, 0.4 m before its centre of mass, turned by a right angle about z."""
+        half = math.sqrt(0.5)
+        pose = types.SimpleNamespace(position=point(x + 0.4), orientation=point(z=half, w=half))
+        self.door.picture.take_objects(types.SimpleNamespace(
+            objects=[types.SimpleNamespace(name='operator', held=False, pose=pose)]))
+        self.door.changed()
+
+    def test_the_view_goes_with_the_operator_and_shows_its_speed(self):
+        shown = scene(1)
+        shown.bodies.append(types.SimpleNamespace(
+            name='operator', fixed=False, pose=types.SimpleNamespace(position=point(), orientation=point()), visuals=[], shapes=[],
+            is_operator=True, link=point(0.0, 0.4, 0.0)))
+        self.show(shown)
+        self.show_operator(0.3)
+        self.wait(lambda: self.headset.run('return !document.getElementById("ride").hidden'), 'the button')
+        self.assertAlmostEqual(self.headset.run('return page.drawing.world.matrix.elements[12]'), 0.0)
+        self.press('ride')
+        # World's origin is 0.3 m behind the frame's, whose x is world's y: 0.3 m along y, which the page has upright as -z.
+        self.wait(lambda: abs(self.headset.run('return page.drawing.world.matrix.elements[14]') + 0.3) < 1e-3, 'the ride')
+        self.show_operator(0.4)
+        self.wait(lambda: self.headset.run('return document.getElementById("motion").textContent').endswith('/s'), 'the read-out')
+        self.enter('immersive-vr')
+        self.press('vignette')
+        apart = ('const a = page.placing.world, b = page.drawing.world.matrix;'
+                 'return Math.hypot(a.elements[12] - b.elements[12], a.elements[14] - b.elements[14])')
+        self.wait(lambda: abs(self.headset.run(apart) - 0.4) < 1e-3, 'the headset to go along')
 
     def mounts(self):
         return [pose for transforms in self.door.port.mounted for _, pose in transforms[-1:]]

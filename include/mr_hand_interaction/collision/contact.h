@@ -69,9 +69,11 @@ struct Contact : ContactMemory {
   double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
   double strength = HandStrength::kUnlimited;  ///< most that this point pushes with [N]
   double inverse_mass = 0.0;                   ///< of the phalanx in an impact, effective [1/kg]
+  double carrier_inverse_mass = 0.0;           ///< of the hand's operator there along n, effective [1/kg]
   std::optional<double> restitution;           ///< of an impact, 0 to 1; unset: the object's
   Vector3 impulse = Vector3::Zero();           ///< of an impact in this step [N s]
   double time_of_impact = 0.0;                 ///< of that impact, from the step's start [s]
+  double torque = 0.0;                         ///< about n, of the soft finger, beside the force [N m]
 };
 
 }  // namespace mrhi

@@ -39,6 +39,7 @@ struct Grip {
   std::array<Vector3, kGripPoints> in_hand{};  ///< ends of the springs, palm frame as the grip began [m]
   std::array<Vector3, kGripPoints> in_body{};  ///< the other ends, body frame [m]
   Vector3 force = Vector3::Zero();             ///< on the body in the last step, world [N]
+  Vector3 torque = Vector3::Zero();            ///< likewise, about its centre of mass [N m]
 
   // In this step, world.
   std::array<Vector3, kGripPoints> point{};     ///< the ends on the hand, at the step's start [m]

@@ -15,6 +15,7 @@ struct Body {
   std::string name;
   bool fixed = false;                     ///< a fixture: never moves, mass and inertia are not used
   bool flies = true;                      ///< neither a fixture nor on a joint: moves by itself
+  bool is_operator = false;               ///< an operator's body (Scene::operators): nothing touches it
   double mass = 1.0;                      ///< [kg], > 0
   Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass, body axes [kg m^2], positive definite
   Matrix3 inverse_inertia = Matrix3::Identity();

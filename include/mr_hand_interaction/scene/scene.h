@@ -22,11 +22,30 @@ struct SceneFile {
   std::string path;  ///< where it was read
 };
 
+/// A person who floats. Hands with an operator are tracked in the link frame of the operator's body, and what
+/// they do to objects and fixtures is done to that body.
+struct Operator {
+  int body = 0;                  ///< index in Scene::bodies; a body without shapes
+  std::optional<int> restraint;  ///< fixture that can hold the operator, index in Scene::bodies
+  double reach = 1.5;            ///< of the restraint, to the operator's centre of mass [m]
+};
+
+/// A line between a free body and a fixture. It only pulls.
+struct Tether {
+  int body = 0, fixture = 0;         ///< indices in Scene::bodies
+  Vector3 at = Vector3::Zero();      ///< end on the body, body frame [m]
+  Vector3 anchor = Vector3::Zero();  ///< end on the fixture, body frame [m]
+  double length = 0.0;               ///< largest distance of the ends [m]
+};
+
 /// All that exists besides hands. Immutable once loaded.
 struct Scene {
   std::string name;
-  std::vector<Body> bodies;           ///< free bodies and fixtures, in the URDF's order
-  std::vector<Joint> joints;          ///< see arrange_joints()
+  std::vector<Body> bodies;   ///< free bodies and fixtures, in the URDF's order
+  std::vector<Joint> joints;  ///< see arrange_joints()
+  std::vector<Operator>
+      operators;  ///< hand `id` is of operator id modulo their number; none: hands are in world
+  std::vector<Tether> tethers;
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   Bounds bounds;                      ///< a free body whose centre leaves is put back where it started
   std::vector<std::string> warnings;  ///< what the loader assumed or left out, a line each

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "../../rendering/skin_paint.h"
-#include "../../rendering/skin_wrist.h"
 #include "mr_hand_interaction/ros/markers.h"
 
 namespace Ogre {

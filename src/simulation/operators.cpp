@@ -1,0 +1,252 @@
+#include "operators.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../response/impact.h"
+#include "../response/newton.h"
+
+namespace mrhi {
+namespace {
+
+/// What hands' forces may move an operator's hands off the path that was foreseen, before neighbours are
+/// listed anew [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
+constexpr double kMaxDeparture = 0.002;
+/// Of a hand from its operator's centre of mass, where that departure is bounded [m].
+constexpr double kMaxReach = 1.5;
+/// How fast a tether pulls in what it is too long by: what a swing stretches it by in a step, but not what
+/// began too far away [m/s].
+constexpr double kMaxRetraction = 0.1;
+
+Hand placed(const Pose& frame, const Hand& hand) {
+  const Matrix3 rotation = frame.orientation.toRotationMatrix();
+  const auto place = [&](const Vector3& point) -> Vector3 { return rotation * point + frame.position; };
+  Hand result = hand;
+  result.palm = frame * hand.palm;
+  result.wrist = place(hand.wrist);
+  for (Capsule& capsule : result.capsules) {
+    if (capsule.radius <= 0.0) continue;
+    capsule.start = place(capsule.start);
+    capsule.end = place(capsule.end);
+  }
+  return result;
+}
+
+}  // namespace
+
+Operators::Operators(const Scene& scene, const ContactConfiguration& configuration)
+    : scene_(scene),
+      configuration_(configuration),
+      carriers_(scene.operators.size()),
+      start_(scene.operators.size()),
+      courses_(scene.operators.size()),
+      carried_(scene.operators.size()),
+      in_world_(scene.operators.empty() ? 0 : kMaxHands) {
+  bodies_of_hands_.fill(none() ? 0 : scene.operators.front().body);
+  on_fixtures_.reserve(64 * kMaxHands);
+}
+
+const Operator& Operators::owner(std::size_t slot, const SimulationState& state) const {
+  return scene_.operators[state.hands[slot].current.id % scene_.operators.size()];
+}
+
+Pose Operators::frame(const Operator& op, const SimulationState& state) const {
+  const auto body = static_cast<std::size_t>(op.body);
+  return state.bodies[body].pose * scene_.bodies[body].link_in_body;
+}
+
+const CarrierMotion* Operators::carrier(std::size_t slot) const {
+  return none() ? nullptr : &carriers_[static_cast<std::size_t>(owners_[slot])];
+}
+
+Pose Operators::in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const {
+  if (none()) return state.bodies[body].pose;
+  return frame(owner(slot, state), state).inverse() * state.bodies[body].pose;
+}
+
+void Operators::end_frame(const SimulationState& state) {
+  if (none()) return;
+  begin_step(0.0, state);
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    HandTrack& placed_track = in_world_[slot];
+    placed_track.active = track.active, placed_track.held = track.held;
+    placed_track.appeared = track.appeared, placed_track.emerged = track.emerged;
+    const auto o = static_cast<std::size_t>(owners_[slot]);
+    placed_track.previous = placed(start_[o], track.previous);
+    placed_track.current = placed(frame(scene_.operators[o], state), track.current);
+  }
+}
+
+void Operators::begin_frame(double seconds, const SimulationState& state) {
+  if (none()) return;
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    owners_[slot] = static_cast<int>(track.current.id % carriers_.size());
+    bodies_of_hands_[slot] = scene_.operators[static_cast<std::size_t>(owners_[slot])].body;
+  }
+  begin_step(seconds, state);
+  for (std::size_t o = 0; o < carriers_.size(); ++o) start_[o] = frame(scene_.operators[o], state);
+  foresee(seconds);
+}
+
+void Operators::foresee(double seconds) {
+  for (std::size_t o = 0; o < carriers_.size(); ++o) {
+    const CarrierMotion& now = carriers_[o];
+    courses_[o] = {now.twist, 0.0, seconds};
+    carried_[o] = {now.rotation,
+                   now.origin + 0.5 * seconds * now.twist.linear,
+                   now.centre,
+                   now.twist.linear.norm(),
+                   now.twist.angular.norm(),
+                   seconds,
+                   kMaxDeparture};
+  }
+}
+
+/// No point of a hand departs from the motion that was foreseen by more than the integral of |v - v0| + R |w
+/// - w0|, R its distance from the centre of mass.
+bool Operators::begin_step(double left, const SimulationState& state) {
+  bool on_course = true;
+  for (std::size_t o = 0; o < carriers_.size(); ++o) {
+    const auto index = static_cast<std::size_t>(scene_.operators[o].body);
+    const Body& body = scene_.bodies[index];
+    const BodyState& now = state.bodies[index];
+    CarrierMotion& carrier = carriers_[o];
+    carrier.rotation = now.pose.orientation.toRotationMatrix();
+    carrier.centre = now.pose.position;
+    carrier.origin = carrier.centre + carrier.rotation * body.link_in_body.position;
+    carrier.twist.linear = now.linear_momentum / body.mass;
+    carrier.twist.angular =
+        carrier.rotation * (body.inverse_inertia * (carrier.rotation.transpose() * now.angular_momentum));
+    Course& course = courses_[o];
+    const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
+                        kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
+    course.departed += rate * std::max(course.left - left, 0.0);
+    course.left = left;
+    on_course = on_course && course.departed + rate * left < kMaxDeparture;
+  }
+  return on_course;
+}
+
+//     n' K n,     K = 1/M - [r]x I^-1 [r]x     of the operator at the contact
+// A hand that is as strong as it takes moves its operator in an impact: to the object it weighs as much.
+void Operators::begin_contacts(const SimulationState& state, std::vector<Contact>& contacts) const {
+  for (Contact& contact : contacts) {
+    contact.carrier_inverse_mass = 0.0;
+    if (contact.struck || contact.ignored) continue;
+    const auto index =
+        static_cast<std::size_t>(scene_.operators[static_cast<std::size_t>(owners_[contact.key.hand])].body);
+    const Body& body = scene_.bodies[index];
+    const Pose& pose = state.bodies[index].pose;
+    const Vector3 arm = pose.orientation.conjugate() * (contact.point - pose.position);
+    const Vector3 across = arm.cross(pose.orientation.conjugate() * contact.normal);
+    contact.carrier_inverse_mass = 1.0 / body.mass + across.dot(body.inverse_inertia * across);
+  }
+}
+
+// Of an object that flies on with p' = p + sum q, each impulse q at the arm r and, in a step with impacts,
+// from the time t on, the flight and StepChanges::delay_impacts() make
+//
+//     x' = x + h p' / m - sum t q / m,      x' x p' + L' = x x p + L + sum (x + t p' / m + r) x q
+//
+// so that q acts at x + r + t p' / m. There its opposite acts on the operator, whose x' = x + h P' / M has no
+// part in its angular momentum about the origin. With that both keep their sum to rounding.
+Twist Operators::react(const ContactStep& step, int body) const {
+  const Vector3 centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
+  Twist given;  // impulse [N s] and angular impulse about the operator's centre [N m s]
+  const auto give = [&](const Vector3& impulse, const Vector3& point) {
+    given.linear -= impulse;
+    given.angular -= (point - centre).cross(impulse);
+  };
+  // Where what begins to act on an object at `time` does so.
+  const auto moved = [&](const Vector3& point, std::size_t object, double time) -> Vector3 {
+    if (time <= 0.0 || !scene_.bodies[object].flies) return point;
+    return point + time / scene_.bodies[object].mass * step.bodies[object].linear_momentum;
+  };
+  const auto is_own = [&](std::size_t hand) {
+    return scene_.operators[static_cast<std::size_t>(owners_[hand])].body == body;
+  };
+  for (const Contact& contact : step.contacts) {
+    const std::size_t object = contact.key.body;
+    if (scene_.bodies[object].fixed || !is_own(contact.key.hand)) continue;
+    if (!contact.impulse.isZero(0.0))
+      give(contact.impulse, moved(contact.point, object, contact.time_of_impact));
+    if (contact.force.isZero(0.0)) continue;
+    give(step.step * contact.force, moved(contact.point, object, step.changes.mean_impact_time(object)));
+    given.angular -= step.step * contact.torque * contact.normal;
+  }
+  for (const Grip& grip : step.grips) {
+    if (!grip.active || !is_own(grip.hand)) continue;
+    give(step.step * grip.force,
+         moved(step.bodies[grip.body].pose.position, grip.body, step.changes.mean_impact_time(grip.body)));
+    given.angular -= step.step * grip.torque;
+  }
+  return given;
+}
+
+void Operators::touch_fixtures(ContactStep& step, int body) {
+  on_fixtures_.clear();
+  std::size_t owner = 0;
+  for (Contact& contact : step.contacts) {
+    const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
+    if (contact.ignored || !scene_.bodies[contact.key.body].fixed || scene_.operators[o].body != body)
+      continue;
+    contact.force.setZero();
+    contact.struck = contact.struck || contact.depth > 0.0;
+    on_fixtures_.push_back(&contact);
+    owner = o;
+  }
+  BodyState& state = step.bodies[static_cast<std::size_t>(body)];
+  state.pushed = Twist();
+  if (on_fixtures_.empty()) return;
+  problem_.begin_operator(step, static_cast<std::size_t>(body), on_fixtures_, carriers_[owner].twist,
+                          configuration_);
+  const bool agree = Newton<BodyProblem>(problem_).solve();
+  if (problem_.scale() <= 0.0) return;
+  problem_.finish_operator(agree, step, static_cast<std::size_t>(body));
+  step.changes.mark_solved(body);
+}
+
+// The ends part by u = d'(v + w x r) along the line d. An impulse j = (u - (l - x) / h) / d'K d, if above 0,
+// has them l from each other at the step's end. It only takes energy, but for the turn of the line within a
+// step.
+void Operators::pull(ContactStep& step, const Tether& tether) const {
+  const auto index = static_cast<std::size_t>(tether.body);
+  const Body& body = scene_.bodies[index];
+  BodyState& state = step.bodies[index];
+  const Vector3 end = state.pose * tether.at;
+  const Vector3 apart = end - step.bodies[static_cast<std::size_t>(tether.fixture)].pose * tether.anchor;
+  const double distance = apart.norm();
+  if (distance <= 0.0) return;
+  const Vector3 along = apart / distance, arm = end - state.pose.position;
+  const Matrix3 inverse_inertia = world_inverse_inertia(body, state.pose.orientation);
+  const Vector3 velocity =
+      state.linear_momentum / body.mass + (inverse_inertia * state.angular_momentum).cross(arm);
+  const double allowed = (tether.length - distance) / step.step, rate = along.dot(velocity);
+  if (rate <= std::max(allowed, -kMaxRetraction)) return;
+  const double mass = 1.0 / along.dot(collision_matrix(1.0 / body.mass, inverse_inertia, arm) * along);
+  const Vector3 impulse = -mass * (rate - std::max(allowed, -kMaxRetraction)) * along;
+  state.linear_momentum += impulse;
+  state.angular_momentum += arm.cross(impulse);
+}
+
+void Operators::respond(ContactStep& step, const std::vector<char>& restrained) {
+  for (std::size_t o = 0; o < scene_.operators.size(); ++o) {
+    const int body = scene_.operators[o].body;
+    BodyState& state = step.bodies[static_cast<std::size_t>(body)];
+    const Twist given = react(step, body);
+    state.linear_momentum += given.linear;
+    state.angular_momentum += given.angular;
+    touch_fixtures(step, body);
+    if (restrained[o] == 0) continue;
+    state.linear_momentum.setZero();
+    state.angular_momentum.setZero();
+    step.changes.mark_solved(body);
+  }
+  for (const Tether& tether : scene_.tethers) pull(step, tether);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "../collision/moving_hand.h"
+#include "../collision/neighbours.h"
+#include "../response/body_problem.h"
+#include "mr_hand_interaction/simulation_state.h"
+
+namespace mrhi {
+
+/// The operators: places their hands in world, and gives them the opposite of all that their hands give to
+/// objects and fixtures. What lasts of an operator is a body of the state; all else here is of one frame.
+class Operators {
+ public:
+  /// Keeps references.
+  Operators(const Scene& scene, const ContactConfiguration& configuration);
+
+  bool none() const { return scene_.operators.empty(); }
+
+  /// Once a frame of `seconds`, when the hands' next poses are known.
+  void begin_frame(double seconds, const SimulationState& state);
+  /// Every step, `left` [s] before the frame's end: the operators' motion as it starts. False if hands may
+  /// leave the places that carried() foresaw; foresee() is then due.
+  bool begin_step(double left, const SimulationState& state);
+  /// Where carried hands may come in the next seconds of the frame, as the operators move now.
+  void foresee(double seconds);
+  /// Of a hand, for Neighbours; null for a hand that is tracked in world.
+  const CarriedFrame* carried(std::size_t slot) const {
+    return none() ? nullptr : &carried_[static_cast<std::size_t>(owners_[slot])];
+  }
+
+  /// What carries the hand in a slot; null for a hand that is tracked in world.
+  const CarrierMotion* carrier(std::size_t slot) const;
+  /// The bodies of hands' operators, by slot; null without operators.
+  const std::array<int, kMaxHands>* bodies_of_hands() const { return none() ? nullptr : &bodies_of_hands_; }
+  /// A body's pose in the frame in which a hand is tracked.
+  Pose in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const;
+  /// At a frame's end, when bodies and hands are at its stamp.
+  void end_frame(const SimulationState& state);
+  /// The track of a hand with its poses in world, at the frame's start and end. Call after end_frame().
+  const HandTrack& in_world(std::size_t slot, const SimulationState& state) const {
+    return none() ? state.hands[slot] : in_world_[slot];
+  }
+
+  /// Before the response: by how much the operators give way to impacts of their hands.
+  void begin_contacts(const SimulationState& state, std::vector<Contact>& contacts) const;
+  /// After the response: gives the operators the opposite of what their hands did to objects, lets their
+  /// hands hold and push fixtures, and keeps restraints and tethers.
+  void respond(ContactStep& step, const std::vector<char>& restrained);
+
+ private:
+  const Operator& owner(std::size_t slot, const SimulationState& state) const;
+  Pose frame(const Operator& op, const SimulationState& state) const;
+  Twist react(const ContactStep& step, int body) const;
+  void touch_fixtures(ContactStep& step, int body);
+  void pull(ContactStep& step, const Tether& tether) const;
+
+  const Scene& scene_;
+  const ContactConfiguration configuration_;
+  BodyProblem problem_;
+  std::vector<Contact*> on_fixtures_;
+
+  /// How far the motion of an operator in a frame is from what was foreseen.
+  struct Course {
+    Twist foreseen;
+    double departed = 0.0, left = 0.0;  // [m], [s]
+  };
+  std::vector<CarrierMotion> carriers_;  // by operator
+  std::vector<Pose> start_;              // of their frames at the frame's start
+  std::vector<Course> courses_;
+  std::vector<CarriedFrame> carried_;
+  std::array<int, kMaxHands> owners_{};  // of hands, indices in Scene::operators
+  std::array<int, kMaxHands> bodies_of_hands_{};
+  std::vector<HandTrack> in_world_;  // by slot; only poses and flags
+};
+
+}  // namespace mrhi
