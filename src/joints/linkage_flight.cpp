@@ -10,6 +10,12 @@ namespace {
 /// The error of one part goes with the fifth power of it (fourth order).
 constexpr double kPart = 0.03;
 constexpr double kMostParts = 1000.0;
+/// Budget of a step, so that it takes no more than about 5 ms: places at which the motion of a linkage of n
+/// bodies is found, times n^2; and how many a part usually takes.
+constexpr double kMaxWork = 60'000.0, kUsualWork = 24.0;
+constexpr int kMinRounds = 4;
+/// Energy that a step may gain by its own error, as a part of the kinetic energy at its end.
+constexpr double kMaxGain = 0.01;
 /// What falls from rest turns as a pendulum of this length does, at most [m].
 /// w = sqrt(g / l): by its rate alone what is let go from rest would be taken in one part.
 constexpr double kFallLength = 0.1;
@@ -45,8 +51,8 @@ Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
 LinkageFlight::LinkageFlight(const Scene& scene, const Linkage& linkage)
     : linkage_(linkage), motion_(scene, linkage), velocity_(linkage.unknowns()) {
   const auto count = static_cast<Eigen::Index>(linkage.joints());
-  for (Point* point :
-       {&now_, &next_, &guess_, &stages_[0].point, &stages_[0].rate, &stages_[1].point, &stages_[1].rate})
+  for (Point* point : {&now_, &next_, &guess_, &start_, &stages_[0].point, &stages_[0].rate,
+                       &stages_[1].point, &stages_[1].rate})
     *point = {Vector::Zero(count), Vector::Zero(count), Vector3::Zero()};
 }
 
@@ -118,12 +124,12 @@ double LinkageFlight::distance(const Point& a, const Point& b) {
 /// The method is symplectic at the stages' fixed point only: rounds go on to rounding, or until they change
 /// it no less. A round takes off a factor of the order of the part's turn. The root's turn is counted from
 /// the part's start, so it stays small, and goes into the quaternion at the end.
-void LinkageFlight::advance(const Vector3& gravity, double seconds) {
+void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) {
   static const double kThird = std::sqrt(3.0) / 6.0;
   Stage &one = stages_[0], &two = stages_[1];
   two.rate = one.rate;  // that of the part's start
   double last = 1.0;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     guess_ = two.point;
     go(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
     go(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
@@ -173,16 +179,64 @@ void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& b
   now_.momenta = velocity_.tail(now_.momenta.size());
 }
 
-// parts = 1 + h max(w, sqrt(g / l)) / kPart, w the fastest of any body at the start.
+/// Of the joints and what turns, after find_velocity() at the point [J].
+///
+///     H = p.u / 2 - sum m g.c,      p.u with L.w of one that floats
+double LinkageFlight::energy(const Point& point, const Vector3& gravity) const {
+  double twice = point.momenta.dot(velocity_.tail(point.momenta.size()));
+  if (linkage_.floats()) twice += angular_momentum_.dot(velocity_.segment<3>(3));
+  return 0.5 * twice - motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
+}
+
+/// Call after find_velocity(now_). What turns by too much in a part for its budget may gain energy, or not
+/// come to a finite place at all. Then joints are slowed until nothing is gained. Without a finite place they
+/// stop where the step began.
+///
+///     T(s) = T_locked + s^2 (T - T_locked)      of momenta p_locked + s (p - p_locked)
+///
+/// with p_locked those of joints that are locked and the same angular momentum: no motion has less energy.
+void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
+  const double weight = motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
+  const double after = energy(now_, gravity), moving = after + weight;
+  if (after - before <= kMaxGain * moving) return;  // what is no number fails here as well
+  const bool lost = !std::isfinite(after) || !now_.positions.allFinite() || !root_.coeffs().allFinite();
+  if (lost) {
+    now_ = start_;
+    root_ = start_root_;
+    find_velocity(now_);
+  }
+  double locked = 0.0;
+  next_.momenta.setZero(now_.momenta.size());
+  if (linkage_.floats()) {
+    Eigen::Matrix<double, 6, 1> twist;
+    twist << Vector3::Zero(), angular_momentum_;
+    twist = motion_.mass().topLeftCorner<6, 6>().ldlt().solve(twist);
+    locked = 0.5 * angular_momentum_.dot(twist.tail<3>());
+    next_.momenta = motion_.mass().bottomLeftCorner(now_.momenta.size(), 6) * twist;
+  }
+  const double share =
+      lost ? 0.0 : std::sqrt(std::clamp((before + weight - locked) / (moving - locked), 0.0, 1.0));
+  now_.momenta = next_.momenta + share * (now_.momenta - next_.momenta);
+  find_velocity(now_);
+}
+
+// parts = 1 + h max(w, sqrt(g / l)) / kPart, w the fastest of any body at the start, as far as the budget
+// allows.
 void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
+  start_ = now_;
+  start_root_ = root_;
   find_rate(now_, gravity, stages_[0].rate);
+  const double before = energy(now_, gravity);
   const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
-  const int parts = 1 + static_cast<int>(std::min(way / kPart, kMostParts));
+  const double bodies = motion_.size(), work = kMaxWork / (bodies * bodies);
+  const int parts = 1 + static_cast<int>(std::min({way / kPart, kMostParts, work / kUsualWork}));
+  const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinRounds, kMostRounds);
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);
-    advance(gravity, step / parts);
+    advance(gravity, step / parts, rounds);
   }
   find_velocity(now_);
+  keep_to_energy(gravity, before);
 }
 
 void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointState>& joints,

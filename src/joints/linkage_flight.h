@@ -40,7 +40,9 @@ class LinkageFlight {
   void find_velocity(const Point& point);
   void find_rate(const Point& point, const Vector3& gravity, Point& rate);
   double fastest() const;
-  void advance(const Vector3& gravity, double seconds);
+  double energy(const Point& point, const Vector3& gravity) const;
+  void keep_to_energy(const Vector3& gravity, double before);
+  void advance(const Vector3& gravity, double seconds, int rounds);
   static void go(const Point& from, double a, const Point& first, double b, const Point& second, Point& to);
   static double distance(const Point& a, const Point& b);
   void advance_by_parts(const Vector3& gravity, double step);
@@ -54,9 +56,9 @@ class LinkageFlight {
   const Linkage& linkage_;
   LinkageMotion motion_;
   Vector velocity_;
-  Quaternion root_ = Quaternion::Identity();
+  Quaternion root_ = Quaternion::Identity(), start_root_ = root_;
   Vector3 angular_momentum_ = Vector3::Zero();  // about the centre of mass, of a linkage that floats
-  Point now_, next_, guess_;
+  Point now_, next_, guess_, start_;
   Stage stages_[2];
 };
 

@@ -19,12 +19,23 @@ void BlockSystem::clear() {
 }
 
 // Only the lower triangle is set: LLT reads no other.
-// Of islands with joints J' A J is wanted in place of a solution (linkage_problem.cpp).
 void BlockSystem::to_dense(Eigen::MatrixXd& result) const {
   result.setZero(6 * bodies(), 6 * bodies());
   for (int i = 0; i < bodies(); ++i)
     result.block<6, 6>(6 * i, 6 * i) = diagonal_[static_cast<std::size_t>(i)];
   for (const Coupling& c : couplings_) result.block<6, 6>(6 * c.row, 6 * c.column) = c.value;
+}
+
+// Of islands with joints J' A J is wanted in place of a solution (linkage_problem.cpp). Most blocks are
+// empty: block by block it takes a tenth of the dense product of 18 bodies.
+void BlockSystem::multiply(const Eigen::MatrixXd& by, Eigen::MatrixXd& result) const {
+  result.resize(by.rows(), by.cols());
+  for (int i = 0; i < bodies(); ++i)
+    result.middleRows<6>(6 * i).noalias() = diagonal_[static_cast<std::size_t>(i)] * by.middleRows<6>(6 * i);
+  for (const Coupling& c : couplings_) {
+    result.middleRows<6>(6 * c.row).noalias() += c.value * by.middleRows<6>(6 * c.column);
+    result.middleRows<6>(6 * c.column).noalias() += c.value.transpose() * by.middleRows<6>(6 * c.row);
+  }
 }
 
 // A = L L' (Cholesky), dense: of the few bodies of an island, most are coupled with most.

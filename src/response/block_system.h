@@ -24,8 +24,8 @@ class BlockSystem {
   /// Rows of the later body, columns of the earlier.
   Matrix6& between(std::size_t coupling) { return couplings_[coupling].value; }
 
-  /// A itself, of which only the lower triangle is set.
-  void to_dense(Eigen::MatrixXd& result) const;
+  /// A times another matrix.
+  void multiply(const Eigen::MatrixXd& by, Eigen::MatrixXd& result) const;
 
   /// Call when the entries are there.
   void factorise();
@@ -38,6 +38,7 @@ class BlockSystem {
     Matrix6 value;
   };
 
+  void to_dense(Eigen::MatrixXd& result) const;
   int bodies() const { return static_cast<int>(diagonal_.size()); }
 
   std::vector<Matrix6> diagonal_;

@@ -217,9 +217,9 @@ void IslandProblem::start_from(const Eigen::VectorXd& start, const Eigen::Vector
   free_ = free;
 }
 
-void IslandProblem::hessian(Eigen::MatrixXd& result) {
+void IslandProblem::multiply_hessian(const Eigen::MatrixXd& by, Eigen::MatrixXd& result) {
   assemble();
-  system_.to_dense(result);
+  system_.multiply(by, result);
 }
 
 // H_aa += h J_a' K J_a,  H_bb += h J_b' K J_b,  H_ba -= h J_b' K J_a, of which the system keeps the one

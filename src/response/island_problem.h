@@ -48,7 +48,8 @@ class IslandProblem {
   void set_velocity(const Eigen::VectorXd& velocity) { velocity_ = velocity; }
   /// Impulse that is missing at the last velocity evaluated, and its slope there.
   const Eigen::VectorXd& gradient() const { return gradient_; }
-  void hessian(Eigen::MatrixXd& result);
+  /// The Hessian times another matrix.
+  void multiply_hessian(const Eigen::MatrixXd& by, Eigen::MatrixXd& result);
   /// Gives the contacts what they have become.
   void settle_touches(ContactStep& step, const Island& island);
 

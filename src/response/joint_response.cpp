@@ -143,6 +143,7 @@ void JointedModel::solve(ContactStep& step) {
     LinkageProblem& problem = *problems_[i];
     if (!problem.acts()) continue;
     bool agree = Newton<LinkageProblem>(problem).solve();
+    if (!agree && step.operators == nullptr) problem.keep_to_energy(step, island);
     if (!agree && step.operators != nullptr) {
       problem.evaluate(true);  // it has moved on since
       agree = true;

@@ -11,6 +11,11 @@ constexpr double kRounding = 1e-6;
 /// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
 constexpr double kNearlyAgree = 1e-4;
 
+/// Where more than this is missing, forces are no guess for the next step; of the forces' impulse.
+constexpr double kFarOff = 0.01;
+/// Springs give nothing to what parts faster [m/s].
+constexpr double kReleaseSpeed = 0.1;
+
 /// Islands of more bodies are many.
 constexpr int kFewBodies = 4;
 
@@ -188,8 +193,7 @@ Effort LinkageProblem::effort() const {
 /// H = J' (M_b + h K) J - h dt/du, dense: linkages are small, and J couples all of one.
 /// -dt/du is not negative and each joint's own, on the diagonal.
 void LinkageProblem::factorise() {
-  several_.hessian(body_hessian_);
-  product_.noalias() = body_hessian_.selfadjointView<Eigen::Lower>() * jacobian_;
+  several_.multiply_hessian(jacobian_, product_);
   hessian_.noalias() = jacobian_.transpose() * product_;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -216,24 +220,46 @@ double LinkageProblem::energy() const {
   return sum;
 }
 
+/// Contacts take energy, and give no more than their release speed has; hands give their own speed. A joint's
+/// springs act on as they were, for what they store is small beside it: where Newton's method has failed a
+/// linkage is in violent motion.
+void LinkageProblem::keep_to_energy(const ContactStep& step, const Island& island) {
+  double fastest = kReleaseSpeed, mass = 0.0;
+  for (const IslandBody& body : island.bodies) {
+    mass += step.scene.bodies[body.body].mass;
+    for (std::size_t i = body.first; i < body.last; ++i)
+      fastest = std::max(fastest, step.contacts[i].hand_velocity.norm());
+  }
+  const double allowed =
+      std::max(kinetic_energy(start_), kinetic_energy(free_)) + 0.5 * mass * fastest * fastest;
+  const double found = kinetic_energy(velocity_);
+  if (found <= allowed) return;
+  velocity_ = std::isfinite(found) ? Vector(std::sqrt(allowed / found) * velocity_) : start_;
+  evaluate(true);
+}
+
 // Bodies get M_b J u: what joints do not let through of contacts' impulses, the joints hold, and it does
 // not enter momenta at all. So J' of the bodies' momenta is M u, which the flight goes on from.
 void LinkageProblem::finish(bool agree, ContactStep& step, const Island& island,
                             std::vector<JointState>& joints) {
   several_.settle_touches(step, island);
+  // The next step begins with what acted in this one, unless that is far off.
+  const double far = kFarOff * scale();
+  const bool lasts = agree || error_squared() <= far * far;
+  const double last = lasts ? 1.0 : 0.0;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (unknowns_[i].joint == kNoJoint) continue;
     const auto row = static_cast<Eigen::Index>(i);
     JointState& joint = joints[static_cast<std::size_t>(unknowns_[i].joint)];
-    joint.pushed = (velocity_[row] - free_[row]) / step_;
+    joint.pushed = lasts ? (velocity_[row] - free_[row]) / step_ : 0.0;
     laws_[i].settle(velocity_[row], joint);
   }
   for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
     if (unknowns_[i].joint != kNoJoint) continue;
     const auto row = static_cast<Eigen::Index>(i);
     Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
-    pushed.linear = (velocity_ - free_).segment<3>(row) / step_;
-    pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
+    pushed.linear = last * (velocity_ - free_).segment<3>(row) / step_;
+    pushed.angular = last * (velocity_ - free_).segment<3>(row + 3) / step_;
   }
   // u less M^-1 times what is missing: momenta are then those that the forces told have given.
   const double most = kNearlyAgree * scale();

@@ -56,6 +56,12 @@ class LinkageProblem {
   /// Whether anything but gravity acts, or may.
   bool acts() const { return acts_; }
 
+  /// Kinetic energy of a velocity of the unknowns [J].
+  double kinetic_energy(const Vector& velocity) const { return 0.5 * velocity.dot(mass_ * velocity); }
+  /// Of a solution that does not agree with its forces: slows it down to what springs and hands can have made
+  /// of it.
+  void keep_to_energy(const ContactStep& step, const Island& island);
+
   /// Gives contacts, joints and bodies what they have become.
   void finish(bool agree, ContactStep& step, const Island& island, std::vector<JointState>& joints);
 
@@ -78,7 +84,7 @@ class LinkageProblem {
   std::vector<Unknown> unknowns_;
   std::vector<JointLaw> laws_;  // by unknown that is a joint's
   const Scene* scene_ = nullptr;
-  Matrix jacobian_, mass_, hessian_, body_hessian_, product_;
+  Matrix jacobian_, mass_, hessian_, product_;
   Eigen::LLT<Matrix> mass_factors_, factors_;
   Vector start_, free_, fall_, velocity_, direction_, gradient_;
   Vector body_velocity_, body_start_, body_free_;

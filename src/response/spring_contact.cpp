@@ -143,6 +143,22 @@ void follow(const ContactStep& step, const Vector3& slide, BodyContact& contact)
   contact.anchor_b = pose.to_local(pose * contact.anchor_b + slide);
 }
 
+/// Sliding speed up to which friction between objects stays static [m/s].
+/// Friction falls from mu to phi as surfaces slide, not as the force of one point reaches its limit: the
+/// corners of a block on a ramp bear unlike loads and yield one after the other before it slides, and a load
+/// that dips for a moment after a landing starts no slide. What slides as slowly stops within 10 um. In long
+/// steps it is what a step's fall makes.
+constexpr double kStaticSpeed = 0.01;
+
+/// Which friction a contact of bodies has that has yielded in this step: by the way that it slides with
+/// static friction.
+void settle_friction(const ContactStep& step, const SpringContact<double>& solved, BodyContact& touch) {
+  const Vector3 way = slide(solved, touch.material.static_friction, step.step);
+  const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
+  touch.friction = way.norm() > speed * step.step ? Friction::slipping : Friction::sticking;
+}
+void settle_friction(const ContactStep&, const SpringContact<double>&, Contact&) {}
+
 double grip_of(const Contact& contact) {
   return contact.grip;
 }
@@ -194,8 +210,10 @@ void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, i
   const bool sticks = of(solved.response.wanted_squared) <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
   if (sticks || of(solved.response.push) <= 0.0) return;
-  const double friction = grip_of(touch) * material_of(step, touch).dynamic_friction;
-  follow(step, slide(contact_in(lane, solved), friction, step.step), touch);
+  const SpringContact<double> one = contact_in(lane, solved);
+  settle_friction(step, one, touch);
+  const double friction = grip_of(touch) * friction_of(material_of(step, touch), touch.friction);
+  follow(step, slide(one, friction, step.step), touch);
 }
 
 }  // namespace
