@@ -224,7 +224,7 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
       test::expect_words(
           error.what(),
           {wrong,
-           "ball, crate, cube, cube_on_table, flat_cuboid, hatch, long_cuboid, mixed, panel, rack, tongs"});
+           "ball, crate, cube, cube_on_table, flat_cuboid, handrails, hatch, long_cuboid, mixed, panel, rack, tongs"});
     }
   }
 }
