@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The counts of docs/stability.md: count_stability_map.py stability_map.csv"""
+"""The counts of docs/speed_accuracy.md: count_stability_map.py stability_map.csv"""
 import csv
 import math
 import sys

@@ -228,7 +228,7 @@ void compare(const Geometries& rest, const Skin& skin, bool inside) {
 }  // namespace mrhi
 
 int main() {
-  const mrhi::Skin skin(mrhi::skinned(mrhi::finest_skin()));  // finer than the one that is drawn
+  const mrhi::Skin skin(mrhi::skinned(mrhi::finest_skin(false), false));  // finer than the one that is drawn
   const mrhi::Geometries rest = mrhi::resting_hand(skin);
   std::printf(
       "%d poses each; all fingers against one box; smallest of %d times, all geometries by turns; "

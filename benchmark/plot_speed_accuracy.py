@@ -20,6 +20,7 @@ except ImportError:
 # Okabe and Ito's palette, told apart by the colour-blind; markers differ too.
 STYLES = {
     'mr_hand_interaction': ('#D55E00', 'o'),
+    'mr_hand_interaction, shipped': ('#F0A000', 'o'),
     'bullet_f32': ('#56B4E9', 's'),
     'bullet_f64': ('#0072B2', 'D'),
     'ode': ('#009E73', '^'),
@@ -30,24 +31,24 @@ STYLES = {
     'box3d': ('#44AA99', 'h'),
 }
 OTHER = ('#999999', '.')
-LABELS = {'mr_hand_interaction': 'ours', 'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE',
+LABELS = {'mr_hand_interaction': "ours, paper's hand, step", 'mr_hand_interaction, shipped': 'ours, shipped hand, whole frame', 'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE',
           'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D'}
 LINES = ['-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (7, 2)), (0, (3, 1, 1, 1))]
-OURS = 'mr_hand_interaction'
+OURS, SHIPPED = 'mr_hand_interaction', 'mr_hand_interaction, shipped'
 COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
 # What carries the message: scene, its title, what is wrong where it is high.
 PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same with a noisy hand'),
           ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
-          ('recording', "a person's recorded hand: displacement")]
+          ('recording', "a person's recorded hand: displacement"), ('scripted_hand', 'a scripted, noisy hand: displacement')]
 SMALLEST = 1e-12  # errors below are rounding; a logarithmic axis has no zero
 
-Row = collections.namedtuple('Row', 'scene engine setting step time p99 error unit failed')
+Row = collections.namedtuple('Row', 'scene engine setting step time p99 error unit failed version date')
 
 
 def read(path):
     with open(path, newline='') as file:
         return [Row(r['scene'], r['engine'], r['setting'], float(r['step_s']), float(r['us_per_step']),
-                    float(r['us_per_step_p99']), abs(float(r['error'])), r['error_unit'], r['failed'] == '1')
+                    float(r['us_per_step_p99']), abs(float(r['error'])), r['error_unit'], r['failed'] == '1', r.get('engine_version', ''), r.get('date', ''))
                 for r in csv.DictReader(file)]
 
 
@@ -56,6 +57,20 @@ def grouped(rows, key):
     for row in rows:
         groups.setdefault(key(row), []).append(row)
     return groups
+
+
+def by_curve(rows):
+    """By engine; ours with the shipped hand is a curve of its own, of whole frames with the rendered hand."""
+    def key(row):
+        return SHIPPED if row.engine == OURS and 'shipped hand' in row.setting else row.engine
+    return grouped((r for r in rows if r.engine != OURS or ('whole frame' in r.setting) == ('shipped hand' in r.setting)), key)
+
+
+def footnote(rows):
+    """Engines with their versions, and when they ran."""
+    versions = collections.OrderedDict((label_of(r.engine).split(',')[0], r.version) for r in rows)
+    return '%s. %s' % (', '.join(('%s %s' % item).strip() for item in versions.items()),
+                       ' to '.join(sorted({min(r.date for r in rows), max(r.date for r in rows)})))
 
 
 def label_of(engine, setting=None):
@@ -175,16 +190,14 @@ def pareto(points):
 def draw_front(axes, rows, label):
     """The best of each engine over its settings and steps: error against computing time per simulated second."""
     floor, labels = floor_of(rows), []
-    for engine, of_engine in grouped(rows, lambda r: r.engine).items():
-        if engine == OURS:  # no peer renders a hand
-            of_engine = [r for r in of_engine if 'whole frame' not in r.setting]
+    for engine, of_engine in by_curve(rows).items():
         colour, marker = STYLES.get(engine, OTHER)
         front = pareto([(r.time / r.step * 1e-3, max(r.error, floor)) for r in of_engine if not r.failed and r.time > 0])
         if not front:
             continue
         x, y = zip(*front)
-        axes.plot(x, y, color=colour, marker=marker, markersize=4.5, linewidth=1.4 if engine != OURS else 2.2,
-                  drawstyle='steps-post', zorder=3 if engine == OURS else 2)
+        axes.plot(x, y, color=colour, marker=marker, markersize=4.5, linewidth=2.2 if engine in (OURS, SHIPPED) else 1.4,
+                  drawstyle='steps-post', zorder=3 if engine in (OURS, SHIPPED) else 2)
         labels.append((x[-1], y[-1], label_of(engine), colour))
     finish(axes, rows[0].unit, 'ms per simulated second')
     if label is label_at_right:  # room for the names
@@ -206,7 +219,7 @@ def label_at_right(axes, labels):
     wanted = [to_axes.transform(axes.transData.transform(one[:2]))[1] for one in labels]
     for (x, y, text, colour), place in zip(labels, spread(wanted, 0.062, 0.03, 0.98)):
         axes.annotate(text, xy=(x, y), xytext=(0.985, place), xycoords='data', textcoords='axes fraction', fontsize=9,
-                      color=colour, ha='right', va='center', weight='bold' if text == label_of(OURS) else 'normal',
+                      color=colour, ha='right', va='center', weight='bold' if text in (label_of(OURS), label_of(SHIPPED)) else 'normal',
                       arrowprops={'arrowstyle': '-', 'color': colour, 'lw': 0.5, 'alpha': 0.5, 'shrinkB': 2})
 
 
@@ -276,7 +289,8 @@ def draw_summary(scenes, times, folder):
         draw_crowds(grid.flat[len(panels)], times, [r for rows in scenes.values() for r in rows])
         grid.flat[len(panels)].set_title('crowds: cost', fontsize=11, loc='left')
     figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
-    figure.tight_layout(rect=(0, 0, 1, 0.98))
+    figure.text(0.01, 0.005, footnote([r for rows in scenes.values() for r in rows]), fontsize=8, color='#555555')
+    figure.tight_layout(rect=(0, 0.02, 1, 0.98))
     figure.savefig(os.path.join(folder, 'summary.png'))
     plt.close(figure)
 
@@ -292,7 +306,8 @@ def draw_all(scenes, folder):
         draw_front(axes, rows, label_beside_points)
         axes.set_title(scene.replace('_', ' '), fontsize=9)
     figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
-    figure.tight_layout(rect=(0, 0, 1, 0.98))
+    figure.text(0.01, 0.003, footnote([r for rows in scenes.values() for r in rows]), fontsize=8, color='#555555')
+    figure.tight_layout(rect=(0, 0.01, 1, 0.98))
     figure.savefig(os.path.join(folder, 'all.png'))
     plt.close(figure)
 

@@ -1,5 +1,5 @@
 // Where each contact model stays stable: a cube between fingertips, over mass, step, stiffness, number of
-// contacts and restitution. See docs/stability.md.
+// contacts and restitution. See docs/speed_accuracy.md.
 
 #include <algorithm>
 #include <chrono>
@@ -82,7 +82,7 @@ constexpr char kUsage[] = R"(usage: stability_map [--quick] [--model NAME]... --
   --quick       540 cells of each model instead of 7425: every second value of each quantity
   --model NAME  this contact model alone; repeatable
   --output DIR  created if need be; stability_map.csv
-docs/stability.md says what a cell is.
+docs/speed_accuracy.md says what a cell is.
 )";
 
 struct Arguments {

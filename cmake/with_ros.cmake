@@ -29,15 +29,18 @@ install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
 install(TARGETS ${nodes} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 # No relays in the devel space: where that lies in the package, as after scripts/demo, rosrun would find both and ask.
-set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export
+set(scripts analyse_study ask_participant ask_ratings calibrate_mount calibrate_study compare doctor explain export import_captures
   leapc_bridge mediapipe_bridge plan_study power_study run_when set training_keys web_door)
 foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
+# What draws rviz on a virtual screen; `setup` is no program.
+install(PROGRAMS scripts/film scripts/screenshot DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES scripts/setup scripts/virtual_screen DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY scripts/runs scripts/study scripts/web DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY scripts/captures scripts/runs scripts/study scripts/web DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/rviz.cmake)
 install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz web DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -181,7 +181,7 @@ def main():
     try:
         pictures(*sys.argv[1:])
     except ImportError as error:
-        print("explain: no pictures: rviz draws them, and its Python modules are missing: %s" % error, file=sys.stderr)
+        print("explain: no pictures: rviz draws them, and its Python modules are missing: %s in %s" % (error, sys.executable), file=sys.stderr)
     except Exception as error:  # what is in the folder may be anything
         print("explain: no pictures: %s" % program.one_line(str(error) or type(error).__name__), file=sys.stderr)
     else:

@@ -14,18 +14,23 @@ from study import program  # noqa: E402
 import rospkg
 import rospy
 import yaml
+from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 from visualization_msgs.msg import MarkerArray
 
 from watch_demo import COLOURS, Demo, colours_of, grab, join_master
 
-REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
 LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "impacts", "shadows", "text", "Grid")
+STOPPED = 3.0  # s for which a clock stands still where no bag is played any more
 FONT = os.path.join(rospkg.RosPack().get_path("rviz"), "ogre_media", "fonts", "liberation-sans", "LiberationSans-Regular.ttf")
 OFF_AT_FIRST = ("capsules", "newtons", "share")
+
+
+class Missed(Exception):
+    """A line why the moment has not come."""
 
 
 def view(text):
@@ -46,6 +51,7 @@ def layers(text):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="screenshot")
     parser.add_argument("--motion", required=True)
+    parser.add_argument("--bag", default="", help="is played in place of the motion")
     parser.add_argument("--moment", choices=MOMENTS, default="done")
     parser.add_argument("--time", type=lambda text: float(text) if text else None)
     parser.add_argument("--view", type=view, default=VIEWS["front"])
@@ -68,7 +74,23 @@ def has_come(demo, options):
         return bool(demo.touched)
     if options.moment == "grasp":
         return any(thing.held for thing in demo.objects.values())
+    if options.bag:
+        return demo.carried() or demo.flew_off()
     return demo.done(options.motion)
+
+
+class PlayedClock:
+    """Tells whether a bag is over: its clock has run, and has stopped."""
+
+    def __init__(self):
+        self.last = None
+        self.subscriber = rospy.Subscriber("/clock", Clock, self.take, queue_size=10)
+
+    def take(self, _):
+        self.last = time.monotonic()
+
+    def is_over(self):
+        return self.last is not None and time.monotonic() > self.last + STOPPED
 
 
 def middle(demo):
@@ -80,7 +102,8 @@ def middle(demo):
 
 
 def write_config(options, focus, file):
-    with open(os.path.join(REPOSITORY, "rviz", "interaction.rviz"), encoding="utf-8") as source:
+    from rviz_stage import view_file  # which imports this
+    with open(view_file("interaction"), encoding="utf-8") as source:
         config = yaml.safe_load(source)
     manager = config["Visualization Manager"]
     manager["Views"]["Current"].update({"Yaw": options.view[0], "Pitch": options.view[1], "Distance": options.distance,
@@ -143,9 +166,14 @@ def draw(options, focus, deadline, complete=has_scene):
 
 
 def stop_at_moment(demo, options, deadline):
-    """Pauses the simulation when the moment has come; returns where to look, or None if it was not in time."""
-    if not demo.wait_for(lambda: demo.palm is not None and has_come(demo, options), deadline):
-        return None
+    """Pauses the simulation when the moment has come, and returns where to look. Raises Missed."""
+    clock = PlayedClock()
+    while not demo.wait_for(lambda: demo.palm is not None and has_come(demo, options), min(deadline, time.monotonic() + 0.2)):
+        if time.monotonic() >= deadline:
+            raise Missed(f"the moment has not come within {options.time_limit:.0f} s")
+        if options.bag and clock.is_over():
+            raise Missed(f"{program.one_line(options.bag)} was over, {demo.seen_for():.1f} s after its first hand, before the "
+                         f"moment came; allowed: --moment {' '.join(MOMENTS)}, or --time with fewer seconds")
     rospy.ServiceProxy("interaction_node/pause", SetBool)(True)
     with demo.changed:
         return middle(demo)
@@ -176,10 +204,10 @@ def main():
     deadline = time.monotonic() + options.time_limit
     os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
     join_master("screenshot", deadline)
-    focus = stop_at_moment(Demo(), options, deadline)
-    if focus is None:
-        print(f"screenshot: the moment has not come within {options.time_limit:.0f} s", file=sys.stderr)
-        return 1
+    try:
+        focus = stop_at_moment(Demo(), options, deadline)
+    except Missed as error:
+        sys.exit(f"screenshot: {error}")
     text = "" if "text" in options.hide else text_shown(deadline)
     options.hide.append("text")
     if not draw(options, focus, deadline):

@@ -118,6 +118,9 @@ class Demo:
                    or turn_between(thing.pose.orientation, self.start[name].orientation) > TURNED
                    for name, thing in self.objects.items() if name in self.touched and name in self.start)
 
+    def flew_off(self):
+        return any(name in self.touched and not thing.held and self.moved(name) > CARRIED for name, thing in self.objects.items())
+
     def done(self, motion, struck=STRUCK):
         if motion in STRIKES:
             return self.struck(struck)

@@ -1,5 +1,5 @@
 // Jitter against lag of every filter and setting, over real recordings, as they are and with noise added; and
-// what a cube does that a noisy hand holds. See docs/filters.md.
+// what a cube does that a noisy hand holds. See docs/pipeline.md.
 
 #include <fstream>
 #include <iostream>

@@ -1,4 +1,4 @@
-// From a hand's message to its picture, beside a relay that only passes messages on: see docs/latency.md.
+// From a hand's message to its picture, beside a relay that only passes messages on: see docs/reliability.md.
 #include <ros/ros.h>
 #include <topic_tools/shape_shifter.h>
 

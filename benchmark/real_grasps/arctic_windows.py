@@ -22,7 +22,6 @@ import csv
 import glob
 import math
 import os
-import pickle
 import re
 import sys
 
@@ -30,7 +29,13 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
+from captures import windows  # noqa: E402
+from captures.files import read_npy  # noqa: E402
+
 RATE = 30.0
+# MANO's joints from palm to tip, thumb first, with the tips last, as DexMachina has them.
+ORDER = [0, 13, 14, 15, 16, 1, 2, 3, 17, 4, 5, 6, 18, 10, 11, 12, 19, 7, 8, 9, 20]
 LONGEST_LEAD = 30          # frames before a window
 SHORTEST = 27              # frames
 ANGLE = 0.05               # [rad]
@@ -39,28 +44,6 @@ CLOSED = 0.1               # [rad]
 FILLING = 2.0              # of the hull, against the parts
 PART_FILLING = 2.5         # of a part's hull, against the part
 FURTHEST = 3.2             # that a joint may turn [rad]
-PULP = 0.008               # MANO's tips lie on the skin: the bone ends so much before [m]
-FINGERS = ['thumb', 'index', 'middle', 'ring', 'pinky']
-# MANO's joints of a finger from the palm to the tip. The thumb's metacarpal begins at its base, as Leap has it.
-CHAINS = {'thumb': [13, 13, 14, 15, 16], 'index': [None, 1, 2, 3, 17], 'middle': [None, 4, 5, 6, 18],
-          'ring': [None, 10, 11, 12, 19], 'pinky': [None, 7, 8, 9, 20]}
-
-
-class ArraysOnly(pickle.Unpickler):
-    """Takes arrays, dictionaries and numbers: a capture that asks for anything else is refused."""
-    ALLOWED = {('numpy.core.multiarray', '_reconstruct'), ('numpy', 'ndarray'), ('numpy', 'dtype')}
-
-    def find_class(self, module, name):
-        if (module, name) not in self.ALLOWED:
-            raise pickle.UnpicklingError('holds a %s.%s; arrays alone are taken' % (module, name))
-        return super().find_class(module, name)
-
-
-def read_capture(path):
-    with open(path, 'rb') as file:
-        np.lib.format.read_magic(file)
-        np.lib.format.read_array_header_1_0(file)
-        return ArraysOnly(file).load().item()
 
 
 def read_mesh(path):
@@ -131,96 +114,25 @@ def articulated_windows(capture, thing, longest):
     return runs(held, lambda first, frame: frame - first < longest * RATE)
 
 
-def hull(points):
-    """Vertices, triangles with outward normals, and of its even filling: centre, volume, inertia of 1 kg."""
-    found = ConvexHull(points)
-    numbers = {v: i for i, v in enumerate(found.vertices)}
-    corners = points[found.vertices]
-    triangles = np.array([[numbers[v] for v in simplex] for simplex in found.simplices])
-    a, b, c = (corners[triangles[:, i]] for i in range(3))
-    inward = np.einsum('ij,ij->i', np.cross(b - a, c - a), found.equations[:, :3]) < 0
-    triangles[inward] = triangles[inward][:, ::-1]
-    a, b, c = (corners[triangles[:, i]] for i in range(3))
-    volumes = np.einsum('ij,ij->i', a, np.cross(b, c)) / 6
-    centre = (volumes[:, None] * (a + b + c)).sum(axis=0) / 4 / volumes.sum()
-    a, b, c = a - centre, b - centre, c - centre
-    volumes = np.einsum('ij,ij->i', a, np.cross(b, c)) / 6
-    total = a + b + c
-    second = sum(np.einsum('i,ij,ik->jk', volumes / 20, x, x) for x in (a, b, c, total)) / volumes.sum()
-    return corners, triangles, centre, volumes.sum(), np.trace(second) * np.eye(3) - second
-
-
-def joints_of(hand):
-    """{column prefix: place in world} of 21 MANO joints."""
-    places = {'wrist': hand[0]}
-    for finger in FINGERS:
-        chain = [None if j is None else hand[j] for j in CHAINS[finger]]
-        last = chain[4] - chain[3]
-        chain[4] = chain[4] - PULP * last / np.linalg.norm(last)
-        places.update({'%s_j%d' % (finger, j): place for j, place in enumerate(chain) if place is not None})
-    return places
-
-
-def to_device(place):
-    """A device at the default mount has y up and z to the user."""
-    return place[0], place[2], -place[1]
-
-
 def write_hands(path, capture, frames):
-    prefixes = ['palm', 'wrist'] + ['%s_j%d' % (finger, j) for finger in FINGERS for j in range(5)]
-    with open(path, 'w', newline='') as file:
-        writer = csv.writer(file)
-        writer.writerow(['time_s', 'frame_id', 'hand_id', 'is_left'] + [p + '_' + a for p in prefixes for a in 'xyz'])
-        for k, frame in enumerate(frames):
-            for number, side in enumerate(('right', 'left')):
-                places = joints_of(capture['world_coord']['joints.' + side][frame].astype(float))
-                row = ['%.6f' % (k / RATE), frame, number + 1, number]
-                for prefix in prefixes:
-                    row += ['%.6f' % x for x in to_device(places[prefix])] if prefix in places else [''] * 3
-                writer.writerow(row)
+    hands = {side: capture['world_coord']['joints.' + side][frames].astype(float)[:, ORDER] for side in ('right', 'left')}
+    windows.write_hands(path, np.arange(len(frames)) / RATE, hands)
 
 
 def write_object(path, capture, frames, first, articulated):
     params = capture['params']
-    with open(path, 'w', newline='') as file:
-        writer = csv.writer(file)
-        writer.writerow('time_s free px py pz qx qy qz qw'.split() + ['angle'] * articulated)
-        for k, frame in enumerate(frames):
-            w, x, y, z = params['obj_quat'][frame]
-            values = (*params['obj_trans'][frame], x, y, z, w) + (params['obj_arti'].ravel()[frame],) * articulated
-            writer.writerow(['%.6f' % (k / RATE), int(frame >= first)] + ['%.9f' % v for v in values])
-
-
-def link_of(folder, name, mesh_name, points, mass):
-    """The URDF's link of a part, whose hull is written."""
-    corners, triangles, centre, _, inertia = hull(points)
-    with open(os.path.join(folder, mesh_name + '.obj'), 'w') as file:
-        file.writelines('v %.9f %.9f %.9f\n' % tuple(corner) for corner in corners)
-        file.writelines('f %d %d %d\n' % tuple(1 + triangle) for triangle in triangles)
-    i = mass * inertia
-    mesh = '<geometry><mesh filename="%s.obj"/></geometry>' % mesh_name
-    return ('<link name="%s"><inertial><origin xyz="%.9f %.9f %.9f"/><mass value="%.6f"/>'
-            '<inertia ixx="%.9g" ixy="%.9g" ixz="%.9g" iyy="%.9g" iyz="%.9g" izz="%.9g"/></inertial>'
-            '<visual>%s</visual><collision>%s</collision></link>' %
-            (name, *centre, mass, i[0, 0], i[0, 1], i[0, 2], i[1, 1], i[1, 2], i[2, 2], mesh, mesh))
-
-
-def write_scene(folder, name, links, joint=''):
-    with open(os.path.join(folder, name + '.urdf'), 'w') as file:
-        file.write('<robot name="%s"><link name="world"/>%s<joint name="j" type="floating"><parent link="world"/>'
-                   '<child link="thing"/></joint>%s</robot>\n' % (name, ''.join(links), joint))
-    with open(os.path.join(folder, name + '.yaml'), 'w') as file:
-        file.write('gravity: [0.0, 0.0, -9.81]\nbounds: {min: [-3, -3, -3], max: [3, 3, 4]}\n')
+    windows.write_object(path, np.arange(len(frames)) / RATE, np.array(frames) >= first, params['obj_trans'][frames],
+                         params['obj_quat'][frames][:, [1, 2, 3, 0]], params['obj_arti'].ravel()[frames] if articulated else None)
 
 
 def write_closed(folder, name, thing, angle):
-    write_scene(folder, name, [link_of(folder, 'thing', name, thing.vertices(angle), thing.mass)])
+    windows.write_scene(folder, name, [windows.link_of(folder, 'thing', name, thing.vertices(angle), thing.mass)[0]])
 
 
 def write_hinged(folder, name, thing):
-    links = [link_of(folder, link, name + '_' + part, points, mass) for link, part, points, mass in
+    links = [windows.link_of(folder, link, name + '_' + part, points, mass)[0] for link, part, points, mass in
              zip(('top', 'thing'), ('top', 'bottom'), thing.parts, thing.masses)]
-    write_scene(folder, name, links[::-1],
+    windows.write_scene(folder, name, links[::-1],
                 '<joint name="hinge" type="revolute"><parent link="thing"/><child link="top"/><axis xyz="0 0 -1"/>'
                 '<limit lower="%g" upper="%g" effort="0" velocity="0"/></joint>' % (-CLOSED, FURTHEST))
 
@@ -232,7 +144,7 @@ def cut(path, objects, output, arguments):
     if not os.path.exists(os.path.join(objects, thing_name, 'top_watertight_tiny.obj')):
         print('%s: no mesh of %s in %s, left out' % (name, thing_name, objects), file=sys.stderr)
         return
-    capture, thing = read_capture(path), Thing(objects, thing_name)
+    capture, thing = read_npy(path), Thing(objects, thing_name)
     if not (thing.has_nearly_convex_parts() if arguments.articulated else thing.is_nearly_convex()):
         print('%s: a hull of %s is too much larger than what it stands for, left out' % (name, thing_name), file=sys.stderr)
         return
@@ -240,7 +152,7 @@ def cut(path, objects, output, arguments):
              closed_windows(capture, thing))
     for number, (first, end) in enumerate(found):
         window = '%s_%s_%d' % (os.path.basename(os.path.dirname(path)), name, first)
-        frames = range(max(0, first - LONGEST_LEAD), end)
+        frames = list(range(max(0, first - LONGEST_LEAD), end))
         write_hands(os.path.join(output, window + '.csv'), capture, frames)
         write_object(os.path.join(output, window + '_object.csv'), capture, frames, first, arguments.articulated)
         if arguments.articulated:

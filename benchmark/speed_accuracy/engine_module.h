@@ -9,7 +9,8 @@ namespace mrhi::benchmark {
 
 struct EngineModule {
   std::string name;
-  std::string file;  ///< shared object that exports speed_accuracy_engine()
+  std::string file;     ///< shared object that exports speed_accuracy_engine()
+  std::string version;  ///< the engine's, as its package or sources say
 };
 
 /// The engines that this program was built with, ours first.

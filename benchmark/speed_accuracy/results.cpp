@@ -1,6 +1,7 @@
 #include "results.h"
 
 #include <cmath>
+#include <ctime>
 #include <iostream>
 
 #include "text/csv.h"
@@ -8,12 +9,26 @@
 namespace mrhi::benchmark {
 namespace {
 
+std::string version_of(const std::string& engine) {
+  for (const EngineModule& module : engine_modules())
+    if (module.name == engine) return module.version;
+  return "";
+}
+
+/// ISO 8601, UTC.
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  char text[16];
+  return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now)));
+}
+
 void write_row(std::ostream& csv, const std::string& scene, const Contender& contender, double step,
                const Measure& measure) {
   const StepTime& time = contender.result().time;
   (CsvRows(csv) << scene + measure.suffix << contender.engine() << contender.setting() << step << time.median
                 << time.percentile_99 << measure.error << measure.unit
-                << (measure.failed || !std::isfinite(measure.error)))
+                << (measure.failed || !std::isfinite(measure.error)) << version_of(contender.engine())
+                << today())
       .end_row();
 }
 
@@ -21,7 +36,8 @@ void write_row(std::ostream& csv, const std::string& scene, const Contender& con
 
 void write_header(std::ostream& csv) {
   csv.precision(9);
-  csv << "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n";
+  csv << "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed,engine_version,"
+         "date\n";
 }
 
 void write_rows(std::ostream& csv, const std::string& scene, double step,

@@ -84,6 +84,7 @@ class Demonstration:
                 there[:, None], numpy.column_stack([body.wrench, body.held]), numpy.nan))
         for side, body in self.hands.items():
             _add(columns, side + '.palm.', POSE, body.pose)
+            _add(columns, side + '.wrist.', 'xyz', keypoints(body.bones)[:, 0])
             for i, (finger, bone) in enumerate(BONES):
                 _add(columns, '%s.%s_%d.' % (side, FINGERS[finger], bone), 'xyz', body.bones[:, i, 3:])
         columns['events'] = ['; '.join(events) for events in self.events]
@@ -140,6 +141,15 @@ def _hand(palms, phalanges, count):
     body.bones[bone_place, 4 * bones['finger'].to_numpy() + bones['bone'].to_numpy()] = vectors(
         bones, ('sx', 'sy', 'sz', 'ex', 'ey', 'ez'))
     return body
+
+
+def keypoints(bones):
+    """(frames, 21, 3) [m]: wrist, then the four joints of each finger from the palm to its tip, thumb first: the order of MediaPipe
+    and MANO. The wrist is where the metacarpals of the four fingers begin, in their middle."""
+    starts = bones[:, 4::4, :3]
+    there = ~numpy.isnan(starts)
+    wrist = numpy.where(there, starts, 0.0).sum(axis=1) / numpy.where(there.any(axis=1), there.sum(axis=1), numpy.nan)
+    return numpy.concatenate([wrist[:, None], bones[:, :, 3:]], axis=1)
 
 
 def joint_angles(bones):

@@ -2,12 +2,12 @@
 
 import genpy
 import rosbag
-from geometry_msgs.msg import Point, PoseStamped, Quaternion, TransformStamped, Vector3, WrenchStamped
+from geometry_msgs.msg import Point, Pose, PoseArray, PoseStamped, Quaternion, TransformStamped, Vector3, WrenchStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from .demonstration import joint_angles
+from .demonstration import joint_angles, keypoints
 
 
 def write_bag(demonstration, path):
@@ -41,6 +41,9 @@ def _write_frame(demonstration, i, stamp, bag):
         if not body.is_there()[i]:
             continue
         write_pose('/demonstration/%s_palm/pose' % side, side + '_palm', body.pose[i].tolist())
+        points = keypoints(body.bones[i:i + 1])[0].tolist()
+        bag.write('/demonstration/%s_hand/keypoints' % side, PoseArray(
+            header=header, poses=[Pose(Point(*point), Quaternion(0.0, 0.0, 0.0, 1.0)) for point in points]), recorded)
         angles = joint_angles(body.bones[i])
         bag.write('/demonstration/%s_hand/joint_states' % side, JointState(
             header=header, name=['%s_%s' % (side, name) for name in angles], position=list(angles.values())), recorded)

@@ -24,8 +24,8 @@ COLUMNS = {
     'anova': 'source gravity_g condition within measure effect n df df_error f epsilon correction p p_uncorrected '
              'p_greenhouse_geisser p_huynh_feldt partial_eta_squared',
     'sphericity': 'source gravity_g condition within measure n w chi_squared df p greenhouse_geisser huynh_feldt',
-    'effects': 'source gravity_g condition within measure effect test scale n values statistic df df_error p terms '
-               'variances',
+    'effects': 'source gravity_g condition within measure effect test scale n values statistic df df_error p '
+               'partial_eta_squared terms variances',
     'any': 'source gravity_g condition measure at a b test had_a n_a low_a high_a had_b n_b low_b high_b p comparisons '
            'p_bonferroni stars',
     'post_hoc': PAIRS,
@@ -170,7 +170,8 @@ def _test_effects(tables, notes, head, factor, wide, cells):
             tables['effects'].append(dict(
                 head, effect=' x '.join(names), test='mixed model F', scale='logarithm' if logarithm else 'as it is',
                 n=some['participant'].nunique(), values=len(some), statistic=test.f, df=test.df,
-                df_error=test.df_error, p=test.p, terms=' + '.join([' x '.join(t) for t in model.terms[1:]] +
+                df_error=test.df_error, p=test.p,
+                partial_eta_squared=test.f * test.df / (test.f * test.df + test.df_error), terms=' + '.join([' x '.join(t) for t in model.terms[1:]] +
                                                                    model.covariates),
                 variances='; '.join('%s %.6g' % item for item in model.variances().items())))
         return model
@@ -183,15 +184,15 @@ def _add_permutations(table, head, factor, wide):
     """Columns of `wide` are the factor's levels."""
     wide = wide.dropna(axis=1, how='all')
     labels = wide.index.get_level_values('group')
-    tests = (('group', lambda: permutation.several_groups(wide.values, labels, profile=False)),
-             (factor, lambda: permutation.levels(wide.values)),
-             ('group x ' + factor, lambda: permutation.several_groups(wide.values, labels, profile=True)))
-    for effect, test in tests:
-        p = test()
+    of_groups = [(effect, permutation.several_groups, permutation.explained_by_groups, (labels, profile))
+                 for effect, profile in (('group', False), ('group x ' + factor, True))]
+    of_levels = (factor, permutation.levels, permutation.explained_by_levels, ())
+    for effect, test, explained, options in (of_groups[0], of_levels, of_groups[1]):
+        p = test(wide.values, *options)
         if np.isfinite(p):
             table.append(dict(head, effect=effect, test='permutation', scale='as it is', n=len(wide),
                               values=int(wide.notna().values.sum()), statistic=np.nan, df=np.nan, df_error=np.nan, p=p,
-                              terms='', variances=''))
+                              partial_eta_squared=explained(wide.values, *options), terms='', variances=''))
 
 
 def _analyse_conditions(tables, notes, head, cells):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .measures import GROUPS, OBJECTS, OF, in_order, plain, with_unit
-from .style import INK, PALE, colours, finish, new_figure, save
+from .measures import GROUPS, OBJECTS, OF, in_order, plain, shown, with_unit
+from .style import INK, PALE, colours, finish, new_figure, panel_title, save
 
 CAPTION = ('Bars: mean of the participants. Lines: 95 % confidence interval. Dots: participants. '
            'Mixed model or permutation, Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
@@ -12,13 +12,11 @@ ROOM = 0.09  # of the axis, for each bracket above the bars
 
 def draw_bars(results, cells, measures, title, folder, name):
     """A panel for each measure; `results` and `cells` are those of one condition."""
-    columns = min(4, len(measures))
-    rows = -(-len(measures) // columns)
-    figure, panels = new_figure(columns, max(4.2 * columns, 5.2), 3.7 * rows + 0.5, rows)
-    for axes in panels.flat[len(measures):]:
-        axes.set_visible(False)
+    figure, panels = new_figure(len(measures), 4.6, 3.6)
     for axes, measure in zip(panels.flat, measures):
-        _draw_panel(axes, measure, *[t[t['measure'] == measure] for t in (results.bars, results.post_hoc, cells)])
+        bars, post_hoc, values = (t[t['measure'] == measure] for t in (results.bars, results.post_hoc, cells))
+        _draw_panel(axes, measure, bars.assign(**{name: shown(measure, bars[name]) for name in ('mean', 'sd', 'ci95')}),
+                    post_hoc, values.assign(value=shown(measure, values['value'])))
     source = cells['source'].iloc[0]
     finish(figure, title, CAPTION, source)
     return save(figure, folder, name)
@@ -40,7 +38,7 @@ def _draw_panel(axes, measure, bars, post_hoc, cells):
     axes.set_xticklabels([plain(name) for name in objects])
     axes.tick_params(axis='x', length=0, pad=25)
     axes.set_xlim(-0.55, len(objects) - 0.45)
-    axes.set_title(with_unit(OF[measure]), loc='left')
+    panel_title(axes, with_unit(OF[measure]))
     top = max(cells['value'].max(), (bars['mean'] + bars['ci95'].fillna(0)).max(), 1e-9)
     _draw_brackets(axes, top, _brackets(post_hoc, groups, objects, width))
     axes.grid(axis='y', color='0.92', zorder=0)

@@ -1,6 +1,13 @@
-"""Studies without an effect, and how often the tests find one."""
+"""Studies without an effect, and how often the tests find one.
+
+Times come from four mechanisms. `alike` is the mixed model itself with the same scatter at every object; `by object` has
+the scatter that this project's own data have; `retries` is no such model: a trial is a movement and, after each drop,
+another try, so that times are skewed and scatter by object and person; in `by group` the first group varies twice as
+much as the second, which no test here allows for.
+"""
 
 import collections
+import functools
 import re
 
 import numpy as np
@@ -17,7 +24,10 @@ MISSING = 0.1
 OBJECTS, CONDITIONS, GROUPS = ('cube', 'flat_cuboid', 'long_cuboid'), ('a', 'b'), ('beginner', 'veteran')
 ALPHA = 0.05
 DRAWN = 999  # arrangements of a permutation test: enough for p < 0.05, and ten times as fast
-PERSON, WITH_OBJECT, WITH_CONDITION, REST = 0.25, 0.1, 0.15, 0.2  # standard deviations of the logarithm of a time
+PERSON, WITH_OBJECT, WITH_CONDITION = 0.25, 0.1, 0.15  # standard deviations of the logarithm of a time
+RESIDUAL = collections.OrderedDict([('alike', (0.2, 0.2, 0.2)), ('by object', (0.1, 0.2, 0.5)), ('retries', None),
+                                    ('by group', (0.2, 0.2, 0.2))])
+DROP = (0.05, 0.15, 0.4)  # probability that a try at each object ends in a drop, of a person of mean frailty
 FRAILTY = 1.0  # shape of the gamma distribution of participants' own rates: some drop far more than others
 COLUMNS = ('design', 'drops', 'outcome', 'test', 'studies', 'tested', 'significant', 'percent', 'low', 'high', 'verdict')
 
@@ -46,9 +56,9 @@ def _sizes(design):
 
 
 def _count(counted, sizes, random):
-    cells = _times(random, sizes)
-    for test, p in _of_times(cells):
-        _add(counted, ('', 'times', test), p)
+    for mechanism in RESIDUAL:
+        for test, p in _of_times(_times(random, sizes, mechanism), mechanism):
+            _add(counted, (mechanism, 'times', test), p)
     for drops, mean in DROPS.items():
         wide = _drops(random, sizes, mean)
         for test, p in _of_counts(wide, np.repeat(GROUPS, sizes)):
@@ -62,30 +72,58 @@ def _add(counted, key, p):
     counted[key] = (tested + bool(np.isfinite(p)), found + bool(p < ALPHA))
 
 
-def _times(random, sizes):
+def _times(random, sizes, mechanism):
     """Of each participant, object and condition; a tenth is missing."""
     n = sum(sizes)
-    person, things, systems = (scale * random.normal(size=shape) for scale, shape in (
-        (PERSON, (n, 1, 1)), (WITH_OBJECT, (n, 3, 1)), (WITH_CONDITION, (n, 1, 2))))
-    values = np.exp(3.0 + person + things + systems + REST * random.normal(size=(n, 3, 2)))
+    if mechanism == 'retries':
+        logarithms = np.log(_tries(random, n)) - _mean_of_retries()[:, None]
+    else:
+        person, things, systems = (scale * random.normal(size=shape) for scale, shape in (
+            (PERSON, (n, 1, 1)), (WITH_OBJECT, (n, 3, 1)), (WITH_CONDITION, (n, 1, 2))))
+        logarithms = person + things + systems + np.array(RESIDUAL[mechanism])[:, None] * random.normal(size=(n, 3, 2))
+    if mechanism == 'by group':
+        logarithms[:sizes[0]] *= 2
+    values = np.exp(3.0 + logarithms)
     rows = [('P%03d' % i, GROUPS[int(i >= sizes[0])], thing, system, values[i, j, k])
             for i in range(n) for j, thing in enumerate(OBJECTS) for k, system in enumerate(CONDITIONS)]
     cells = pandas.DataFrame(rows, columns=['participant', 'group', 'object', 'condition', 'value'])
     return cells[random.rand(len(cells)) >= MISSING]
 
 
-def _of_times(cells):
+def _tries(random, n):
+    """Seconds of each person, object and condition: a movement, and a try of 4 s in the mean after each drop."""
+    speed = np.exp(PERSON * random.normal(size=(n, 1, 1)))
+    chance = np.clip(np.array(DROP)[:, None] * random.gamma(2.0, 0.5, (n, 1, 1)), 0, 0.8)
+    drops = random.geometric(1 - np.broadcast_to(chance, (n, 3, 2))) - 1
+    return speed * (12 + random.gamma(4.0, 0.5, (n, 3, 2)) + random.gamma(np.maximum(2.0 * drops, 1e-9), 2.0))
+
+
+@functools.lru_cache(None)
+def _mean_of_retries():
+    """Each object's mean logarithm, so that objects do not differ when it is taken off."""
+    return np.log(_tries(np.random.RandomState(0), 200000)).mean(axis=(0, 2))
+
+
+def _of_times(cells, mechanism):
     factors = collections.OrderedDict([('group', GROUPS), ('object', OBJECTS), ('condition', CONDITIONS)])
     model = Model(cells, factors, logarithm=True)
     for names, test in model.effects():
         if len(names) < 3:
             yield 'mixed model: ' + ' x '.join(names), test.p
-            if len(names) == 1:
+            if len(names) == 1 and mechanism == 'alike':
                 yield 'mixed model without small-sample correction: ' + names[0], float(
                     stats.chi2.sf(test.f / test.scale * test.df, test.df))
+    yield 'mixed model: group at long cuboid', _of_groups(model, OBJECTS[2])
     yield 'mixed model, stars for groups at objects', _family(
-        [model.difference({'group': GROUPS[0], 'object': thing}, {'group': GROUPS[1], 'object': thing}).p
-         for thing in OBJECTS])
+        [_of_groups(model, thing) for thing in OBJECTS])
+    if mechanism == 'by object':
+        alike = Model(cells, factors, logarithm=True, scatters_alike=True)
+        yield 'one residual variance for all objects: group at long cuboid', _of_groups(alike, OBJECTS[2])
+    if mechanism == 'by group':
+        means = cells.assign(value=np.log(cells['value'])).groupby(['group', 'participant'])['value'].mean()
+        yield "classical: Welch's t, participants' means", pairwise.independent(*[means[group] for group in GROUPS]).p
+    if mechanism != 'alike':
+        return
     wide = cells.assign(value=np.log(cells['value'])).pivot_table(index=['group', 'participant'], columns='condition',
                                                                   values='value', aggfunc=['mean', 'size'])
     full = wide['mean'][(wide['size'] == len(OBJECTS)).all(axis=1)]
@@ -93,6 +131,10 @@ def _of_times(cells):
     if min(labels.count(group) for group in GROUPS) > 1:
         for effect in mixed_anova(full.values, labels).effects[:2]:
             yield 'classical, the complete alone: ' + effect.name.replace('within', 'condition'), effect.p
+
+
+def _of_groups(model, thing):
+    return model.difference({'group': GROUPS[0], 'object': thing}, {'group': GROUPS[1], 'object': thing}).p
 
 
 def _drops(random, sizes, mean):

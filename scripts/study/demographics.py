@@ -30,7 +30,7 @@ def ask(folder, form, again, read=input):
         return 'No consent: nothing is asked or written. Do not go on with the session.'
     said = collections.OrderedDict((
         ('consent', True), ('consent_form', form),
-        ('consent_time', datetime.datetime.utcnow().strftime('%Y-%m-%dT%H:%M:%SZ')), ('age', _age(read))))
+        ('consent_time', datetime.datetime.now(datetime.timezone.utc).strftime('%Y-%m-%dT%H:%M:%SZ')), ('age', _age(read))))
     said.update((name, _choice(read, name.replace('_', ' ').replace('mr', 'MR').capitalize(), allowed))
                 for name, allowed in CHOICES.items())
     part = path + '.part'

@@ -35,7 +35,7 @@ COMMON = {
     'low': ('95 % interval, lower limit', ''), 'high': ('95 % interval, upper limit', ''),
     'f': ('F', ''), 'epsilon': ('factor of the degrees of freedom', ''), 'correction': ('of sphericity', ''),
     'p_uncorrected': ('without correction', ''), 'p_greenhouse_geisser': ('with that correction', ''),
-    'p_huynh_feldt': ('with that correction', ''), 'partial_eta_squared': ('effect size', ''),
+    'p_huynh_feldt': ('with that correction', ''), 'partial_eta_squared': ('effect size: fraction of the variation that the effect explains', ''),
     'w': ("Mauchly's W", ''), 'chi_squared': ('its approximation', ''),
     'greenhouse_geisser': ('epsilon', ''), 'huynh_feldt': ('epsilon', ''), 'question': ('name of the question', ''),
     'median': ('of the scores', ''), 'quartile_1': ('of the scores', ''), 'quartile_3': ('of the scores', ''),

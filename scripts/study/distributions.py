@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .measures import CONDITIONS, GROUPS, OF, QUESTIONS, in_order, plain, with_unit
+from .measures import CONDITIONS, GROUPS, OF, QUESTIONS, in_order, plain, shown, with_unit
 from .questions import PAPER
-from .style import INK, colours, finish, new_figure, save
+from .style import INK, colours, finish, new_figure, panel_title, save
 from .analysis import summary
 
 HIGHEST_SCORE = PAPER['naturalness'].highest
@@ -16,7 +16,7 @@ def draw_ratings(ratings, title, folder, name):
     """A panel for each question, a row for each condition: how many gave each score, and the median."""
     conditions = in_order(ratings['condition'], CONDITIONS)
     questions = [question for question in QUESTIONS if question in set(ratings['question'])]
-    figure, panels = new_figure(len(questions), max(4.4 * len(questions), 5.2), 1.4 + 0.85 * len(conditions))
+    figure, panels = new_figure(len(questions), 4.6, 0.9 + 0.85 * len(conditions))
     for axes, question in zip(panels.flat, questions):
         for row, condition in enumerate(conditions):
             some = ratings[(ratings['question'] == question) & (ratings['condition'] == condition)]
@@ -50,15 +50,16 @@ def _draw_row(axes, base, condition, scores, colour):
 def draw_conditions(cells, measures, title, folder, name):
     """A panel for each measure, a row for each condition: mean and confidence interval of each group."""
     conditions = in_order(cells['condition'], CONDITIONS)
-    figure, panels = new_figure(len(measures), 1.3 + 2.4 * len(measures), 1.2 + 0.6 * len(conditions), sharey=True)
+    figure, panels = new_figure(len(measures), 3.2, 0.9 + 0.5 * len(conditions), sharey=True)
     for axes, measure in zip(panels.flat, measures):
         of_measure = cells[cells['measure'] == measure]
+        of_measure = of_measure.assign(value=shown(measure, of_measure['value']))
         groups = in_order(of_measure['group'], GROUPS)
         for i, group in enumerate(groups):
             _draw_group(axes, of_measure[of_measure['group'] == group], conditions, group,
                         0.64 / max(2, len(groups)) * ((len(groups) - 1) / 2 - i), colours(groups)[group],
                         named=axes is panels.flat[0])
-        axes.set_title(with_unit(OF[measure]), loc='left')
+        panel_title(axes, with_unit(OF[measure]))
         axes.set_ylim(-0.6, len(conditions) - 0.25)
         axes.set_yticks(range(len(conditions)))
         axes.set_yticklabels([plain(c) for c in reversed(conditions)])

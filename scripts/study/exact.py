@@ -4,6 +4,8 @@ import collections
 
 import numpy as np
 from scipy import stats
+from statsmodels.stats import contingency_tables
+from statsmodels.stats.proportion import proportion_confint
 
 # How many of `n` had any, and the exact (Clopper and Pearson's) 95 % interval of their share.
 Share = collections.namedtuple('Share', 'had n share low high')
@@ -25,19 +27,14 @@ def rank_sum_p(ranks, size):
 def share(had):
     had = np.asarray(had, bool)
     n, k = len(had), int(had.sum())
-    if n == 0:
-        return Share(0, 0, np.nan, np.nan, np.nan)
-    low = stats.beta.ppf(0.025, k, n - k + 1) if k else 0.0
-    high = stats.beta.ppf(0.975, k + 1, n - k) if k < n else 1.0
-    return Share(k, n, k / n, float(low), float(high))
+    return Share(k, n, *(k / n, *proportion_confint(k, n, method='beta')) if n else [np.nan] * 3)
 
 
 def fisher(a, b):
     """Fisher's exact test: the shares of two groups who had any differ."""
-    a, b = share(a), share(b)
-    if not a.n or not b.n:
+    if not len(a) or not len(b):
         return np.nan
-    return float(stats.fisher_exact([[a.had, a.n - a.had], [b.had, b.n - b.had]])[1])
+    return float(stats.fisher_exact([[np.sum(had), len(had) - np.sum(had)] for had in (a, b)])[1])
 
 
 def mcnemar(a, b):
@@ -45,5 +42,5 @@ def mcnemar(a, b):
     a, b = np.asarray(a, bool), np.asarray(b, bool)
     if not len(a):
         return np.nan
-    only_a, only_b = int(np.sum(a & ~b)), int(np.sum(~a & b))
-    return float(min(1.0, 2 * stats.binom.cdf(min(only_a, only_b), only_a + only_b, 0.5)))
+    only_a, only_b = np.sum(a & ~b), np.sum(~a & b)  # statsmodels gives more than 1 where they are equal
+    return min(1.0, float(contingency_tables.mcnemar([[0, only_a], [only_b, 0]], exact=True).pvalue))

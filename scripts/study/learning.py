@@ -6,8 +6,8 @@ import numpy as np
 import pandas
 
 from . import mixed_model, permutation
-from .measures import CONDITIONS, MEASURES, OF, in_order
-from .style import INK, colours, finish, new_figure, save
+from .measures import CONDITIONS, MEASURES, OF, in_order, shown, with_unit
+from .style import INK, colours, finish, new_figure, panel_title, save
 
 CURVES = ('completion_time', 'drops', 'grip_force_mean', 'release_drift')
 COLUMNS = ('source', 'gravity_g', 'condition', 'group', 'session', 'block', 'measure', 'n', 'mean', 'sd')
@@ -115,7 +115,7 @@ def _fitted(effect, some, column, logarithm):
 def draw(table, title, source, folder, name):
     """Learning curves: a panel for each measure, a line for each condition and group, a gap between sessions."""
     measures = [measure for measure in CURVES if measure in set(table['measure'])]
-    figure, panels = new_figure(len(measures), 1.3 + 2.6 * len(measures), 3.4)
+    figure, panels = new_figure(len(measures), 3.2, 2.9)
     groups, conditions = sorted(set(table['group'])), in_order(table['condition'], CONDITIONS)
     hues, styles = colours(groups), ('-', '--', ':', '-.')
     for axes, measure in zip(panels.flat, measures):
@@ -123,10 +123,10 @@ def draw(table, title, source, folder, name):
             for i, condition in enumerate(conditions):
                 some = table[(table['measure'] == measure) & (table['group'] == group) & (table['condition'] == condition)]
                 for _, session in some.groupby('session'):
-                    axes.errorbar(session['block'], session['mean'],
-                                  (session['sd'] / np.sqrt(session['n'])).fillna(0), color=hues[group][1],
+                    axes.errorbar(session['block'], shown(measure, session['mean']),
+                                  shown(measure, session['sd'] / np.sqrt(session['n'])).fillna(0), color=hues[group][1],
                                   linestyle=styles[i % len(styles)], marker='o', markersize=3, capsize=2)
-        axes.set_title(OF[measure].label + (' [%s]' % OF[measure].unit if OF[measure].unit else ''), loc='left')
+        panel_title(axes, with_unit(OF[measure]))
         axes.set_xlabel('block')
         axes.set_ylim(0, None)
     lines = [axes.plot([], [], color=hues[group][1], label=group)[0] for group in groups]

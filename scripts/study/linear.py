@@ -11,10 +11,10 @@ ORDER, PERIOD = 'order', 'period'  # columns of cells: place of the trial in its
 
 class Model:
     """`cells`: a row for each participant, and level of the factors; `factors`: {column: levels in order}; factors
-    with one level do not count. `logarithm`: of the values; effects are ratios then. Raises ValueError where nothing can be
-    estimated."""
+    with one level do not count. `logarithm`: of the values; effects are ratios then. The residual has a variance for each
+    object, unless `scatters_alike`. Raises ValueError where nothing can be estimated."""
 
-    def __init__(self, cells, factors, covariates=(), logarithm=False):
+    def __init__(self, cells, factors, covariates=(), logarithm=False, scatters_alike=False):
         self.factors = {name: levels for name, levels in factors.items() if len(levels) > 1}
         self.logarithm = logarithm
         values = cells['value'].values.astype(float)
@@ -34,7 +34,13 @@ class Model:
         components = {'participant': np.zeros(len(cells))}
         if len(within) > 1:
             components.update({'participant x ' + name: cells[name].values for name in within})
-        self.fit = mixed_model.fit(np.log(values) if logarithm else values, design, who, components)
+        strata = 'residual of ' + cells['object'] if not scatters_alike and self._can_tell_scatter(cells) else None
+        self.fit = mixed_model.fit(np.log(values) if logarithm else values, design, who, components, strata)
+
+    def _can_tell_scatter(self, cells):
+        """True if each object has enough values for a residual variance of its own."""
+        groups = len(self.factors.get('group', ' '))
+        return 'object' in self.factors and cells.groupby('object')['participant'].nunique().min() >= groups + 2
 
     def _drop_what_cannot_be_told(self, columns, rows):
         """Interactions of cells that nobody has, the highest first."""
@@ -83,7 +89,7 @@ class Model:
         return row
 
     def variances(self):
-        return dict(zip(self.fit.components + ['residual'], self.fit.theta))
+        return dict(zip(self.fit.components, self.fit.theta))
 
 
 def _sum_coded(count):

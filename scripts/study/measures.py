@@ -46,8 +46,16 @@ def in_order(names, known):
     return sorted(set(names), key=lambda name: (known.index(name) if name in known else len(known), name))
 
 
+IN_MILLIMETRES = ('release_drift', 'release_speed')  # in reports and figures; files are in SI units
+
+
+def shown(name, value):
+    return 1000 * value if name in IN_MILLIMETRES else value
+
+
 def with_unit(measure):
-    return '%s [%s]' % (measure.label, measure.unit) if measure.unit else measure.label
+    unit = 'm' * (measure.name in IN_MILLIMETRES) + measure.unit
+    return '%s [%s]' % (measure.label, unit) if unit else measure.label
 
 
 def plain(name):

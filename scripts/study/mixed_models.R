@@ -1,8 +1,8 @@
-# Called by study/with_r.py: mixed_models.R CELLS.csv OUTPUT.csv. Times and amounts: lme4 with pbkrtest's tests (the same
-# models as study/linear.py). Counts: glmmTMB, Poisson or negative binomial, whichever has the lower AIC.
-suppressPackageStartupMessages({library(lme4); library(lmerTest); library(pbkrtest); library(emmeans); library(glmmTMB)})
+# Called by study/with_r.py: mixed_models.R CELLS.csv OUTPUT.csv. Counts: glmmTMB, Poisson or negative binomial, whichever
+# has the lower AIC.
+suppressPackageStartupMessages({library(emmeans); library(glmmTMB)})
 options(contrasts = c("contr.sum", "contr.poly"))
-emm_options(lmer.df = "kenward-roger", msg.interaction = FALSE)
+emm_options(msg.interaction = FALSE)
 arguments <- commandArgs(trailingOnly = TRUE)
 cells <- read.csv(arguments[1], stringsAsFactors = FALSE, check.names = FALSE)
 
@@ -19,15 +19,6 @@ formula_of <- function(some, response) {
 with_factors <- function(some) {
   for (name in c("group", "object", "condition", "participant")) some[[name]] <- factor(some[[name]])
   some
-}
-
-of_amounts <- function(some) {
-  some <- with_factors(some)
-  some$response <- if (some$logarithm[1] == 1) log(some$value) else some$value
-  model <- lmer(formula_of(some, "response"), some, control = lmerControl(check.conv.singular = "ignore"))
-  tests <- anova(model, ddf = "Kenward-Roger", type = 3)
-  data.frame(effect = gsub(":", " x ", rownames(tests)), test = "lme4, Kenward-Roger", statistic = tests[["F value"]],
-             df = tests$NumDF, df_error = tests$DenDF, p = tests[["Pr(>F)"]])
 }
 
 of_counts <- function(some) {
@@ -48,7 +39,7 @@ all <- list()
 keys <- c("source", "gravity_g", "condition_of", "measure")
 for (some in split(cells, cells[keys], drop = TRUE)) {
   if (!length(factors_of(some)) || length(unique(some$value)) < 2) next
-  rows <- tryCatch(if (some$kind[1] == "count") of_counts(some) else of_amounts(some), error = function(e) data.frame())
+  rows <- tryCatch(of_counts(some), error = function(e) data.frame())
   if (nrow(rows)) all[[length(all) + 1]] <- cbind(some[1, keys], n = length(unique(some$participant)), rows, row.names = NULL)
 }
 write.csv(do.call(rbind, all), arguments[2], row.names = FALSE)

@@ -4,6 +4,7 @@ import collections
 
 import numpy as np
 from scipy import stats
+from statsmodels.stats.weightstats import DescrStatsW, ttest_ind
 
 from . import exact, permutation
 
@@ -17,28 +18,21 @@ Comparison.__new__.__defaults__ = (np.nan, np.nan)
 def independent(a, b):
     """Welch's t-test; Cohen's d with the pooled standard deviation."""
     a, b = np.asarray(a, float), np.asarray(b, float)
-    statistic = df = p = effect = np.nan
-    if len(a) > 1 and len(b) > 1:
-        of_a, of_b = a.var(ddof=1) / len(a), b.var(ddof=1) / len(b)
-        if of_a + of_b > 0:
-            statistic = (a.mean() - b.mean()) / np.sqrt(of_a + of_b)
-            df = (of_a + of_b) ** 2 / (of_a ** 2 / (len(a) - 1) + of_b ** 2 / (len(b) - 1))
-            p = 2 * stats.t.sf(abs(statistic), df)
-            effect = cohens_d(a, b)
-    return _of_means('Welch t', a, b, statistic, df, p, "Cohen's d", effect)
+    results = [np.nan] * 3
+    if min(len(a), len(b)) > 1 and max(np.ptp(a), np.ptp(b)) > 0:
+        results = ttest_ind(a, b, usevar='unequal')
+    statistic, p, df = results
+    return _of_means('Welch t', a, b, statistic, df, p, "Cohen's d", cohens_d(a, b) if p == p else np.nan)
 
 
 def paired(a, b):
     """Student's paired t-test; d_z, the mean difference over the differences' standard deviation."""
     a, b = np.asarray(a, float), np.asarray(b, float)
-    differences = a - b
-    statistic = p = effect = np.nan
-    spread = differences.std(ddof=1) if len(a) > 1 else 0.0
-    if spread > 0:
-        effect = differences.mean() / spread
-        statistic = effect * np.sqrt(len(a))
-        p = 2 * stats.t.sf(abs(statistic), len(a) - 1)
-    df = len(a) - 1 if spread > 0 else np.nan
+    results, effect = [np.nan] * 3, np.nan
+    if len(a) > 1 and np.ptp(a - b) > 0:
+        differences = DescrStatsW(a - b, ddof=1)
+        results, effect = differences.ttest_mean(), differences.mean / differences.std
+    statistic, p, df = results
     return _of_means('paired t', a, b, statistic, df, p, 'd_z', effect)
 
 

@@ -52,12 +52,26 @@ def pairs(a, b):
 def levels(table):
     """Levels of a within factor differ (columns; nan: missing): p. Each participant's values could be of any level
     that the participant has."""
+    centred, there = _of_levels(table)
+    return _share(_drawn(centred, there), np.sum(centred.sum(axis=0) ** 2), False) if len(centred) else np.nan
+
+
+def explained_by_levels(table):
+    """Eta squared: the fraction of the variation within participants that the levels explain."""
+    centred, there = _of_levels(table)
+    return _fraction(np.sum(centred.sum(axis=0) ** 2 / np.maximum(there.sum(axis=0), 1)), centred)
+
+
+def _of_levels(table):
+    """Deviations from each participant's mean, 0 where missing; and what is there."""
     table = np.asarray(table, float)
-    table = table[np.isfinite(table).sum(axis=1) > 1]
-    if not len(table) or table.shape[1] < 2:
-        return np.nan
-    centred = np.nan_to_num(table - np.nanmean(table, axis=1, keepdims=True))
-    return _share(_drawn(centred, np.isfinite(table)), np.sum(centred.sum(axis=0) ** 2), False)
+    table = table[np.isfinite(table).sum(axis=1) > (1 if table.shape[1] > 1 else np.inf)]
+    return np.nan_to_num(table - np.nanmean(table, axis=1, keepdims=True)), np.isfinite(table)
+
+
+def _fraction(part, rows):
+    whole = np.sum(rows ** 2)
+    return float(part / whole) if whole > 0 else np.nan
 
 
 def _drawn(centred, there):
@@ -72,25 +86,35 @@ def _drawn(centred, there):
 def several_groups(table, labels, profile):
     """Groups differ over the columns of a table with missing values: p. `profile`: not in their levels but in how a
     participant's values differ between the columns (the interaction)."""
+    rows, member = _of_groups(table, labels, profile)
+    return _groups_of_rows(rows, member) if len(rows) else np.nan
+
+
+def explained_by_groups(table, labels, profile):
+    """Eta squared: the fraction of the variation between participants (`profile`: of their profiles) that groups explain."""
+    rows, member = _of_groups(table, labels, profile)
+    return _fraction(_between(rows, member), rows)
+
+
+def _of_groups(table, labels, profile):
+    """What is tested of each participant, and of which group each is; nothing where no test can be made."""
     table, labels = np.asarray(table, float), np.asarray(labels)
     known = np.isfinite(table).sum(axis=1) > (1 if profile else 0)
     table, labels = table[known], labels[known]
     names = np.unique(labels)
     if len(names) < 2 or len(table) < 3 or (profile and table.shape[1] < 2):
-        return np.nan
+        return np.zeros((0, 1)), np.zeros((0, 1))
     centred = table - np.nanmean(table, axis=0)
     means = np.nanmean(centred, axis=1, keepdims=True)
-    rows = np.nan_to_num(centred - means) if profile else means
-    member = (labels[:, None] == names).astype(float)
-    return _groups_of_rows(rows, member)
+    return np.nan_to_num(centred - means) if profile else means, (labels[:, None] == names).astype(float)
+
+
+def _between(rows, member):
+    return np.sum((member.T @ rows) ** 2 / member.sum(axis=0)[:, None])
 
 
 def _groups_of_rows(rows, member):
     sizes = member.sum(axis=0)
-
-    def statistic(of):
-        return np.sum((of.T @ rows) ** 2 / sizes[:, None])
-
     n = len(rows)
     exact = len(sizes) == 2 and math.comb(n, int(sizes[0])) <= MOST_EXACT
     if exact:
@@ -103,7 +127,7 @@ def _groups_of_rows(rows, member):
         drawn = np.concatenate([
             np.sum(np.einsum('dng,np->dgp', member[order], rows, optimize=True) ** 2 / sizes[None, :, None], axis=(1, 2))
             for order in _orders(n)])
-    return _share(drawn, statistic(member), exact)
+    return _share(drawn, _between(rows, member), exact)
 
 
 def _orders(n):

@@ -17,6 +17,8 @@ READER_GONE = 128 + signal.SIGPIPE
 PATIENCE = 5.0  # s, for a master's answer
 MEBIBYTE = 1 << 20
 BEGINNING, END = 300, 200  # letters that are told of a line with more
+TRIED = 'MR_HAND_PYTHONS_TRIED'  # Pythons that have started this script, by their paths
+_tried = os.environ.pop(TRIED, '').split(os.pathsep)
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -57,6 +59,8 @@ def _end_of(error):
         return (1, error.code) if isinstance(error.code, str) else (error.code, '')
     if isinstance(error, BrokenPipeError):
         return READER_GONE, ''
+    if isinstance(error, ImportError):
+        return 1, missing(error)
     return 1, '%s: %s' % (name(), line_of(error))
 
 
@@ -121,6 +125,17 @@ def _hook(kind, error, _):
 
 
 sys.excepthook = _hook
+
+
+def missing(error, remedy='build, then source devel/setup.bash'):
+    """What to say of an ImportError. Before, starts the script again with each Python that may have the module: where pyenv or
+    conda is active, the first on PATH is not the one that ROS is installed for, or /usr/bin's is not."""
+    if sys.argv[0] and os.path.isfile(sys.argv[0]):
+        for python in (os.path.join(os.environ.get('CONDA_PREFIX') or '/usr', 'bin', 'python3'), '/usr/bin/python3'):
+            if python not in _tried and os.access(python, os.X_OK):
+                os.environ[TRIED] = os.pathsep.join(_tried + [python])
+                os.execv(python, [python] + sys.argv)
+    return '%s: %s in %s; %s' % (name(), one_line(str(error)), sys.executable, remedy)
 
 
 def find_built_modules():

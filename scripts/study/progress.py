@@ -5,10 +5,10 @@ import re
 
 import numpy as np
 
-from .measures import CONDITIONS, OF, in_order, plain
+from .measures import CONDITIONS, OF, in_order, plain, shown, with_unit
 from .report import Report, number
 from .study_data import SIMULATED
-from .style import INK, PALE, finish, new_figure, save
+from .style import INK, PALE, finish, new_figure, panel_title, save
 
 SHOWN = ('completion_time', 'drops', 'grip_force_mean', 'release_drift')
 STYLES = ('-', '--', ':', '-.')
@@ -32,7 +32,7 @@ def write_pages(blocks, output):
             report.heading('%g g' % gravity)
             report.figure(path, title)
             for condition, some in at.groupby('condition'):
-                report.table(condition, ['Session', 'Block'] + [_named(m) for m in SHOWN], _rows(some))
+                report.table(condition, ['Session', 'Block'] + [with_unit(OF[m]) for m in SHOWN], _rows(some))
         report.write(os.path.join(folder, name + '.html'))
 
 
@@ -45,31 +45,27 @@ def _free_name(text, taken):
     return name
 
 
-def _named(measure):
-    return OF[measure].label + (' [%s]' % OF[measure].unit if OF[measure].unit else '')
-
-
 def _rows(some):
     rows = []
     for (session, block), of_block in some.groupby(['session_number', 'block']):
         values = dict(zip(of_block['measure'], of_block['value']))
-        rows.append([str(session), str(block)] + [number(values.get(measure, np.nan)) for measure in SHOWN])
+        rows.append([str(session), str(block)] + [number(shown(measure, values.get(measure, np.nan))) for measure in SHOWN])
     return rows
 
 
 def _draw(mine, others, title, source, folder, name):
-    figure, panels = new_figure(len(SHOWN), 1.3 + 2.4 * len(SHOWN), 3.2)
+    figure, panels = new_figure(len(SHOWN), 3.2, 2.9)
     conditions = in_order(mine['condition'], CONDITIONS)
     for axes, measure in zip(panels.flat, SHOWN):
         for i, condition in enumerate(conditions):
             style = STYLES[i % len(STYLES)]
             theirs = others[(others['measure'] == measure) & (others['condition'] == condition)]
-            theirs = theirs.groupby('block')['value'].mean()
+            theirs = shown(measure, theirs.groupby('block')['value'].mean())
             axes.plot(theirs.index, theirs.values, color=PALE, linestyle=style, marker='.')
             own = mine[(mine['measure'] == measure) & (mine['condition'] == condition)]
             for _, some in own.groupby('session_number'):
-                axes.plot(some['block'], some['value'], color=INK, linestyle=style, marker='o', markersize=4)
-        axes.set_title(_named(measure), loc='left', fontsize=8)
+                axes.plot(some['block'], shown(measure, some['value']), color=INK, linestyle=style, marker='o', markersize=4)
+        panel_title(axes, with_unit(OF[measure]))
         axes.set_xlabel('block')
         axes.set_ylim(0, None)
     if len(conditions) > 1:

@@ -5,11 +5,12 @@ import html
 
 import numpy as np
 
-from .measures import CONDITIONS, MAIN, OF, in_order, plain, with_unit
+from .measures import CONDITIONS, MAIN, OF, in_order, plain, shown, with_unit
 from .questions import scale_of
 from .study_data import SIMULATED, label_of
 
 STYLE = '''body{font:15px/1.5 sans-serif;color:#222;max-width:62rem;margin:2rem auto;padding:0 1rem}
+.findings{font-size:1.05rem}
 h1{font-size:1.6rem}h2{margin-top:2.4rem;border-bottom:2px solid #ccc}h3{margin-top:1.6rem}
 table{border-collapse:collapse;margin:.7rem 0;font-size:.87rem}caption{text-align:left;font-weight:bold}
 th,td{padding:.2rem .7rem;border-bottom:1px solid #ddd;text-align:right}
@@ -23,23 +24,24 @@ PAGE = '''<!DOCTYPE html>
 </body></html>
 '''
 NO_PERSON = 'Simulated operators: no person took part. These figures describe a program that plays a person.'
-EFFECT_COLUMNS = ('Effect', 'Test', 'p', 'Scale', 'n')
+EFFECT_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Scale', 'n')
+MOST_FINDINGS = 6  # of one part; the tables have all
 ANOVA_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Correction')
 SPHERICITY_COLUMNS = ('Measure', 'W', 'Test', 'p', 'Greenhouse-Geisser \u03b5', 'Huynh-Feldt \u03b5')
-METHODS = '''<p>Each participant's repetitions are averaged first; nobody is left out for what is missing. Times (their
-logarithm) and other amounts: linear mixed models with random participants, by restricted maximum likelihood, tested by
-Kenward and Roger's F and t. Counts (drops, grasps, tracking losses, trials completed): permutation tests, in which
-participants change groups, or a participant's values change places; ratios with the intervals of resampled
-participants; and exact tests of who had any (Fisher's, McNemar's). Ratings: Wilcoxon's and Mann and Whitney's tests, exact
-with ties, and the rank-biserial correlation. p-values of pairs are Bonferroni-corrected within a measure and a family of
-comparisons (the groups at each object; the objects; the conditions), and stars are by these.</p>
-<p>Beside them, as the paper did: a mixed analysis of variance with type III sums of squares of the participants with a
-value everywhere; sphericity by Mauchly's test, and where it is violated (p &lt; 0.05, or too few participants to tell)
-Greenhouse and Geisser's correction of the degrees of freedom if its &epsilon; is at most 0.75, else Huynh and Feldt's;
-Welch's t-test with Cohen's d between groups, the paired t-test with d<sub>z</sub> within participants. Of counts that are
-mostly 0 their p-values are not to be trusted.</p>
-<p>Completion time and drops during manipulation (the paper's attempts) are the measures named in advance; the others are
-exploratory, and no correction is made for how many they are.</p>'''
+METHODS = '''<p>A participant's repetitions are averaged first. A missing trial costs no participant. Times (their logarithm)
+and other amounts: linear mixed models with random participants and a residual variance for each object, by restricted
+maximum likelihood, with Kenward and Roger's F and t. Counts (drops, grasps, tracking losses, trials completed): permutation
+tests, in which participants change groups or a participant's values change places; ratios with the intervals of
+resampled participants; exact tests of who had any (Fisher's, McNemar's). Ratings: Wilcoxon's and Mann and Whitney's tests,
+exact with ties, and the rank-biserial correlation. p-values of pairs are Bonferroni-corrected within a measure and a
+family of comparisons (the groups at each object; the objects; the conditions); stars follow the corrected values.</p>
+<p>The paper's own analysis is beside them: a mixed analysis of variance with type III sums of squares of the
+participants with a value everywhere; Mauchly's test of sphericity and, where it is violated (p &lt; 0.05, or too few
+participants to tell), Greenhouse and Geisser's correction if its &epsilon; is at most 0.75, else Huynh and Feldt's;
+Welch's t-test with Cohen's d between groups, the paired t-test with d<sub>z</sub> within participants. Its p-values are
+not to be trusted for counts that are mostly 0.</p>
+<p>Completion time and drops during manipulation (the paper's attempts) are the measures named in advance. The others are
+exploratory, and nothing corrects for how many they are.</p>'''
 
 
 class Report:
@@ -104,7 +106,14 @@ def write_report(path, results, sessions, figures, notes):
     if any(s.simulated for s in sessions):
         some = '' if all(s.simulated for s in sessions) else 'Some of the sessions, analysed apart: '
         report.text(some + NO_PERSON, 'simulated')
-    for part in sorted(set(map(tuple, results.comparison[['source', 'gravity_g']].values))) if results else ():
+    found = sorted(set(map(tuple, results.comparison[['source', 'gravity_g']].values))) if results else ()
+    if found:
+        report.heading('Findings')
+        report.items([line for part in found for line in _findings(results, part)])
+    if sessions:
+        report.heading('Who took part')
+        _participants(report, sessions)
+    for part in found:
         _part(report, part, results, figures)
     if results is not None:
         _gravities(report, results)
@@ -115,6 +124,33 @@ def write_report(path, results, sessions, figures, notes):
     if sessions:
         _account(report, sessions, notes)
     report.write(path)
+
+
+def _findings(results, part):
+    """Sentences on the measures named in advance: what differs, by how much, with its interval and corrected p."""
+    pairs = _rows(results.post_hoc, part)
+    pairs = pairs[pairs['measure'].isin(MAIN) & pairs['at'].isin(['conditions', 'all objects']) &
+                  pairs['p_bonferroni'].notna() & pairs['effect'].notna()].sort_values('p_bonferroni', kind='stable')
+    where = label_of(part)
+    if pairs.empty:
+        return ['%s: no two groups or conditions to compare.' % where.capitalize()]
+    shown_first = pairs[pairs['stars'] != ''].head(MOST_FINDINGS)
+    if shown_first.empty:
+        return ['%s: of %d comparisons none is shown to differ. Nearest: %s' % (
+            where.capitalize(), len(pairs), _sentence(next(pairs.itertuples())))]
+    more = (pairs['stars'] != '').sum() - len(shown_first)
+    return ['%s: %s' % (where.capitalize(), _sentence(row)) for row in shown_first.itertuples()] + (
+        ['%s: %d further differences are in the tables.' % (where.capitalize(), more)] if more else [])
+
+
+def _sentence(row):
+    ratio = row.effect_name.startswith('ratio')
+    size = '%s times' % number(row.effect) if ratio else 'a difference of %s' % number(row.effect)
+    limits = '' if np.isnan(row.low) else '95 %% interval %s to %s, ' % (number(row.low), number(row.high))
+    under = ', under ' + plain(row.condition) if row.at == 'all objects' else ''
+    return '%s of %s is %s that of %s%s (%s%s after correction, n = %s).' % (
+        OF[row.measure].label, plain(row.a), size, plain(row.b), under, limits, p_text(row.p_bonferroni),
+        '%d' % row.n_a if row.at == 'conditions' else '%d and %d' % (row.n_a, row.n_b))
 
 
 def _gravities(report, results):
@@ -133,8 +169,6 @@ def _account(report, sessions, notes):
     report.items(notes or ['Nothing.'])
     report.heading('Methods')
     report.markup(METHODS)
-    report.heading('Who took part')
-    _participants(report, sessions)
 
 
 def _rows(table, part, **equal):
@@ -176,7 +210,7 @@ def _comparison(report, rows):
     table = []
     for condition in dict.fromkeys(rows['condition']):
         some = rows[rows['condition'] == condition]
-        cells = {row.quantity: '%s \u00b1 %s%s' % (number(row.mean), number(row.sd, 2),
+        cells = {row.quantity: '%s \u00b1 %s%s' % (number(shown(row.quantity, row.mean)), number(shown(row.quantity, row.sd), 2),
                                                  '' if row.n == some['n'].max() else ' (n = %d)' % row.n)
                  for row in some.itertuples()}
         table.append([plain(condition), str(some['n'].max())] + [cells.get(q, '\u2013') for q in quantities])
@@ -204,7 +238,7 @@ def _effect_rows(effects):
     return [['%s: %s' % (OF[row.measure].label, row.effect.replace(' x ', ' \u00d7 ')),
              row.test if np.isnan(row.statistic) else
              'F(%d, %s) = %.2f' % (row.df, number(row.df_error, 4), row.statistic),
-             p_text(row.p), row.scale, str(row.n)] for row in effects.itertuples()]
+             p_text(row.p), number(row.partial_eta_squared, 2), row.scale, str(row.n)] for row in effects.itertuples()]
 
 
 def _any(report, rows):
@@ -244,7 +278,8 @@ def _anova_rows(anova):
 def _pairs(report, pairs, caption, where):
     if len(pairs):
         report.table(caption, ['Of', 'a', 'b', 'a', 'b', 'Test', 'p, Bonferroni', '', 'Effect'], [
-            [where(row), plain(row.a), plain(row.b), number(row.centre_a), number(row.centre_b),
+            [where(row), plain(row.a), plain(row.b), *[number(shown(getattr(row, 'measure', ''), centre))
+                                                       for centre in (row.centre_a, row.centre_b)],
              _test_text(row), p_text(row.p_bonferroni), row.stars, _effect_text(row)]
             for row in pairs.itertuples()])
 
@@ -257,9 +292,10 @@ def _test_text(row):
 
 
 def _effect_text(row):
-    text = '%s = %s' % (row.effect_name.replace('_', ''), number(row.effect))
+    name = getattr(row, 'measure', '') if row.effect_name == 'difference' else ''  # other effects have no unit
+    text = '%s = %s' % (row.effect_name.replace('_', ''), number(shown(name, row.effect)))
     known = 'low' in row._fields and not np.isnan(row.low)
-    return text + (' (%s to %s)' % (number(row.low), number(row.high)) if known else '')
+    return text + (' (%s to %s)' % (number(shown(name, row.low)), number(shown(name, row.high))) if known else '')
 
 
 def _ratings(report, results, part, figures):

@@ -12,7 +12,8 @@ from .study_data import SIMULATED  # noqa: E402
 GROUP_COLOURS = {'beginner': '#E69F00', 'veteran': '#56B4E9'}
 DARK = {'beginner': '#8A5A00', 'veteran': '#00527A'}  # the same hues, dark enough for dots and text
 FURTHER = (('#009E73', '#005C43'), ('#CC79A7', '#7A3F60'), ('#F0E442', '#6B6400'), ('#D55E00', '#7F3800'))
-LETTERS = 15  # of a caption, to the inch
+LETTERS, TITLE_LETTERS = 15, 12  # to the inch, of a caption and of a panel's title
+PAGE_WIDTH = 9.7  # inches: the report's column, in which text of 9 points stays 9 points
 INK, PALE = '#222222', '#BBBBBB'
 RAW, FILTERED = '#D55E00', '#0072B2'
 
@@ -33,8 +34,21 @@ def colours(groups):
     return found
 
 
-def new_figure(columns, width, height, rows=1, **arguments):
-    return plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **arguments)
+def new_figure(panels, width, height, **arguments):
+    """`panels` panels of a width and height [inches], in as many rows as the page's width needs."""
+    columns = max(1, min(panels, int(PAGE_WIDTH // width)))
+    rows = -(-panels // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(max(columns * width, 5.2), rows * height + 0.6), squeeze=False,
+                                **arguments)
+    for empty in axes.flat[panels:]:
+        empty.set_visible(False)
+    return figure, axes
+
+
+def panel_title(axes, text):
+    """A title that ends where its panel ends."""
+    width = axes.figure.get_figwidth() / axes.get_subplotspec().get_gridspec().get_geometry()[1]
+    axes.set_title('\n'.join(textwrap.wrap(text, int(TITLE_LETTERS * (width - 0.6)))), loc='left')
 
 
 def finish(figure, title, caption, source):
@@ -43,9 +57,10 @@ def finish(figure, title, caption, source):
     lines = textwrap.wrap(caption, int(LETTERS * figure.get_figwidth()))
     if source == SIMULATED:
         lines.insert(0, 'SIMULATED OPERATORS: no person took part.')
+    title = '\n'.join(textwrap.wrap(title, int(TITLE_LETTERS * figure.get_figwidth())))
     figure.text(0.01, 1 - 0.06 / height, title, ha='left', va='top', fontsize=11, fontweight='bold')
     figure.text(0.01, 0.06 / height, '\n'.join(lines), ha='left', va='bottom', fontsize=7.5, color='#555555')
-    figure.tight_layout(rect=(0, (0.1 + 0.14 * len(lines)) / height, 1, 1 - 0.28 / height))
+    figure.tight_layout(rect=(0, (0.1 + 0.14 * len(lines)) / height, 1, 1 - (0.12 + 0.18 * (1 + title.count('\n'))) / height))
 
 
 def save(figure, folder, name):

@@ -84,7 +84,7 @@ def draw_trajectories(raw, filtered, title, source, folder, file_name):
     raw, filtered = (_excerpt(path, start + (CLOSE_UP - LONGEST) / 2, LONGEST) for path in (raw, filtered))
     extent = np.ptp(raw.position, axis=0)
     plane = max(itertools.combinations(range(3), 2), key=lambda axes: extent[list(axes)].sum())
-    figure, panels = new_figure(2, 8.6, 6.6, 2, gridspec_kw={'height_ratios': [3, 2]})
+    figure, panels = new_figure(4, 4.3, 3.0, gridspec_kw={'height_ratios': [3, 2]})
     paths = ((raw, RAW, '(a) raw'), (filtered, FILTERED, '(b) filtered'))
     for axes, (path, colour, label) in zip(panels[0], paths):
         axes.plot(*_with_gaps(path.time, path.position[:, plane]).T, color=colour, lw=1.0)

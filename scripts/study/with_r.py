@@ -1,4 +1,4 @@
-"""The same mixed models by R, and Poisson or negative binomial ones of counts, which there is no library for here."""
+"""Poisson and negative binomial mixed models of counts, by R: no Python library in Debian has them."""
 
 import os
 import shutil
@@ -10,9 +10,8 @@ import pandas
 from .measures import OF, is_tested
 from .session_folder import StudyError
 
-PACKAGES = ('lme4', 'lmerTest', 'pbkrtest', 'emmeans', 'glmmTMB')
-WITHOUT = ('no Poisson or negative binomial mixed models of counts (rate models with random participants), and no second '
-           'opinion on the mixed models of times')
+PACKAGES = ('emmeans', 'glmmTMB')
+WITHOUT = 'no Poisson or negative binomial mixed models of counts (rate models with random participants)'
 LONGEST = 1800.0  # s
 
 
@@ -45,12 +44,8 @@ def models(cells):
 
 
 def _long(cells):
-    """Each condition by itself, and all conditions together where there are several."""
-    kinds = cells['measure'].map(lambda name: OF[name].kind)
-    parts = [cells.assign(kind=kinds, condition_of=cells['condition'])]
+    """Counts of each condition by itself, and of all conditions together where there are several."""
+    cells = cells[cells['measure'].map(lambda name: OF[name].kind) == 'count']
     tested = cells[cells['condition'].map(is_tested).astype(bool)]
     several = tested[tested.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1]
-    parts.append(several.assign(kind=kinds[several.index], condition_of='all'))
-    table = pandas.concat(parts, ignore_index=True)
-    positive = table.groupby(['source', 'gravity_g', 'condition_of', 'measure'])['value'].transform('min') > 0
-    return table.assign(logarithm=((table['kind'] == 'time') & positive).astype(int))
+    return pandas.concat([cells.assign(condition_of=cells['condition']), several.assign(condition_of='all')], ignore_index=True)

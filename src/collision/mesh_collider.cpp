@@ -1,4 +1,6 @@
 #include <atomic>
+#include <map>
+#include <mutex>
 
 #include "mesh_collision.h"
 #include "mesh_nearest.h"
@@ -218,6 +220,27 @@ void MeshCollider::Impl::leave_by_end(const MeshShape& of, const Segment& segmen
 
 MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
 MeshCollider::~MeshCollider() = default;
+
+std::shared_ptr<const MeshCollider> shared_collider(const std::shared_ptr<const TriangleMesh>& mesh) {
+  // By ownership, so that no other mesh at the same place in memory is taken for it.
+  using Known = std::map<std::weak_ptr<const TriangleMesh>, std::weak_ptr<const MeshCollider>,
+                         std::owner_less<std::weak_ptr<const TriangleMesh>>>;
+  static std::mutex mutex;
+  static Known known;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (auto one = known.begin(); one != known.end();)
+      one = one->second.expired() ? known.erase(one) : std::next(one);
+    const auto found = known.find(mesh);
+    if (found != known.end())
+      if (auto collider = found->second.lock()) return collider;
+  }
+  // Without the lock: two threads that make the same collider at once each keep their own.
+  auto collider = std::make_shared<const MeshCollider>(*mesh);
+  const std::lock_guard<std::mutex> lock(mutex);
+  known[mesh] = collider;
+  return collider;
+}
 
 const MeshShape& MeshCollider::shape() const {
   return impl_->shape;

@@ -37,4 +37,8 @@ class MeshCollider {
   std::unique_ptr<const Impl> impl_;
 };
 
+/// The collider of `mesh`: one for all scenes of the process that have this mesh, made for the first of them.
+/// So a change of a scene prepares no mesh anew. Throws as the constructor does. Any thread may call it.
+std::shared_ptr<const MeshCollider> shared_collider(const std::shared_ptr<const TriangleMesh>& mesh);
+
 }  // namespace mrhi

@@ -14,9 +14,10 @@ namespace mrhi {
 struct SceneGeometry {
   explicit SceneGeometry(const Scene& scene);
 
-  std::vector<std::vector<std::unique_ptr<MeshCollider>>> meshes;  ///< [body][shape], null unless a mesh
-  std::vector<std::vector<ManifoldShape>> shapes;                  ///< [body][shape]
-  std::vector<std::vector<PlacedCollider>> colliders;              ///< [body][shape], for hands
+  std::vector<std::vector<std::shared_ptr<const MeshCollider>>>
+      meshes;                                          ///< [body][shape], null unless a mesh
+  std::vector<std::vector<ManifoldShape>> shapes;      ///< [body][shape]
+  std::vector<std::vector<PlacedCollider>> colliders;  ///< [body][shape], for hands
 };
 
 }  // namespace mrhi

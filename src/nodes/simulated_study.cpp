@@ -127,6 +127,9 @@ void play(Study study) {
   study.task = find_task_file(study.task, task_folders());
   for (const std::string& model : study.models) configuration_of(study, model);  // before anything is played
   const Task task = load_task(study.task);
+  OperatorStage stage;
+  stage.scene_folders = scene_folders();
+  check_operator(task, stage);
   for (int person = study.first; person <= study.last; ++person) {
     for (const std::string& model : study.models) {
       for (const double gravity : study.gravities) play_session(study, person, model, gravity, task);

@@ -17,7 +17,7 @@ all that it needs. Publishes training/status and training/markers. Services: ~ne
                                such as beginner; right or left; what they work with, such as implicit
   ~task                        NAME|FILE; default pick_and_place
   ~auto_next                   break between trials, at most 3600 s; below 0: each waits for ~next; default 3
-  ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_start
+  ~seed, ~number, ~session, ~simulated, ~simulation, ~auto_start, ~operator
                                see docs/training.md
 )";
 

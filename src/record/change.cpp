@@ -29,9 +29,9 @@ struct Making {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const {
-    simulation.add(
-        spawn.part ? *spawn.part
-                   : requested_scene(spawn.request, scene_options(simulation.simulation().configuration())));
+    simulation.add(spawn.prepared ? spawn.prepared->part
+                                  : requested_scene(spawn.request,
+                                                    scene_options(simulation.simulation().configuration())));
   }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
@@ -234,6 +234,9 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   return request;
 }
 
+PreparedSpawn::PreparedSpawn(const ObjectRequest& request, const SceneOptions& options)
+    : part(requested_scene(request, options)), geometry(part), files(contents_of(part.mesh_files)) {}
+
 void make(const Change& change, LiveSimulation& simulation) {
   std::visit(Making{simulation}, change);
 }
@@ -251,8 +254,9 @@ std::string to_yaml(const Change& change) {
 RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
-  RecordedFiles files = contents_of(
-      spawn->part ? spawn->part->mesh_files : requested_scene(spawn->request, scene_options({})).mesh_files);
+  RecordedFiles files = spawn->prepared
+                            ? spawn->prepared->files
+                            : contents_of(requested_scene(spawn->request, scene_options({})).mesh_files);
   files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "../collision/scene_geometry.h"
 #include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/scene/object_request.h"
 
@@ -24,10 +25,21 @@ RecordedFiles contents_of(const std::vector<SceneFile>& files);
 /// Writes `files` into `folder`, for SceneOptions::mesh_files.
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files);
 
+/// What a spawn adds, with its meshes ready for collision, and the files that it was read from.
+struct PreparedSpawn {
+  PreparedSpawn(const ObjectRequest& request, const SceneOptions& options);
+  PreparedSpawn(const PreparedSpawn&) = delete;
+  PreparedSpawn& operator=(const PreparedSpawn&) = delete;
+
+  Scene part;
+  SceneGeometry geometry;  ///< of `part`: keeps its colliders until the simulation has them
+  RecordedFiles files;
+};
+
 // What a running simulation may be asked for besides hands.
 struct Spawn {
-  ObjectRequest request;                   ///< with its name, and a URDF as text
-  std::shared_ptr<const Scene> part = {};  ///< what is to be added, if it has been made of the request
+  ObjectRequest request;                               ///< with its name, and a URDF as text
+  std::shared_ptr<const PreparedSpawn> prepared = {};  ///< of the request; null: prepared when it is made
 };
 struct Delete {
   std::string name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "../scene/scene_edit.h"
@@ -41,12 +42,11 @@ void add_files(const RecordedFiles& files, World& world) {
   }
 }
 
-/// Whether all that was asked for goes with the body of that name.
-bool goes_with(const std::string& name, const ObjectRequest& request, const SceneOptions& options) {
-  if (!request.whole) return request.name == name;
-  const Scene part = requested_scene(request, options);
-  const std::optional<int> body = find_body(part, name);
-  return body && hanging_on(static_cast<std::size_t>(*body), part).size() == part.bodies.size();
+std::vector<std::string> roots_of(const Scene& part) {
+  std::vector<std::string> roots;
+  for (std::size_t body = 0; body < part.bodies.size(); ++body)
+    if (hanging_on(body, part).size() == part.bodies.size()) roots.push_back(part.bodies[body].name);
+  return roots;
 }
 
 struct Following {
@@ -54,22 +54,29 @@ struct Following {
   World& world;
 
   void operator()(const Spawn& spawn) const {
-    world.added.push_back(spawn.request);
-    add_files(files_of(spawn), world);
+    const SceneOptions options = scene_options(simulation.simulation().configuration());
+    const auto prepared =
+        spawn.prepared ? spawn.prepared : std::make_shared<const PreparedSpawn>(spawn.request, options);
+    world.added.push_back({spawn.request, roots_of(prepared->part)});
+    add_files(files_of(Spawn{spawn.request, prepared}), world);
   }
   void operator()(const Delete& remove) const {
-    const SceneOptions options = scene_options(simulation.simulation().configuration());
-    const auto added =
-        std::find_if(world.added.begin(), world.added.end(),
-                     [&](const ObjectRequest& request) { return goes_with(remove.name, request, options); });
+    const auto added = std::find_if(world.added.begin(), world.added.end(), [&](const Added& one) {
+      return std::find(one.roots.begin(), one.roots.end(), remove.name) != one.roots.end();
+    });
     if (added == world.added.end()) {
       world.removed.push_back(remove.name);
     } else {
       world.added.erase(added);
     }
+    const Scene& scene = simulation.simulation().scene();
+    for (auto mode = world.grasps.begin(); mode != world.grasps.end();)
+      mode = find_body(scene, mode->first) ? std::next(mode) : world.grasps.erase(mode);
   }
-  void operator()(const SetParameters&) const {
+  void operator()(const SetParameters& set) const {
     set_parameters(simulation.simulation().configuration(), world);
+    for (const auto& [name, value] : set.values)
+      if (const auto object = grasp_parameter(name)) world.grasps[*object] = value;
   }
   void operator()(const PlaceObject&) const {}
   void operator()(const Restrain&) const {}
@@ -116,8 +123,9 @@ std::string to_yaml(const World& world) {
   node["scene"] = world.scene;
   for (const auto& [name, twist] : world.twists) node["object_twist"][name] = twist_node(twist);
   for (const auto& [name, value] : world.parameters) node["parameters"][name] = value;
+  for (const auto& [name, mode] : world.grasps) node["grasp"][name] = mode;
   for (const std::string& name : world.removed) node["removed"].push_back(name);
-  for (const ObjectRequest& request : world.added) node["added"].push_back(request_node(request));
+  for (const Added& added : world.added) node["added"].push_back(request_node(added.request));
   return YAML::Dump(node);
 }
 
@@ -135,8 +143,9 @@ World world_from_yaml(const std::string& yaml, const RecordedFiles& files) {
         throw std::invalid_argument("recorded parameters: no text; allowed: YAML in text");
       world.parameters[entry.first.Scalar()] = entry.second.Scalar();
     }
+    for (const auto& entry : node["grasp"]) world.grasps[entry.first.Scalar()] = entry.second.Scalar();
     for (const YAML::Node& name : node["removed"]) world.removed.push_back(name.Scalar());
-    for (const YAML::Node& request : node["added"]) world.added.push_back(request_in(request, files));
+    for (const YAML::Node& request : node["added"]) world.added.push_back({request_in(request, files)});
     return world;
   });
 }
@@ -169,10 +178,14 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
       gone_since.push_back(name);
     }
   }
-  for (const ObjectRequest& request : world.added) append(requested_scene(request, options), scene);
+  for (const Added& added : world.added) append(requested_scene(added.request, options), scene);
   for (const std::string& name : gone_since) {
     if (const std::optional<int> body = find_body(scene, name))
       remove_body(static_cast<std::size_t>(*body), scene);
+  }
+  for (const auto& [name, mode] : world.grasps) {
+    if (const std::optional<int> body = find_body(scene, name))
+      scene.bodies[static_cast<std::size_t>(*body)].grasp = grasp_mode(mode).value_or(GraspMode::parameter);
   }
   return scene;
 }

@@ -8,6 +8,12 @@
 
 namespace mrhi {
 
+/// A spawn, and the bodies with each of which all of it goes.
+struct Added {
+  ObjectRequest request;
+  std::vector<std::string> roots = {};
+};
+
 /// What a simulation began with and what has been changed of it since: enough to build its scene anew on
 /// another machine.
 struct World {
@@ -16,8 +22,9 @@ struct World {
   RecordedFiles files;                            ///< scene.urdf, scene.yaml, meshes, spawned URDFs
   std::map<std::string, Twist> twists;            ///< at the start, by object
   std::map<std::string, std::string> parameters;  ///< all that there are, as YAML
+  std::map<std::string, std::string> grasps;      ///< modes that were set while it ran, by object
   std::vector<std::string> removed;               ///< objects of the scene that are gone
-  std::vector<ObjectRequest> added;               ///< objects that have come and are there, in their order
+  std::vector<Added> added;                       ///< what has come and is there, in its order
 };
 
 /// Of a scene's file: reads it, the YAML beside it and the meshes that `scene`, which it was loaded as, has.

@@ -12,7 +12,7 @@
 namespace mrhi {
 
 /// Shows a tracked hand outside all bodies as one connected hand: its bones as tracked, turned about its
-/// joints within their limits, and where that is not enough shifted as a whole. docs/rendered_hand.md.
+/// joints within their limits, and where that is not enough shifted as a whole. docs/pipeline.md.
 class HandRenderer {
  public:
   /// Keeps references.

@@ -133,7 +133,9 @@ void replay(const ReplayArguments& arguments) {
   for (const std::string& warning : simulation.scene().warnings) run.progress.line("replay: " + warning);
   run.begin(simulation, simulation.scene().name);
   run.summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
-  if (!is_csv(arguments.input)) run.progress.line("replay: not known: " + run.summary.not_known.front());
+  if (!is_csv(arguments.input))
+    run.progress.line("replay: runs the hands of " + arguments.input + " through scene '" +
+                      simulation.scene().name + "' with the parameters given here, as " + log.why_not);
   try {
     run_frames(*input.frames, simulation, run);
     run.check_end();

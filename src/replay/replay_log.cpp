@@ -220,7 +220,7 @@ class LogRun {
       if (auto* spawn = std::get_if<Spawn>(&change)) {
         SceneOptions options = scene_options(simulation().configuration());
         options.mesh_files = written_to(scratch_.path(), entry.files);
-        spawn->part = std::make_shared<const Scene>(requested_scene(spawn->request, options));
+        spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
       }
       make(change, *simulation_);
     } catch (const std::exception& error) {

@@ -77,7 +77,7 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 
 // Explicit: momenta change by h f, with the forces of the step's start, one contact after the other, each at
 // the velocity that those before it have left. Undamped it asks for steps below 2 sqrt(m / sum gamma);
-// docs/stability.md has where it fails.
+// docs/speed_accuracy.md has where it fails.
 //
 //     p += h f,  then  x += h p / m:  symplectic Euler's method, stable below h = 2 / w, w^2 = sum gamma / m
 //

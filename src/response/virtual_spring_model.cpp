@@ -20,7 +20,7 @@ class VirtualSpringModel : public ContactModel {
   /// 2 / sqrt(sum k / m) and 2 m / sum b [N/m].
   /// Of N phalanges both together ask for h^2 N k + 2 h N b < 4 m, where each alone has the bounds above: p
   /// += -h (k x + b p / m), x += h p / m has its roots within the unit circle up to there
-  /// (docs/stability.md: of 2433 cells beyond it 12 are stable).
+  /// (docs/speed_accuracy.md: of 2433 cells beyond it 12 are stable).
   static constexpr double kStiffness = 500.0;
   /// The coupling's damper is critical for a virtual phalanx of this mass: b = 2 sqrt(k m), 4.5 N s/m at 500
   /// N/m [kg].

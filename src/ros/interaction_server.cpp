@@ -16,7 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "../text/safe_yaml.h"
 #include "../text/text.h"
+#include "../text/yaml_values.h"
+#include "between_frames.h"
 #include "input_log.h"
 #include "input_statistics.h"
 #include "interaction_diagnostics.h"
@@ -47,6 +50,20 @@ SceneOptions options_of(const Configuration& configuration) {
 
 std::string without_slash(const std::string& frame_id) {
   return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
+}
+
+/// One parameter; of a request without a name, all of the map that its value is.
+Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& request) {
+  if (!request.name.empty()) return {{request.name, request.value}};
+  return read_yaml<ParameterError>("value", [&] {
+    const YAML::Node map = load_yaml("value", request.value);
+    if (!map.IsMap() || map.size() == 0)
+      throw ParameterError("value: " + text::one_line(yaml_text(map), 60) +
+                           " is not allowed without a name; allowed: a map of names and values");
+    Tuning::Values values;
+    for (const auto& entry : map) values.emplace_back(yaml_text(entry.first), yaml_text(entry.second));
+    return values;
+  });
 }
 
 /// An object's pose is in tf by its name: with a name of these a tracker would go where the object goes.
@@ -149,6 +166,7 @@ struct InteractionServer::Impl {
   ros::Subscriber hands_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer idle_timer_;
+  BetweenFrames between_frames_;  ///< last, so that nothing runs beside the end of the others
 };
 
 InteractionServer::Impl::Impl(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -162,12 +180,14 @@ InteractionServer::Impl::Impl(ros::NodeHandle node, ros::NodeHandle private_node
       tuning_(private_node, parameters.place_by_mouse,
               {[this](const Tuning::Values& values) { change_parameters(values); },
                [this](bool on) { placing_.turn(on, live_.simulation()); },
-               [this]() -> const Simulation& { return live_.simulation(); }}) {
+               [this]() -> const Simulation& { return live_.simulation(); }}),
+      between_frames_(node) {
   diagnostics_.watch([this](auto& status) { tell_state(status); });
   if (parameters.standard_outputs) results_.add_standard_outputs(node);
   results_.show(live_.simulation());
   placing_.turn(parameters.place_by_mouse, live_.simulation());
   advertise_services(private_node);
+  between_frames_.start();
   idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
 }
 
@@ -206,10 +226,6 @@ void InteractionServer::Impl::advertise_services(ros::NodeHandle& private_node) 
                                        return std::string(request.data != 0 ? "restrained" : "free");
                                      });
                                    }),
-      advertise<SpawnObject>(private_node, "spawn",
-                             [this](auto& request, auto& response) { return spawn(request, response); }),
-      advertise<SpawnUrdf>(private_node, "spawn_urdf",
-                           [this](auto& request, auto& response) { return spawn_urdf(request, response); }),
       advertise<SaveWorld>(private_node, "save",
                            [this](auto& request, auto& response) { return save(request.file, response); }),
       advertise<DeleteObject>(
@@ -217,6 +233,11 @@ void InteractionServer::Impl::advertise_services(ros::NodeHandle& private_node) 
           [this](auto& request, auto& response) { return remove(request.name, response); }),
       advertise<SetParameter>(private_node, "set",
                               [this](auto& request, auto& response) { return set(request, response); })};
+  ros::NodeHandle beside = between_frames_.node_beside(private_node);
+  services_.push_back(advertise<SpawnObject>(
+      beside, "spawn", [this](auto& request, auto& response) { return spawn(request, response); }));
+  services_.push_back(advertise<SpawnUrdf>(
+      beside, "spawn_urdf", [this](auto& request, auto& response) { return spawn_urdf(request, response); }));
 }
 
 void InteractionServer::Impl::note_lost(std::uint64_t frames) {
@@ -323,19 +344,24 @@ bool InteractionServer::Impl::spawn_urdf(const mr_hand_interaction::SpawnUrdf::R
   return answer(response, [&] { return spawn(from_message(request)); });
 }
 
-/// What is there then, and what was assumed of it.
+/// Returns what is there then, and what was assumed of it. Runs beside the frames, which do not wait while it
+/// reads files.
 std::string InteractionServer::Impl::spawn(const ObjectRequest& request) {
-  const SceneOptions options = options_of(live_.simulation().configuration());
+  SceneOptions options;
+  between_frames_.run([&] { options = options_of(live_.simulation().configuration()); });
   Spawn spawn{with_file_read(request, options)};
-  spawn.part = std::make_shared<const Scene>(requested_scene(spawn.request, options));
-  require_no_frames(*spawn.part, fixed_frame_);
-  if (!spawn.request.whole) spawn.request.name = spawn.part->bodies.front().name;
-  make(spawn);
-  show_change();
+  spawn.prepared = std::make_shared<const PreparedSpawn>(spawn.request, options);
+  const Scene& part = spawn.prepared->part;
+  require_no_frames(part, fixed_frame_);
+  if (!spawn.request.whole) spawn.request.name = part.bodies.front().name;
+  between_frames_.run([&] {
+    make(spawn);
+    show_change();
+  });
   std::vector<std::string> names;
-  for (const Body& body : spawn.part->bodies) names.push_back("'" + body.name + "'");
+  for (const Body& body : part.bodies) names.push_back("'" + body.name + "'");
   std::string text = text::joined(names) + (names.size() > 1 ? " are there" : " is there");
-  for (const std::string& warning : spawn.part->warnings) {
+  for (const std::string& warning : part.warnings) {
     ROS_WARN("%s", warning.c_str());
     text += "; " + warning;
   }
@@ -370,9 +396,13 @@ bool InteractionServer::Impl::remove(const std::string& name,
 bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Request& request,
                                   mr_hand_interaction::SetParameter::Response& response) {
   return answer(response, [&] {
-    change_parameters({{request.name, request.value}});
+    const Tuning::Values values = values_of(request);
+    change_parameters(values);
     tuning_.show();
-    return request.name + " is " + parameter_text(live_.simulation().configuration(), request.name);
+    std::string message;
+    for (const auto& [name, value] : values)
+      message += (message.empty() ? "" : ", ") + name + " is " + live_.parameter(name);
+    return message;
   });
 }
 

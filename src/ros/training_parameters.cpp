@@ -72,6 +72,7 @@ const std::map<std::string, Setter>& setters() {
          p.auto_next =
              number<double>(name, text, -kLongestBreak, kLongestBreak, " [s], below 0: not by itself");
        }},
+      {"operator", [](Text name, Text text, P p) { p.by_operator = truth(name, text); }},
       {"auto_start", [](Text name, Text text, P p) { p.auto_start = truth(name, text); }},
   };
   return all;

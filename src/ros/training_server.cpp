@@ -11,6 +11,7 @@
 #include <ctime>
 #include <exception>
 
+#include "../training/operator_trial.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
@@ -27,7 +28,11 @@ constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than messages are e
 const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Task task_of(const TrainingParameters& parameters) {
-  return load_task(find_task_file(parameters.task, task_folders()));
+  Task task = load_task(find_task_file(parameters.task, task_folders()));
+  OperatorStage stage;
+  stage.scene_folders = scene_folders();
+  if (parameters.by_operator) check_operator(task, stage);
+  return task;
 }
 
 SessionHeader header_of(const TrainingParameters& parameters) {

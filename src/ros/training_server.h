@@ -29,8 +29,9 @@ struct TrainingParameters {
   std::optional<int> number;  ///< ~number: of the participant, from 1; else the one that ends the name
   std::string folder;         ///< ~folder: of the session; a ~ at its beginning is the home directory
   std::string simulation = "interaction_node";  ///< ~simulation: name of the node with the objects
-  double auto_next = 3.0;   ///< ~auto_next: break after a trial [s]; below 0: the next one waits for ~next
-  bool auto_start = false;  ///< ~auto_start: the first trial does not wait for ~next
+  double auto_next = 3.0;    ///< ~auto_next: break after a trial [s]; below 0: the next one waits for ~next
+  bool auto_start = false;   ///< ~auto_start: the first trial does not wait for ~next
+  bool by_operator = false;  ///< ~operator: a simulated operator does the task, which is checked
 };
 
 /// Throws ParameterError naming a parameter that is unknown, missing or not allowed.
@@ -39,7 +40,8 @@ TrainingParameters read_training_parameters(const ros::NodeHandle& private_node)
 /// Runs a session with the objects of an interaction_node, and shows how far it is. One thread.
 class TrainingServer {
  public:
-  /// Throws SceneError for a task that cannot be loaded, SessionError for a folder that cannot be used.
+  /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
+  /// operator cannot do, SessionError for a folder that cannot be used.
   TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters);
   ~TrainingServer();
 

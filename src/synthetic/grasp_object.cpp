@@ -106,6 +106,9 @@ std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
     if (finger < 4 && level && faces(*at, 1.0)) pressing.push_back(found.contacts.size());
     found.contacts.push_back(in_hand(finger, *at));
   }
+  // The first that presses stands behind the thumb: depths of these two make up a grip.
+  std::swap(found.contacts[1], found.contacts[pressing.front()]);
+  pressing.front() = 1;
   const auto fingers = static_cast<double>(pressing.size());
   found.contacts[0].depth = kThumbDepth;
   for (const std::size_t contact : pressing) found.contacts[contact].depth = kThumbDepth / fingers;
@@ -147,8 +150,21 @@ Closing narrowest(const Body& body, const Surface& surface) {
   return *best;
 }
 
+const Body& only_free_body(const Scene& scene) {
+  const Body* found = nullptr;
+  int free = 0;
+  for (const Body& body : scene.bodies)
+    if (body.flies && !body.is_operator) found = &body, ++free;
+  if (free != 1)
+    throw std::invalid_argument("scene '" + scene.name + "' has " + std::to_string(free) +
+                                " free objects; allowed: one, for a hand to grasp");
+  return *found;
+}
+
+}  // namespace
+
 /// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places.
-Grasp grasp_of(const Body& body) {
+Grasp narrowest_grasp(const Body& body) {
   const Closing closing = narrowest(body, Surface(body));
   std::vector<FingertipContact> pressing = closing.contacts;  // those that have to reach their places
   pressing.erase(std::remove_if(pressing.begin(), pressing.end(),
@@ -179,22 +195,9 @@ Grasp grasp_of(const Body& body) {
   return best->turned(Quaternion(closing.axes));
 }
 
-const Body& only_free_body(const Scene& scene) {
-  const Body* found = nullptr;
-  int free = 0;
-  for (const Body& body : scene.bodies)
-    if (body.flies && !body.is_operator) found = &body, ++free;
-  if (free != 1)
-    throw std::invalid_argument("scene '" + scene.name + "' has " + std::to_string(free) +
-                                " free objects; allowed: one, for a hand to grasp");
-  return *found;
-}
-
-}  // namespace
-
 ScriptedMotion grasp_object(const Scene& scene) {
   const Body& body = only_free_body(scene);
-  const Grasp grasp = grasp_of(body).turned(body.start.orientation);
+  const Grasp grasp = narrowest_grasp(body).turned(body.start.orientation);
   constexpr double kAside = 0.15;  // further away, so that the hand passes nothing of the object [m]
   ScriptedMotion motion =
       reach_and_carry(scene.name.c_str(), grasp, body.start.position, kAside * grasp.retreat);

@@ -50,7 +50,7 @@ Pose expected(const Sight& sight, double ahead) {
 
 SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed)
     : skill_(skill),
-      usual_(shipped_grasp(object.name)),
+      usual_(grasp_of(object)),
       turns_(box_symmetries(object)),
       random_(seed),
       tremor_(skill.tremor, random_),

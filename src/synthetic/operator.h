@@ -18,7 +18,7 @@ class SimulatedOperator : public Person {
  public:
   enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
 
-  /// The object is one that shipped_grasp() knows. Throws std::invalid_argument otherwise.
+  /// Grasps the object as grasp_of() says, and throws as it does.
   SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed);
 
   HandPlace move(double time, const Sight& sight) override;

@@ -127,6 +127,12 @@ GraspPostures::GraspPostures(const Grasp& grasp) {
   touching_share = kNearly / (kNearly + mean_depth);
 }
 
+Grasp grasp_of(const Body& body) {
+  for (const GraspEntry& entry : kGrasps)
+    if (body.name == entry.object) return entry.make();
+  return narrowest_grasp(body);
+}
+
 Grasp shipped_grasp(const std::string& object) {
   std::string known;
   for (const GraspEntry& entry : kGrasps) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fingertip_reach.h"
+#include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 
 namespace mrhi {
@@ -32,6 +33,13 @@ struct GraspPostures {
 /// Of the shipped objects cube, ball, long_cuboid and flat_cuboid. Throws std::invalid_argument that lists
 /// them.
 Grasp shipped_grasp(const std::string& object);
+
+/// Grasp of any object: across its narrowest side through the centre of mass, in the body's frame. Throws
+/// std::invalid_argument that names the object and what is allowed.
+Grasp narrowest_grasp(const Body& body);
+
+/// Grasp of a body: the shipped one of its name, else narrowest_grasp(), and throws as that does.
+Grasp grasp_of(const Body& body);
 
 /// Reaches for an object at rest whose centre is at `object`, closes, carries and lets go; `scene` names its
 /// scene, `aside` is where the hand comes from [m, world].

@@ -47,9 +47,12 @@ const HandFilter& hand_filter(FilterKind kind);
 /// The settings of all filters, filter by filter.
 const std::vector<FilterSetting>& filter_settings();
 
+/// The filter that a configuration asks for: Eq. 1 as printed under seed/literal, whatever its filter's type.
+FilterConfiguration filter_of(const Configuration& configuration);
+
 /// The filtered hand for `sample`, taken `elapsed` seconds (above 0) after the one before. A memory that is
 /// empty starts with `sample` as it is. All points of a hand are filtered alike: a joint that two bones share
-/// stays one joint. docs/filters.md compares the filters.
+/// stays one joint. docs/pipeline.md compares the filters.
 ///
 /// One gain for all points keeps what is linear in them: what is midway between two others stays so. Lengths
 /// of bones are not, and change while a hand turns: a mean of two directions is shorter than either.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "../scene/scene_edit.h"
+#include "../scene/shape_inertia.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/tracking_noise.h"
 #include "object_model.h"
@@ -20,9 +21,17 @@ constexpr double kSlap = 1.0;        // a blow may be as fast as that, a tap not
 constexpr double kAjar = 0.1;        // [rad]
 constexpr double kFlight = 3.5;      // that what flies past may be followed for [s]
 
+/// From the centre of mass down to the lowest point of the body as it starts [m].
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
-  return box != nullptr ? box->half_extents.z() : body.bounding_radius;
+  if (body.shapes.size() == 1 && box != nullptr) return box->half_extents.z();
+  if (body.shapes.size() == 1 && std::holds_alternative<Sphere>(body.shapes[0].shape))
+    return body.bounding_radius;
+  double height = 0.0;
+  for (const PlacedShape& shape : body.shapes)
+    for (const Vector3& corner : surface_of(shape).vertices)
+      height = std::max(height, -(body.start.orientation * corner).z());
+  return height;
 }
 
 bool is_place(const Goal& goal) {
@@ -130,6 +139,11 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
   const bool beside = (off - along * axis).norm() > next->tolerance / 4.0;
   if (beside) *sight.place += std::copysign(kOutside, along) * axis;
   return sight;
+}
+
+void check_operator(const Task& task, const OperatorStage& stage) {
+  for (const TaskObject& object : task.objects)
+    make_person({}, task, operator_scene(task, object, stage).bodies.front(), 0);
 }
 
 Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64_t seed,

@@ -36,6 +36,9 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
                                     std::uint64_t seed);
 
+/// Throws as make_person() does for the first object of the task that a simulated operator cannot do it with.
+void check_operator(const Task& task, const OperatorStage& stage);
+
 /// A simulated operator does the session's next trial: it sees the object, and through the noisy tracker its
 /// hand moves in a simulation. Stamps count on from `begin`; the result is the stamp of the last frame. No
 /// clock is read: the same arguments give the same bits.

@@ -1,6 +1,7 @@
 """The package as others build with it: outside of its tree, by its targets, and without ROS. With MR_HAND_CORE_BUILD=1
 the core is built, tested and installed without ROS too, which takes minutes."""
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -48,6 +49,24 @@ class Consumers(unittest.TestCase):
         for target in 'mr_hand_interaction_core', 'replay', 'test_laws':
             self.assertIn(target, targets)
         self.assertNotIn('interaction_node', targets)
+
+    def test_a_new_source_file_compiles_alone_beside_precompiled_headers(self):
+        def write(name, text):
+            with open(os.path.join(self.folder.name, name), 'w') as file:
+                file.write(text)
+
+        def compiled():
+            run('cmake', '-S', self.folder.name, '-B', tree)
+            return sorted(re.findall(r'(\w+)\.cpp\.o$', run('cmake', '--build', tree), re.MULTILINE))
+        tree = os.path.join(self.folder.name, 'build')
+        write('CMakeLists.txt', 'cmake_minimum_required(VERSION 3.10)\nproject(toy CXX)\nset(CMAKE_CXX_STANDARD 17)\n'
+              'find_package(Eigen3 REQUIRED NO_MODULE)\ninclude(%s/cmake/precompiled.cmake)\nfile(GLOB sources *.cpp)\n'
+              'add_library(toy STATIC ${sources})\ntarget_link_libraries(toy Eigen3::Eigen)\nprecompile(toy)\n' % REPOSITORY)
+        for name in ('first', 'second'):
+            write(name + '.cpp', 'int %s() { return static_cast<int>(std::string("x").size()); }\n' % name)
+        self.assertEqual([name for name in compiled() if 'pre' not in name], ['first', 'second'])
+        write('third.cpp', 'int third() { return 3; }\n')
+        self.assertEqual(compiled(), ['third'])
 
     @unittest.skipUnless(os.environ.get('MR_HAND_CORE_BUILD'), 'takes minutes: set MR_HAND_CORE_BUILD=1')
     def test_the_core_builds_runs_and_installs_without_ros(self):

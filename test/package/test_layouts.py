@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Every topic and field that config/layouts name is published, and by a field of that name in the topic's message."""
+import json
 import os
 import re
 import unittest
@@ -59,6 +60,18 @@ def multiplot_curves():
             yield axis.find("topic").text, axis.find("type").text, axis.find("field").text.split("/")
 
 
+def foxglove():
+    with open(os.path.join(LAYOUTS, "foxglove.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def foxglove_curves():
+    for name, config in foxglove()["configById"].items():
+        for path in config.get("paths", ()):
+            _, topic, *fields = re.sub(r"\[(\d+)\]", r".\1", path["value"]).replace("/", ".").split(".")
+            yield "/" + topic, None, fields
+
+
 class LayoutsTest(unittest.TestCase):
     def check(self, curves):
         topics = published()
@@ -84,6 +97,15 @@ class LayoutsTest(unittest.TestCase):
         curves = list(multiplot_curves())
         self.assertGreater(len(curves), 15)
         self.check(curves)
+
+    def test_foxglove(self):
+        curves = list(foxglove_curves())
+        self.assertGreater(len(curves), 2)
+        self.check(curves)
+
+        def panels(part):
+            return [part] if isinstance(part, str) else panels(part["first"]) + panels(part["second"])
+        self.assertEqual(sorted(panels(foxglove()["layout"])), sorted(foxglove()["configById"]))
 
     # As plot_docker.cpp reads it: sizes by number, a place for each child, anything else ends the reading.
     def test_plotjuggler_finds_a_plot_and_a_size_for_each_part_of_a_splitter(self):

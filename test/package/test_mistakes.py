@@ -43,7 +43,22 @@ class MistakesTest(unittest.TestCase):
                 status, line, told = last_line_of(script, *arguments)
                 self.assertEqual(status, 1, told)
                 self.assertIn("source devel/setup.bash", line)
+                self.assertIn("/usr/bin/python3", line)
                 self.assertNotIn("Traceback", told)
+
+    def test_a_python_without_ros_first_on_the_path_gives_way_to_the_one_that_has_it(self):
+        """As where pyenv or conda is active; and the script ends by itself where there is no other."""
+        with tempfile.TemporaryDirectory() as folder:
+            python = os.path.join(folder, "python3")
+            with open(python, "w", encoding="ascii") as file:
+                file.write('#!/bin/sh\nexec /usr/bin/python3 -I -S "$@"\n')
+            os.chmod(python, 0o755)
+            environment = dict(os.environ, PATH=folder + ":/usr/bin:/bin", ROS_MASTER_URI="http://127.0.0.1:9")
+            for script, arguments in (("set", ("step", "0.001")), ("doctor", ()), ("run_when", ("message", "/a", "true"))):
+                told = subprocess.run([os.path.join(PACKAGE, "scripts", script), *arguments], env=environment, timeout=60,
+                                      stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                      universal_newlines=True).stdout
+                self.assertIn("http://127.0.0.1:9 does not answer", told, script)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ inline RenderedCheck render_all(const Scene& scene, const std::vector<HandFrame>
   return check;
 }
 
-/// What docs/rendered_hand.md promises, but for jumps. Bone lengths and joints hold to rounding by
+/// What docs/pipeline.md promises, but for jumps. Bone lengths and joints hold to rounding by
 /// construction.
 inline void expect_one_hand_outside(const RenderedCheck& check, const std::string& what) {
   constexpr double kRounding = 1e-9;   // [m]

@@ -12,7 +12,7 @@ import numpy
 
 from pinching import SUMMARY, Attempt, replay_is_built, script, write_tables
 
-from runs.demonstration import Body, demonstration_of, joint_angles
+from runs.demonstration import Body, demonstration_of, joint_angles, keypoints
 from runs.tables import Run, RunError
 
 
@@ -81,6 +81,18 @@ class TablesTest(unittest.TestCase):
         self.assertAlmostEqual(angles['index_2'], 0.5 * math.pi, 12)
 
 
+    def test_keypoints_are_the_wrist_and_the_ends_of_the_bones_thumb_first(self):
+        bones = Body(2).bones
+        bones[0] = numpy.arange(120).reshape(20, 6)
+        points = keypoints(bones)
+        self.assertEqual(points.shape, (2, 21, 3))
+        numpy.testing.assert_array_equal(points[0, 1:], bones[0, :, 3:])
+        numpy.testing.assert_array_equal(points[0, 0], bones[0, [4, 8, 12, 16], :3].mean(axis=0))
+        self.assertTrue(numpy.isnan(points[1]).all())
+        bones[0, 8] = numpy.nan  # a finger that is not seen
+        numpy.testing.assert_array_equal(keypoints(bones)[0, 0], bones[0, [4, 12, 16], :3].mean(axis=0))
+
+
 @unittest.skipUnless(replay_is_built(), 'replay is not built')
 class ReplayTest(unittest.TestCase):
     def setUp(self):
@@ -111,12 +123,43 @@ class ReplayTest(unittest.TestCase):
         self.assertEqual({row['object.held'] for row in rows}, {'0', '1'})
         with rosbag.Bag(os.path.join(self.output, 'demonstration.bag')) as bag:
             self.assertEqual({topic.msg_type for topic in bag.get_type_and_topic_info()[1].values()}, {
-                'geometry_msgs/PoseStamped', 'geometry_msgs/WrenchStamped', 'sensor_msgs/JointState', 'std_msgs/String',
+                'geometry_msgs/PoseArray', 'geometry_msgs/PoseStamped', 'geometry_msgs/WrenchStamped', 'sensor_msgs/JointState', 'std_msgs/String',
                 'tf2_msgs/TFMessage'})
             self.assertEqual(bag.get_message_count('/demonstration/object/pose'), len(rows))
+            _, keypoint, _ = next(bag.read_messages('/demonstration/right_hand/keypoints'))
+        tip = keypoint.poses[8].position  # of the index, which the table has in the hand's first row
+        first = next(row for row in rows if row['right.index_3.x'])
+        self.assertAlmostEqual(tip.x, float(first['right.index_3.x']), 9)
+        self.assertTrue(math.isnan(keypoint.poses[0].position.z))  # this hand has no metacarpals
+        self.assertEqual((len(keypoint.poses), first['right.wrist.z']), (21, ''))
         for rate in ('0.5', '1001', 'x', 'nan'):
             refused = script('export', self.output, '--rate', rate)
             self.assertEqual((refused.returncode, refused.stderr.count('\n')), (2, 1), refused.stderr)
+
+    def test_hdf5_has_lerobot_s_fields_and_the_table_s_numbers(self):
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest('python3-h5py is not installed')
+        done = script('export', self.output, '--rate', '50', '--hdf5')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(os.path.join(self.output, 'demonstration.csv')) as file:
+            rows = list(csv.DictReader(file))
+        with h5py.File(os.path.join(self.output, 'demonstration.hdf5'), 'r') as file:
+            self.assertEqual(set(file), {'observation.state', 'observation.environment_state', 'action', 'timestamp', 'frame_index',
+                                         'episode_index', 'index', 'task_index', 'next.done'})
+            self.assertEqual({len(file[name]) for name in file}, {len(rows)})
+            self.assertAlmostEqual(file.attrs['fps'], 50.0, 6)
+            self.assertEqual(file['next.done'][:].tolist(), [False] * (len(rows) - 1) + [True])
+            state, names = file['observation.state'][:], list(file['observation.state'].attrs['names'])
+            self.assertEqual(len(names), 7 + 63)
+            numpy.testing.assert_array_equal(file['action'][:-1], state[1:])
+            tip = [float(row['right.index_3.y'] or 'nan') for row in rows]
+            numpy.testing.assert_allclose(state[:, names.index('right.index_3.y')], tip, atol=1e-6)
+            things = file['observation.environment_state']
+            held = things[:, list(things.attrs['names']).index('object.held')]
+            self.assertEqual(held.tolist(), [float(row['object.held']) for row in rows])
+            self.assertIn('GRASP_BEGIN object', file.attrs['events'])
 
 
 if __name__ == '__main__':

@@ -113,6 +113,17 @@ class DoctorTest(unittest.TestCase):
         self.assert_wrong("rate", "silent")
         publisher.unregister()
 
+    def test_each_of_two_topics_is_looked_at(self):
+        left = TOPIC.replace("right", "left")
+        with Sender(self.hand), Sender([(x + 0.3, y, z) for x, y, z in self.hand], topic=left, late=2.0):
+            status, wrong, lines = ask()
+        self.assertEqual(status, 1)
+        self.assertIn(left + ": 2.0 s behind", wrong["stamps"])
+        self.assertGreaterEqual(lines, 13)  # nodes, topic, rate and stamps of each
+        with Sender(self.hand, topic="/a/left"), Sender(self.hand, topic="/a/right"):
+            _, wrong, _ = ask()
+        self.assertIn("left:=/a/left right:=/a/right", wrong["topic"])
+
     def test_a_slow_driver(self):
         with Sender(self.hand, rate=8.0):
             self.assert_wrong("rate", "at least 20 Hz")
@@ -138,7 +149,7 @@ class DoctorTest(unittest.TestCase):
         self.assertIn("nobody publishes /clock", wrong["clock"])
 
     def tearDown(self):
-        wait_until(lambda: not any(name in (TOPIC, "/elsewhere") for name, _ in rospy.get_published_topics()),
+        wait_until(lambda: not any(name in (TOPIC, TOPIC.replace("right", "left"), "/elsewhere", "/a/left", "/a/right") for name, _ in rospy.get_published_topics()),
                    "the sender's end")
 
 

@@ -1,8 +1,12 @@
 #!/usr/bin/env python3
 """interaction_node while it runs: objects that come and go, parameters that change, an object moved by the mouse."""
+import math
 import os
+import struct
+import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 import rospkg
@@ -44,6 +48,24 @@ class Viewer:
 
     def objects(self):
         return sum(layer == "objects" for layer, _ in self.shown)
+
+
+BALL = '<robot name="ball"><link name="ball"><collision><geometry><mesh filename="file://%s"/></geometry></collision></link></robot>'
+
+
+def write_ball(path, rows, columns, radius=0.04):
+    def point(row, column):
+        up, turn = math.pi * row / rows, 2.0 * math.pi * (column % columns) / columns
+        return radius * math.sin(up) * math.cos(turn), radius * math.sin(up) * math.sin(turn), radius * math.cos(up)
+    triangles = []
+    for row in range(rows):
+        for column in range(columns):
+            a, b, c, d = point(row, column), point(row + 1, column), point(row + 1, column + 1), point(row, column + 1)
+            triangles += [(a, b, c)] * (row < rows - 1) + [(a, c, d)] * (row > 0)
+    with open(path, "wb") as stream:
+        stream.write(bytes(80) + struct.pack("<I", len(triangles)))
+        for corners in triangles:
+            stream.write(struct.pack("<12fH", 0, 0, 0, *(number for corner in corners for number in corner), 0))
 
 
 class LiveChangesTest(unittest.TestCase):
@@ -109,6 +131,27 @@ class LiveChangesTest(unittest.TestCase):
         self.assertNotIn("box", self.objects)
         wait_until(lambda: self.viewer.objects() == 1, "its marker gone")
 
+    def test_hands_do_not_wait_while_a_large_mesh_is_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = os.path.join(folder, "ball.stl")
+            write_ball(mesh, 160, 303)
+            answers = []
+            request = SpawnUrdfRequest(urdf=BALL % mesh)
+            request.pose.position.y, request.pose.position.z = 0.3, 0.3
+            caller = threading.Thread(target=lambda: answers.append(self.spawn_urdf(request)))
+            caller.start()
+            answered = 0
+            while not answers:
+                self.hands.publish(frame(self.clock.next_stamp(PERIOD), hand(-0.3)))
+                self.clock.keep_up()
+                answered += 1
+            caller.join()
+            self.assertTrue(answers[0].success, answers[0].message)
+            self.clock.go_on(INSTANT)
+            self.assertIn("ball", self.objects)
+            # Reading it takes a third of a second or longer, so that a server that waits answers one frame, or two.
+            self.assertGreater(answered, 5)
+
     def test_with_joints_a_urdf_comes_and_goes_and_the_world_is_saved_as_it_is(self):
         with open(os.path.join(rospkg.RosPack().get_path("mr_hand_interaction"), "config/scenes/tongs.urdf")) as urdf:
             request = SpawnUrdfRequest(name="my", urdf=urdf.read(), joints="{tongs_hinge: {start: 0.3}}")
@@ -167,6 +210,28 @@ class LiveChangesTest(unittest.TestCase):
             self.assertIn(name, answer.message)
             self.assertNotIn("\n", answer.message)
         self.assertTrue(self.set("material/static_friction", "0.8").success)
+
+    def test_several_parameters_change_at_once_or_not_at_all(self):
+        def run(*words):
+            done = subprocess.run(["rosrun", "mr_hand_interaction", "set", "--node", "/interaction_node"] + list(words), timeout=60,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+            return done.returncode, done.stdout
+        status, said = run("material/static_friction", "0.2")
+        self.assertEqual(status, 1)  # the dynamic friction is 0.6
+        self.assertIn("both set at once", said)
+        friction = ("material/static_friction", "0.2", "material/dynamic_friction", "0.1")
+        status, said = run(*friction, "step", "-1")
+        self.assertEqual(status, 1)
+        self.assertIn("step", said)
+        self.assertEqual(self.set("material/dynamic_friction", "0.6").message, "material/dynamic_friction is 0.6")
+        self.assertEqual(run(*friction),
+                         (0, "material/static_friction is 0.2, material/dynamic_friction is 0.1\n"))
+        self.assertEqual(run("gravity", "[0, 0, -1.5]", "filter/type", "none")[0], 0)
+        for words in (("step",), ("step", "0.001", "filter/type"), ("step", "0.001", "step", "0.002"), ("step", "[")):
+            status, said = run(*words)
+            self.assertEqual((status, said.count("\n")), (2, 1), said)
+        self.assertEqual(run("material/static_friction", "0.8", "material/dynamic_friction", "0.6", "filter/type",
+                             "constant_velocity", "gravity", "[0, 0, 0]")[0], 0)
 
     def test_dynamic_reconfigure_changes_what_flies_without_a_jump(self):
         client = Client("interaction_node/tune", timeout=30.0)

@@ -2,9 +2,11 @@
 """record.launch and playback.launch: what was recorded comes again when it is played, also when it loops."""
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rosbag
@@ -15,9 +17,12 @@ from rosgraph_msgs.msg import Clock
 
 from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, os.pardir, "scripts")]
+import screenshot  # noqa: E402
 from launching import Launch  # noqa: E402
 from waiting import wait_until  # noqa: E402
+from watch_demo import Demo  # noqa: E402
 
 DEVICE = "/leap_motion/leap_device"
 MOUNT = "0.01 0 0 0.7071067811865476 0 0 0.7071067811865476"  # not the default: the bag's own must serve
@@ -109,6 +114,20 @@ class PlaybackTest(unittest.TestCase):
         self.clear()
         return Launch("playback.launch", "bag:=" + self.bag, "scene:=cube", "rviz:=false", *arguments)
 
+    def moment(self, name):
+        """Whether scripts/screenshot stops there; else the line why not."""
+        options = screenshot.parse(["--motion=grasp_cube", "--bag=" + self.bag, "--moment=" + name, "--size=8x5", "--output=none",
+                                    "--time-limit=600"])  # far beyond the bag's end
+        with self.play():
+            try:
+                return screenshot.stop_at_moment(Demo(), options, time.monotonic() + options.time_limit) is not None
+            except screenshot.Missed as missed:
+                return str(missed)
+
+    def test_a_screenshot_knows_what_flew_off_and_does_not_wait_beyond_the_bags_end(self):
+        self.assertIs(self.moment("done"), True)
+        self.assertIn("was over", self.moment("grasp"))  # it is only nudged
+
     def difference(self):
         """What is not as it was recorded; empty: nothing."""
         recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/objects")
@@ -148,6 +167,19 @@ class PlaybackTest(unittest.TestCase):
         self.assertEqual([line for line in told.splitlines() if missing in line], [missing + ": there is no such bag"], told)
         self.assertNotIn("Error opening", told)
         self.assertEqual(told.count("process has died"), 1, told)
+
+    def test_what_is_said_while_a_bag_is_played_stays_to_be_read(self):
+        """rosbag writes its time over the same line again and again."""
+        launch = subprocess.Popen(["roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + self.bag, "rviz:=false"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.clear()
+        try:
+            wait_until(lambda: InteractionEvent.HAND_LOST in self.kinds, "the end of the run")
+        finally:
+            launch.send_signal(signal.SIGINT)
+            told = launch.communicate(timeout=120)[0]
+        self.assertNotIn("Bag Time", told)
+        self.assertNotIn("\r", told)
 
     def test_a_looping_bag_begins_anew_each_time(self):
         with self.play("loop:=true", "rate:=2"):

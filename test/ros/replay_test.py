@@ -142,6 +142,25 @@ class ReplayTest(unittest.TestCase):
         summary = self.check_it_is_the_live_run(self.bag)
         self.assertIn("GRASP_END", summary["events"])
         self.check_it_is_explained_with_pictures()
+        self.check_a_what_if_is_explained_and_nothing_else_in_its_folder_changes()
+
+    def check_a_what_if_is_explained_and_nothing_else_in_its_folder_changes(self):
+        """Not the recorded run, which the pictures must not bring back either."""
+        def contents(folder):
+            files = {}
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), "rb") as file:
+                    files[name] = file.read()
+            return files
+        _, _, output = self.replay(self.bag, "--set", "material/static_friction=0.1", "--set", "material/dynamic_friction=0.1")
+        before = contents(output)
+        subprocess.run([os.path.join(self.package(), "scripts", "explain"), output], stdout=subprocess.DEVNULL, check=True,
+                       timeout=RUN)
+        after = contents(output)
+        told = json.loads(after.pop("explain.json").decode())
+        del after["explain.html"]
+        self.assertEqual(after, before)
+        self.assertIn("material/dynamic_friction=0.1 instead of 0.6", "\n".join(told["facts"]))
 
     def check_it_is_explained_with_pictures(self):
         output = os.path.join(self.folder, "explained")
@@ -169,6 +188,7 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_recorder()
                 self.wait_for_inputs()
                 self.call("set", SetParameter, "material/static_friction", "1.1")
+                self.call("set", SetParameter, "grasp/cube", "free")
                 Client("interaction_node/tune", timeout=30.0).update_configuration(
                     {"filter_window": 5, "contact_model": "seed", "gravity_z": -0.1})
                 self.wait_for_inputs()
@@ -188,7 +208,7 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_inputs(100)
         live = self.check_it_is_the_live_run(self.bag)["live_run"]
         said = "\n".join(live["changes"])
-        for what in ("material/static_friction=1.1", "contact_model=seed", "gravity", "spawn 'box'", "spawn 'of_mesh'",
+        for what in ("material/static_friction=1.1", "grasp/cube=free", "contact_model=seed", "gravity", "spawn 'box'", "spawn 'of_mesh'",
                      "pause", "go on", "delete 'box'", "reset"):
             self.assertIn(what, said)
         summary, _, _ = self.replay(self.bag, "--set", "material/dynamic_friction=0.3")

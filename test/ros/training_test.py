@@ -328,6 +328,20 @@ class TrainingTest(unittest.TestCase):
             self.assertEqual(refused.returncode, 1)
             rospy.delete_param("/other")
 
+    def test_a_task_that_no_operator_can_do_is_refused_before_there_is_a_folder(self):
+        with open(os.path.join(self.parent, "crate.urdf"), "w") as file:
+            file.write("<robot name='crate'><link name='crate'><collision><geometry><box size='0.3 0.2 0.25'/></geometry>"
+                       "</collision></link></robot>")
+        task = os.path.join(self.parent, "crates.yaml")
+        with open(task, "w") as file:
+            file.write("name: crates\ngravity: [0, 0, 0]\nobjects:\n  - {name: crate, file: crate.urdf, position: [0, 0, 0.3]}\n"
+                       "goals:\n  - pick: {distance: 0.05}\n")
+        refused = self.node(self.folder, "_operator:=true", "_task:=" + task)
+        self.assertIn(b"object 'crate' is 0.2 m wide", refused.communicate(timeout=120)[0])
+        self.assertEqual(refused.returncode, 1)
+        self.assertFalse(os.path.exists(self.folder))
+        rospy.delete_param("/other")
+
     def test_a_folder_that_is_removed_while_the_session_runs_ends_the_node_with_one_line(self):
         with self.training("record:=false", "auto_next:=-1"):
             self.wait_for(TrainingStatus.READY)

@@ -4,6 +4,7 @@ import asyncio
 import csv
 import glob
 import json
+import math
 import os
 import signal
 import socket
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import urllib.request
 
@@ -25,11 +27,12 @@ from geometry_msgs.msg import Point, Pose, PoseArray
 from sensor_msgs.msg import PointCloud
 from tf2_msgs.msg import TFMessage
 
-from mr_hand_interaction.msg import InteractionEvent, ObjectStateArray
+from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArray
 from mr_hand_interaction.srv import DeleteObject, SpawnObject, SpawnObjectRequest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web")]
+import doors  # noqa: E402
 import emulated_headset  # noqa: E402
 from launching import Launch  # noqa: E402
 from tracker_hands import joints, program, recording  # noqa: E402
@@ -268,6 +271,37 @@ class WebTest(unittest.TestCase):
                 seen = max(seen, viewer.place("cube")[2])
                 return seen > highest - 0.002
             wait_until(was_carried, "the cube carried to %.3f m" % highest)
+
+    def test_two_people_have_their_hands_in_one_scene(self):
+        together = []  # frames with two hands
+
+        def take(frame):
+            if len(frame.hands) == 2:
+                together.append(frame)
+        self.addCleanup(rospy.Subscriber("hand_frame", HandFrame, take, queue_size=100).unregister)
+        row = next(row for row in recording(self.folder, RATE) if row["palm_x"])
+        points = [(x, -z, y, 0.008) for x, y, z in joints(row, 25)]
+        numbers = 100 * [math.nan] + [number for point in points for number in point]
+
+        async def be_there(place):
+            async with aiohttp.ClientSession() as session:
+                origin = "http://127.0.0.1:%d" % self.port
+                async with session.ws_connect("%s/%s/socket" % (origin, TOKEN), origin=origin, max_msg_size=0) as door:
+                    await doors.put_hands_in(door, place)
+                    end = time.monotonic() + 20.0
+                    while time.monotonic() < end and not together:
+                        await door.send_bytes(struct.pack("<d200f50B", 1e3 * time.monotonic(), *numbers, *(25 * [0] + 25 * [2])))
+                        await asyncio.sleep(1.0 / 60)
+
+        async def two():
+            await asyncio.gather(be_there([0, 0, 0, 0, 0, 0, 1]), be_there([0.5, 0, 0, 0, 0, 0, 1]))
+        with self.launch("people:=2", "scene:=cube"), Viewer(self.port) as viewer:
+            wait_until(lambda: viewer.place("cube"), "the scene")
+            asyncio.run(two())
+            self.assertTrue(together, "two hands in one frame")
+            first, second = sorted(together[0].hands, key=lambda hand: hand.palm.position.x)
+            self.assertNotEqual(first.id, second.id)
+            self.assertAlmostEqual(second.palm.position.x - first.palm.position.x, 0.5, delta=1e-3)
 
     def test_https_makes_its_certificate_at_the_first_start(self):
         home = os.path.join(self.folder, "ros")

@@ -185,7 +185,7 @@ class NoisyFinger {
   bool sways_;
 };
 
-// docs/filters.md has the same of real hands.
+// docs/pipeline.md has the same of real hands.
 TEST(DefaultFilter, has_at_most_half_the_lag_of_F_3_and_no_more_jitter) {
   const FilterConfiguration shipped;
   EXPECT_LE(NoisyFinger(false).through(shipped).rms, NoisyFinger(false).through(kWindow).rms);
@@ -300,7 +300,7 @@ TEST(HandFilters, one_that_is_not_known_is_refused_by_name_before_a_hand_comes) 
 
 // What cannot ask the registry: what people read, and Tune.cfg, which reads default.yaml.
 TEST(HandFilters, are_told_with_their_numbers_where_people_look) {
-  for (const char* file : {"config/default.yaml", "docs/filters.md"}) {
+  for (const char* file : {"config/default.yaml", "docs/pipeline.md"}) {
     std::ostringstream stream;
     stream << std::ifstream(file).rdbuf();
     const std::string text = stream.str();

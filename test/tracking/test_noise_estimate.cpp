@@ -311,7 +311,7 @@ double unrest(const FilterConfiguration& filter) {
   return std::sqrt(squares);
 }
 
-// docs/filters.md: up to 1 mm nothing is made of it, what is beyond counts twice.
+// docs/pipeline.md: up to 1 mm nothing is made of it, what is beyond counts twice.
 TEST(FilterNoise, is_the_usual_up_to_a_millimetre_and_beyond_it_twice_what_is_seen) {
   const auto of = [](double rms) {
     SeenNoise seen;

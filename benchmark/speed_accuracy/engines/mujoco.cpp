@@ -151,8 +151,12 @@ mjModel* load(const std::string& text) {
   mju_user_warning = [](const char*) {};
   auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
+#if mjVERSION_HEADER < 300
   mj_makeEmptyFileVFS(files.get(), "world.xml", static_cast<int>(text.size()));
   std::memcpy(files->filedata[mj_findFileVFS(files.get(), "world.xml")], text.data(), text.size());
+#else
+  mj_addBufferVFS(files.get(), "world.xml", text.data(), static_cast<int>(text.size()));
+#endif
   char error[500] = "";
   mjModel* model = mj_loadXML("world.xml", files.get(), error, sizeof(error));
   mj_deleteVFS(files.get());

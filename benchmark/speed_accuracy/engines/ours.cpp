@@ -9,10 +9,12 @@
 namespace mrhi::benchmark {
 namespace {
 
-// Every contact model as it comes, and `implicit` with stiffer fingers. Measured is Simulation::step(). The
-// broad phase is done once per frame, in begin(), together with following the hand: "with begin" measures
-// both, as peers do theirs within a step. "whole frame" is what an application pays: also contacts and events
-// are reported and the hand is rendered.
+// Every contact model with the paper's hand, which no load stops, as the peers' hands and the closed forms
+// have it; `implicit` also with stiffer fingers, and with the hand as it ships: its strength, mass and pads.
+// No filter, as the hand's poses are given. Measured is Simulation::step(). The broad phase is done once per
+// frame, in begin(), together with following the hand: "with begin" measures both, as peers do theirs within
+// a step. "whole frame" is what an application pays: also contacts and events are reported and the hand is
+// rendered.
 enum class Measured { step, begin_and_step, whole_frame };
 
 struct Setting {
@@ -20,15 +22,18 @@ struct Setting {
   ContactModelKind model;
   double stiffness;  // [N/m], 0: the model's own
   Measured measured;
+  bool shipped_hand = false;
 };
 
-constexpr std::array<Setting, 11> kSettings{{
+constexpr std::array<Setting, 13> kSettings{{
     {"implicit", ContactModelKind::implicit, 0.0, Measured::step},
     {"implicit; stiffness 20000", ContactModelKind::implicit, 20000.0, Measured::step},
     {"implicit; stiffness 200000", ContactModelKind::implicit, 200000.0, Measured::step},
     {"implicit; stiffness 2000000", ContactModelKind::implicit, 2000000.0, Measured::step},
     {"implicit; with begin", ContactModelKind::implicit, 0.0, Measured::begin_and_step},
     {"implicit; whole frame", ContactModelKind::implicit, 0.0, Measured::whole_frame},
+    {"implicit; shipped hand", ContactModelKind::implicit, 0.0, Measured::step, true},
+    {"implicit; shipped hand; whole frame", ContactModelKind::implicit, 0.0, Measured::whole_frame, true},
     {"seed", ContactModelKind::seed, 0.0, Measured::step},
     {"penetration", ContactModelKind::penetration, 0.0, Measured::step},
     {"impulse", ContactModelKind::impulse, 0.0, Measured::step},
@@ -76,7 +81,7 @@ mrhi::Scene scene_of(const World& world, const Configuration& configuration) {
 Configuration configuration_of(const Setting& setting, const World& world, double step) {
   Configuration configuration;
   configuration.contact.sleep = world.sleep;
-  configuration.contact.hand = HandStrength{};  // as the peers' hands and the closed forms have it
+  if (!setting.shipped_hand) configuration.contact.hand = HandStrength{};
   configuration.contact_model = setting.model;
   configuration.step = step;
   configuration.filter.type = FilterKind::none;

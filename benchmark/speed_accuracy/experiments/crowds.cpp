@@ -28,16 +28,17 @@ int edge_of(double count) {
   return std::max(1, static_cast<int>(std::lround(std::cbrt(count))));
 }
 
-/// What every crowd has: cubes on a floor, and how far one gets below it.
+/// What every crowd has: equal boxes on a floor, and how far one gets below it.
 class Crowd : public Experiment {
  public:
-  Crowd(int count, double edge, double seconds) : count_(count), edge_(edge), seconds_(seconds) {}
+  Crowd(int count, double edge, double seconds) : Crowd(count, Vector3::Constant(edge), seconds) {}
+  Crowd(int count, const Vector3& size, double seconds)
+      : count_(count), size_(size), edge_(size.minCoeff()), seconds_(seconds) {}
   double duration() const override { return seconds_; }
   World world(int) const override {
     World world;
     world.gravity = Vector3(0, 0, -kGravity);
-    for (int i = 0; i < count_; ++i)
-      world.bodies.push_back(box(Vector3::Constant(edge_), kDensity * edge_ * edge_ * edge_, start(i)));
+    for (int i = 0; i < count_; ++i) world.bodies.push_back(box(size_, kDensity * size_.prod(), start(i)));
     world.bodies.push_back(floor_slab());
     return world;
   }
@@ -45,7 +46,7 @@ class Crowd : public Experiment {
     for (int i = 0; i < count_; ++i) {
       const Motion motion = engine.motion(static_cast<std::size_t>(i));
       const Vector3 up = motion.pose.orientation.conjugate() * Vector3::UnitZ();
-      const double deep = 0.5 * edge_ * up.lpNorm<1>() - motion.pose.position.z();
+      const double deep = 0.5 * up.cwiseAbs().dot(size_) - motion.pose.position.z();
       lost_ = lost_ || !(deep < edge_) || !(motion.pose.position.norm() < kFar);
       deepest_ = std::max(deepest_, deep);
       look(i, t, motion);
@@ -59,7 +60,8 @@ class Crowd : public Experiment {
   virtual void look(int /*i*/, double /*t*/, const Motion&) {}
 
   int count_;
-  double edge_, seconds_;
+  Vector3 size_;
+  double edge_, seconds_;  // edge: the smallest
   bool lost_ = false;
 
  private:
@@ -118,10 +120,10 @@ class Push final : public Crowd {
   }
 };
 
-/// Cubes whose faces lie on each other, 20 um apart sideways: none moves. None may sleep.
+/// Cubes whose faces lie on each other, with a gap sideways: none moves. None may sleep.
 class Block final : public Crowd {
  public:
-  explicit Block(int count) : Crowd(count, 0.04, count > 500 ? 0.1 : 0.5) {}
+  Block(int count, double gap) : Crowd(count, 0.04, count > 500 ? 0.1 : 0.5), gap_(gap) {}
   World world(int trial) const override {
     World world = Crowd::world(trial);
     world.sleep = false;
@@ -131,13 +133,30 @@ class Block final : public Crowd {
 
  private:
   Pose start(int i) const override {
-    const Vector3 place = in_square(i, edge_of(count_), edge_).cwiseProduct(Vector3(1.0005, 1.0005, 1.0));
+    const double wider = 1.0 + gap_ / edge_;
+    const Vector3 place = in_square(i, edge_of(count_), edge_).cwiseProduct(Vector3(wider, wider, 1.0));
     return {place + Vector3(0, 0, 0.5 * edge_), Quaternion::Identity()};
   }
   void look(int i, double, const Motion& motion) override {
     moved_ = std::max(moved_, (motion.pose.position - start(i).position).norm());
   }
+  double gap_;
   double moved_ = 0.0;
+};
+
+/// A wall in stretcher bond, out of plumb by more than it can stand: it falls over.
+class Wall final : public Crowd {
+ public:
+  Wall() : Crowd(kRows * kBricks, Vector3(0.08, 0.04, 0.03), 3.0) {}
+
+ private:
+  static constexpr int kRows = 8, kBricks = 6;
+  Pose start(int i) const override {
+    const int row = i / kBricks;
+    const double along = (i % kBricks - 0.5 * (kBricks - 1) + 0.5 * (row % 2)) * size_.x();
+    const Quaternion lean(Eigen::AngleAxisd(-0.25, Vector3::UnitX()));  // about its lower edge
+    return {lean * Vector3(along, -0.5 * size_.y(), (row + 0.5) * size_.z()), lean};
+  }
 };
 
 }  // namespace
@@ -157,9 +176,14 @@ void add_crowd_scenes(std::vector<ScenePlan>& scenes) {
   add("crowd_heap_12", true, heap(12, 0.016));
   add("crowd_heap_50", true, heap(50, 0.04));
   add("crowd_push_50", true, [](bool) { return std::make_unique<Push>(50); });
+  const auto block = [](int count, double gap) {
+    return [count, gap](bool) { return std::make_unique<Block>(count, gap); };
+  };
   for (const int count : {50, 200, 1000})
-    add("crowd_block_" + std::to_string(count), true,
-        [count](bool) { return std::make_unique<Block>(count); });
+    add("crowd_block_" + std::to_string(count), true, block(count, 2e-5));
+  add("crowd_close_200", true, block(200, 5e-6));
+  for (const int count : {50, 200}) add("crowd_flush_" + std::to_string(count), true, block(count, 0.0));
+  add("crowd_wall_48", true, [](bool) { return std::make_unique<Wall>(); });
 }
 
 }  // namespace mrhi::benchmark

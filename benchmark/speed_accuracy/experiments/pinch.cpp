@@ -11,17 +11,17 @@
 namespace mrhi::benchmark {
 namespace {
 
-constexpr double kSettled = 0.5;      // [s]
-constexpr double kRamp = 0.5;         // over which the motion swells [s]
-constexpr double kLost = 0.03;        // [m]
-constexpr double kFrameRate = 120.0;  // of the noisy tracker [Hz]
+constexpr double kSettled = 0.5;  // [s]
+constexpr double kRamp = 0.5;     // over which the motion swells [s]
+constexpr double kLost = 0.03;    // [m]
 constexpr double kDegrees = M_PI / 180.0;
 
 struct Motion3 {
   double amplitude, frequency;  // [m], [Hz]
   bool noisy;
   int further_cubes;
-  int squares = 0;  // along an edge of the cube's faces, each of two triangles; 0: no mesh, a box
+  int squares = 0;            // along an edge of the cube's faces, each of two triangles; 0: no mesh, a box
+  double frame_rate = 120.0;  // of the noisy tracker [Hz]
 };
 
 /// The same body by its surface's triangles, 12 squares^2 of them.
@@ -55,7 +55,7 @@ class Noise {
 class Pinch final : public Experiment {
  public:
   Pinch(const Motion3& motion, double seconds) : motion_(motion), seconds_(kSettled + seconds) {
-    const auto frames = static_cast<std::size_t>(seconds_ * kFrameRate) + 2;
+    const auto frames = static_cast<std::size_t>(seconds_ * motion_.frame_rate) + 2;
     for (unsigned i = 0; i <= PinchHand::kParts; ++i)
       noise_.emplace_back(7 + i, frames, i == 0 ? 3e-4 : 1.5e-4);
   }
@@ -105,13 +105,13 @@ class Pinch final : public Experiment {
   }
   Pose exact(int finger, double t) const { return hand_.finger(finger, t, sway(t)); }
   Pose sample(int finger, std::size_t frame) const {
-    Pose pose = exact(finger, static_cast<double>(frame) / kFrameRate);
+    Pose pose = exact(finger, static_cast<double>(frame) / motion_.frame_rate);
     pose.position += noise_[0][frame] + noise_[static_cast<std::size_t>(finger) + 1][frame];
     return pose;
   }
   Pose noisy(int finger, double t) const {
-    const auto frame = static_cast<std::size_t>(t * kFrameRate);
-    const double part = t * kFrameRate - static_cast<double>(frame);
+    const auto frame = static_cast<std::size_t>(t * motion_.frame_rate);
+    const double part = t * motion_.frame_rate - static_cast<double>(frame);
     Pose pose = sample(finger, frame);
     pose.position += part * (sample(finger, frame + 1).position - pose.position);
     return pose;
@@ -175,6 +175,7 @@ void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   add("pinch_swing", {0.1, 0.5, false, 0});
   add("pinch_shake", {0.05, 3.0, false, 0});
   add("pinch_noisy", {0.1, 0.5, true, 0});
+  add("pinch_noisy_1khz", {0.1, 0.5, true, 0, 0, 1000.0});
   add("pinch_swing_19_more", {0.1, 0.5, false, 19});
   for (const auto& [name, squares] : {std::pair{"pinch_swing_mesh_972", 9}, {"pinch_swing_mesh_10092", 29}}) {
     add(name, {0.1, 0.5, false, 0, squares});

@@ -1,5 +1,6 @@
-// A recorded hand closes on an object: "recording" is told from our own converged solution, "recording_self"
-// from each engine's own solution at a small step.
+// A tracked hand closes on an object: "recording" is told from our own converged solution, "recording_self"
+// from each engine's own solution at a small step. Where there is no recording a scripted hand with a
+// tracker's noise and rate stands in, and the scenes are "scripted_hand" and "scripted_hand_self".
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include "../run.h"
 #include "configured.h"
 #include "mr_hand_interaction/replay/recording_csv.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi::benchmark {
@@ -28,10 +30,11 @@ std::string recording_file() {
 /// The capsules of a recorded hand over time, each a rigid body of its mean length.
 class RecordedHand {
  public:
+  /// `file` empty: the scripted hand.
   explicit RecordedHand(const std::string& file) {
     const Pose mount{Vector3::Zero(), Quaternion(Eigen::AngleAxisd(0.5 * M_PI, Vector3::UnitX()))};
     std::vector<std::string> defects;
-    for (const JointsFrame& joints : read_recording_csv(file)) {
+    for (const JointsFrame& joints : file.empty() ? record_motion(scripted()) : read_recording_csv(file)) {
       const auto frame = complete_frame(joints, mount, defects);
       if (!frame || frame->hands.empty()) continue;
       times_.push_back(to_seconds(frame->stamp));
@@ -43,6 +46,11 @@ class RecordedHand {
       if (hands_.front().has(c)) used_.push_back(static_cast<std::size_t>(c));
   }
 
+  static SyntheticHandOptions scripted() {
+    SyntheticHandOptions options;
+    options.motion = "pinch_long";
+    return options;
+  }
   double seconds() const { return times_.back(); }
   std::size_t parts() const { return used_.size(); }
 
@@ -155,9 +163,9 @@ void add_recording_scenes(std::vector<ScenePlan>& scenes) {
   const std::string file = recording_file();
   const bool there = std::ifstream(file).good();
   const auto shared = std::make_shared<Shared>();
-  const auto prepare = [shared, file](const EngineMaker& ours) {
+  const auto prepare = [shared, file, there](const EngineMaker& ours) {
     if (shared->hand) return;
-    shared->hand = std::make_unique<RecordedHand>(file);
+    shared->hand = std::make_unique<RecordedHand>(there ? file : "");
     Recording run(*shared->hand, {}, 0.0);
     run_experiment(ours, "implicit", run, kReferenceStep, 60.0, [] {});
     shared->reference = run.track();
@@ -167,13 +175,8 @@ void add_recording_scenes(std::vector<ScenePlan>& scenes) {
       return std::make_unique<Recording>(*shared->hand, self ? Track() : shared->reference,
                                          self ? (quick ? kQuickOwnReferenceStep : kOwnReferenceStep) : 0.0);
     };
-    scenes.push_back({self ? "recording_self" : "recording",
-                      "recording",
-                      {},
-                      make,
-                      prepare,
-                      false,
-                      there ? "" : "no file " + file + "; set MR_HAND_RECORDINGS to the recordings' folder"});
+    const std::string name = there ? "recording" : "scripted_hand";
+    scenes.push_back({self ? name + "_self" : name, "recording", {}, make, prepare});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include "../contender.h"
@@ -149,7 +150,12 @@ TEST(SpeedAccuracy, a_run_that_crashes_harms_no_other_and_is_written_as_failed) 
   write_rows(csv, "fall", kStep, contenders, measures);
   std::istringstream lines(csv.str());
   std::string failed;
-  for (std::string line; std::getline(lines, line);) failed += line.back();
+  for (std::string line; std::getline(lines, line);) {
+    for (int column = 0; column < 8; ++column) line.erase(0, line.find(',') + 1);
+    failed += line.front();
+    EXPECT_TRUE(std::regex_search(line.substr(1), std::regex("^,[0-9]+[.][0-9]+[.][0-9]+,")))
+        << "our version: " << line;
+  }
   EXPECT_EQ(failed, "0011");
 }
 
@@ -160,7 +166,9 @@ TEST(SpeedAccuracy, a_run_beyond_its_time_is_broken_off_as_too_slow) {
 TEST(SpeedAccuracy, the_csv_has_the_published_columns) {
   std::ostringstream csv;
   write_header(csv);
-  EXPECT_EQ(csv.str(), "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed\n");
+  EXPECT_EQ(csv.str(),
+            "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed,"
+            "engine_version,date\n");
 }
 
 }  // namespace

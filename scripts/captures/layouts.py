@@ -1,0 +1,252 @@
+"""The layouts of published capture sets, each read into captures: joints of hands and the pose of an object over time.
+
+Where a set holds MANO's parameters, `mano(side)` gives the model. Poses are in the set's world, with z up unless said.
+"""
+import collections
+import csv
+import glob
+import json
+import os
+import re
+
+import numpy as np
+import yaml
+from scipy.spatial.transform import Rotation
+
+from .files import CaptureError, read_npy, read_npz, read_pickle
+
+# `hands`: {side: (frames, 21, 3)} in MANO's order from palm to tip, nan where not seen; `poses`: (frames, 4, 4) of the object;
+# `mesh`: its file, `scale` its unit in metres; `ranges`: [first, end) frames that may be cut, or None for all.
+Capture = collections.namedtuple('Capture', 'name person thing times hands poses mesh scale ranges')
+Capture.__new__.__defaults__ = (1.0, None)
+SIDES = ('right', 'left')
+
+
+def _poses(rotations, places):
+    found = np.tile(np.eye(4), (len(places), 1, 1))
+    found[:, :3, :3], found[:, :3, 3] = rotations.as_matrix(), places
+    return found
+
+
+def _folders(root, pattern, of_what):
+    found = sorted(glob.glob(os.path.join(glob.escape(root), pattern), recursive=True))
+    if not found:
+        raise CaptureError("%s: no %s; allowed: %s" % (root, pattern, of_what))
+    return found
+
+
+def arctic(root, mano, models):
+    """raw_seqs/PERSON/NAME.object.npy and .mano.npy, meta/object_vtemplates/OBJECT/mesh.obj; millimetres; 30 Hz. The object is
+    rigid where its joint is closed."""
+    for path in _folders(root, '**/*.object.npy', 'the folder that raw_seqs is in'):
+        moved, fitted = np.asarray(read_npy(path), float), read_npy(path.replace('.object.npy', '.mano.npy'))
+        name = os.path.basename(path)[:-len('.object.npy')]
+        hands = {}
+        for side in SIDES:
+            of = fitted[side]
+            model = mano(side)
+            hands[side] = model.joints(Rotation.from_rotvec(of['rot']), np.asarray(of['pose']) + model.mean, of['trans'],
+                                       np.ravel(of['shape']))
+        closed = np.abs(moved[:, 0]) < 0.1
+        yield Capture('%s_%s' % (os.path.basename(os.path.dirname(path)), name), os.path.basename(os.path.dirname(path)),
+                      name.split('_')[0], np.arange(len(moved)) / 30.0, hands,
+                      _poses(Rotation.from_rotvec(moved[:, 1:4]), moved[:, 4:7] / 1000.0),
+                      os.path.join(models or os.path.join(root, 'meta', 'object_vtemplates'), name.split('_')[0], 'mesh.obj'),
+                      0.001, _runs(closed))
+
+
+def _runs(flags):
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(flags, int), [0]])))
+    return list(zip(ends[::2], ends[1::2]))
+
+
+def dexycb(root, mano, models):
+    """DATE-subject-NN/TIME/meta.yml and SERIAL/labels_NNNNNN.npz (joint_3d, pose_y in a camera's frame); the world is the tag on
+    the table, by calibration/extrinsics_ID/extrinsics.yml; 30 Hz."""
+    for path in _folders(root, '*-subject-*/*/meta.yml', 'the folder that holds the subjects and calibration'):
+        folder = os.path.dirname(path)
+        with open(path, encoding='utf-8') as file:
+            meta = yaml.safe_load(file)
+        with open(os.path.join(root, 'calibration', 'extrinsics_%s' % meta['extrinsics'], 'extrinsics.yml'), encoding='utf-8') as file:
+            placed = yaml.safe_load(file)['extrinsics']
+        serial = next(name for name in sorted(os.listdir(folder)) if name in placed)
+        to_world = np.linalg.inv(_matrix(placed['apriltag'])) @ _matrix(placed[serial])
+        labels = [read_npz(label) for label in _folders(os.path.join(folder, serial), 'labels_*.npz', 'labels of each frame')]
+        joints = np.array([label['joint_3d'].reshape(21, 3) for label in labels], float)
+        joints[(joints == -1).all(axis=(1, 2))] = np.nan
+        joints = joints @ to_world[:3, :3].T + to_world[:3, 3]
+        held = int(meta['ycb_grasp_ind'])
+        poses = np.tile(np.eye(4), (len(labels), 1, 1))
+        poses[:, :3] = [label['pose_y'][held] for label in labels]
+        number = int(meta['ycb_ids'][held])
+        found = sorted(glob.glob(os.path.join(models or os.path.join(root, 'models'), '*')))
+        if number > len(found):
+            raise CaptureError('%s: object %d of models/, which has %d; allowed: the 21 models of YCB' % (path, number, len(found)))
+        thing = os.path.basename(found[number - 1])
+        yield Capture(re.sub(r'\W', '_', os.path.relpath(folder, root)), folder.split(os.sep)[-2], thing, np.arange(len(labels)) / 30.0,
+                      {meta['mano_sides'][0]: joints}, to_world @ poses, os.path.join(found[number - 1], 'textured_simple.obj'))
+
+
+def _matrix(numbers):
+    return np.vstack([np.reshape(numbers, (3, 4)), [0, 0, 0, 1]])
+
+
+def hocap(root, mano, models):
+    """subject_N/DATE_TIME/meta.yaml (or .json), poses_m.npy (2, frames, 51), poses_o.npy (objects, frames, 7; quaternion first,
+    x y z w); calibration/mano/SUBJECT/mano.yaml, models/OBJECT/cleaned_mesh_10000.obj; 30 Hz."""
+    for path in _folders(root, 'subject_*/*/meta.*', 'the folder that holds the subjects, calibration and models'):
+        folder, meta = os.path.dirname(path), _yaml(path)
+        person = folder.split(os.sep)[-2]
+        calibrated = os.path.join(root, 'calibration', 'mano', meta.get('subject_id', person), 'mano' + os.path.splitext(path)[1])
+        betas, of_hands, of_things = _yaml(calibrated)['betas'], read_npy(os.path.join(folder, 'poses_m.npy')), read_npy(
+            os.path.join(folder, 'poses_o.npy'))
+        hands = {}
+        for side, rows in zip(SIDES, of_hands):
+            if side not in meta['mano_sides']:
+                continue
+            seen = ~(rows == -1).all(axis=1)
+            model, hands[side] = mano(side), np.full((len(rows), 21, 3), np.nan)
+            hands[side][seen] = model.joints(Rotation.from_rotvec(rows[seen, :3]), model.pose(rows[seen, 3:48], mean=False),
+                                             rows[seen, 48:], betas)
+        for thing, rows in zip(meta['object_ids'], of_things):
+            yield Capture('%s_%s_%s' % (person, os.path.basename(folder), thing), person, thing, np.arange(len(rows)) / 30.0, hands,
+                          _poses(Rotation.from_quat(rows[:, :4]), rows[:, 4:]),
+                          os.path.join(models or os.path.join(root, 'models'), thing, 'cleaned_mesh_10000.obj'))
+
+
+def _yaml(path):
+    with open(path, encoding='utf-8') as file:
+        return yaml.safe_load(file)  # JSON is YAML
+
+
+def hot3d(root, mano, models):
+    """SEQUENCE/mano_hand_pose_trajectory.jsonl (wrist_xform, pose of 15 components, betas; 0: left, 1: right) and
+    dynamic_objects.csv; MODELS/UID.glb."""
+    for path in _folders(root, '*/mano_hand_pose_trajectory.jsonl', 'the folder of the sequences'):
+        folder = os.path.dirname(path)
+        with open(path, encoding='utf-8') as file:
+            lines = [json.loads(line) for line in file if line.strip()]
+        stamps = [line['timestamp_ns'] for line in lines]
+        of_hand, hands = [line['hand_poses'] for line in lines], {}
+        for side, key in zip(SIDES, '10'):
+            seen = [i for i, hand in enumerate(of_hand) if key in hand]
+            if not seen:
+                continue
+            some = [of_hand[i][key] for i in seen]
+            turn = Rotation.from_quat(np.array([hand['wrist_xform']['q_wxyz'] for hand in some], float)[:, [1, 2, 3, 0]])
+            model, hands[side] = mano(side), np.full((len(lines), 21, 3), np.nan)
+            hands[side][seen] = model.joints(turn, model.pose([hand.get('pose', hand.get('joint_angles')) for hand in some], mean=True),
+                                             [hand['wrist_xform']['t_xyz'] for hand in some],
+                                             next(hand['betas'] for hand in some if 'betas' in hand))
+        with open(os.path.join(folder, 'dynamic_objects.csv'), newline='', encoding='utf-8') as file:
+            rows = list(csv.DictReader(file))
+        for thing in sorted({row['object_uid'] for row in rows}):
+            at = {int(row['timestamp[ns]']): [float(row[key]) for key in (
+                'q_wo_x', 'q_wo_y', 'q_wo_z', 'q_wo_w', 't_wo_x[m]', 't_wo_y[m]', 't_wo_z[m]')] for row in rows if row['object_uid'] == thing}
+            both = [i for i, stamp in enumerate(stamps) if stamp in at]
+            values = np.array([at[stamps[i]] for i in both])
+            name = os.path.basename(folder)
+            yield Capture('%s_%s' % (name, thing), name.split('_')[0], thing, (np.array(stamps, float)[both] - stamps[both[0]]) / 1e9,
+                          {side: joints[both] for side, joints in hands.items()}, _poses(Rotation.from_quat(values[:, :4]), values[:, 4:]),
+                          os.path.join(models or os.path.join(root, 'object_models'), thing + '.glb'))
+
+
+def oakink2(root, mano, models):
+    """anno_preview/SEQUENCE.pkl: raw_mano by frame (quaternions w first), obj_transf; object_repair/align_ds/OBJECT/*; 120 Hz."""
+    for path in _folders(root, 'anno_preview/*.pkl', 'the folder that holds anno_preview'):
+        told, hands = read_pickle(path), {}
+        frames = sorted(told['mocap_frame_id_list'])
+        for side, key in zip(SIDES, ('rh', 'lh')):
+            turns = np.array([np.reshape(told['raw_mano'][f][key + '__pose_coeffs'], (16, 4)) for f in frames], float)[:, :, [1, 2, 3, 0]]
+            hands[side] = mano(side).joints(
+                Rotation.from_quat(turns[:, 0]), Rotation.from_quat(turns[:, 1:].reshape(-1, 4)),
+                np.array([np.ravel(told['raw_mano'][f][key + '__tsl']) for f in frames], float),
+                np.ravel(told['raw_mano'][frames[0]][key + '__betas']), wrist_at_translation=True)
+        name = os.path.splitext(os.path.basename(path))[0]
+        for thing in told['obj_list']:
+            folder = os.path.join(models or os.path.join(root, 'object_repair', 'align_ds'), thing)
+            mesh = [file for file in sorted(glob.glob(os.path.join(folder, '*'))) if file.endswith(('.obj', '.ply'))]
+            yield Capture('%s_%s' % (name, thing), name.split('__')[1] if '__' in name else name, thing,
+                          np.array(frames, float) / 120.0 - frames[0] / 120.0, hands,
+                          np.array([told['obj_transf'][thing][f] for f in frames], float), mesh[0] if mesh else folder + '/*.obj')
+
+
+def taco(root, mano, models):
+    """Hand_Poses/TRIPLET/SEQUENCE/{right,left}_hand.pkl and _hand_shape.pkl, Object_Poses/TRIPLET/SEQUENCE/{tool,target}_NUMBER.npy,
+    Object_Models/NUMBER_cm.obj (centimetres); 30 Hz. Persons are not told."""
+    for folder in _folders(root, 'Hand_Poses/*/*', 'the folder that holds Hand_Poses'):
+        hands = {}
+        for side in SIDES:
+            told = read_pickle(os.path.join(folder, side + '_hand.pkl'))
+            rows = [told[key] for key in sorted(told)]
+            pose = np.array([np.ravel(row['hand_pose']) for row in rows], float)
+            hands[side] = mano(side).joints(
+                Rotation.from_rotvec(pose[:, :3]), pose[:, 3:48], np.array([np.ravel(row['hand_trans']) for row in rows], float),
+                np.ravel(read_pickle(os.path.join(folder, side + '_hand_shape.pkl'))['hand_shape']), wrist_at_translation=True)
+        triplet, sequence = folder.split(os.sep)[-2:]
+        for path in _folders(os.path.join(root, 'Object_Poses', glob.escape(triplet), sequence), '*.npy', 'poses of tool and target'):
+            number, poses = re.sub(r'.*_|\.npy$', '', os.path.basename(path)), np.asarray(read_npy(path), float)
+            count = min(len(poses), len(hands['right']))
+            yield Capture(re.sub(r'\W+', '_', '%s_%s_%s' % (triplet, sequence, number)), '', number, np.arange(count) / 30.0,
+                          {side: joints[:count] for side, joints in hands.items()}, poses[:count],
+                          os.path.join(models or os.path.join(root, 'Object_Models'), number + '_cm.obj'), 0.01)
+
+
+def grab(root, mano, models):
+    """grab/sN/NAME.npz: rhand, lhand (24 components, about the flat hand) and object (axis-angle of the transposed rotation);
+    vtemp and object_mesh are paths below ROOT; 120 Hz."""
+    for path in _folders(root, 'grab/s*/*.npz', 'the folder that holds grab and tools'):
+        told, hands = read_npz(path), {}
+        for side, key in zip(SIDES, ('rhand', 'lhand')):
+            of, model = told[key]['params'], mano(side)
+            template = _points_of(root, told[key]['vtemp'])
+            hands[side] = model.joints(Rotation.from_rotvec(of['global_orient']), model.pose(of['hand_pose'], mean=False), of['transl'],
+                                       template=template)
+        of, rate = told['object']['params'], float(told.get('framerate', 120.0))
+        person, name = path.split(os.sep)[-2], os.path.basename(path)[:-4]
+        yield Capture('%s_%s' % (person, name), person, str(told['obj_name']), np.arange(len(of['transl'])) / rate, hands,
+                      _poses(Rotation.from_rotvec(of['global_orient']).inv(), of['transl']),
+                      os.path.join(models or root, str(told['object']['object_mesh'])))
+
+
+def _points_of(root, path):
+    from .files import read_points
+    return read_points(os.path.join(root, str(path)))
+
+
+# A person's 21 joints by the names that trackers give them: MANO's and MediaPipe's, OpenXR's, Leap's in our own schema.
+FINGERS = ('thumb', 'index', 'middle', 'ring', 'little')
+NAMES = [['wrist', 'wrist_root']] + [
+    [name.replace('F', finger) for finger in ((finger, 'pinky') if finger == 'little' else (finger,)) for name in names]
+    for finger in FINGERS for names in (
+        (['F_cmc', 'F_metacarpal', 'F_j1'], ['F_mcp', 'F_proximal', 'F_j2'], ['F_ip', 'F_distal', 'F_j3'], ['F_tip', 'F_j4'])
+        if finger == 'thumb' else
+        (['F_mcp', 'F_proximal', 'F_j1'], ['F_pip', 'F_intermediate', 'F_j2'], ['F_dip', 'F_distal', 'F_j3'], ['F_tip', 'F_j4']))]
+
+
+def table(root, mano, models):
+    """NAME_hands.csv (time_s, side, JOINT_x, JOINT_y, JOINT_z of any joints named as MANO, MediaPipe, OpenXR or Leap name them; a
+    marker set has what it has) and NAME_object.csv (time_s, px, py, pz, qx, qy, qz, qw), NAME.obj, .ply or .glb."""
+    for path in _folders(root, '*_hands.csv', table.__doc__):
+        start = path[:-len('_hands.csv')]
+        with open(path, newline='', encoding='utf-8') as file:
+            rows = list(csv.DictReader(file))
+        found = [next((name for name in names if rows and name + '_x' in rows[0]), None) for names in NAMES]
+        if not any(found[4::4]):
+            raise CaptureError('%s: no column of a fingertip; allowed: %s' % (path, ', '.join(name + '_x' for name in NAMES[8])))
+        with open(start + '_object.csv', newline='', encoding='utf-8') as file:
+            placed = np.array([[float(row[key]) for key in 'time_s px py pz qx qy qz qw'.split()] for row in csv.DictReader(file)])
+        hands = {side: np.full((len(placed), 21, 3), np.nan) for side in {row['side'] for row in rows}}
+        for row in rows:
+            frame = int(np.argmin(np.abs(placed[:, 0] - float(row['time_s']))))
+            for joint, name in enumerate(found):
+                if name and row[name + '_x']:
+                    hands[row['side']][frame, joint] = [float(row['%s_%s' % (name, axis)]) for axis in 'xyz']
+        mesh = [start + ending for ending in ('.obj', '.ply', '.glb') if os.path.exists(start + ending)]
+        name = os.path.basename(start)
+        yield Capture(name, name.split('_')[0], name, placed[:, 0], hands, _poses(Rotation.from_quat(placed[:, 4:]), placed[:, 1:4]),
+                      mesh[0] if mesh else start + '.obj')
+
+
+LAYOUTS = {'arctic': arctic, 'dexycb': dexycb, 'grab': grab, 'hocap': hocap, 'hot3d': hot3d, 'oakink2': oakink2, 'table': table,
+           'taco': taco}

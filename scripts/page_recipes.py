@@ -1,0 +1,207 @@
+"""How the figures of each page are measured: programs to run, texts to make of what they write."""
+import collections
+import csv
+import io
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+
+from page_figures import PACKAGE
+
+# `time`: of one core; `sources`: what the figures depend on, files and folders; `measure`: gives ({key: text}, {engine: version}).
+Recipe = collections.namedtuple('Recipe', 'time sources measure')
+PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
+CORE = ['src/collision', 'src/response', 'src/simulation', 'src/integration', 'src/tracking', 'config/default.yaml']
+
+FILTER_SOURCES = ['src/tracking/%s' % name for name in (
+    'constant_velocity_filter.cpp', 'filter_memory.cpp', 'hand_filter.cpp', 'hand_filter.h', 'hand_track.cpp', 'noise_estimate.cpp',
+    'noise_estimate.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp', 'window_filter.cpp')]
+
+
+class MeasurementError(Exception):
+    pass
+
+
+def run(program, *arguments):
+    """Standard output of a program of the package, brought up to date by make."""
+    path = os.path.join(PACKAGE, 'scripts', program)
+    if not os.path.isfile(path):
+        _done(['make', '-C', os.path.join(PACKAGE, 'build', 'catkin'), program])
+        path = os.path.join(PROGRAMS, program)
+    return _done([path, *arguments])
+
+
+def _done(command):
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+    except OSError as error:
+        raise MeasurementError('%s: %s' % (command[0], error.strerror)) from None
+    if done.returncode != 0:
+        raise MeasurementError('%s: %s' % (' '.join(command), ' '.join(done.stderr.split())[-300:]))
+    return done.stdout
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def rows_of_file(folder, name):
+    with open(os.path.join(folder, name), encoding='utf-8') as file:
+        return rows_of(file.read())
+
+
+def table(head, rows):
+    lines = ['| ' + ' | '.join(head) + ' |', '|---' * len(head) + '|']
+    return '\n'.join(lines + ['| ' + ' | '.join(row) + ' |' for row in rows])
+
+
+def contact():
+    benefits, costs = run('ablation').split('\n\nA step of scene (a): ')
+    instructions, costs = costs.split(' instructions', 1)
+    costs = [re.match(r'\| `(\w+)` \| .*\(([-+][\d.]+ %)\) \|', line) for line in costs.split('\n')]
+    tiers = collections.OrderedDict()
+    for line in run('geometry_tiers').split('\n'):
+        found = re.match(r'(.{18}) +([-\d.]+) +([-\d.]+) +([-\d.]+) +([-\d.]+)$', line)
+        if found:
+            tiers.setdefault(found.group(1).strip(), []).append([float(x) for x in found.groups()[1:]])
+    return {
+        'refinements': benefits.strip(),
+        'instructions': table(['refinement', 'instructions of %s' % instructions], [
+            ['`%s`' % cost.group(1), cost.group(2)] for cost in costs if cost]),
+        'tiers': table(['geometry', "error from the palm's side: rms, mean, largest", 'from the back', 'time over capsules\''], [
+            [name, *['%.2f, %.2f, %.1f mm' % tuple(side[:3]) for side in sides],
+             '%.1f' % (sides[0][3] / next(some for n, some in tiers.items() if n.startswith('capsule'))[0][3])]
+            for name, sides in tiers.items()]),
+    }, {}
+
+
+FILTERS = collections.OrderedDict([
+    ('none', 'none'), ('window=3', '`window`, F = 3'), ('one_euro', '`one_euro`, beta 100, min_cutoff 2'),
+    ('default', '`constant_velocity`, default'), ('agility', 'the same, agility 12')])
+
+
+def _filter_name(row):
+    if row['default'] == '1':
+        return 'default'
+    if row['series'] == 'none' or row['setting'] == 'window=3':
+        return row['series'] if row['series'] == 'none' else 'window=3'
+    if row['series'] == 'one_euro beta=100' and re.search(r'min_cutoff=2(\D|$)', row['setting']):
+        return 'one_euro'
+    same = re.search(r'acceleration=0\.1(\D|$)', row['setting'])
+    return 'agility' if row['series'] == 'constant_velocity agility=12' and same else None
+
+
+def filters():
+    with tempfile.TemporaryDirectory() as folder:
+        run('filters', '--output', folder)
+        recorded, held = rows_of_file(folder, 'filters.csv'), rows_of_file(folder, 'filters_held.csv')
+    lines = []
+    for panel in dict.fromkeys((row['input'], row['frames_per_s']) for row in recorded):
+        of_panel = {_filter_name(row): row for row in recorded if (row['input'], row['frames_per_s']) == panel}
+        lines.append(['**%s, %s frames/s**' % panel] + [''] * 5)
+        for name, label in FILTERS.items():
+            row = {key: value for key, value in of_panel[name].items()}
+            lines.append([label, '%.3f' % float(row['jitter_mm']),
+                          '%.1f (%.1f)' % (abs(round(float(row['lag_ms']), 1)), float(row['lag_p90_ms'])),
+                          *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm', 'bone_error_mm')]])
+    of_held = {_filter_name(row): row for row in held}
+    grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
+    return {
+        'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]', 'bones [mm]'], lines),
+        'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]"], [
+            [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
+            for name, label in FILTERS.items()]),
+        'grasps': _grasps(grasps, 0.0), 'grasps_coloured': _grasps(grasps, 0.5),
+    }, {}
+
+
+def _grasps(rows, correlation):
+    rows = [row for row in rows if float(row['correlation']) == correlation and float(row['dropped']) == 0]
+    columns = list(dict.fromkeys((row['where'], row['frames_per_s']) for row in rows))
+    cells = {(row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
+    return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns], [
+        ['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
+        for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
+
+
+def study():
+    from study import calibration
+    import scipy
+    import statsmodels
+    rows = calibration.table(('3v20', '8v22', '15v15'), 300, 1)
+    return study_figures(rows), {'scipy': scipy.__version__, 'statsmodels': statsmodels.__version__}
+
+
+def study_figures(rows):
+    from study import calibration
+    return {'calibration': calibration.as_text(rows).strip()}
+
+
+MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')
+
+
+def operators():
+    """Operators 1 to 30 of seed 1 under all models that hold, at 0 g and 1 g."""
+    folder = tempfile.mkdtemp()
+    try:
+        chosen = [word for model in MODELS for word in ('--model', model)]
+        run('simulated_study', '--output', os.path.join(folder, 'study'), '--seed', '1', *chosen)
+        return operators_figures(folder, os.path.join(folder, 'study')), {}
+    finally:
+        shutil.rmtree(folder)
+
+
+PAPER = {'seed': ('51.7 ± 19.4', '0.9 ± 0.3'), 'soft_pad': ('101.6 ± 58.0', '2.2 ± 2.9')}  # its Table 1; CLAP's place
+
+
+def _table_1(comparison, pairs, trials):
+    lines = [['the paper', system, *PAPER[model], '', ''] for system, model in (('theirs', 'seed'), ('CLAP', 'soft_pad'))]
+    for gravity in ('0', '1'):
+        for model in PAPER:
+            of = {row['quantity']: row for row in comparison if (row['gravity_g'], row['condition']) == (gravity, model)}
+            drops = sum(int(float(row['drops'] or 0)) for row in trials
+                        if (row['gravity_g'], row['condition']) == (gravity, model))
+            pair = next(row for row in pairs if row['gravity_g'] == gravity and row['condition'] == 'all'
+                        and row['measure'] == 'completion_time' and {row['a'], row['b']} == set(PAPER))
+            effect = [float(pair[key]) for key in ('effect', 'low', 'high')]
+            if pair['a'] != 'seed':
+                effect = [1 / effect[0], 1 / effect[2], 1 / effect[1]]
+            lines.append([gravity + ' g', '`%s`' % model, *['%.*f ± %.*f' % (
+                digits, float(of[name]['mean']), digits, float(of[name]['sd'])) for name, digits in (
+                    ('completion_time', 1), ('manipulation_drops', 2))], '%d' % drops,
+                '%.2f (%.2f to %.2f)' % tuple(effect) if model == 'seed' else ''])
+    return table(['', 'system', 'time [s]', 'attempts', 'all drops, sum', 'time over `soft_pad` (95 % interval)'], lines)
+
+
+def operators_figures(folder, sessions):
+    run('analyse_study', sessions, '--output', os.path.join(folder, 'results'))
+    comparison, trials, pairs = (rows_of_file(os.path.join(folder, 'results'), name + '.csv')
+                                 for name in ('comparison', 'trials', 'post_hoc'))
+    lines = []
+    for gravity in ('0', '1'):
+        for model in MODELS:
+            of = {row['quantity']: row for row in comparison if (row['gravity_g'], row['condition']) == (gravity, model)}
+            some = [row for row in trials if (row['gravity_g'], row['condition']) == (gravity, model)]
+            if not some:
+                continue
+            drops = ['%d' % sum(int(float(row['drops'] or 0)) for row in some if row['object'] == name)
+                     for name in ('cube', 'flat_cuboid', 'long_cuboid')]
+            time, attempts = of['completion_time'], of['manipulation_drops']
+            lines.append([gravity + ' g', '`%s`' % model, *['%.1f ± %.1f' % (float(time['mean']), float(time[key]))
+                                                           for key in ('sd', 'ci95')],
+                          '%.2f ± %.2f' % (float(attempts['mean']), float(attempts['sd'])), *drops,
+                          '%d of %d' % (sum(row['result'] == 'completed' for row in some), len(some))])
+    return {'seed_1': table(['', '', 'time [s], mean ± sd', 'mean ± its 95 % interval', 'drops while manipulated, mean ± sd',
+                             'drops: cube', 'flat', 'long', 'completed'], lines),
+            'table_1': _table_1(comparison, pairs, trials)}
+
+
+RECIPES = {
+    'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
+    'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
+    'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
+    'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
+        'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
+}

@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""The race's charts tell our two hands apart, and name every engine's version and the day."""
+import os
+import sys
+import tempfile
+import unittest
+
+PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(PACKAGE, "benchmark"))
+import plot_speed_accuracy as plot  # noqa: E402
+
+HEAD = "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed,engine_version,date\n"
+ROWS = (("mr_hand_interaction", "implicit", 2.0, "0.1.0"), ("mr_hand_interaction", "implicit; whole frame", 7.0, "0.1.0"),
+        ("mr_hand_interaction", "implicit; shipped hand", 2.5, "0.1.0"),
+        ("mr_hand_interaction", "implicit; shipped hand; whole frame", 8.0, "0.1.0"), ("mujoco", "default", 20.0, "3.12.1"))
+
+
+class Charts(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.csv = os.path.join(holder.name, "speed_accuracy.csv")
+        with open(self.csv, "w") as file:
+            file.write(HEAD + "".join("pinch_swing,%s,%s,0.001,%g,9,0.05,mm,0,%s,2026-11-25\n" % row for row in ROWS))
+
+    def test_the_paper_s_hand_by_its_step_and_the_shipped_one_by_the_whole_frame(self):
+        curves = plot.by_curve(plot.read(self.csv))
+        self.assertEqual({name: [row.time for row in rows] for name, rows in curves.items()},
+                         {plot.OURS: [2.0], plot.SHIPPED: [8.0], "mujoco": [20.0]})
+        self.assertEqual(plot.label_of(plot.SHIPPED), "ours, shipped hand, whole frame")
+
+    def test_versions_and_day_are_in_the_footnote_and_charts_are_drawn(self):
+        self.assertEqual(plot.footnote(plot.read(self.csv)), "ours 0.1.0, MuJoCo 3.12.1. 2026-11-25")
+        self.assertEqual(plot.main(["plot", self.csv]), 0)
+        self.assertIn("summary.png", os.listdir(os.path.dirname(self.csv)))
+
+
+if __name__ == "__main__":
+    unittest.main()
