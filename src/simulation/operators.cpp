@@ -155,36 +155,42 @@ void Operators::begin_contacts(const SimulationState& state, std::vector<Contact
 // so that q acts at x + r + t p' / m. There its opposite acts on the operator, whose x' = x + h P' / M has no
 // part in its angular momentum about the origin. With that both keep their sum to rounding.
 Twist Operators::react(const ContactStep& step, int body) const {
-  const Vector3 centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
-  Twist given;  // impulse [N s] and angular impulse about the operator's centre [N m s]
-  const auto give = [&](const Vector3& impulse, const Vector3& point) {
-    given.linear -= impulse;
-    given.angular -= (point - centre).cross(impulse);
-  };
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // on objects, about the origin [N], [N m]
+  Twist impulse;                                              // likewise [N s], [N m s]
   // Where what begins to act on an object at `time` does so.
   const auto moved = [&](const Vector3& point, std::size_t object, double time) -> Vector3 {
     if (time <= 0.0 || !scene_.bodies[object].flies) return point;
     return point + time / scene_.bodies[object].mass * step.bodies[object].linear_momentum;
   };
-  const auto is_own = [&](std::size_t hand) {
-    return scene_.operators[static_cast<std::size_t>(owners_[hand])].body == body;
-  };
+  std::size_t last = scene_.bodies.size();
+  bool fixed = false;
+  double time = 0.0;
   for (const Contact& contact : step.contacts) {
     const std::size_t object = contact.key.body;
-    if (scene_.bodies[object].fixed || !is_own(contact.key.hand)) continue;
-    if (!contact.impulse.isZero(0.0))
-      give(contact.impulse, moved(contact.point, object, contact.time_of_impact));
-    if (contact.force.isZero(0.0)) continue;
-    give(step.step * contact.force, moved(contact.point, object, step.changes.mean_impact_time(object)));
-    given.angular -= step.step * contact.torque * contact.normal;
+    if (object != last) {
+      last = object;
+      fixed = scene_.bodies[object].fixed;
+      time = step.changes.mean_impact_time(object);
+    }
+    if (fixed || bodies_of_hands_[contact.key.hand] != body) continue;
+    const Vector3 point = moved(contact.point, object, time);
+    force += contact.force;
+    torque += point.cross(contact.force) + contact.torque * contact.normal;
+    if (contact.impulse.isZero(0.0)) continue;
+    impulse.linear += contact.impulse;
+    impulse.angular += moved(contact.point, object, contact.time_of_impact).cross(contact.impulse);
   }
   for (const Grip& grip : step.grips) {
-    if (!grip.active || !is_own(grip.hand)) continue;
-    give(step.step * grip.force,
-         moved(step.bodies[grip.body].pose.position, grip.body, step.changes.mean_impact_time(grip.body)));
-    given.angular -= step.step * grip.torque;
+    if (!grip.active || bodies_of_hands_[grip.hand] != body) continue;
+    const Vector3 point =
+        moved(step.bodies[grip.body].pose.position, grip.body, step.changes.mean_impact_time(grip.body));
+    force += grip.force;
+    torque += point.cross(grip.force) + grip.torque;
   }
-  return given;
+  impulse.linear += step.step * force;
+  impulse.angular += step.step * torque;
+  const Vector3& centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
+  return {-impulse.linear, centre.cross(impulse.linear) - impulse.angular};
 }
 
 void Operators::touch_fixtures(ContactStep& step, int body) {
