@@ -118,13 +118,12 @@ void observe_noise(const SampleHistory& history, SeenNoise& noise) {
   noise.variance = low_variance(noise);
 }
 
-// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. What is
-// beyond counts for more than it is: noise is seldom white, and less is seen of what is not.
+// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight on
+// what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
 double filter_noise(const SeenNoise& seen) {
   constexpr double kIgnored = 0.001;  // [m]
-  constexpr double kWeight = 2.0;
   const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);
-  return std::sqrt(kUsualNoise * kUsualNoise + kWeight * kWeight * beyond);
+  return std::sqrt(kUsualNoise * kUsualNoise + beyond);
 }
 
 }  // namespace mrhi

