@@ -51,13 +51,13 @@ def points(rows, share, low, high):
 
 
 def closings_of(rows, name):
-    chosen = [r for r in rows if r['row'] == name and r['half'] == 'all' and int(r['events'])]
+    chosen = [r for r in rows if r['row'] == name and r['object'] == 'all' and int(r['events'])]
     return points(chosen, lambda r: int(r['carried']) / int(r['events']), lambda r: float(r['carried_low']),
                   lambda r: float(r['carried_high']))
 
 
 def windows_of(rows):
-    chosen = [r for r in rows if r['windows'] == 'arctic']
+    chosen = [r for r in rows if r['windows'] == 'arctic' and r['lead'] == '1']
     return points(chosen, lambda r: float(r['within_50mm']), lambda r: float(r['within_50mm']),
                   lambda r: float(r['within_50mm']))
 

@@ -106,15 +106,16 @@ bool advance(const Window& window, std::size_t frame, Simulation& simulation) {
   return hands && simulation.advance(*hands) == Rejection::none;
 }
 
-/// The hands and what they touch as the object is let free.
-SimulationState led(const Window& window, Configuration configuration, std::size_t from) {
+/// The hands and what they touch as the object is let free. Calls `look` after each frame.
+template <typename Look>
+SimulationState led(const Window& window, Configuration configuration, std::size_t from, Look look) {
   configuration.gravity = Vector3::Zero();
   Scene scene = window.scene;
   for (Body& body : scene.bodies) body.mass *= kLed, body.inertia *= kLed;
   Simulation simulation(scene, configuration);
   put(window, from, simulation.state(), simulation);
   for (std::size_t i = from; i <= window.free_from; ++i) {
-    advance(window, i, simulation);
+    if (advance(window, i, simulation)) look(i, simulation.result());
     put(window, i, simulation.state(), simulation);
   }
   return simulation.state();
@@ -171,12 +172,27 @@ std::vector<Window> load_windows(const std::string& folder, const Configuration&
   return windows;
 }
 
-WindowOutcome play(const Window& window, const Configuration& configuration, double lead) {
-  const Nanoseconds begin = window.frames[window.free_from].stamp - std::llround(1e9 * lead);
+std::size_t last_clear(const Window& window, const Configuration& configuration) {
+  std::size_t clear = 0;
+  led(window, configuration, 0, [&](std::size_t frame, const FrameResult& result) {
+    const bool touches = std::any_of(result.contacts.begin(), result.contacts.end(),
+                                     [](const Contact& contact) { return contact.depth > 0.0; });
+    if (!touches) clear = frame;
+  });
+  return clear;
+}
+
+WindowOutcome play(const Window& window, const Configuration& configuration, std::optional<double> lead) {
   std::size_t from = 0;
-  while (window.frames[from].stamp < begin) ++from;
+  if (lead) {
+    const Nanoseconds begin = window.frames[window.free_from].stamp - std::llround(1e9 * *lead);
+    while (window.frames[from].stamp < begin) ++from;
+  } else {
+    from = last_clear(window, configuration);
+  }
   Simulation simulation(window.scene, configuration);
-  put(window, window.free_from, led(window, configuration, from), simulation);
+  const auto look = [](std::size_t, const FrameResult&) {};
+  put(window, window.free_from, led(window, configuration, from, look), simulation);
   WindowOutcome outcome;
   for (std::size_t i = window.free_from + 1; i < window.frames.size(); ++i) {
     if (advance(window, i, simulation)) add_finger_forces(simulation.result(), outcome.forces);

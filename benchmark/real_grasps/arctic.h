@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,13 @@ struct WindowOutcome {
   std::vector<double> forces;  ///< of each finger that presses, in each frame [N]
 };
 
-/// Up to `lead` seconds [s] before its window the object is led where it was recorded, so that hands touch it
-/// as they come to it; then it is free, with the velocity recorded.
-WindowOutcome play(const Window& window, const Configuration& configuration, double lead);
+/// Last frame before the object is let free in which no hand touches it; 0 if there is none.
+std::size_t last_clear(const Window& window, const Configuration& configuration);
+
+/// For up to `lead` seconds [s] before its window, or without `lead` from last_clear() on, the object is led
+/// where it was recorded, so that hands touch it as they come to it; then it is free, with the velocity
+/// recorded.
+WindowOutcome play(const Window& window, const Configuration& configuration, std::optional<double> lead);
 
 /// What a hand that carried the object as if it were one with it would do: the object keeps its pose in the
 /// last phalanges (least squares) of the hand that is best in hindsight. No fingers move in it, nothing slips

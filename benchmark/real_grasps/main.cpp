@@ -26,14 +26,16 @@ Puts bodies at rest (0 g) where recorded hands close and tells how many are held
                     of which none is to be held: pass_sphere40, pass_cube40, pass_sphere60, pass_cube60
   --list            one line for each closing
   --noise RMS_MM    white noise on each joint and axis; 0 if not said
-  --rate HZ         frames evenly spaced at this rate; as recorded if not said
-  --seeds N         each closing is played N times with other noise; 1 if not said
+  --rate HZ         frames evenly spaced at this rate; as recorded if not said; not with --arctic, whose objects were
+                    captured frame by frame
+  --seeds N         each closing and window is played N times with other noise; 1 if not said
   --compare         our models in several stiffnesses
   --engine FILE     a physics engine too: its module, .../speed_accuracy_NAME.so; repeatable
   --output DIR      writes real_grasps.csv, real_grasps_events.csv (a line for each closing) and, with --arctic,
                     real_grasps_arctic.csv
   --arctic DIR      plays the windows that arctic_windows.py cut into DIR: captured hands on captured objects
-  --lead SECONDS    for which such an object is led before it is let free; 1 if not said, 0: hands appear on it
+  --lead LEAD,...   for how long such an object is led before it is let free: seconds (0: hands appear on it), or
+                    clear: since no hand touched it; 0.3,1,3,10,clear if not said
   --jobs N          recordings at the same time; 1 if not said
 docs/real_grasps.md says what the figures mean.
 )";
@@ -49,8 +51,8 @@ struct Arguments {
   bool compare = false;              ///< our models in several settings
   std::vector<std::string> engines;  ///< modules of physics engines
   std::string arctic;                ///< folder of windows, or empty
-  double lead = 1.0;                 ///< for which an object is led before its window [s]
-  std::vector<std::string> paths;    ///< recordings, or folders of them
+  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< of windows: seconds, or clear
+  std::vector<std::string> paths;                                  ///< recordings, or folders of them
 };
 
 std::vector<Row> rows_of(const Given& given) {
@@ -68,6 +70,19 @@ std::vector<Row> rows_of(const Given& given) {
   return rows;
 }
 
+/// Seconds of a lead, or nothing for `clear`.
+std::optional<double> seconds_of(const std::string& lead) {
+  if (lead == "clear") return std::nullopt;
+  return Given{"--lead", "LEAD,...", lead}.number(0.0, 10.0);
+}
+
+std::vector<std::string> leads_of(const Given& given) {
+  const std::vector<std::string> leads = text::split(given.text);
+  if (leads.empty()) given.refuse("seconds or 'clear', separated by commas");
+  for (const std::string& lead : leads) seconds_of(lead);
+  return leads;
+}
+
 /// Nothing if help is asked for. Throws UsageError or ParameterError.
 std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   Arguments a;
@@ -75,7 +90,7 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   line.flag("--list", a.list).flag("--compare", a.compare);
   line.once("--output", "DIR", a.output).once("--arctic", "DIR", a.arctic);
   line.once("--only", "ROW,...", [&](const Given& given) { a.rows = rows_of(given); });
-  line.once("--lead", "SECONDS", [&](const Given& given) { a.lead = given.number(0.0, 10.0); });
+  line.once("--lead", "LEAD,...", [&](const Given& given) { a.leads = leads_of(given); });
   line.once("--noise", "RMS_MM",
             [&](const Given& given) { a.disturbance.noise = 1e-3 * given.number(0.0, 50.0); });
   line.once("--rate", "HZ", [&](const Given& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
@@ -92,6 +107,10 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   validate(a.configuration);
   if (a.paths.empty() && a.arctic.empty())
     throw UsageError("a folder of recordings or --arctic is needed; see --help");
+  if (a.disturbance.rate && !a.arctic.empty())
+    throw UsageError(
+        "--rate is not allowed with --arctic, whose objects were captured frame by frame; allowed: "
+        "--noise and --seeds");
   return a;
 }
 
@@ -124,7 +143,8 @@ void play_recording(const Recording& recording, const Row& row, const Arguments&
     for (unsigned seed = 1; seed <= arguments.seeds; ++seed) {
       Disturbance disturbance = arguments.disturbance;
       disturbance.seed = seed;
-      events.push_back({recording.name, closing, play(recording, closing, row, disturbance, player)});
+      events.push_back(
+          {recording.name, closing, play(recording, closing, row, disturbance, player), recording.object});
     }
   }
 }
@@ -158,28 +178,30 @@ void play_closings(const std::vector<Recording>& recordings, const Arguments& ar
     if (arguments.list)
       for (const Event& event : events) std::cout << line(event) << '\n';
     std::cout << line(row.name, events) << std::endl;
+    for (const char* object : kObjects) {
+      const std::vector<Event> some = with_object(object, events);
+      if (!some.empty()) std::cout << line("  object " + std::string(object), some) << std::endl;
+    }
     if (arguments.list) std::cout << line(lost_to(events)) << std::endl;
     write_rows(rows, contender, row.name, events);
     write_events(closings, contender, row.name, events);
   }
 }
 
-/// Outcomes of windows, in the groups that are told of.
+/// Outcomes of windows: of the first of each capture, and of all.
 struct Groups {
-  std::vector<WindowOutcome> first, tuned, held_out, all;
+  std::vector<WindowOutcome> first, all;
 
   void add(const Window& window, const WindowOutcome& outcome) {
     all.push_back(outcome);
     if (window.first) first.push_back(outcome);
-    (half_of(capture_of(window.name)) == Half::tuned ? tuned : held_out).push_back(outcome);
   }
-  void tell(const std::string& name, std::ostream& csv, const Contender& contender) const {
-    const std::pair<const char*, const std::vector<WindowOutcome>*> groups[] = {
-        {"_first", &first}, {"_tuned", &tuned}, {"_held_out", &held_out}, {"", &all}};
-    for (const auto& [group, outcomes] : groups) {
+  void report(const std::string& name, const std::string& lead, std::ostream& csv,
+              const Contender& contender) const {
+    for (const auto& [group, outcomes] : {std::make_pair("_first", &first), std::make_pair("", &all)}) {
       if (outcomes->empty()) continue;
-      std::cout << line(name + group, *outcomes) << std::endl;
-      write_arctic(csv, contender, name + group, *outcomes);
+      std::cout << line(name + group + (lead.empty() ? "" : " lead " + lead), *outcomes) << std::endl;
+      write_arctic(csv, contender, name + group, lead, *outcomes);
     }
   }
 };
@@ -188,12 +210,23 @@ void play_windows(const Arguments& arguments, const Contender& contender) {
   if (arguments.arctic.empty()) return;
   if (arguments.paths.empty()) std::cout << contender.engine << ", " << contender.setting << std::endl;
   std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
-  Groups groups;
-  for (const Window& window : load_windows(arguments.arctic, contender.configuration)) {
-    groups.add(window, play(window, contender.configuration, arguments.lead));
-    if (arguments.list) std::cout << line(window.name, {groups.all.back()}) << '\n';
+  const std::vector<Window> windows = load_windows(arguments.arctic, contender.configuration);
+  LeadSpread spread;
+  for (const std::string& lead : arguments.leads) {
+    Groups groups;
+    for (Window window : windows) {
+      const std::vector<JointsFrame> clean = window.frames;
+      for (unsigned seed = 1; seed <= arguments.seeds; ++seed) {
+        window.frames = disturbed(clean, 0, clean.size() - 1, {arguments.disturbance.noise, {}, seed});
+        groups.add(window, play(window, contender.configuration, seconds_of(lead)));
+        if (arguments.list) std::cout << line(window.name, {groups.all.back()}) << '\n';
+      }
+    }
+    groups.report("arctic", lead, csv, contender);
+    spread.within_50mm.push_back(share_within(groups.all, 0.05));
+    spread.within_20mm.push_back(share_within(groups.all, 0.02));
   }
-  groups.tell("arctic", csv, contender);
+  std::cout << line(spread) << std::endl;
 }
 
 /// What no model has a part in: how far the captured hands, each as one piece, have the object with them.
@@ -204,7 +237,7 @@ void play_windows_rigidly(const Arguments& arguments) {
   Groups groups;
   for (const Window& window : load_windows(arguments.arctic, arguments.configuration))
     groups.add(window, play_rigidly(window));
-  groups.tell("rigid", csv, hand);
+  groups.report("rigid", "", csv, hand);
 }
 
 /// Other engines play free bodies alone.

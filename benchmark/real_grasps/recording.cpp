@@ -11,6 +11,8 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "text/safe_yaml.h"
+#include "text/yaml_values.h"
 
 namespace mrhi::real_grasps {
 namespace {
@@ -74,6 +76,19 @@ std::vector<JointsFrame> resampled(const std::vector<JointsFrame>& frames, doubl
   return result;
 }
 
+/// What a recording's description says of the object, or nothing. JSON is YAML.
+std::string object_of(const fs::path& description) {
+  if (!fs::exists(description)) return "";
+  return read_yaml<RecordingError>(description.string(), [&]() -> std::string {
+    const YAML::Node node = load_yaml_file(description.string())["object"];
+    if (!node) return "";
+    for (const char* object : kObjects)
+      if (node.IsScalar() && node.Scalar() == object) return object;
+    throw RecordingError(description.string() + ": object '" + yaml_text(node) +
+                         "' is not allowed; allowed: none, seen, felt");
+  });
+}
+
 void add_noise(HandJoints& hand, double noise, Random& random) {
   if (hand.palm_centre) *hand.palm_centre += random.gaussian_vector(noise);
   if (hand.wrist) *hand.wrist += random.gaussian_vector(noise);
@@ -91,7 +106,7 @@ Pose device_mount() {
 }
 
 Recording make_recording(std::string name, std::vector<JointsFrame> frames) {
-  Recording recording{std::move(name), std::move(frames), {}, {}};
+  Recording recording{std::move(name), "", std::move(frames), {}, {}};
   std::vector<std::uint32_t> ids;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const JointsFrame& frame = recording.frames[i];
@@ -107,7 +122,9 @@ Recording make_recording(std::string name, std::vector<JointsFrame> frames) {
 }
 
 Recording load_recording(const std::string& file) {
-  return make_recording(fs::path(file).stem().string(), read_recording_csv(file));
+  Recording recording = make_recording(fs::path(file).stem().string(), read_recording_csv(file));
+  recording.object = object_of(fs::path(file).replace_extension(".meta.json"));
+  return recording;
 }
 
 std::vector<std::string> recording_files(const std::vector<std::string>& paths) {

@@ -11,6 +11,9 @@
 
 namespace mrhi::real_grasps {
 
+/// Whether a recorded hand had no object, saw one, or felt one: `object` in NAME.meta.json beside NAME.csv.
+constexpr const char* kObjects[] = {"none", "seen", "felt"};
+
 /// Where a hand's joints are, in world [m]; NaN where the tracker gave none.
 struct Sighting {
   std::uint32_t id = 0;   ///< of the hand
@@ -24,7 +27,8 @@ struct Sighting {
 using Track = std::vector<Sighting>;
 
 struct Recording {
-  std::string name;  ///< file without folder and ending
+  std::string name;    ///< file without folder and ending
+  std::string object;  ///< what the hand had before it: one of kObjects, or empty if that is not known
   std::vector<JointsFrame> frames;
   std::vector<Track> tracks;                     ///< in the order in which hands come up
   std::vector<std::vector<Sighting>> sightings;  ///< of each frame

@@ -1,7 +1,10 @@
 #include "report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <map>
 #include <ostream>
 
 #include "text/csv.h"
@@ -24,25 +27,50 @@ std::string number_or_nothing(const std::optional<double>& value) {
   return value ? std::to_string(*value) : "";
 }
 
-void write_row(std::ostream& csv, const Contender& contender, const std::string& row, const char* half,
-               const Summary& sum) {
-  const Interval interval = wilson(sum.carried, sum.events);
-  (CsvRows(csv) << contender.engine << contender.setting << row << half << sum.events << sum.held
-                << sum.carried << interval.low << interval.high << sum.fair << sum.held_fair
-                << sum.carried_fair << sum.force << kMilli * sum.away << kMilli * sum.release
-                << sum.frame_time << sum.frame_time_p99 << sum.taken)
+void write_row(std::ostream& csv, const Contender& contender, const std::string& row,
+               const std::string& object, const Summary& sum) {
+  (CsvRows(csv) << contender.engine << contender.setting << row << object << sum.events << sum.held
+                << sum.carried << sum.carried_interval.low << sum.carried_interval.high << sum.fair
+                << sum.held_fair << sum.carried_fair << sum.force << kMilli * sum.away << kMilli * sum.release
+                << sum.frame_time << sum.frame_time_p99 << sum.taken << sum.held_interval.low
+                << sum.held_interval.high << sum.held_fair_interval.low << sum.held_fair_interval.high)
       .end_row();
+}
+
+/// Of the events for which `counts`, those that succeed, by recording.
+template <typename Counts, typename Succeeds>
+Interval by_recording(const std::vector<Event>& events, Counts counts, Succeeds succeeds) {
+  std::map<std::string, Share> groups;
+  for (const Event& event : events) {
+    if (!counts(event.outcome)) continue;
+    Share& group = groups[event.recording];
+    ++group.trials;
+    group.successes += succeeds(event.outcome);
+  }
+  std::vector<Share> shares;
+  for (const auto& group : groups) shares.push_back(group.second);
+  return grouped(shares);
+}
+
+bool is_fair(const Outcome& outcome) {
+  return outcome.early < kFair;
 }
 
 }  // namespace
 
-Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
+std::vector<Event> with_object(const std::string& object, const std::vector<Event>& events) {
+  std::vector<Event> found;
+  std::copy_if(events.begin(), events.end(), std::back_inserter(found),
+               [&](const Event& event) { return event.object == object; });
+  return found;
+}
+
+Summary summarise(const std::vector<Event>& events) {
   Summary sum;
   std::vector<double> forces, aways, releases, times;
   for (const Event& event : events) {
-    if (half && half_of(event.recording) != *half) continue;
     const Outcome& outcome = event.outcome;
-    const bool fair = outcome.early < kFair;
+    const bool fair = is_fair(outcome);
     ++sum.events;
     sum.held += outcome.held, sum.carried += outcome.carried, sum.taken += outcome.taken;
     sum.fair += fair;
@@ -54,6 +82,11 @@ Summary summarise(const std::vector<Event>& events, std::optional<Half> half) {
   }
   sum.force = quantile(forces, 0.5), sum.away = quantile(aways, 0.5), sum.release = quantile(releases, 0.5);
   sum.frame_time = quantile(times, 0.5), sum.frame_time_p99 = quantile(times, 0.99);
+  const auto any = [](const Outcome&) { return true; };
+  const auto held = [](const Outcome& outcome) { return outcome.held; };
+  sum.held_interval = by_recording(events, any, held);
+  sum.carried_interval = by_recording(events, any, [](const Outcome& outcome) { return outcome.carried; });
+  sum.held_fair_interval = by_recording(events, is_fair, held);
   return sum;
 }
 
@@ -96,17 +129,30 @@ std::string line(const Event& event) {
 
 std::string line(const std::string& name, const std::vector<Event>& events) {
   char text[400];
-  const Summary all = summarise(events), tuned = summarise(events, Half::tuned),
-                held_out = summarise(events, Half::held_out);
-  const Interval interval = wilson(all.held, all.events);
-  std::snprintf(text, sizeof text,
-                "%-14s held %2zu of %2zu (%2.0f to %2.0f %%; tuned %zu of %zu, held out %zu of %zu), carried "
-                "%zu, taken %zu; within "
-                "10 mm %2zu of %2zu; p90 %5.1f N; release %4.0f mm/s; frame %.0f us, p99 %.0f",
-                name.c_str(), all.held, all.events, 100.0 * interval.low, 100.0 * interval.high, tuned.held,
-                tuned.events, held_out.held, held_out.events, all.carried, all.taken, all.held_fair, all.fair,
-                all.force, 1e3 * all.release, all.frame_time, all.frame_time_p99);
+  const Summary all = summarise(events);
+  const Interval &held = all.held_interval, &fair = all.held_fair_interval;
+  std::snprintf(
+      text, sizeof text,
+      "%-14s held %2zu of %2zu (%2.0f to %2.0f %%), carried %zu, taken %zu; within 10 mm %2zu of %2zu "
+      "(%2.0f to %2.0f %%); p90 %5.1f N; release %4.0f mm/s; frame %.0f us, p99 %.0f",
+      name.c_str(), all.held, all.events, 100.0 * held.low, 100.0 * held.high, all.carried, all.taken,
+      all.held_fair, all.fair, 100.0 * fair.low, 100.0 * fair.high, all.force, 1e3 * all.release,
+      all.frame_time, all.frame_time_p99);
   return text;
+}
+
+std::string line(const LeadSpread& spread) {
+  const auto range = [](const std::vector<double>& shares) {
+    const auto [low, high] = std::minmax_element(shares.begin(), shares.end());
+    double sum = 0.0;
+    for (const double share : shares) sum += share;
+    char text[60];
+    std::snprintf(text, sizeof text, "%.0f %% (%.0f to %.0f)", 100.0 * sum / double(shares.size()),
+                  100.0 * *low, 100.0 * *high);
+    return std::string(text);
+  };
+  return "  over " + std::to_string(spread.within_50mm.size()) + " leads: within 50 mm " +
+         range(spread.within_50mm) + ", within 20 mm " + range(spread.within_20mm);
 }
 
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes) {
@@ -126,21 +172,24 @@ std::string line(const std::string& name, const std::vector<WindowOutcome>& outc
 }
 
 void write_header(std::ostream& csv) {
-  csv << "engine,setting,row,half,events,held,carried,carried_low,carried_high,fair,held_fair,carried_fair,"
-         "force_p90_N,away_mm,release_mm_per_s,us_per_frame,us_per_frame_p99,taken\n";
+  csv << "engine,setting,row,object,events,held,carried,carried_low,carried_high,fair,held_fair,carried_fair,"
+         "force_p90_N,away_mm,release_mm_per_s,us_per_frame,us_per_frame_p99,taken,held_low,held_"
+         "high,held_fair_low,held_fair_high\n";
 }
 
 void write_rows(std::ostream& csv, const Contender& contender, const std::string& row,
                 const std::vector<Event>& events) {
   write_row(csv, contender, row, "all", summarise(events));
-  write_row(csv, contender, row, "tuned", summarise(events, Half::tuned));
-  write_row(csv, contender, row, "held_out", summarise(events, Half::held_out));
+  for (const char* object : kObjects) {
+    const std::vector<Event> some = with_object(object, events);
+    if (!some.empty()) write_row(csv, contender, row, object, summarise(some));
+  }
 }
 
 void write_events_header(std::ostream& csv) {
   csv << "engine,setting,row,recording,closed_s,opens_s,held,carried,away_mm,early_mm,force_p90_N,grasp_"
          "began_s,"
-         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note,taken,blow_s,blow_by\n";
+         "grasp_ended_s,let_go_s,release_mm_per_s,speed_ratio,note,taken,blow_s,blow_by,object\n";
 }
 
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
@@ -153,20 +202,21 @@ void write_events(std::ostream& csv, const Contender& contender, const std::stri
                   << event.closing.opens << o.held << o.carried << kMilli * o.away << kMilli * o.early
                   << o.force << number_or_nothing(o.grasp_began) << number_or_nothing(o.grasp_ended)
                   << number_or_nothing(o.let_go) << kMilli * o.release << o.speed << o.note << o.taken
-                  << blow_time << blow_by)
+                  << blow_time << blow_by << event.object)
         .end_row();
   }
 }
 
 void write_arctic_header(std::ostream& csv) {
-  csv << "engine,setting,windows,count,stayed,stayed_low,stayed_high,within_50mm,within_20mm,force_p90_N\n";
+  csv << "engine,setting,windows,lead,count,stayed,stayed_low,stayed_high,within_50mm,within_20mm,force_p90_"
+         "N\n";
 }
 
 void write_arctic(std::ostream& csv, const Contender& contender, const std::string& group,
-                  const std::vector<WindowOutcome>& outcomes) {
+                  const std::string& lead, const std::vector<WindowOutcome>& outcomes) {
   const std::size_t to_the_end = stayed(outcomes, 0.05);
   const Interval interval = wilson(to_the_end, outcomes.size());
-  (CsvRows(csv) << contender.engine << contender.setting << group << outcomes.size() << to_the_end
+  (CsvRows(csv) << contender.engine << contender.setting << group << lead << outcomes.size() << to_the_end
                 << interval.low << interval.high << share_within(outcomes, 0.05)
                 << share_within(outcomes, 0.02) << force_p90(outcomes))
       .end_row();

@@ -18,6 +18,7 @@ struct Event {
   std::string recording;
   Closing closing;
   Outcome outcome;
+  std::string object;  ///< see Recording::object
 };
 
 /// What the events of a row come to.
@@ -30,10 +31,13 @@ struct Summary {
   double release = 0.0;          ///< median of those held [m/s]
   double frame_time = 0.0;       ///< median [us]
   double frame_time_p99 = 0.0;
+  Interval held_interval, carried_interval, held_fair_interval;  ///< grouped by recording
 };
 
-/// Of one half, or of all.
-Summary summarise(const std::vector<Event>& events, std::optional<Half> half = std::nullopt);
+Summary summarise(const std::vector<Event>& events);
+
+/// Events of hands that had the same object before them.
+std::vector<Event> with_object(const std::string& object, const std::vector<Event>& events);
 
 /// What first set in motion those that were lost: of how many the back of the hand, the hand as a whole, a
 /// closing finger, an open hand, and nothing that was seen.
@@ -49,7 +53,7 @@ std::string line(const std::string& name, const std::vector<Event>& events);
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes);
 std::string line(const LostTo& lost);
 
-/// real_grasps.csv: a line for each contender, row and half.
+/// real_grasps.csv: a line for each contender, row and kind of object (`all`, or Recording::object).
 void write_header(std::ostream& csv);
 void write_rows(std::ostream& csv, const Contender& contender, const std::string& row,
                 const std::vector<Event>& events);
@@ -59,9 +63,15 @@ void write_events_header(std::ostream& csv);
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
                   const std::vector<Event>& events);
 
-/// real_grasps_arctic.csv: a line for each contender and group of windows.
+/// Shares of frames over the leads that windows were played with.
+struct LeadSpread {
+  std::vector<double> within_50mm, within_20mm;
+};
+std::string line(const LeadSpread& spread);
+
+/// real_grasps_arctic.csv: a line for each contender, group of windows and lead.
 void write_arctic_header(std::ostream& csv);
 void write_arctic(std::ostream& csv, const Contender& contender, const std::string& group,
-                  const std::vector<WindowOutcome>& outcomes);
+                  const std::string& lead, const std::vector<WindowOutcome>& outcomes);
 
 }  // namespace mrhi::real_grasps

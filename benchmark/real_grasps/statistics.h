@@ -16,13 +16,14 @@ struct Interval {
 /// Wilson's interval of a share seen as `successes` of `trials`, at 95 % confidence.
 Interval wilson(std::size_t successes, std::size_t trials);
 
-/// Recordings are split in two, once and for all, so that a model that was tuned on one half can be told by
-/// the other: those known by lists, others by their names. All windows of one ARCTIC capture are in one half.
-enum class Half { tuned, held_out };
+/// Successes of the trials of one group, such as a recording.
+struct Share {
+  std::size_t successes = 0, trials = 0;
+};
 
-Half half_of(const std::string& name);
-
-/// A window's name without the frame at its end: the capture's.
-std::string capture_of(const std::string& window);
+/// Interval of the share of all trials, at 95 % confidence, if trials of one group depend on each other: the
+/// bootstrap over groups, and at least Wilson's interval, as the bootstrap of shares near 0 and 1 is too
+/// narrow.
+Interval grouped(const std::vector<Share>& groups);
 
 }  // namespace mrhi::real_grasps

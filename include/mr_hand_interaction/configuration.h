@@ -47,6 +47,7 @@ constexpr double kUsualNoise = 0.0004;  ///< of a good tracker's sample, rms on 
 struct FilterConfiguration {
   FilterKind type = FilterKind::constant_velocity;
   int window = 3;                   ///< F of Eq. 1, frames
+  bool as_printed = false;          ///< window: Eq. 1's F + 1 terms over F, see filter_of()
   double min_cutoff = 2.0;          ///< one_euro: cutoff of a hand at rest [Hz]
   double beta = 100.0;              ///< one_euro: what the cutoff gains with speed [Hz per m/s]
   double derivative_cutoff = 10.0;  ///< one_euro: cutoff of the speed that beta multiplies [Hz]
@@ -90,6 +91,7 @@ struct ContactConfiguration {
   bool edge_grip = true;     ///< an edge that digs into a fingertip is held by both its faces (`implicit`)
   bool grasp_assist = true;  ///< a hand that closes round a body and through it holds it (`implicit`)
   bool sleep = true;         ///< bodies that lie still on others cost nothing until something comes near
+  bool literal = false;      ///< seed/literal: Eqs. 1 to 20 as printed (`seed`)
   double object_stiffness = 1e7;  ///< of a touch between two objects, which are harder than a hand [N/m]
   HandStrength hand = HandStrength::of_a_person();
 };
@@ -108,5 +110,10 @@ struct Configuration {
   TrackingConfiguration tracking;
   ContactConfiguration contact;
 };
+
+/// True if the paper's equations act as printed: seed/literal under `seed`.
+inline bool is_literal(const Configuration& configuration) {
+  return configuration.contact.literal && configuration.contact_model == ContactModelKind::seed;
+}
 
 }  // namespace mrhi

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
+
+/// The object of a parameter "grasp/OBJECT", or nothing for a name of parameters.h.
+std::optional<std::string> grasp_parameter(const std::string& name);
 
 /// A simulation whose scene and configuration change while it runs, between frames: each change builds a
 /// simulation of the new ones, which goes on from where the old one was. What is held stays held, what flies
@@ -21,8 +25,10 @@ class LiveSimulation {
   Simulation& simulation() { return *simulation_; }
   const Simulation& simulation() const { return *simulation_; }
 
-  /// Names of parameters.h and their values in YAML: all or none. Throws ParameterError.
+  /// Names of parameters.h, or "grasp/OBJECT", and their values in YAML: all or none. Throws ParameterError.
   void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);
+  /// What such a value is now, as YAML. Throws ParameterError for an unknown name.
+  std::string parameter(const std::string& name) const;
   /// Throws std::invalid_argument for a name that is taken, and a place out of bounds or in another body.
   void add(const Body& body);
   /// The same for all bodies of `part` and its joints; what else is in it does not count.

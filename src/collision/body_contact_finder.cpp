@@ -13,6 +13,10 @@ namespace {
 constexpr double kMostFollowed = 0.001;
 /// Surfaces this far apart have ended their approach: the next one may strike again [m].
 constexpr double kApart = 1e-5;
+/// Boxes that overlap by less than this in two directions touch along an edge only, which carries nothing:
+/// they pass each other. From there to twice that a strip gains its full stiffness. Where anything is about
+/// to move farther within the step, such pairs have contacts all the same [m].
+constexpr double kLeastBreadth = 1e-6;
 /// What is struck may leave this much faster than what strikes it (twice, by far heavier things). Of masses M
 /// and m the struck one leaves with (1 + e) v M / (M + m) < 2 v.
 constexpr double kStruck = 2.0;
@@ -52,8 +56,9 @@ struct ShapePair {
   Manifold at(double time, double margin) const {
     return body_manifold(shape_a, a.at(time) * placed_a.pose, shape_b, b.at(time) * placed_b.pose, margin);
   }
-  Manifold now(double margin) const {
-    return body_manifold(shape_a, a.pose * placed_a.pose, shape_b, b.pose * placed_b.pose, margin);
+  Manifold now(double margin, double least_breadth) const {
+    return body_manifold(shape_a, a.pose * placed_a.pose, shape_b, b.pose * placed_b.pose, margin,
+                         least_breadth);
   }
 };
 
@@ -83,7 +88,8 @@ std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
 }
 
 std::optional<Touch> find_touch(const ShapePair& pair, double step, double followed, double margin) {
-  const Manifold manifold = pair.now(margin);
+  const double least_breadth = followed < 2.0 * kApart ? kLeastBreadth : kAnyBreadth;
+  const Manifold manifold = pair.now(margin, least_breadth);
   if (manifold.count == 0) return std::nullopt;
   if (deepest(manifold).depth >= -followed) return Touch{manifold};
   return swept(pair, step, margin);
@@ -119,6 +125,11 @@ Common common_of(const ShapePair& pair, const Touch& touch) {
           pair.b.at(then).position};
 }
 
+/// Of a strip of contact, as a part of the pair's.
+double stiffness_of(double breadth) {
+  return std::clamp(breadth / kLeastBreadth - 1.0, 0.0, 1.0);
+}
+
 /// Of a pair that meets within the step points are where they will touch, and arms are from where the centres
 /// will be then; the depth is no more than 0 until it has happened. A pair's stiffness is shared by its
 /// points alike.
@@ -131,7 +142,7 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   contact.point = point.point;
   contact.normal = touch.manifold.normal;
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
-  contact.share = 1.0 / touch.manifold.count;
+  contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count;
   contact.first_touch = touch.time;
   if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kApart;

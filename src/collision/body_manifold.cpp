@@ -35,17 +35,17 @@ ManifoldShape::ManifoldShape(const Shape& placed, const MeshCollider* collider)
 }
 
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin) {
+                       double margin, double least_breadth) {
   const double reach = a.bounding_radius + b.bounding_radius + margin;
   if ((pose_a.position - pose_b.position).squaredNorm() > reach * reach) return {};
   if (!comes_first(a, b)) {
-    Manifold manifold = body_manifold(b, pose_b, a, pose_a, margin);
+    Manifold manifold = body_manifold(b, pose_b, a, pose_a, margin, least_breadth);
     manifold.normal = -manifold.normal;
     return manifold;
   }
   if (a.core) return core_manifold(*a.core, pose_a, b, pose_b, margin);
-  const bool prisms = a.prism && b.prism;
-  return (prisms ? prism_manifold : mesh_manifold)(a, pose_a, b, pose_b, margin);
+  if (a.prism && b.prism) return prism_manifold(a, pose_a, b, pose_b, margin, least_breadth);
+  return mesh_manifold(a, pose_a, b, pose_b, margin);
 }
 
 }  // namespace mrhi

@@ -21,6 +21,9 @@ struct Manifold {
   Vector3 normal = Vector3::UnitZ();  ///< unit, world, out of b towards a: moving a along it separates
   std::array<ManifoldPoint, 8> points{};
   int count = 0;
+  /// Overlap of two prisms across the normal: the breadth of the strip in which they touch; unlimited of
+  /// other shapes [m].
+  double breadth = 1e300;
 };
 
 /// A shape as the manifold needs it: made once at loading. Refers to what it is made of; throws
@@ -35,8 +38,11 @@ struct ManifoldShape {
   double bounding_radius;          ///< about the shape frame's origin [m]
 };
 
+constexpr double kAnyBreadth = -1e300;  ///< [m]
+
 /// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
-/// deepest among them. Deterministic; no memory, no allocation.
+/// deepest among them. Deterministic; no memory, no allocation. Two prisms that overlap by less than
+/// `least_breadth` in two directions across each other, like diagonal neighbours of a stack, do not touch.
 ///
 /// Sphere, box and cylinder with each other: the deepest point is as deep as the shortest translation that
 /// separates them, to rounding. Where that is within 2.5 degrees of a face's normal, the face's is taken (the
@@ -45,6 +51,6 @@ struct ManifoldShape {
 /// straight side. A rim cut deeper than it is curved there may be taken 1 % too deep. Mesh: corners and edges
 /// of each are measured in the other; pair_manifolds.h says how well.
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin);
+                       double margin, double least_breadth = kAnyBreadth);
 
 }  // namespace mrhi

@@ -79,9 +79,10 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
                              [](const Contact& contact, const ContactKey& key) { return contact.key < key; });
   const int shapes = static_cast<int>(body.shapes.size());
   const double moved = near.moved(state.pose, body.bounding_radius);
+  const double carried_speed = hand.carried_speed(state.pose.position, body.bounding_radius);
   for (int i = 0; i < near.count; ++i) {
     const int c = near.capsules[static_cast<std::size_t>(i)];
-    const double speed = hand.speed[static_cast<std::size_t>(c)] + hand.carried_speed + body_speed;
+    const double speed = hand.speed[static_cast<std::size_t>(c)] + carried_speed + body_speed;
     const double margin = refinements_.sweep ? kMargin + speed * step : kMargin;
     if (near.clearances[static_cast<std::size_t>(i)] - moved > margin) continue;
     const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "prism.h"
 #include "segment.h"
 
@@ -20,6 +22,16 @@ class ConvexAxis {
 
   double separation() const { return separation_; }
   const Vector3& normal() const { return normal_; }
+  /// The greatest separation along the flats' normals that are at least 60 degrees off the best of them: less
+  /// than 0 where the shapes overlap in all directions across it. Call after try_flats.
+  double separation_across() const {
+    double across = -1e300;
+    for (int i = 0; i < flats_; ++i) {
+      const Flat& flat = flat_[static_cast<std::size_t>(i)];
+      if (std::abs(flat.normal.dot(normal_)) < 0.5) across = std::max(across, flat.separation);
+    }
+    return across;
+  }
   const Vector3& offset() const { return offset_; }
 
   /// The normals of flat faces of both. In the frame of the one whose face it is n is a unit axis: its own
@@ -28,10 +40,11 @@ class ConvexAxis {
   void try_flats() {
     const Matrix3 turn = a_.axes.transpose() * b_.axes;
     const Vector3 in_a = a_.axes.transpose() * offset_, in_b = b_.axes.transpose() * offset_;
+    flats_ = 0;
     for (int i = a_.first_flat(); i < 3; ++i)
-      take(std::abs(in_a[i]) - a_.half[i] - b_.reach_along(turn.row(i)), a_.axes.col(i));
+      take_flat(std::abs(in_a[i]) - a_.half[i] - b_.reach_along(turn.row(i)), a_.axes.col(i));
     for (int i = b_.first_flat(); i < 3; ++i)
-      take(std::abs(in_b[i]) - b_.half[i] - a_.reach_along(turn.col(i)), b_.axes.col(i));
+      take_flat(std::abs(in_b[i]) - b_.half[i] - a_.reach_along(turn.col(i)), b_.axes.col(i));
     if (normal_.dot(offset_) < 0.0) normal_ = -normal_;
   }
   /// Any length; zero is no direction. The sign with n.offset >= 0 is the better one: both reaches are even
@@ -103,6 +116,10 @@ class ConvexAxis {
     double value, slope;
   };
 
+  void take_flat(double separation, const Vector3& n) {
+    flat_[static_cast<std::size_t>(flats_++)] = {n, separation};
+    take(separation, n);
+  }
   void take(double separation, const Vector3& n) {
     if (separation > separation_ + kBetter) separation_ = separation, normal_ = n;
   }
@@ -169,6 +186,12 @@ class ConvexAxis {
   const Prism& b_;
   Vector3 offset_, normal_ = Vector3::UnitZ();
   double separation_ = -1e300;
+  struct Flat {
+    Vector3 normal;
+    double separation;
+  };
+  std::array<Flat, 6> flat_;
+  int flats_ = 0;
 };
 
 }  // namespace mrhi

@@ -58,12 +58,10 @@ void HandMotion::move_to(double fraction, double until) {
   if (carrier == nullptr) return;
   hand_.palm = carrier->rotation * hand_.palm;
   hand_.palm_spin = carrier->rotation * hand_.palm_spin + carrier->twist.angular;
-  hand_.carried_speed = carrier->twist.linear.norm() + reach_ * carrier->twist.angular.norm();
 }
 
-void HandMotion::carry(const CarrierMotion* carrier, double reach) {
+void HandMotion::carry(const CarrierMotion* carrier) {
   hand_.carrier = carrier;
-  reach_ = reach;
 }
 
 }  // namespace mrhi

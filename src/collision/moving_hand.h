@@ -64,7 +64,6 @@ struct MovingHand {
   Vector3 palm_spin = Vector3::Zero();  ///< angular velocity of the palm [rad/s]
 
   const CarrierMotion* carrier = nullptr;  ///< what the paths are in; null: world
-  double carried_speed = 0.0;              ///< limit of what the carrier adds to `speed` [m/s]
 
   /// At the step's start.
   Capsule capsule(int c) const {
@@ -73,6 +72,13 @@ struct MovingHand {
                       radius[i]};
     if (carrier == nullptr) return own;
     return {carrier->to_world(own.start), carrier->to_world(own.end), radius[i]};
+  }
+  /// Limit of what the carrier adds to `speed`, of a phalanx that comes within `distance` of a point [m/s].
+  double carried_speed(const Vector3& point, double distance) const {
+    constexpr double kPhalanx = 0.3;  // longer than any, with its radius [m]
+    if (carrier == nullptr) return 0.0;
+    return carrier->twist.linear.norm() +
+           carrier->twist.angular.norm() * ((point - carrier->centre).norm() + distance + kPhalanx);
   }
   /// Of an end that is at `point` [m/s].
   Vector3 velocity(const EndPath& path, const Vector3& point) const {
@@ -113,16 +119,15 @@ class HandMotion {
   /// `seconds` may be 0 for a hand that keeps still.
   HandMotion(const HandTrack& track, int slot, double seconds);
 
-  /// The paths are in the frame of `carrier`, which is of the step's start in each move_to(); no point of the
-  /// hand is farther than `reach` [m] from the carrier's centre.
-  void carry(const CarrierMotion* carrier, double reach);
+  /// The paths are in the frame of `carrier`, which is of the step's start in each move_to().
+  void carry(const CarrierMotion* carrier);
   /// Moves the hand on to a step from `fraction` of the frame to `until`.
   void move_to(double fraction, double until);
   const MovingHand& hand() const { return hand_; }
 
  private:
   MovingHand hand_;
-  double seconds_, reach_ = 0.0;
+  double seconds_;
   bool emerged_;
   Matrix3 palm_orientation(double fraction) const;
 

@@ -31,35 +31,38 @@ Neighbours::Neighbours(const Scene& scene)
 }
 
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
-                             const CarriedHands* carried) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-    const HandTrack& track = hands[slot];
-    measure(track, carried != nullptr ? carried->from[slot] : track.previous,
-            carried != nullptr ? carried->to[slot] : track.current,
-            carried != nullptr ? carried->margin : 0.0, reaches_[slot]);
-  }
+                             const Carried& carried) {
+  for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], carried[slot], reaches_[slot]);
   if (place_those_leaving(bodies, 0.0)) list_pairs();
   list_near_hands(bodies);
 }
 
 /// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place half-way at the part f of
 /// the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
-void Neighbours::measure(const HandTrack& hand, const Hand& before, const Hand& now, double margin,
-                         Reach& reach) {
+void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach) {
   reach.min.setConstant(std::numeric_limits<double>::max());
   reach.max = -reach.min;
   reach.ways.clear();
   if (!hand.active) return;
   for (int c = 0; c < kCapsules; ++c) {
     const auto ci = static_cast<std::size_t>(c);
-    const Capsule& to = now.capsules[ci];
-    const Capsule& from = before.capsules[ci].radius > 0.0 ? before.capsules[ci] : to;
+    const Capsule& to = hand.current.capsules[ci];
+    const Capsule& from = hand.previous.capsules[ci].radius > 0.0 ? hand.previous.capsules[ci] : to;
     if (to.radius <= 0.0) continue;
-    const Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
+    Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
     const double longer_way =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
-    const Way way{c, start, end - start,
-                  to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend + margin};
+    Way way{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
+    if (carried != nullptr) {
+      start = carried->rotation * start + carried->origin;
+      end = carried->rotation * end + carried->origin;
+      way.start = start, way.along = end - start;
+      // Half of the displacement, and all of the turn, whose rotation is that of the start; of both ends.
+      const double arm = std::sqrt(std::max((start - carried->centre).squaredNorm(),
+                                            (end - carried->centre).squaredNorm())) +
+                         way.reach;
+      way.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
+    }
     reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
     reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));
     reach.ways.push_back(way);

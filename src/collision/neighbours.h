@@ -38,10 +38,13 @@ struct NearBody {
   const std::uint8_t* end() const { return capsules.data() + count; }
 };
 
-/// Hands that are carried through a frame, in world at its start and, as far as it is known, at its end.
-struct CarriedHands {
-  std::array<Hand, kMaxHands> from, to;
-  double margin = 0.0;  ///< largest distance of what the carrier does from that [m]
+/// The frame in which a hand is tracked, half-way through a frame of input.
+struct CarriedFrame {
+  Matrix3 rotation;                ///< in world, at the start
+  Vector3 origin, centre;          ///< of the frame half-way, of the carrier's mass at the start [m]
+  double speed = 0.0, spin = 0.0;  ///< of the carrier [m/s], [rad/s]
+  double seconds = 0.0;            ///< of the frame of input
+  double margin = 0.0;             ///< largest distance of what the carrier does from that [m]
 };
 
 /// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
@@ -51,9 +54,10 @@ class Neighbours {
  public:
   explicit Neighbours(const Scene& scene);  ///< keeps a reference
 
-  /// Once a frame: the hands' way in it. `carried`: where the hands are in world, if their tracks are not.
+  /// Once a frame: the hands' way in it. `carried`: by slot, null for a hand that is tracked in world.
+  using Carried = std::array<const CarriedFrame*, kMaxHands>;
   void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
-                   const CarriedHands* carried = nullptr);
+                   const Carried& carried = {});
   /// Every step, of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
@@ -91,8 +95,7 @@ class Neighbours {
     Vector3 min, max;  // of a hand in this frame; min > max without a hand
     std::vector<Way> ways;
   };
-  static void measure(const HandTrack& hand, const Hand& before, const Hand& now, double margin,
-                      Reach& reach);
+  static void measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach);
   /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
   /// followed.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;

@@ -19,7 +19,7 @@ Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldSh
 /// near a face's normal, by that face, what is over it clipped by Sutherland & Hodgman 1974; otherwise by the
 /// lines or the point that face each other.
 Manifold prism_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b,
-                        const Pose& pose_b, double margin);
+                        const Pose& pose_b, double margin, double least_breadth);
 
 /// A mesh against a box, a cylinder or a mesh: corners and edges of each are measured in the other, the
 /// deepest gives the normal, and of those that agree with it the farthest out in eight directions are the

@@ -117,6 +117,8 @@ class Search {
   }
 
   double separation() const { return axis_.separation(); }
+  /// Overlap across the best flat's normal.
+  double breadth() const { return -axis_.separation_across(); }
   const Vector3& normal() const { return axis_.normal(); }
   bool is_beyond() const { return separation() > margin_; }
 
@@ -172,16 +174,22 @@ class Search {
 /// Faces first: what stands or lies on one needs no more. The thickness is the lesser extent of the two along
 /// the face's normal: 2 h(n).
 Manifold prism_manifold(const ManifoldShape& shape_a, const Pose& pose_a, const ManifoldShape& shape_b,
-                        const Pose& pose_b, double margin) {
+                        const Pose& pose_b, double margin, double least_breadth) {
   const Prism a(*shape_a.prism, pose_a), b(*shape_b.prism, pose_b);
   Search search(shape_a, a, b, margin);
   if (search.is_beyond()) return {};
+  const double breadth = search.breadth();
+  if (breadth < least_breadth && -search.separation() < least_breadth) return {};
   const Vector3 face_normal = search.normal();
   FlatContact flat(a, b, face_normal, search.separation(), margin);
-  if (flat.is_certain(2.0 * std::min(a.reach(face_normal), b.reach(face_normal)))) return flat.manifold;
+  if (flat.is_certain(2.0 * std::min(a.reach(face_normal), b.reach(face_normal)))) {
+    flat.manifold.breadth = breadth;
+    return flat.manifold;
+  }
   search.try_rest();
   if (search.is_beyond()) return {};
   if (search.normal() != face_normal) flat = {a, b, search.normal(), search.separation(), margin};
+  flat.manifold.breadth = breadth;
   return flat.found ? flat.manifold : lines_or_point(a, b, search.normal(), search.separation());
 }
 

@@ -227,6 +227,9 @@ std::vector<ParameterEntry> make_table() {
   std::vector<ParameterEntry> table{
       choice<ContactModelKind>(
           "contact_model", contact_model_names(), [](C & c) -> auto& { return c.contact_model; }),
+      choice<bool>(
+          "seed/literal", {{"true", true}, {"false", false}},
+          [](C & c) -> auto& { return c.contact.literal; }),
       number(
           "contact/object_stiffness", " [N/m]", {1, 1e9}, {1e4, 1e8},
           [](C & c) -> auto& { return c.contact.object_stiffness; }),

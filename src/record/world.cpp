@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "../scene/scene_edit.h"
@@ -68,9 +69,14 @@ struct Following {
     } else {
       world.added.erase(added);
     }
+    const Scene& scene = simulation.simulation().scene();
+    for (auto mode = world.grasps.begin(); mode != world.grasps.end();)
+      mode = find_body(scene, mode->first) ? std::next(mode) : world.grasps.erase(mode);
   }
-  void operator()(const SetParameters&) const {
+  void operator()(const SetParameters& set) const {
     set_parameters(simulation.simulation().configuration(), world);
+    for (const auto& [name, value] : set.values)
+      if (const auto object = grasp_parameter(name)) world.grasps[*object] = value;
   }
   void operator()(const PlaceObject&) const {}
   void operator()(const Restrain&) const {}
@@ -117,6 +123,7 @@ std::string to_yaml(const World& world) {
   node["scene"] = world.scene;
   for (const auto& [name, twist] : world.twists) node["object_twist"][name] = twist_node(twist);
   for (const auto& [name, value] : world.parameters) node["parameters"][name] = value;
+  for (const auto& [name, mode] : world.grasps) node["grasp"][name] = mode;
   for (const std::string& name : world.removed) node["removed"].push_back(name);
   for (const Added& added : world.added) node["added"].push_back(request_node(added.request));
   return YAML::Dump(node);
@@ -136,6 +143,7 @@ World world_from_yaml(const std::string& yaml, const RecordedFiles& files) {
         throw std::invalid_argument("recorded parameters: no text; allowed: YAML in text");
       world.parameters[entry.first.Scalar()] = entry.second.Scalar();
     }
+    for (const auto& entry : node["grasp"]) world.grasps[entry.first.Scalar()] = entry.second.Scalar();
     for (const YAML::Node& name : node["removed"]) world.removed.push_back(name.Scalar());
     for (const YAML::Node& request : node["added"]) world.added.push_back({request_in(request, files)});
     return world;
@@ -174,6 +182,10 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
   for (const std::string& name : gone_since) {
     if (const std::optional<int> body = find_body(scene, name))
       remove_body(static_cast<std::size_t>(*body), scene);
+  }
+  for (const auto& [name, mode] : world.grasps) {
+    if (const std::optional<int> body = find_body(scene, name))
+      scene.bodies[static_cast<std::size_t>(*body)].grasp = grasp_mode(mode).value_or(GraspMode::parameter);
   }
   return scene;
 }

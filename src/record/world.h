@@ -22,6 +22,7 @@ struct World {
   RecordedFiles files;                            ///< scene.urdf, scene.yaml, meshes, spawned URDFs
   std::map<std::string, Twist> twists;            ///< at the start, by object
   std::map<std::string, std::string> parameters;  ///< all that there are, as YAML
+  std::map<std::string, std::string> grasps;      ///< modes that were set while it ran, by object
   std::vector<std::string> removed;               ///< objects of the scene that are gone
   std::vector<Added> added;                       ///< what has come and is there, in its order
 };

@@ -9,10 +9,10 @@ namespace mrhi {
 namespace {
 
 /// A crowd's budget: contacts relaxed to and fro in a step, but this many turns at least, and at most.
-constexpr int kMostWork = 1000, kLeastTurns = 10, kMostTurns = 40;
+constexpr int kMostWork = 1000, kLeastTurns = 8, kMostTurns = 30;
 /// Where nothing is faster than what falls for so many steps, there are more: what comes to rest should.
 constexpr double kNearlyRests = 1.0;
-constexpr int kTurnsAtRest = 60;
+constexpr int kTurnsAtRest = 80;
 /// A turn that changes velocities by less, as a part of what contacts have made of them, is the last.
 constexpr double kConverged = 1e-6;
 /// A contact's point is within this part of its body's radius, margin and all.
@@ -24,10 +24,12 @@ constexpr double kNeverYields = 1e6;
 constexpr double kNotParting = 1e-3;
 /// Newton's method for one push.
 constexpr int kMostGuesses = 12;
-/// What is apart is looked at after so many turns.
-constexpr int kLookRound = 4;
-/// What will press if it closes faster by this part of what contacts have made of velocities is taken in.
-constexpr double kIdle = 0.01;
+/// Contacts of a patch that are solved together, at most.
+constexpr int kMostTogether = 4;
+/// A patch that parts in so many sweeps is relaxed contact by contact for the rest of the step.
+constexpr int kMaxPartings = 3;
+/// Sweeps through a patch some of whose contacts do not press.
+constexpr int kInnerSweeps = 3;
 
 /// W = 1/m - [r]x I^-1 [r]x: change of a point's velocity by an impulse there (Eq. 12 of the paper) [1/kg].
 Matrix3 response_of(double inverse_mass, const Matrix3& inverse_inertia, const Vector3& arm) {
@@ -50,6 +52,10 @@ double most_across(const Matrix3& response, const Vector3& n) {
   return 0.5 * (tt + ss) + std::sqrt(0.25 * (tt - ss) * (tt - ss) + ts * ts);
 }
 
+bool same_shapes(const BodyContactKey& x, const BodyContactKey& y) {
+  return x.a == y.a && x.b == y.b && x.shape_a == y.shape_a && x.shape_b == y.shape_b;
+}
+
 }  // namespace
 
 // u* = (p / m + h g, I^-1 L) of each body, on which impulses then act at once: unlike in BodyProblem what
@@ -68,13 +74,15 @@ void CrowdProblem::begin(const ContactStep& step, const Island& island,
   }
   bodies_.push_back({{Vector3::Zero(), Vector3::Zero()}, 0.0, Matrix3::Zero()});
   configuration_ = &configuration;
+  carried_ = &carried;
   contacts_.clear();
   points_.clear();
+  patches_.clear();
   linked_.clear();
   apart_.clear();
   add_hands(step, island);
   add_grips(step, island);
-  add_links(step, island, carried);
+  add_links(step, island);
 }
 
 void CrowdProblem::add_body(const mrhi::Body& body, const BodyState& state, const ContactStep& step) {
@@ -85,10 +93,10 @@ void CrowdProblem::add_body(const mrhi::Body& body, const BodyState& state, cons
   longest_arm_ = std::max(longest_arm_, kRoom * body.bounding_radius);
 }
 
-template <typename Touch>
-SpringContact<double>& CrowdProblem::add_spring(const ContactStep& step, const Touch& touch) {
+template <typename AnyContact>
+SpringContact<double>& CrowdProblem::add_spring(const ContactStep& step, const AnyContact& contact) {
   contacts_.emplace_back();
-  make_spring(step, *configuration_, touch, contacts_.back());
+  make_spring(step, *configuration_, contact, contacts_.back());
   return contacts_.back();
 }
 
@@ -98,6 +106,7 @@ void CrowdProblem::add_hands(const ContactStep& step, const Island& island) {
     for (std::size_t i = body.first; i < body.last; ++i) {
       if (step.contacts[i].ignored) continue;
       add_point(add_spring(step, step.contacts[i]), still, number_[body.body], Vector3::Zero());
+      patches_.push_back({points_.size() - 1, 1, 0, {}, {}});
     }
   }
 }
@@ -111,34 +120,48 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
         contacts_.emplace_back();
         make_grip_spring(step, *configuration_, grip, point, contacts_.back());
         add_point(contacts_.back(), still, number_[body.body], Vector3::Zero());
+        patches_.push_back({points_.size() - 1, 1, 0, {}, {}});
       }
     }
   }
 }
 
-void CrowdProblem::add_links(const ContactStep& step, const Island& island,
-                             const std::vector<Vector3>& carried) {
-  for (const Link& link : island.links) {
-    const Vector3& borne = carried[link.index];
-    if (borne == Vector3::Zero()) {
-      apart_.push_back(link.index);
-      continue;
+/// Contacts come sorted, so those of a pair of shapes follow each other.
+void CrowdProblem::add_links(const ContactStep& step, const Island& island) {
+  const std::vector<Vector3>& carried = *carried_;
+  for (const Link* link = island.links.begin(); link != island.links.end();) {
+    const BodyContactKey& key = step.body_contacts[link->index].key;
+    Touch touch{link->index, link->index};
+    bool bore = false;
+    for (; link != island.links.end() && same_shapes(step.body_contacts[link->index].key, key); ++link) {
+      bore = bore || carried[touch.last] != Vector3::Zero();
+      ++touch.last;
     }
-    add_link(step, link.index);
-    carry(borne, points_.back());
+    if (step.body_contacts[touch.first].share <= 0.0) continue;  // too narrow a strip for springs
+    if (bore) {
+      add_patch(step, touch);
+    } else {
+      apart_.push_back(touch);
+    }
   }
   seen_.clear();
   least_missing_ = 0.0;
-  // What rests has its velocities already, by what its contacts bore: beside it nothing is about to press.
-  const double fall = step_ * step.gravity.norm();
-  admit(step, nearly_rests(step) ? kIdle * fall : fall);
+  admit(step);
 }
 
-void CrowdProblem::add_link(const ContactStep& step, std::size_t index) {
-  const BodyContact& touch = step.body_contacts[index];
-  const int a = step.scene.bodies[touch.key.a].fixed ? static_cast<int>(free_.size()) : number_[touch.key.a];
-  add_point(add_spring(step, touch), a, number_[touch.key.b], touch.arm_a);
-  linked_.push_back(index);
+void CrowdProblem::add_patch(const ContactStep& step, const Touch& touch) {
+  const std::vector<Vector3>& carried = *carried_;
+  Patch patch{points_.size(), static_cast<int>(touch.last - touch.first), 0, {}, {}};
+  for (std::size_t index = touch.first; index < touch.last; ++index) {
+    const BodyContact& contact = step.body_contacts[index];
+    const int a =
+        step.scene.bodies[contact.key.a].fixed ? static_cast<int>(free_.size()) : number_[contact.key.a];
+    add_point(add_spring(step, contact), a, number_[contact.key.b], contact.arm_a);
+    linked_.push_back(index);
+    if (carried[index] != Vector3::Zero()) carry(carried[index], points_.back());
+  }
+  weigh(patch);
+  patches_.push_back(patch);
 }
 
 /// How much faster the surfaces would have to close to press on each other [m/s].
@@ -147,13 +170,19 @@ void CrowdProblem::add_link(const ContactStep& step, std::size_t index) {
 ///
 /// as d+ = d - e n.u > 0 is what presses. e is not the same on both sides of d = 0 (look_ahead in
 /// spring_contact.cpp).
-double CrowdProblem::missing_speed(const BodyContact& touch) const {
-  const Motion& b = bodies_[static_cast<std::size_t>(number_[touch.key.b])].motion;
-  const int number = number_[touch.key.a];
-  const Motion& a = (number < 0 ? bodies_.back() : bodies_[static_cast<std::size_t>(number)]).motion;
-  const Vector3 velocity = a.velocity + a.spin.cross(touch.arm_a) - b.velocity - b.spin.cross(touch.arm_b);
-  const double ahead = touch.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
-  return touch.normal.dot(velocity) - touch.depth / ahead;
+double CrowdProblem::missing_speed(const ContactStep& step, const Touch& touch) const {
+  double least = kNever;
+  for (std::size_t i = touch.first; i < touch.last; ++i) {
+    const BodyContact& contact = step.body_contacts[i];
+    const Motion& b = bodies_[static_cast<std::size_t>(number_[contact.key.b])].motion;
+    const int number = number_[contact.key.a];
+    const Motion& a = (number < 0 ? bodies_.back() : bodies_[static_cast<std::size_t>(number)]).motion;
+    const Vector3 velocity =
+        a.velocity + a.spin.cross(contact.arm_a) - b.velocity - b.spin.cross(contact.arm_b);
+    const double ahead = contact.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
+    least = std::min(least, contact.normal.dot(velocity) - contact.depth / ahead);
+  }
+  return least;
 }
 
 /// By how much two surfaces may close faster than when contacts were last looked at, at most [m/s].
@@ -170,18 +199,18 @@ double CrowdProblem::faster_since() const {
   return 2.0 * most;
 }
 
-/// Takes in what was apart and will now press, or would if it closed faster by `slow`; true if there is any.
+/// Takes in what was apart and will now press; true if there is any.
 /// What is taken in is not left out again in this step: it may come to bear nothing, which costs little.
-bool CrowdProblem::admit(const ContactStep& step, double slow) {
-  if (apart_.empty() || faster_since() + slow < least_missing_) return false;
+bool CrowdProblem::admit(const ContactStep& step) {
+  if (apart_.empty() || faster_since() < least_missing_) return false;
   seen_.clear();
   for (const Body& body : bodies_) seen_.push_back(body.motion);
   least_missing_ = kNever;
   const std::size_t before = points_.size();
-  const auto kept = std::remove_if(apart_.begin(), apart_.end(), [&](std::size_t index) {
-    const double missing = missing_speed(step.body_contacts[index]);
-    const bool presses = missing < slow;
-    if (presses) add_link(step, index);
+  const auto kept = std::remove_if(apart_.begin(), apart_.end(), [&](const Touch& touch) {
+    const double missing = missing_speed(step, touch);
+    const bool presses = missing < 0.0;
+    if (presses) add_patch(step, touch);
     if (!presses) least_missing_ = std::min(least_missing_, missing);
     return presses;
   });
@@ -200,7 +229,6 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
   point.normal = vector(spring.normal);
   point.arm_a = arm_a, point.arm_b = vector(contact.arm);
   point.drive = vector(contact.drive);
-  point.stretch = vector(spring.stretch);
   point.depth = spring.depth, point.ahead = spring.ahead, point.fade = spring.fade;
   point.stiffness = step_ * spring.stiffness;
   point.friction = spring.friction;
@@ -208,7 +236,7 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
   point.soft = spring.pad > 0.0 || spring.yields < kNeverYields;
   point.twists = spring.twist_stiffness > 0.0;
   point.given = {0.0, Vector3::Zero(), 0.0};
-  weigh(point);
+  weigh(vector(spring.stretch), point);
   return point;
 }
 
@@ -224,7 +252,7 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
 /// k has the step in it (N s/m). Signs differ because n points from b to a and the push on b is -p n, which
 /// parts them, while t is along the sliding, which it slows down. Put in as it stands t' = k (s + e u),
 /// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
-void CrowdProblem::weigh(Point& point) const {
+void CrowdProblem::weigh(const Vector3& stretch, Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
                            response_of(b.inverse_mass, b.inverse_inertia, point.arm_b);
@@ -232,14 +260,38 @@ void CrowdProblem::weigh(Point& point) const {
   point.normal_mobility = point.normal.dot(by_push);
   // W n has a part across n where the arm is not along it: a push makes the surfaces slide as well.
   point.slides = by_push - point.normal_mobility * point.normal;
-  point.tangential_mobility = most_across(response, point.normal);
+  const double tangential_mobility = most_across(response, point.normal);
+  point.compliance = 1.0 / (point.stiffness * point.ahead);
   point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
-  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * point.tangential_mobility);
+  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * tangential_mobility);
   point.kept = 1.0 - give;
   point.pull = give * point.stiffness * point.ahead;
-  point.pulled = (give * point.stiffness) * point.stretch;
-  point.turn_a = a.inverse_inertia * cross_matrix(point.arm_a);
-  point.turn_b = b.inverse_inertia * cross_matrix(point.arm_b);
+  point.pulled = (give * point.stiffness) * stretch;
+  point.lever_a = point.arm_a.cross(point.normal), point.lever_b = point.arm_b.cross(point.normal);
+  point.turned_a = a.inverse_inertia * point.lever_a, point.turned_b = b.inverse_inertia * point.lever_b;
+}
+
+/// Pushes p of a patch change its rates by W p, and springs bear k (d - e u), k with the step in it:
+///
+///     (W + 1/(k e)) p = d / e - u_0,      W_ij = 1/m_a + 1/m_b + l_ai.I_a^-1 l_aj + l_bi.I_b^-1 l_bj,   l =
+///     r x n
+///
+/// Unused rows are the identity's. 1/(k e) keeps it regular, though four points bear three loads.
+void CrowdProblem::weigh(Patch& patch) const {
+  if (patch.count < 2 || patch.count > kMostTogether) return;
+  Eigen::Matrix4d& system = patch.system;
+  system.setIdentity();
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& x = points_[patch.first + static_cast<std::size_t>(i)];
+    const double inverse_mass = bodies_[static_cast<std::size_t>(x.a)].inverse_mass +
+                                bodies_[static_cast<std::size_t>(x.b)].inverse_mass;
+    for (int j = 0; j <= i; ++j) {
+      const Point& y = points_[patch.first + static_cast<std::size_t>(j)];
+      system(i, j) = system(j, i) = inverse_mass + x.lever_a.dot(y.turned_a) + x.lever_b.dot(y.turned_b);
+    }
+    system(i, i) += x.compliance;
+  }
+  patch.inverse = system.inverse();
 }
 
 // The last step's force, by this step's normal, as the first guess: f = t - p n, so p = -n.f. One that
@@ -257,14 +309,12 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
 }
 
 //     v_b += J / m_b,  w_b += I_b^-1 (b x J),      v_a and w_a by -J
-//
-// The turns' matrices I^-1 [r]x are made once for all turns.
 [[gnu::always_inline]] inline void CrowdProblem::push(const Point& point, const Vector3& impulse) {
   Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   a.motion.velocity -= a.inverse_mass * impulse;
-  a.motion.spin -= point.turn_a * impulse;
+  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(impulse);
   b.motion.velocity += b.inverse_mass * impulse;
-  b.motion.spin += point.turn_b * impulse;
+  b.motion.spin += b.inverse_inertia * point.arm_b.cross(impulse);
 }
 
 /// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
@@ -348,6 +398,89 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
   if (point.twists) twist(i);
 }
 
+/// Gives a patch's pushes what they ask for together, where none of them would pull and nothing parts;
+/// returns false and changes nothing otherwise.
+///
+///     p' = p + (W + 1/(k e))^-1 (d / e - u - p / (k e)),     u with p in it
+///
+/// So a load on a face turns nothing that it would not turn at the end: points solved one after the other tip
+/// a box to and fro, and against what is beside it.
+bool CrowdProblem::push_together(const Patch& patch) {
+  Point* const points = &points_[patch.first];
+  const Body &a = bodies_[static_cast<std::size_t>(points->a)],
+             &b = bodies_[static_cast<std::size_t>(points->b)];
+  const double along = points->normal.dot(a.motion.velocity - b.motion.velocity);
+  Eigen::Vector4d missing = Eigen::Vector4d::Zero();
+  bool open = true;
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& point = points[i];
+    const double rate = along + point.lever_a.dot(a.motion.spin) - point.lever_b.dot(b.motion.spin);
+    missing[i] = point.depth / point.ahead - rate - point.compliance * point.given.push;
+    open = open && missing[i] <= 0.0 && point.given.push == 0.0;
+  }
+  if (open) return true;
+  Eigen::Vector4d more = patch.inverse * missing;
+  bool pulls = false;
+  for (int i = 0; i < patch.count; ++i) pulls = pulls || points[i].given.push + more[i] < 0.0;
+  if (pulls) {
+    // Not all four press: one after the other, none pulling (projected Gauss-Seidel).
+    more.setZero();
+    for (int sweep = 0; sweep < kInnerSweeps; ++sweep) {
+      for (int i = 0; i < patch.count; ++i) {
+        const double change = std::max(missing[i] / patch.system(i, i), -(points[i].given.push + more[i]));
+        more[i] += change;
+        missing -= change * patch.system.col(i);
+      }
+    }
+  }
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& point = points[i];
+    const double push = point.given.push + more[i];
+    if (push > 0.0 && (point.depth / point.ahead - point.compliance * push) * point.fade > kNotParting)
+      return false;
+  }
+  double sum = 0.0;
+  Vector3 turn_a = Vector3::Zero(), turn_b = Vector3::Zero();
+  for (int i = 0; i < patch.count; ++i) {
+    Point& point = points[i];
+    point.given.push += more[i];
+    sum += more[i];
+    turn_a += more[i] * point.turned_a;
+    turn_b += more[i] * point.turned_b;
+  }
+  Motion &of_a = bodies_[static_cast<std::size_t>(points->a)].motion,
+         &of_b = bodies_[static_cast<std::size_t>(points->b)].motion;
+  of_a.velocity += (sum * a.inverse_mass) * points->normal;
+  of_a.spin += turn_a;
+  of_b.velocity -= (sum * b.inverse_mass) * points->normal;
+  of_b.spin -= turn_b;
+  return true;
+}
+
+/// Gives a contact the drag that it asks for under its push.
+[[gnu::always_inline]] inline void CrowdProblem::drag(Point& point) {
+  const double limit = point.friction * point.given.push + point.bond;
+  if (limit == 0.0 && point.given.drag == Vector3::Zero()) return;
+  const Vector3 velocity = relative_velocity(point);
+  Vector3 drag = wanted_drag(point, velocity - point.normal.dot(velocity) * point.normal);
+  const double squared = drag.squaredNorm();
+  if (squared > limit * limit) drag *= limit / std::sqrt(squared);
+  push(point, drag - point.given.drag);
+  point.given.drag = drag;
+}
+
+void CrowdProblem::relax(Patch& patch) {
+  const auto count = static_cast<std::size_t>(patch.count);
+  if (patch.count >= 2 && patch.count <= kMostTogether && patch.partings < kMaxPartings) {
+    if (push_together(patch)) {
+      for (std::size_t i = 0; i < count; ++i) drag(points_[patch.first + i]);
+      return;
+    }
+    ++patch.partings;
+  }
+  for (std::size_t i = 0; i < count; ++i) relax(patch.first + i);
+}
+
 // As the drag, about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
 // to 2/3 mu a p. Body a is a hand, which nothing turns.
 void CrowdProblem::twist(std::size_t i) {
@@ -377,8 +510,8 @@ bool CrowdProblem::pressed() const {
 void CrowdProblem::turn() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) motions_before_[i] = bodies_[i].motion;
   for (std::size_t i = 0; i < points_.size(); ++i) given_before_[i] = points_[i].given;
-  for (std::size_t i = 0; i < points_.size(); ++i) relax(i);
-  for (std::size_t i = points_.size(); i-- > 0;) relax(i);
+  for (Patch& patch : patches_) relax(patch);
+  for (std::size_t i = patches_.size(); i-- > 0;) relax(patches_[i]);
 }
 
 /// Of the bodies' velocities in the last turn, at most [m/s].
@@ -451,8 +584,7 @@ void CrowdProblem::solve(const ContactStep& step) {
     turn();
     const double made = made_by_contacts();
     const bool done = changed() <= kConverged * made;
-    const bool more = (done || i % kLookRound == 0) && admit(step, kIdle * made);
-    if (done && !more) break;
+    if (!admit(step) && done) break;
   }
 }
 
@@ -469,7 +601,7 @@ void CrowdProblem::report(std::size_t i) {
   contact.response.push = point.given.push / step_;
   contact.response.torque = point.given.twist / step_;
   contact.response.wanted_squared = wanted_drag(point, sliding).squaredNorm() / (step_ * step_);
-  contact.response.drawn = triple(point.stretch + point.ahead * sliding);
+  contact.response.drawn = triple(vector(contact.spring.stretch) + point.ahead * sliding);
   contact.spring.slip_limit = (point.friction * point.given.push + point.bond) / step_;
 }
 
@@ -499,7 +631,10 @@ void CrowdProblem::finish(ContactStep& step, const Island& island) {
   }
   auto contact = settle_hands(step, island, contacts_.begin());
   for (const std::size_t index : linked_) settle(step, *contact++, step.body_contacts[index]);
-  for (const std::size_t index : apart_) step.body_contacts[index].friction = Friction::sticking;
+  for (const Touch& touch : apart_) {
+    for (std::size_t i = touch.first; i < touch.last; ++i)
+      step.body_contacts[i].friction = Friction::sticking;
+  }
 }
 
 }  // namespace mrhi

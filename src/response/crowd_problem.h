@@ -16,7 +16,8 @@ namespace mrhi {
 /// on both bodies, so momentum is kept whenever it ends. Cost is linear in the contacts. Keeps its memory.
 class CrowdProblem {
  public:
-  /// `carried` is what each of the step's contacts between bodies bore in the last step [N].
+  /// `carried` is what each of the step's contacts between bodies bore in the last step [N]; kept until
+  /// solved.
   void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
              const std::vector<Vector3>& carried);
   void solve(const ContactStep& step);
@@ -43,13 +44,14 @@ class CrowdProblem {
   /// A contact as it is relaxed.
   struct Point {
     int a, b;
-    Vector3 normal, arm_a, arm_b, drive, stretch;
+    Vector3 normal, arm_a, arm_b, drive;
     Given given;
-    // Change of the relative velocity by impulses along the normal and, at most, along the surface [1/kg].
-    double normal_mobility, tangential_mobility;
-    Vector3 slides;          // the same across n by a push of one [1/kg]
-    Matrix3 turn_a, turn_b;  // change of the spins by an impulse [1/(kg m)]
+    double normal_mobility;      // change of the rate by an impulse along the normal [1/kg]
+    Vector3 slides;              // the same across n by a push of one [1/kg]
+    Vector3 lever_a, lever_b;    // r x n: of the normal at each body [m]
+    Vector3 turned_a, turned_b;  // I^-1 (r x n): change of the spins by a push of one [1/(kg m)]
     double depth, ahead, fade;
+    double compliance;  // 1 / (k e), of the pushes [1/kg]
     double stiffness;   // times the step [N s/m]
     double firm;        // of it along n, what bodies that give way leave
     double kept, pull;  // parts of the last drag, and of the sliding, in the next one
@@ -59,15 +61,28 @@ class CrowdProblem {
     bool twists;  // a hand's, which turns about the normal with what it holds
   };
 
+  /// Contacts of one pair of shapes, which share a normal and are relaxed together; a hand's is alone.
+  struct Patch {
+    std::size_t first;  // in points_
+    int count;
+    int partings;                     // sweeps in which it could not be solved together
+    Eigen::Matrix4d system, inverse;  // what its pushes do to its rates, springs included [1/kg], [kg]
+  };
+  /// Contacts of one pair of shapes, as a range in ContactStep::body_contacts.
+  struct Touch {
+    std::size_t first, last;
+  };
+
   void add_body(const mrhi::Body& body, const BodyState& state, const ContactStep& step);
   void add_hands(const ContactStep& step, const Island& island);
   void add_grips(const ContactStep& step, const Island& island);
-  void add_links(const ContactStep& step, const Island& island, const std::vector<Vector3>& carried);
-  void add_link(const ContactStep& step, std::size_t index);
-  template <typename Touch>
-  SpringContact<double>& add_spring(const ContactStep& step, const Touch& touch);
+  void add_links(const ContactStep& step, const Island& island);
+  void add_patch(const ContactStep& step, const Touch& touch);
+  void weigh(Patch& patch) const;
+  template <typename AnyContact>
+  SpringContact<double>& add_spring(const ContactStep& step, const AnyContact& contact);
   Point& add_point(const SpringContact<double>& contact, int a, int b, const Vector3& arm_a);
-  void weigh(Point& point) const;
+  void weigh(const Vector3& stretch, Point& point) const;
   void carry(const Vector3& borne, Point& point);
 
   Vector3 relative_velocity(const Point& point) const;
@@ -77,12 +92,15 @@ class CrowdProblem {
   double find_faded_push(std::size_t i, double rate, double plain) const;
   static Vector3 wanted_drag(const Point& point, const Vector3& sliding);
   void relax(std::size_t i);
+  void relax(Patch& patch);
+  bool push_together(const Patch& patch);
+  void drag(Point& point);
   void twist(std::size_t i);
 
   bool nearly_rests(const ContactStep& step) const;
-  double missing_speed(const BodyContact& touch) const;
+  double missing_speed(const ContactStep& step, const Touch& touch) const;
   double faster_since() const;
-  bool admit(const ContactStep& step, double slow);
+  bool admit(const ContactStep& step);
   void turn();
   double changed() const;
   double made_by_contacts() const;
@@ -90,16 +108,18 @@ class CrowdProblem {
   void report(std::size_t i);
 
   const ContactConfiguration* configuration_ = nullptr;
+  const std::vector<Vector3>* carried_ = nullptr;
   double step_ = 0.0;
   std::vector<Body> bodies_;  // and at last one that nothing moves
   std::vector<Motion> free_;  // at the step's end without contact
   std::vector<Point> points_;
+  std::vector<Patch> patches_;
   std::vector<SpringContact<double>> contacts_;  // the same
   std::vector<std::size_t> linked_;              // of the last of them: in ContactStep::body_contacts
-  std::vector<std::size_t> apart_;  // contacts between bodies that as it is will not press: likewise
-  std::vector<Motion> seen_;        // when those were last looked at
-  double least_missing_ = 0.0;      // of the speed at which they would have to close then [m/s]
-  double longest_arm_ = 0.0;        // of any contact [m]
+  std::vector<Touch> apart_;                     // between bodies, none of whose contacts will press as it is
+  std::vector<Motion> seen_;                     // when those were last looked at
+  double least_missing_ = 0.0;                   // of the speed at which they would have to close then [m/s]
+  double longest_arm_ = 0.0;                     // of any contact [m]
   // Before a turn, and where turns lead to.
   std::vector<Motion> motions_before_, motions_along_;
   std::vector<Given> given_before_, given_along_;

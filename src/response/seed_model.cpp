@@ -5,9 +5,8 @@
 namespace mrhi {
 namespace {
 
-/// The paper's two phases, equation by equation: an impulse when a phalanx strikes (3.4.1), then penetration
-/// forces with Coulomb friction while it touches (3.4.2). To the letter with contact/damping and
-/// contact/release_fade false; docs/contact.md has the differences otherwise.
+/// The paper's two phases: an impulse when a phalanx strikes (3.4.1), then penetration forces with Coulomb
+/// friction while it touches (3.4.2), as docs/contact.md reads the equations.
 class SeedModel : public ContactModel {
  public:
   explicit SeedModel(const PenetrationLaw& law) : law_(law) {}
@@ -19,10 +18,76 @@ class SeedModel : public ContactModel {
   ImpactSolver impacts_;
 };
 
+/// The same as the equations are printed (seed/literal). Two things are not taken as printed, as nothing
+/// could be held or pushed then: the object gets the opposite of Eqs. 9 and 16, and the penetration phase is
+/// confined to where there is penetration, f.n > 0.
+class LiteralSeedModel : public ContactModel {
+ public:
+  void respond(ContactStep& step) override;
+
+ private:
+  void strike(ContactStep& step, Contact& contact);
+
+  std::vector<BodyImpact> impact_;
+};
+
+/// Eqs. 8 to 15, point by point: J = j n, j = -(1 + e) u / n'Kn with K = 1/m "determined by the mass", and
+/// dv = J / m without a spin. Once per approach, at the first touch.
+void LiteralSeedModel::strike(ContactStep& step, Contact& contact) {
+  contact.impulse.setZero();
+  if (contact.ignored || contact.struck) return;
+  const Body& body = step.scene.bodies[contact.key.body];
+  BodyState& state = step.bodies[contact.key.body];
+  const double approach = contact.normal.dot(relative_velocity(contact, body, state));
+  const double time = time_to_close(-contact.depth, approach, 0.0);
+  if (!(approach < 0.0) || time > step.step || body.fixed) return;
+  const double impulse = -(1.0 + body.material.restitution) * approach * body.mass;
+  contact.impulse = -impulse * contact.normal;
+  contact.time_of_impact = time;
+  contact.struck = true;
+  state.linear_momentum += contact.impulse;
+  impact_.assign(1, {contact.key.body, contact.impulse, Vector3::Zero(), time});
+  step.changes.note_impacts(impact_, step.bodies);
+}
+
+/// Eqs. 16 to 20 for the centroid of the phalanx, p. The god object c is the point of the surface under it as
+/// the touch began: the contact's, which goes with the place s of the axis that presses, moved to the middle.
+///
+///     f = gamma (c - p),    d = n.(c - p),    s_t = (p - c) - n n.(p - c)
+///     on the object:  -gamma d n + gamma s_t           |s_t| <= mu d      (Eq. 19)
+///                     -gamma d n + phi gamma s_t       otherwise          (Eq. 20)
+Vector3 literal_force(const Material& material, Contact& contact) {
+  contact.force.setZero();
+  const Vector3& n = contact.normal;
+  const Vector3 to_middle = (0.5 - contact.axis_parameter) * contact.axis;
+  const double depth = contact.depth - contact.radius - n.dot(to_middle);
+  if (contact.ignored || depth <= 0.0) return contact.force;
+  const Vector3 reach = contact.hand_point - contact.point;
+  const Vector3 stretch = reach - n.dot(reach) * n;
+  const bool inside = stretch.norm() <= material.static_friction * depth;
+  contact.friction = inside ? Friction::sticking : Friction::slipping;
+  const double kept = inside ? 1.0 : material.dynamic_friction;
+  contact.force = material.stiffness * (kept * stretch - depth * n);
+  return contact.force;
+}
+
+void LiteralSeedModel::respond(ContactStep& step) {
+  for (Contact& contact : step.contacts) strike(step, contact);
+  for (Contact& contact : step.contacts) {
+    contact.struck = contact.struck || contact.depth > 0.0;
+    const Body& body = step.scene.bodies[contact.key.body];
+    const Vector3 force = literal_force(body.material, contact);
+    if (body.fixed) continue;
+    const Vector3 to_middle = (0.5 - contact.axis_parameter) * contact.axis;
+    const Vector3 under_it = contact.point + to_middle - contact.normal.dot(to_middle) * contact.normal;
+    apply_impulse(step.step * force, under_it, step.bodies[contact.key.body]);
+  }
+}
+
 }  // namespace
 
 // The order is the paper's, 3.4.1 and then 3.4.2, and it matters: the springs' forces fade by the
-// velocities that the blow has left. Without friction in the blow, since J = j n (Eq. 9).
+// velocities that the impact has left. Without friction in the impact, since J = j n (Eq. 9).
 void SeedModel::respond(ContactStep& step) {
   islands_.build(step);
   impacts_.resolve(step, islands_, ImpactFriction::none);
@@ -34,6 +99,7 @@ void SeedModel::respond(ContactStep& step) {
 /// The paper's stiffness.
 extern const ContactModelEntry seed_model{
     "seed", 1, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
+      if (configuration.literal) return std::make_unique<LiteralSeedModel>();
       return std::make_unique<SeedModel>(penetration_law(configuration));
     }};
 

@@ -401,8 +401,7 @@ bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Reque
     tuning_.show();
     std::string message;
     for (const auto& [name, value] : values)
-      message += (message.empty() ? "" : ", ") + name + " is " +
-                 parameter_text(live_.simulation().configuration(), name);
+      message += (message.empty() ? "" : ", ") + name + " is " + live_.parameter(name);
     return message;
   });
 }

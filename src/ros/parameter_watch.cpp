@@ -31,7 +31,8 @@ Configuration after(const SimulationInput& message, Configuration configuration)
   }
   const Change change = change_from_yaml(message.text, files_of(message));
   if (const auto* set = std::get_if<SetParameters>(&change)) {
-    for (const auto& [name, value] : set->values) set_parameter(configuration, name, value);
+    for (const auto& [name, value] : set->values)
+      if (!grasp_parameter(name)) set_parameter(configuration, name, value);
   }
   return configuration;
 }

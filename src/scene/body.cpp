@@ -87,6 +87,26 @@ void find_principal_axes(Body& body) {
 
 }  // namespace
 
+std::optional<GraspMode> grasp_mode(const std::string& name) {
+  for (const GraspMode mode : {GraspMode::free, GraspMode::assist, GraspMode::never})
+    if (name_of(mode) == name) return mode;
+  return {};
+}
+
+std::string name_of(GraspMode mode) {
+  switch (mode) {
+    case GraspMode::free:
+      return "free";
+    case GraspMode::assist:
+      return "assist";
+    case GraspMode::never:
+      return "never";
+    case GraspMode::parameter:
+      break;
+  }
+  return "";
+}
+
 void complete(Body& body) {
   body.flies = !body.fixed;
   body.inverse_inertia = Matrix3::Zero();

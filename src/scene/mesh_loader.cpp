@@ -140,9 +140,7 @@ std::string plain_stl(const std::string& file) {
 }
 
 /// Assimp reads what is given to it without any limit, and a small file may stand for an endless scene.
-TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale) {
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assimp::Importer& importer) {
   const std::string stl = lower_extension(file) == ".stl" ? plain_stl(file) : "";
   const aiScene* scene =
       stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
@@ -158,13 +156,13 @@ TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale) {
   return collector.take();
 }
 
-LoadedMesh read(const MeshFile& source) {
+LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
   LoadedMesh loaded;
   try {
     check_format(source.file);
     check_size(source.file);
     check_fetched(source.file);
-    loaded.mesh = read_by_assimp(source.file, source.scale);
+    loaded.mesh = read_by_assimp(source.file, source.scale, importer);
     const std::size_t count = loaded.mesh.triangles.size();
     if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
     if (count > kMostTriangles)
@@ -181,8 +179,10 @@ LoadedMesh read(const MeshFile& source) {
 std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
   const std::string bytes = run_in_child(kLimits, [&] {
     std::string all;
+    Assimp::Importer importer;  // one for all: making it takes longer than a small file
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     for (const MeshFile& file : files) {
-      const LoadedMesh loaded = read(file);
+      const LoadedMesh loaded = read(file, importer);
       append(std::vector<char>(loaded.problem.begin(), loaded.problem.end()), all);
       append(loaded.problem.empty() ? loaded.mesh.vertices : std::vector<Vector3>{}, all);
       append(loaded.problem.empty() ? loaded.mesh.triangles : std::vector<std::array<int, 3>>{}, all);

@@ -15,6 +15,7 @@ using Element = YamlElement;
 /// [kg].
 constexpr Range kOperatorMass{10, 1000};
 constexpr Range kRestraintReach{0, 3};  // [m]
+constexpr Range kStart{-900, 900};      // of the frame, on each axis: its centre of mass is near [m]
 constexpr Range kTetherLength{0.001, 100};
 
 /// Radii of gyration of a person who stands upright, about x (to the right), y (ahead) and z (up) [m].
@@ -85,7 +86,7 @@ void read_operator(const std::string& name, const Element& element, Scene& scene
     if (key == "restraint") op.restraint = read_body(given, true, scene);
     if (key == "reach") op.reach = read_number(given, kRestraintReach, " m");
     if (key != "start") continue;
-    const Twist numbers = read_six(given, body_limits::kPlace, {-2 * M_PI, 2 * M_PI}, true);
+    const Twist numbers = read_six(given, kStart, {-2 * M_PI, 2 * M_PI}, true);
     start = {numbers.linear, Quaternion(Eigen::AngleAxisd(numbers.angular.z(), Vector3::UnitZ()) *
                                         Eigen::AngleAxisd(numbers.angular.y(), Vector3::UnitY()) *
                                         Eigen::AngleAxisd(numbers.angular.x(), Vector3::UnitX()))};
@@ -97,6 +98,7 @@ void read_operator(const std::string& name, const Element& element, Scene& scene
   body.inertia = moments.asDiagonal();
   body.link_in_body.position = -centre;
   body.start = {start * centre, start.orientation};
+  complete(body);
   op.body = static_cast<int>(scene.bodies.size());
   scene.bodies.push_back(body);
   scene.operators.push_back(op);

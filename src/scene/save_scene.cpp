@@ -216,6 +216,7 @@ class Writer {
         if (body.own_material.*field.own)
           root["materials"][body.name][field.name] = text::exact(body.material.*field.value);
       }
+      if (body.grasp != GraspMode::parameter) root["grasp"][body.name] = name_of(body.grasp);
       const Vector3 &v = body.start_twist.linear, &w = body.start_twist.angular;
       if (!body.fixed && !body.is_operator && !(v.isZero(0.0) && w.isZero(0.0)))
         root["twists"][body.name] = six(v, w);

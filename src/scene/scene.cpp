@@ -11,6 +11,20 @@ std::optional<int> find_body(const Scene& scene, const std::string& name) {
   return {};
 }
 
+std::vector<std::string> graspable_bodies(const Scene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto body = static_cast<int>(b);
+    if (!scene.bodies[b].fixed && floating_root(scene, body).value_or(body) == body)
+      names.push_back(scene.bodies[b].name);
+  }
+  return names;
+}
+
+GraspMode grasp_of(const Scene& scene, int body) {
+  return scene.bodies[static_cast<std::size_t>(floating_root(scene, body).value_or(body))].grasp;
+}
+
 Body& free_body(Scene& scene, const std::string& name) {
   std::string names;
   for (Body& body : scene.bodies) {

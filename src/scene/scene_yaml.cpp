@@ -46,6 +46,15 @@ void read_materials(const Element& element, Scene& scene) {
   }
 }
 
+void read_grasps(const Element& element, Scene& scene) {
+  for (const std::string& link : checked_keys(element, graspable_bodies(scene))) {
+    const Element given = element.at(link);
+    const auto mode = given.node.IsScalar() ? grasp_mode(given.node.Scalar()) : std::nullopt;
+    if (!mode) given.refuse(kGraspModes);
+    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].grasp = *mode;
+  }
+}
+
 /// Of bodies at the start, as the service's: [vx, vy, vz, wx, wy, wz]. Joints take the part that they let
 /// through.
 void read_twists(const Element& element, Scene& scene) {
@@ -74,13 +83,15 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
     const Element root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
     const std::vector<std::string> keys = checked_keys(
-        root, {"gravity", "bounds", "materials", "twists", "joints", "operator", "operators", "tethers"});
+        root,
+        {"gravity", "bounds", "materials", "grasp", "twists", "joints", "operator", "operators", "tethers"});
     const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
     for (const std::string& key : keys) {
       const Element element = root.at(key);
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);
+      if (key == "grasp") read_grasps(element, scene);
       if (key == "twists") read_twists(element, scene);
       if (key == "joints") read_joint_settings(element, scene);
     }

@@ -53,51 +53,58 @@ bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) {
          std::max(kMinClosingSpeed, kMinClosingRatio * std::max(tip, base));
 }
 
-std::optional<ClosestFeatures> ClosingHand::nearest(const Capsule& capsule, int body, const Pose& pose,
-                                                    double margin) const {
-  std::optional<ClosestFeatures> result;
-  const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
-  for (int shape = 0; shape < shapes; ++shape) {
-    const auto features = finder_.closest(capsule, body, shape, pose, margin);
-    if (features && (!result || features->distance < result->distance)) result = features;
+std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule, const Object& object,
+                                                         const Poses& poses, double margin) const {
+  std::optional<Nearest> result;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    const int body = object[i];
+    const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
+    for (int shape = 0; shape < shapes; ++shape) {
+      const auto features = finder_.closest(capsule, body, shape, poses[i], margin);
+      if (features && (!result || features->distance < result->features.distance))
+        result = Nearest{*features, body};
+    }
   }
   return result;
 }
 
-double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, int body, const Pose& pose,
-                        double limit) const {
+double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Object& object,
+                        const Poses& poses, double limit) const {
   for (int c = 0; c < kCapsules; ++c) {
     if (!hand.has(c) || is_base(by_palm, c) != of_base) continue;
-    const auto features = nearest(hand.capsules[static_cast<std::size_t>(c)], body, pose, limit);
-    if (features) limit = std::min(limit, features->distance);
+    const auto found = nearest(hand.capsules[static_cast<std::size_t>(c)], object, poses, limit);
+    if (found) limit = std::min(limit, found->features.distance);
   }
   return limit;
 }
 
-bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body,
-                                    const Pose& pose) const {
+bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
+                                    const Poses& poses) const {
   const auto under = [&](int capsule) {
-    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], body, pose, kFar);
+    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, poses, kFar);
   };
   const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
-  return tip && base && tip->normal.dot(base->normal) < kOpposite;
+  return tip && base && tip->features.normal.dot(base->features.normal) < kOpposite;
 }
 
-/// What a finger does about a body that is near the line to what it closes against.
-void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
-                             Look& look) const {
+/// What a finger does about an object that is near the line to what it closes against.
+void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, const Object& object,
+                             const Poses& poses, Look& look) const {
   const Hand& hand = track.current;
   const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
-  const double reach = scene_.bodies[static_cast<std::size_t>(body)].bounding_radius + kBeside;
-  if (distance_from_axis(pose.position, line) > reach) return;
-  const auto beside = nearest(line, body, pose, kBeside);
+  bool is_far = true;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    const Body& body = scene_.bodies[static_cast<std::size_t>(object[i])];
+    is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kBeside;
+  }
+  if (is_far) return;
+  const auto beside = nearest(line, object, poses, kBeside);
   if (!beside) return;
-  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, body, pose))
+  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, object, poses))
     look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
-  if (beside->distance > 0.0 || closing_speed(track, by_palm, finger) < -kMaxOpeningSpeed) return;
-  if (!look.touches) look.touches = touches(hand, body, pose);
-  const double friction = scene_.bodies[static_cast<std::size_t>(body)].material.static_friction;
-  const auto here = opposed(*look.touches, by_palm, finger, friction);
+  if (beside->features.distance > 0.0 || closing_speed(track, by_palm, finger) < -kMaxOpeningSpeed) return;
+  if (!look.touches) look.touches = touches(hand, object, poses);
+  const auto here = opposed(*look.touches, by_palm, finger);
   std::optional<Opposed>& found = look.opposed;
   if (!here || (found && found->by_palm != by_palm)) return;
   const std::uint8_t others = found ? found->taking_part : std::uint8_t(0);
@@ -105,42 +112,55 @@ void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, i
   found->taking_part = static_cast<std::uint8_t>(others | 1 << finger);
 }
 
-ClosingHand::Look ClosingHand::look_at(const HandTrack& track, int body, const Pose& pose) const {
+ClosingHand::Look ClosingHand::look_at(const HandTrack& track, const Object& object,
+                                       const Poses& poses) const {
   Look look;
   for (const bool by_palm : {false, true}) {
     for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger) {
       if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)))
-        look_along(track, by_palm, finger, body, pose, look);
+        look_along(track, by_palm, finger, object, poses, look);
     }
   }
   return look;
 }
 
-ClosingHand::Touches ClosingHand::touches(const Hand& hand, int body, const Pose& pose) const {
+ClosingHand::Touches ClosingHand::touches(const Hand& hand, const Object& object, const Poses& poses) const {
   Touches result;
   for (std::size_t c = 0; c < kCapsules; ++c) {
     if (hand.capsules[c].radius <= 0.0) continue;
-    const auto features = nearest(hand.capsules[c], body, pose, 0.0);
-    if (features) result[c] = {true, -features->distance, features->normal, features->point};
+    const auto found = nearest(hand.capsules[c], object, poses, 0.0);
+    if (!found) continue;
+    const ClosestFeatures& features = found->features;
+    result[c] = {true, found->body, -features.distance, features.normal, features.point};
   }
   return result;
 }
 
 /// Two points hold a body if the friction cones of both contain the other (Nguyen 1988): their normals are
 /// then at most two friction angles from opposite. Points deep in the body tell no more than this.
-std::optional<ClosingHand::Opposed> ClosingHand::opposed(const Touches& touches, bool by_palm, int finger,
-                                                         double friction) const {
-  double most = -std::cos(std::min(2.0 * std::atan(friction), kWidest));
+std::optional<ClosingHand::Opposed> ClosingHand::opposed(const Touches& touches, bool by_palm,
+                                                         int finger) const {
+  const auto friction_angle = [this](const Touch& touch) {
+    return std::atan(scene_.bodies[static_cast<std::size_t>(touch.body)].material.static_friction);
+  };
+  double most = 1.0;
   std::optional<Opposed> result;
   for (int c = 0; c < kCapsules; ++c) {
     const Touch& base = touches[static_cast<std::size_t>(c)];
     if (!base.touches || !is_base(by_palm, c)) continue;
     for (int bone = 1; bone < kBonesPerFinger; ++bone) {
       const Touch& other = touches[static_cast<std::size_t>(capsule_index(finger, bone))];
-      if (!other.touches || base.normal.dot(other.normal) > most) continue;
-      most = base.normal.dot(other.normal);
-      result = Opposed{
-          std::max(base.depth, other.depth), base.depth + other.depth, base.point, other.point, by_palm, 0};
+      const double across = base.normal.dot(other.normal);
+      if (!other.touches || across > most) continue;
+      if (across > -std::cos(std::min(friction_angle(base) + friction_angle(other), kWidest))) continue;
+      most = across;
+      result = Opposed{std::max(base.depth, other.depth),
+                       base.depth + other.depth,
+                       base.point,
+                       other.point,
+                       by_palm,
+                       base.body,
+                       0};
     }
   }
   return result;

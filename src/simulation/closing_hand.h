@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "../collision/contact_finder.h"
 #include "mr_hand_interaction/response/grip.h"
@@ -13,21 +14,27 @@ bool has_tip(const Hand& hand, int finger);
 /// True for what fingers close against: the palm with its metacarpals, or the thumb.
 bool is_base(bool by_palm, int capsule);
 
-/// What a hand does about a body, from a frame to the next: which fingers close on it, and whether two sides
-/// of the hand have it between them. Bodies as they are when the frame begins, the hand as when it ends.
+/// What a hand does about an object, from a frame to the next: which fingers close on it, and whether two
+/// sides of the hand have it between them. An object is one body, or all bodies of a floating linkage. Bodies
+/// as they are when the frame begins, the hand as when it ends.
 class ClosingHand {
  public:
-  /// Two sides of a hand that could hold a body between them. World.
+  /// Indices in Scene::bodies.
+  using Object = std::vector<int>;
+  using Poses = std::vector<Pose>;
+  /// Two sides of a hand that could hold an object between them. World.
   struct Opposed {
     double depth;           ///< of the deeper side [m]
     double squeeze;         ///< of both sides together [m]
     Vector3 base, fingers;  ///< where they touch
     bool by_palm;
+    int body;                  ///< that the base touches
     std::uint8_t taking_part;  ///< fingers, a bit each
   };
-  /// A capsule of the hand that is in the body, by the way out that is nearest.
+  /// A capsule of the hand that is in a body, by the way out that is nearest.
   struct Touch {
     bool touches = false;
+    int body = 0;
     double depth = 0.0;  ///< [m]
     Vector3 normal, point;
   };
@@ -41,10 +48,11 @@ class ClosingHand {
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  Look look_at(const HandTrack& track, int body, const Pose& pose) const;
-  /// Distance of a side of a grip, its base or its fingers, from the body; negative inside; at most `limit`
+  Look look_at(const HandTrack& track, const Object& object, const Poses& poses) const;
+  /// Distance of a side of a grip, its base or its fingers, from the object; negative inside; at most `limit`
   /// [m].
-  double gap(const Hand& hand, bool by_palm, bool of_base, int body, const Pose& pose, double limit) const;
+  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses,
+             double limit) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
   /// the hand moves.
   static bool closes(const HandTrack& track, bool by_palm, int finger);
@@ -52,13 +60,19 @@ class ClosingHand {
   static double closing_speed(const HandTrack& track, bool by_palm, int finger);
 
  private:
-  void look_along(const HandTrack& track, bool by_palm, int finger, int body, const Pose& pose,
+  /// The closest point of an object, and its body.
+  struct Nearest {
+    ClosestFeatures features;
+    int body;
+  };
+  void look_along(const HandTrack& track, bool by_palm, int finger, const Object& object, const Poses& poses,
                   Look& look) const;
-  std::optional<ClosestFeatures> nearest(const Capsule& capsule, int body, const Pose& pose,
-                                         double margin) const;
-  bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, int body, const Pose& pose) const;
-  Touches touches(const Hand& hand, int body, const Pose& pose) const;
-  std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger, double friction) const;
+  std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const Poses& poses,
+                                 double margin) const;
+  bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
+                         const Poses& poses) const;
+  Touches touches(const Hand& hand, const Object& object, const Poses& poses) const;
+  std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger) const;
 
   const Scene& scene_;
   const ContactFinder& finder_;

@@ -66,13 +66,18 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
           (!is_near && !may_end))
         continue;
       const auto grip = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& candidate) {
-        return candidate.hand == slot && candidate.body == b && (candidate.active || candidate.released);
+        if (candidate.hand != slot) return false;
+        // A hand that lets go has let go of the whole linkage.
+        const std::optional<int> root = floating_root(end.scene, body);
+        const bool whole = candidate.released && root && floating_root(end.scene, candidate.body) == root;
+        return whole || (candidate.body == b && (candidate.active || candidate.released));
       });
-      const InteractionLevel seen =
+      InteractionLevel seen =
           grip != state.grips.end()
               ? (grip->active ? InteractionLevel::grasp : InteractionLevel::contact)
               : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
                            state.bodies[b].pose, result.contacts, interaction.level);
+      if (grasp_of(end.scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,
                          result.events);
     }

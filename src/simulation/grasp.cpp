@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "mr_hand_interaction/scene/joint.h"
+
 namespace mrhi {
 namespace {
 
@@ -46,24 +48,6 @@ bool grasps_with_others(int slot, int body, const std::vector<Contact>& contacts
   const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
   return is_balanced(load_of(contacts, of_all), balanced) &&
          !is_balanced(load_of(contacts, of_others), balanced);
-}
-
-/// The joint that a body hangs on.
-const Joint* joint_of(const Scene& scene, int body) {
-  const auto is_it = [body](const Joint& joint) { return joint.child == body; };
-  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(), is_it);
-  return found == scene.joints.end() ? nullptr : &*found;
-}
-
-/// The free body that all hangs on which it hangs together with; nothing of what hangs on the world or on a
-/// fixture.
-std::optional<int> floating_root(const Scene& scene, int body) {
-  while (const Joint* joint = joint_of(scene, body)) {
-    if (joint->parent == Joint::kWorld) return {};
-    body = joint->parent;
-  }
-  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return {};
-  return body;
 }
 
 /// Tongs are grasped by both their arms, each of which is pressed from one side.

@@ -22,12 +22,13 @@ constexpr double kMaxOffset = 0.0015;
 constexpr double kMeanAperture = 0.05;
 /// A single frame's aperture counts beyond this multiple of the tracker's noise.
 constexpr double kNoiseMargin = 4.0;
-/// The hand has let go once it has opened by this fraction of the way to touch_aperture, and by this [m].
+/// The hand has let go once it has opened by this fraction of the way to touch_aperture, and by this [m], and
+/// both sides together are within kPadDepth of clearance.
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Or by this, if the gaps between both sides and the body come to the clearance: there is room for it [m].
 constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
 /// Fingers that have opened by this fraction of that way, or open faster, do not carry the body [m/s].
-constexpr double kOpensFraction = 0.5, kOpensSpeed = 0.35;
+constexpr double kOpensFraction = 0.5, kOpensSpeed = 1.0;
 /// A hand that is farther from a body than this has left it, whatever its fingers do [m].
 constexpr double kMaxDistance = 0.02;
 /// A grip waits for a lost hand so long [s], and goes on if the hand returns within this of the pose in which
@@ -40,16 +41,6 @@ constexpr double kMinReach = 0.04, kMaxReach = 0.06;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
-bool is_of(const Grip& grip, const ContactKey& key) {
-  return grip.hand == key.hand && grip.body == key.body;
-}
-
-bool slips(const std::vector<Contact>& contacts, const Grip& grip) {
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    return contact.friction == Friction::slipping && contact.touching() && is_of(grip, contact.key);
-  });
-}
-
 /// Whether the hand touches the same body on a face opposite to this contact's, or is about to (contacts
 /// begin 1 mm before the surface).
 bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
@@ -57,17 +48,6 @@ bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
     return other.key.hand == contact.key.hand && other.key.body == contact.key.body && !other.ignored &&
            other.normal.dot(contact.normal) < kOpposite;
   });
-}
-
-/// True if all of the hand that touches the body overlapped it as hand or body appeared.
-bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) {
-  bool overlaps = false;
-  for (const Contact& contact : state.contacts) {
-    if (contact.key.hand != slot || contact.key.body != body || contact.depth <= 0.0) continue;
-    if (!contact.ignored) return false;
-    overlaps = true;
-  }
-  return overlaps;
 }
 
 /// Opening by which the hand releases the body: `fraction` of the way to where both sides just touch it [m].
@@ -85,8 +65,9 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   const double now = aperture(grip, track.current);
   const double margin = noise_margin(track);
   grip.mean_aperture += (1.0 - std::exp(-seconds / kMeanAperture)) * (now - grip.mean_aperture);
-  grip.min_aperture = std::min({grip.min_aperture, grip.mean_aperture, now + margin});
-  return std::max(grip.mean_aperture, now - margin) - grip.min_aperture;
+  grip.mean_aperture = std::clamp(grip.mean_aperture, now - margin, now + margin);
+  grip.min_aperture = std::min(grip.min_aperture, grip.mean_aperture);
+  return grip.mean_aperture - grip.min_aperture;
 }
 
 /// Mean speed at which the grip's fingers open [m/s].
@@ -128,35 +109,104 @@ void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
 
 }  // namespace
 
-GraspAssist::TouchingSides::TouchingSides(const Grip& grip, const std::vector<Contact>& contacts) {
-  for (const Contact& contact : contacts) {
-    if (!contact.touching() || !is_of(grip, contact.key)) continue;
-    (is_base(grip.by_palm, contact.key.capsule) ? base : fingers) = true;
+/// Contact models other than `implicit` know neither grips nor compliance.
+GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
+                         const Configuration& configuration)
+    : scene_(scene),
+      operators_(operators),
+      closing_hand_(scene, finder),
+      configuration_(configuration.contact) {
+  closing_.reserve(kMaxHands * scene.bodies.size());
+  poses_.reserve(scene.bodies.size());
+  const bool implicit = configuration.contact_model == ContactModelKind::implicit;
+  std::vector<std::size_t> by_root(scene.bodies.size(), scene.bodies.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto body = static_cast<int>(b);
+    std::size_t& index = by_root[static_cast<std::size_t>(floating_root(scene, body).value_or(body))];
+    if (index == scene.bodies.size()) {
+      GraspMode mode = grasp_of(scene, body);
+      if (mode == GraspMode::parameter)
+        mode = configuration_.grasp_assist ? GraspMode::assist : GraspMode::free;
+      if (!implicit || scene.bodies[b].fixed) mode = GraspMode::free;
+      acts_ = acts_ || mode != GraspMode::free;
+      index = objects_.size();
+      objects_.emplace_back();
+      modes_.push_back(mode);
+    }
+    objects_[index].push_back(body);
+    object_index_.push_back(index);
   }
 }
 
-GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
-                         const ContactConfiguration& configuration)
-    : scene_(scene), operators_(operators), closing_hand_(scene, finder), configuration_(configuration) {
-  closing_.reserve(kMaxHands * scene.bodies.size());
+GraspAssist::TouchingSides GraspAssist::touching_sides(const Grip& grip,
+                                                       const std::vector<Contact>& contacts) const {
+  TouchingSides sides;
+  for (const Contact& contact : contacts) {
+    if (!contact.touching() || !is_in(grip, contact.key.hand, contact.key.body)) continue;
+    (is_base(grip.by_palm, contact.key.capsule) ? sides.base : sides.fingers) = true;
+  }
+  return sides;
+}
+
+bool GraspAssist::slips(const std::vector<Contact>& contacts, const Grip& grip) const {
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.friction == Friction::slipping && contact.touching() &&
+           is_in(grip, contact.key.hand, contact.key.body);
+  });
+}
+
+/// True if all of the hand that touches the object overlapped it as hand or object appeared.
+bool GraspAssist::overlaps_since_it_appeared(std::size_t slot, std::size_t body,
+                                             const SimulationState& state) const {
+  bool overlaps = false;
+  for (const Contact& contact : state.contacts) {
+    if (contact.key.hand != slot || object_index_[contact.key.body] != object_index_[body] ||
+        contact.depth <= 0.0)
+      continue;
+    if (!contact.ignored) return false;
+    overlaps = true;
+  }
+  return overlaps;
+}
+
+/// Poses of the object's bodies in the frame that the hand in `slot` moves in. Until the next call.
+const std::vector<Pose>& GraspAssist::poses_of(std::size_t slot, std::size_t body,
+                                               const SimulationState& state) const {
+  poses_.clear();
+  for (const int part : object_of(body))
+    poses_.push_back(operators_.in_hands_frame(slot, static_cast<std::size_t>(part), state));
+  return poses_;
+}
+
+/// True if a part of the object appeared where the hand is.
+bool GraspAssist::is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const {
+  const Object& object = object_of(body);
+  return std::any_of(object.begin(), object.end(), [&](int part) {
+    return state.interactions[slot * state.bodies.size() + static_cast<std::size_t>(part)].shown_in;
+  });
 }
 
 void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state) {
-  if (!configuration_.grasp_assist) return;
   seconds_ = seconds;
   closing_.clear();
+  if (!acts_) state.grips.clear();
+  if (!acts_) return;
   const auto over = [&](Grip& grip) { return ends(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
-    if (!track.active || track.appeared || track.emerged || is_buried(slot, state)) continue;
-    for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
-      const auto body = static_cast<std::size_t>(near.body);
-      const bool appeared = state.interactions[slot * state.bodies.size() + body].shown_in;
-      if (!appeared && !scene_.bodies[body].fixed && !is_known(slot, body, state))
-        look_at(slot, near.body, state);
+    if (!track.active || track.appeared || is_buried(slot, state)) continue;
+    const std::vector<NearBody>& near = neighbours.near_hand(static_cast<int>(slot));
+    for (auto one = near.begin(); one != near.end(); ++one) {
+      const auto body = static_cast<std::size_t>(one->body);
+      const bool looked_at = std::any_of(near.begin(), one, [&](const NearBody& before) {
+        return object_index_[static_cast<std::size_t>(before.body)] == object_index_[body];
+      });
+      if (mode_of(body) != GraspMode::free && !looked_at && !is_shown_in(slot, body, state) &&
+          !is_known(slot, body, state))
+        look_at(slot, body, state);
     }
   }
 }
@@ -172,7 +222,7 @@ bool GraspAssist::is_buried(std::size_t slot, const SimulationState& state) cons
 /// any more.
 bool GraspAssist::is_known(std::size_t slot, std::size_t body, const SimulationState& state) const {
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-    return grip.hand == slot && grip.body == body && (grip.active || grip.released || !grip.closes);
+    return is_in(grip, slot, body) && (grip.active || grip.released || !grip.closes);
   });
 }
 
@@ -218,8 +268,14 @@ bool GraspAssist::holds_again(const SimulationState& state, Grip& grip) const {
 bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   if (grip.lost) return track.active && !holds_again(state, grip);
-  if (!track.active || track.appeared) return true;
-  const TouchingSides touching(grip, state.contacts);
+  const GraspMode mode = mode_of(grip.body);
+  if (!track.active || track.appeared || mode == GraspMode::free) return true;
+  const TouchingSides touching = touching_sides(grip, state.contacts);
+  if (mode == GraspMode::never) {
+    grip.released = true;
+    grip.active = false;
+    return touching.none();
+  }
   if (grip.released) return touching.none() || still_closes(track, grip);
   if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
   grip.released = grip.active;
@@ -233,14 +289,15 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
   grip.opened = opened_by(track, seconds_, grip);
   grip.opens =
       opening_speed(track, grip) > kOpensSpeed || grip.opened > release_opening(grip, kOpensFraction);
-  if (grip.opened > release_opening(grip, kReleaseFraction)) return true;
-  if (touching.both()) return false;
+  const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
+  if (touching.both() && !is_wide) return false;
   const auto gap = [&](bool of_base) {
-    return closing_hand_.gap(track.current, grip.by_palm, of_base, grip.body,
-                             operators_.in_hands_frame(grip.hand, grip.body, state), kMaxDistance);
+    return closing_hand_.gap(track.current, grip.by_palm, of_base, object_of(grip.body),
+                             poses_of(grip.hand, grip.body, state), kMaxDistance);
   };
   const double base = gap(true), fingers = gap(false);
-  return (grip.opened > kMinOpening && base + fingers > kReleaseClearance + 0.5 * noise_margin(track)) ||
+  const double room = base + fingers - 0.5 * noise_margin(track);
+  return (grip.opened > kMinOpening && room > kReleaseClearance) || (is_wide && room > -kPadDepth) ||
          std::min(base, fingers) >= kMaxDistance;
 }
 
@@ -253,29 +310,36 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
   if (!grip.active) return;
   if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
   // A hand that is rendered before a fixture does not collide with what it holds there.
-  if (is_buried(grip.hand, state))
-    state.interactions[grip.hand * state.bodies.size() + grip.body].shown_in = true;
+  if (!is_buried(grip.hand, state)) return;
+  for (const int part : object_of(grip.body))
+    state.interactions[grip.hand * state.bodies.size() + static_cast<std::size_t>(part)].shown_in = true;
 }
 
 /// No compliance on bodies that hang on joints: tongs are closed by one side of each arm.
-void GraspAssist::look_at(std::size_t slot, int body, SimulationState& state) {
-  const auto b = static_cast<std::size_t>(body);
-  const auto look = closing_hand_.look_at(state.hands[slot], body, operators_.in_hands_frame(slot, b, state));
-  if (look.opposed && look.opposed->depth > kPadDepth && !overlaps_since_it_appeared(slot, b, state))
-    take(slot, body, *look.opposed, state);
-  if (look.closing != 0 && scene_.bodies[b].flies) closing_.push_back({slot, b});
+void GraspAssist::look_at(std::size_t slot, std::size_t body, SimulationState& state) {
+  const bool never = mode_of(body) == GraspMode::never;
+  const auto look = closing_hand_.look_at(state.hands[slot], object_of(body), poses_of(slot, body, state));
+  if (look.opposed && (never || look.opposed->depth > kPadDepth) && !state.hands[slot].emerged &&
+      !overlaps_since_it_appeared(slot, body, state))
+    take(slot, *look.opposed, state);
+  if (look.closing != 0 && !never && scene_.bodies[body].flies) closing_.push_back({slot, body});
 }
 
 /// A body that was taken before and needed no support is taken anew, but keeps its place in the hand.
-void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& opposed,
-                       SimulationState& state) const {
-  const auto b = static_cast<std::size_t>(body);
+/// The springs of a grip on a linkage act on the part that the thumb or the palm touches.
+void GraspAssist::take(std::size_t slot, const ClosingHand::Opposed& opposed, SimulationState& state) const {
+  const auto known = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
+    return is_in(grip, slot, static_cast<std::size_t>(opposed.body));
+  });
+  const bool is_new = known == state.grips.end();
+  const auto b = is_new ? static_cast<std::size_t>(opposed.body) : known->body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
   const Pose pose = operators_.in_hands_frame(slot, b, state);
   const Material& material = scene_.bodies[b].material;
   Grip grip;
   grip.hand = static_cast<std::uint8_t>(slot);
-  grip.body = static_cast<std::uint16_t>(body);
+  grip.body = static_cast<std::uint16_t>(b);
+  grip.released = mode_of(b) == GraspMode::never;
   grip.by_palm = opposed.by_palm;
   grip.fingers = opposed.taking_part;
   grip.min_aperture = grip.mean_aperture = aperture(grip, from);
@@ -296,11 +360,6 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
     grip.in_hand[i] = from.palm.to_local(point);
     grip.in_body[i] = pose.to_local(point);
   }
-  const auto after = [](const Grip& x, const Grip& y) {
-    return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
-  };
-  const auto known = std::lower_bound(state.grips.begin(), state.grips.end(), grip, after);
-  const bool is_new = known == state.grips.end() || after(grip, *known);
   if (is_new) {
     grip.pads = distal_ends(from);
   } else {
@@ -311,8 +370,11 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
   }
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
+  const auto after = [](const Grip& x, const Grip& y) {
+    return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
+  };
   if (is_new) {
-    state.grips.insert(known, grip);
+    state.grips.insert(std::lower_bound(state.grips.begin(), state.grips.end(), grip, after), grip);
   } else {
     *known = grip;
   }
@@ -322,7 +384,7 @@ void GraspAssist::take(std::size_t slot, int body, const ClosingHand::Opposed& o
 /// has stopped before that regains its force slowly.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
   const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-    return grip.released && is_of(grip, contact.key);
+    return grip.released && is_in(grip, contact.key.hand, contact.key.body);
   });
   if (!released && contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
   const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
@@ -367,10 +429,10 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
 }
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
-  if (!configuration_.grasp_assist) return;
+  if (!acts_) return;
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    const bool touching = TouchingSides(grip, state.contacts).both();
+    const bool touching = touching_sides(grip, state.contacts).both();
     const bool lost = touching ? slips(state.contacts, grip) : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);

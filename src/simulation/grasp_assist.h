@@ -16,11 +16,14 @@ namespace mrhi {
 /// Support: a hand that has a body between two opposed sides, deeper than a fingertip pad, takes it (Grip).
 /// Contacts act as ever. Only if the body slips, or leaves one side, and is off its place in the hand, the
 /// grip becomes active: springs of bounded force add what the contacts lack, until the hand opens.
+///
+/// All bodies of a floating linkage are one object: a thumb on its base and a finger on its lid are two
+/// sides. An object may be without assist, or not to be grasped at all (GraspMode).
 class GraspAssist {
  public:
   /// Keeps references.
   GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
-              const ContactConfiguration& configuration);
+              const Configuration& configuration);
 
   /// Call once a frame of `seconds`, when the hands' next poses are known: begins and ends grips.
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
@@ -35,22 +38,33 @@ class GraspAssist {
   struct ClosingPair {
     std::size_t hand, body;
   };
+  using Object = ClosingHand::Object;
+  const Object& object_of(std::size_t body) const { return objects_[object_index_[body]]; }
+  GraspMode mode_of(std::size_t body) const { return modes_[object_index_[body]]; }
+  /// True if the hand has the body in this grip, or another part of the same object.
+  bool is_in(const Grip& grip, std::size_t hand, std::size_t body) const {
+    return grip.hand == hand && object_index_[grip.body] == object_index_[body];
+  }
+  const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
+  bool slips(const std::vector<Contact>& contacts, const Grip& grip) const;
+  bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) const;
+  bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_buried(std::size_t slot, const SimulationState& state) const;
   bool is_known(std::size_t slot, std::size_t body, const SimulationState& state) const;
-  /// Whether the base, and the fingers, of a grip touch the body.
+  /// Whether the base, and the fingers, of a grip touch the object.
   struct TouchingSides {
     bool base = false, fingers = false;
 
-    TouchingSides(const Grip& grip, const std::vector<Contact>& contacts);
     bool both() const { return base && fingers; }
     bool none() const { return !base && !fingers; }
   };
+  TouchingSides touching_sides(const Grip& grip, const std::vector<Contact>& contacts) const;
   bool ends(const SimulationState& state, Grip& grip) const;
   bool holds_again(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
-  void look_at(std::size_t slot, int body, SimulationState& state);
-  void take(std::size_t slot, int body, const ClosingHand::Opposed& opposed, SimulationState& state) const;
+  void look_at(std::size_t slot, std::size_t body, SimulationState& state);
+  void take(std::size_t slot, const ClosingHand::Opposed& opposed, SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;
@@ -59,8 +73,13 @@ class GraspAssist {
   const Operators& operators_;
   ClosingHand closing_hand_;
   const ContactConfiguration configuration_;
-  double seconds_ = 0.0;              // of the frame
-  std::vector<ClosingPair> closing_;  // in this frame
+  std::vector<Object> objects_;
+  std::vector<std::size_t> object_index_;  // by body, in objects_
+  std::vector<GraspMode> modes_;           // of objects: free, assist or never
+  bool acts_ = false;                      // there is an object that is not free
+  mutable std::vector<Pose> poses_;        // of poses_of()
+  double seconds_ = 0.0;                   // of the frame
+  std::vector<ClosingPair> closing_;       // in this frame
 };
 
 }  // namespace mrhi

@@ -7,6 +7,7 @@
 #include "../collision/overlap.h"
 #include "../scene/scene_edit.h"
 #include "../text/text.h"
+#include "../tracking/hand_filter.h"
 #include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
@@ -89,7 +90,30 @@ void check_no_joint(const Scene& scene, int body) {
   }
 }
 
+const std::string kGrasp = "grasp/";  // begins the name of what is set of one object
+
+/// Throws ParameterError.
+std::size_t graspable_body(const std::string& name, const std::string& object, const Scene& scene) {
+  const std::vector<std::string> known = graspable_bodies(scene);
+  if (std::find(known.begin(), known.end(), object) != known.end())
+    return static_cast<std::size_t>(*find_body(scene, object));
+  throw ParameterError(
+      "parameter '" + text::one_line(name, 60) + "': no object '" + text::one_line(object, 60) +
+      "' that can be grasped by itself; allowed: " + (known.empty() ? "none" : text::joined(known)));
+}
+
+/// Throws ParameterError.
+void set_grasp(const std::string& name, const std::string& object, const std::string& value, Scene& scene) {
+  Body& body = scene.bodies[graspable_body(name, object, scene)];
+  const auto mode = grasp_mode(value);
+  if (!mode)
+    throw ParameterError("parameter '" + name + "': " + text::one_line(value, 60) +
+                         " is not allowed; allowed: " + kGraspModes);
+  body.grasp = *mode;
+}
+
 bool same_filter(const Configuration& a, const Configuration& b) {
+  if (is_literal(a) != is_literal(b)) return false;
   const std::string prefix = "filter/";
   for (const std::string& name : parameter_names()) {
     if (name.compare(0, prefix.size(), prefix) == 0 && parameter_text(a, name) != parameter_text(b, name))
@@ -100,20 +124,38 @@ bool same_filter(const Configuration& a, const Configuration& b) {
 
 }  // namespace
 
+std::optional<std::string> grasp_parameter(const std::string& name) {
+  if (name.compare(0, kGrasp.size(), kGrasp) != 0) return {};
+  return name.substr(kGrasp.size());
+}
+
 LiveSimulation::LiveSimulation(Scene scene, const Configuration& configuration)
     : simulation_(std::make_unique<Simulation>(std::move(scene), configuration)) {}
 
 void LiveSimulation::set_parameters(const std::vector<std::pair<std::string, std::string>>& values) {
   Configuration configuration = simulation_->configuration();
-  for (const auto& [name, value] : values) set_parameter(configuration, name, value);
-  validate(configuration);
   Scene scene = simulation_->scene();
+  for (const auto& [name, value] : values) {
+    if (const auto object = grasp_parameter(name)) {
+      set_grasp(name, *object, value, scene);
+    } else {
+      set_parameter(configuration, name, value);
+    }
+  }
+  validate(configuration);
   try {
     set_default_material(default_material(configuration), scene);
   } catch (const std::invalid_argument& error) {
     throw ParameterError(std::string("parameter 'material': ") + error.what());
   }
   go_on_with(scene, configuration);
+}
+
+std::string LiveSimulation::parameter(const std::string& name) const {
+  const auto object = grasp_parameter(name);
+  if (!object) return parameter_text(simulation_->configuration(), name);
+  const Scene& scene = simulation_->scene();
+  return name_of(scene.bodies[graspable_body(name, *object, scene)].grasp);
 }
 
 void LiveSimulation::add(const Body& body) {
@@ -204,7 +246,7 @@ void LiveSimulation::go_on_with(const Scene& scene, const Configuration& configu
   next->go_on_from(*simulation_);
   if (!same_filter(configuration, simulation_->configuration())) {
     SimulationState state = next->state();
-    change_filter(simulation_->configuration().filter, state.last_frame, state.hands);
+    change_filter(filter_of(simulation_->configuration()), state.last_frame, state.hands);
     next->set_state(state);
   }
   simulation_ = std::move(next);

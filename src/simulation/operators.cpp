@@ -12,6 +12,8 @@ namespace {
 /// What hands' forces may move an operator's hands off the path that was foreseen, before neighbours are
 /// listed anew [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
 constexpr double kMaxDeparture = 0.002;
+/// Of a hand from its operator's centre of mass, where that departure is bounded [m].
+constexpr double kMaxReach = 1.5;
 /// How fast a tether pulls in what it is too long by: what a swing stretches it by in a step, but not what
 /// began too far away [m/s].
 constexpr double kMaxRetraction = 0.1;
@@ -30,16 +32,6 @@ Hand placed(const Pose& frame, const Hand& hand) {
   return result;
 }
 
-/// As the carrier moves now.
-Pose moved_on(const CarrierMotion& carrier, const Pose& frame, double seconds) {
-  const double angle = seconds * carrier.twist.angular.norm();
-  const Quaternion turn = angle > 0.0
-                              ? Quaternion(Eigen::AngleAxisd(angle, carrier.twist.angular.normalized()))
-                              : Quaternion::Identity();
-  const Vector3 centre = carrier.centre + seconds * carrier.twist.linear;
-  return {centre + turn * (frame.position - carrier.centre), turn * frame.orientation};
-}
-
 }  // namespace
 
 Operators::Operators(const Scene& scene, const ContactConfiguration& configuration)
@@ -47,9 +39,9 @@ Operators::Operators(const Scene& scene, const ContactConfiguration& configurati
       configuration_(configuration),
       carriers_(scene.operators.size()),
       start_(scene.operators.size()),
-      end_(scene.operators.size()),
+      courses_(scene.operators.size()),
+      carried_(scene.operators.size()),
       in_world_(scene.operators.empty() ? 0 : kMaxHands) {
-  carried_.margin = kMaxDeparture;
   bodies_of_hands_.fill(none() ? 0 : scene.operators.front().body);
   on_fixtures_.reserve(64 * kMaxHands);
 }
@@ -81,58 +73,60 @@ void Operators::end_frame(const SimulationState& state) {
     HandTrack& placed_track = in_world_[slot];
     placed_track.active = track.active, placed_track.held = track.held;
     placed_track.appeared = track.appeared, placed_track.emerged = track.emerged;
-    placed_track.previous = carried_.from[slot];
-    placed_track.current = placed(frame(owner(slot, state), state), track.current);
+    const auto o = static_cast<std::size_t>(owners_[slot]);
+    placed_track.previous = placed(start_[o], track.previous);
+    placed_track.current = placed(frame(scene_.operators[o], state), track.current);
   }
 }
 
 void Operators::begin_frame(double seconds, const SimulationState& state) {
   if (none()) return;
-  for (std::size_t o = 0; o < carriers_.size(); ++o) start_[o] = frame(scene_.operators[o], state);
-  begin_step(seconds, state);
-  carried_on(seconds, state);
-}
-
-/// From where the frame began to where the operators go on to now: the path between is near the chord.
-const CarriedHands* Operators::carried_on(double left, const SimulationState& state) {
-  for (std::size_t o = 0; o < carriers_.size(); ++o)
-    end_[o] = moved_on(carriers_[o], frame(scene_.operators[o], state), left);
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
-    const std::size_t o = track.current.id % carriers_.size();
-    owners_[slot] = static_cast<int>(o);
-    bodies_of_hands_[slot] = scene_.operators[o].body;
-    carried_.from[slot] = placed(start_[o], track.previous);
-    carried_.to[slot] = placed(end_[o], track.current);
-    double reach_squared = 0.0;
-    for (const Hand* hand : {&carried_.from[slot], &carried_.to[slot]}) {
-      for (const Capsule& capsule : hand->capsules) {
-        if (capsule.radius <= 0.0) continue;
-        reach_squared = std::max({reach_squared, (capsule.start - carriers_[o].centre).squaredNorm(),
-                                  (capsule.end - carriers_[o].centre).squaredNorm()});
-      }
-    }
-    reaches_[slot] = std::sqrt(reach_squared) + left * carriers_[o].twist.linear.norm() + kMaxDeparture;
+    owners_[slot] = static_cast<int>(track.current.id % carriers_.size());
+    bodies_of_hands_[slot] = scene_.operators[static_cast<std::size_t>(owners_[slot])].body;
   }
-  return &carried_;
+  begin_step(seconds, state);
+  for (std::size_t o = 0; o < carriers_.size(); ++o) start_[o] = frame(scene_.operators[o], state);
+  foresee(seconds);
 }
 
+void Operators::foresee(double seconds) {
+  for (std::size_t o = 0; o < carriers_.size(); ++o) {
+    const CarrierMotion& now = carriers_[o];
+    courses_[o] = {now.twist, 0.0, seconds};
+    carried_[o] = {now.rotation,
+                   now.origin + 0.5 * seconds * now.twist.linear,
+                   now.centre,
+                   now.twist.linear.norm(),
+                   now.twist.angular.norm(),
+                   seconds,
+                   kMaxDeparture};
+  }
+}
+
+/// No point of a hand departs from the motion that was foreseen by more than the integral of |v - v0| + R |w
+/// - w0|, R its distance from the centre of mass.
 bool Operators::begin_step(double left, const SimulationState& state) {
   bool on_course = true;
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
-    const auto body = static_cast<std::size_t>(scene_.operators[o].body);
-    const Pose now = frame(scene_.operators[o], state);
+    const auto index = static_cast<std::size_t>(scene_.operators[o].body);
+    const Body& body = scene_.bodies[index];
+    const BodyState& now = state.bodies[index];
     CarrierMotion& carrier = carriers_[o];
-    carrier.rotation = now.orientation.toRotationMatrix();
-    carrier.origin = now.position;
-    carrier.centre = state.bodies[body].pose.position;
-    carrier.twist = twist_of(scene_.bodies[body], state.bodies[body]);
-    const Pose end = moved_on(carrier, now, left);
-    const double reach = *std::max_element(reaches_.begin(), reaches_.end()) + 1.0;
-    on_course = on_course && (end.position - end_[o].position).norm() +
-                                     reach * end.orientation.angularDistance(end_[o].orientation) <
-                                 kMaxDeparture;
+    carrier.rotation = now.pose.orientation.toRotationMatrix();
+    carrier.centre = now.pose.position;
+    carrier.origin = carrier.centre + carrier.rotation * body.link_in_body.position;
+    carrier.twist.linear = now.linear_momentum / body.mass;
+    carrier.twist.angular =
+        carrier.rotation * (body.inverse_inertia * (carrier.rotation.transpose() * now.angular_momentum));
+    Course& course = courses_[o];
+    const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
+                        kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
+    course.departed += rate * std::max(course.left - left, 0.0);
+    course.left = left;
+    on_course = on_course && course.departed + rate * left < kMaxDeparture;
   }
   return on_course;
 }
@@ -167,9 +161,10 @@ Twist Operators::react(const ContactStep& step, int body) const {
     given.linear -= impulse;
     given.angular -= (point - centre).cross(impulse);
   };
-  const auto drift = [&](std::size_t object) -> Vector3 {
-    if (!scene_.bodies[object].flies) return Vector3::Zero();
-    return step.bodies[object].linear_momentum / scene_.bodies[object].mass;
+  // Where what begins to act on an object at `time` does so.
+  const auto moved = [&](const Vector3& point, std::size_t object, double time) -> Vector3 {
+    if (time <= 0.0 || !scene_.bodies[object].flies) return point;
+    return point + time / scene_.bodies[object].mass * step.bodies[object].linear_momentum;
   };
   const auto is_own = [&](std::size_t hand) {
     return scene_.operators[static_cast<std::size_t>(owners_[hand])].body == body;
@@ -177,16 +172,16 @@ Twist Operators::react(const ContactStep& step, int body) const {
   for (const Contact& contact : step.contacts) {
     const std::size_t object = contact.key.body;
     if (scene_.bodies[object].fixed || !is_own(contact.key.hand)) continue;
-    if (contact.force.isZero(0.0) && contact.impulse.isZero(0.0)) continue;
-    const Vector3 velocity = drift(object);
-    give(step.step * contact.force, contact.point + step.changes.mean_impact_time(object) * velocity);
-    give(contact.impulse, contact.point + contact.time_of_impact * velocity);
+    if (!contact.impulse.isZero(0.0))
+      give(contact.impulse, moved(contact.point, object, contact.time_of_impact));
+    if (contact.force.isZero(0.0)) continue;
+    give(step.step * contact.force, moved(contact.point, object, step.changes.mean_impact_time(object)));
     given.angular -= step.step * contact.torque * contact.normal;
   }
   for (const Grip& grip : step.grips) {
     if (!grip.active || !is_own(grip.hand)) continue;
-    const Vector3 at = step.bodies[grip.body].pose.position;
-    give(step.step * grip.force, at + step.changes.mean_impact_time(grip.body) * drift(grip.body));
+    give(step.step * grip.force,
+         moved(step.bodies[grip.body].pose.position, grip.body, step.changes.mean_impact_time(grip.body)));
     given.angular -= step.step * grip.torque;
   }
   return given;

@@ -21,19 +21,20 @@ class Operators {
 
   /// Once a frame of `seconds`, when the hands' next poses are known.
   void begin_frame(double seconds, const SimulationState& state);
-  /// Every step, `left` [s] before the frame's end: the operators' motion as it starts. False if an operator
-  /// is about to leave the path that the carried hands are listed by; carry_on() gives them anew.
+  /// Every step, `left` [s] before the frame's end: the operators' motion as it starts. False if hands may
+  /// leave the places that carried() foresaw; foresee() is then due.
   bool begin_step(double left, const SimulationState& state);
-  /// For Neighbours; null without operators.
-  const CarriedHands* carried() const { return none() ? nullptr : &carried_; }
-  const CarriedHands* carried_on(double left, const SimulationState& state);
+  /// Where carried hands may come in the next seconds of the frame, as the operators move now.
+  void foresee(double seconds);
+  /// Of a hand, for Neighbours; null for a hand that is tracked in world.
+  const CarriedFrame* carried(std::size_t slot) const {
+    return none() ? nullptr : &carried_[static_cast<std::size_t>(owners_[slot])];
+  }
 
   /// What carries the hand in a slot; null for a hand that is tracked in world.
   const CarrierMotion* carrier(std::size_t slot) const;
   /// The bodies of hands' operators, by slot; null without operators.
   const std::array<int, kMaxHands>* bodies_of_hands() const { return none() ? nullptr : &bodies_of_hands_; }
-  /// Largest distance of the hand's points from its operator's centre of mass [m].
-  double reach(std::size_t slot) const { return reaches_[slot]; }
   /// A body's pose in the frame in which a hand is tracked.
   Pose in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const;
   /// At a frame's end, when bodies and hands are at its stamp.
@@ -61,12 +62,17 @@ class Operators {
   BodyProblem problem_;
   std::vector<Contact*> on_fixtures_;
 
+  /// How far the motion of an operator in a frame is from what was foreseen.
+  struct Course {
+    Twist foreseen;
+    double departed = 0.0, left = 0.0;  // [m], [s]
+  };
   std::vector<CarrierMotion> carriers_;  // by operator
-  std::vector<Pose> start_, end_;  // of their frames at the frame's start, and its end as it is foreseen
+  std::vector<Pose> start_;              // of their frames at the frame's start
+  std::vector<Course> courses_;
+  std::vector<CarriedFrame> carried_;
   std::array<int, kMaxHands> owners_{};  // of hands, indices in Scene::operators
   std::array<int, kMaxHands> bodies_of_hands_{};
-  std::array<double, kMaxHands> reaches_{};
-  CarriedHands carried_;
   std::vector<HandTrack> in_world_;  // by slot; only poses and flags
 };
 

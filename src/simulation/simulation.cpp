@@ -26,13 +26,15 @@ Scene completed(Scene scene) {
   return scene;
 }
 
-/// Edges grip, and hands are helped, under `implicit` alone: other models do not look at what is stored
-/// there.
+/// Edges grip under `implicit` alone: other models do not look at what is stored there. The paper has one god
+/// object for each phalanx, on the nearest face.
 ContactConfiguration refinements(const Configuration& configuration) {
   ContactConfiguration result = configuration.contact;
   const bool implicit = configuration.contact_model == ContactModelKind::implicit;
   result.edge_grip &= implicit;
-  result.grasp_assist &= implicit;
+  if (!is_literal(configuration)) return result;
+  result.anchors = true;
+  result.entry_face = result.two_points = result.swing_back = false;
   return result;
 }
 
@@ -62,7 +64,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       alone(scene),
       flights(scene),
       sleeping(scene, configuration.contact.sleep),
-      assist(scene, finder, operators, refinements(configuration)),
+      assist(scene, finder, operators, configuration),
       renderer(scene, finder) {
   check_filter(configuration.filter.type);
   reset();

@@ -64,10 +64,15 @@ void Simulation::Impl::begin_hands(double seconds) {
     const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
     if (!track.active || track.appeared) continue;
     hands.emplace_back(track, slot, seconds);
-    hands.back().carry(operators.carrier(static_cast<std::size_t>(slot)),
-                       operators.reach(static_cast<std::size_t>(slot)));
+    hands.back().carry(operators.carrier(static_cast<std::size_t>(slot)));
   }
-  neighbours.begin_frame(state.hands, state.bodies, operators.carried());
+  list_near_hands();
+}
+
+void Simulation::Impl::list_near_hands() {
+  Neighbours::Carried carried{};
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) carried[slot] = operators.carried(slot);
+  neighbours.begin_frame(state.hands, state.bodies, carried);
 }
 
 /// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last

@@ -34,6 +34,7 @@ struct Simulation::Impl {
   void plan(Nanoseconds from, Nanoseconds to);
   int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
+  void list_near_hands();
   void pass_without_frames(Nanoseconds until);
   void lose_hands(Nanoseconds now);
   void report(Nanoseconds stamp);

@@ -29,9 +29,13 @@ double Simulation::Impl::driven(double step) const {
 /// One step, `fraction` of the way into the frame.
 void Simulation::Impl::advance_step(double fraction, double step) {
   const double until = frame_seconds() > 0.0 ? std::min(1.0, fraction + step / frame_seconds()) : fraction;
-  const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
-  if (!operators.none() && !operators.begin_step(left, state))
-    neighbours.begin_frame(state.hands, state.bodies, operators.carried_on(left, state));
+  if (!operators.none()) {
+    const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
+    if (!operators.begin_step(left, state)) {
+      operators.foresee(left);
+      list_near_hands();
+    }
+  }
   for (HandMotion& hand : hands) hand.move_to(fraction, until);
   neighbours.begin_step(state.bodies, step);
   alone.join(neighbours, fraction * frame_seconds(), step, gravity, state);

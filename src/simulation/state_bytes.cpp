@@ -188,7 +188,7 @@ class Parts {
     all(from, begin, duration);
   }
   void one(FilterConfiguration& part) {
-    one(part.type);
+    all(part.type, part.as_printed);
     for (const FilterSetting& setting : filter_settings()) {
       std::visit([&](auto value) { one(part.*value); }, setting.value);
       if (const auto* whole = std::get_if<int FilterConfiguration::*>(&setting.value))

@@ -35,6 +35,15 @@ const std::vector<FilterSetting>& filter_settings() {
   return settings;
 }
 
+FilterConfiguration filter_of(const Configuration& configuration) {
+  FilterConfiguration filter = configuration.filter;
+  if (is_literal(configuration)) {
+    filter.type = FilterKind::window;
+    filter.as_printed = true;
+  }
+  return filter;
+}
+
 Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (memory.empty()) {
     memory.restart(sample);

@@ -47,6 +47,9 @@ const HandFilter& hand_filter(FilterKind kind);
 /// The settings of all filters, filter by filter.
 const std::vector<FilterSetting>& filter_settings();
 
+/// The filter that a configuration asks for: Eq. 1 as printed under seed/literal, whatever its filter's type.
+FilterConfiguration filter_of(const Configuration& configuration);
+
 /// The filtered hand for `sample`, taken `elapsed` seconds (above 0) after the one before. A memory that is
 /// empty starts with `sample` as it is. All points of a hand are filtered alike: a joint that two bones share
 /// stays one joint. docs/pipeline.md compares the filters.

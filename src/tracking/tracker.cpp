@@ -92,7 +92,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
 Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configuration& configuration,
                              HandTrack& track) {
   const double elapsed = to_seconds(stamp - track.last_seen);
-  const Hand now = filtered(hand, elapsed, configuration.filter, track.filter);
+  const Hand now = filtered(hand, elapsed, filter_of(configuration), track.filter);
   if (!track.filter_change) return now;
   FilterChange& change = *track.filter_change;
   const Hand before = filtered(hand, elapsed, change.from, change.memory);

@@ -40,13 +40,19 @@ Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsul
   return {sum.start / present, sum.end / present, sum.radius / present};
 }
 
-/// Read as printed, Eq. 1 adds F + 1 samples and divides by F: at F = 3 the hand would be 4/3 as far from the
-/// origin as it is.
+/// Samples in the sum: F, or F + 1 as printed.
+int samples_in_sum(const FilterConfiguration& filter) {
+  return std::min(filter.window + (filter.as_printed ? 1 : 0), kMaxFilterWindow);
+}
+
+/// As printed, Eq. 1 adds F + 1 samples and divides by F: at F = 3 the hand is 4/3 as far from the origin as
+/// it is. Widths are means all the same, and before F + 1 samples are there the factor is that of F + 1.
 Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory) {
   const SampleHistory& history = memory.history;
-  const int count = std::min(filter.window, history.size);
+  const int count = std::min(samples_in_sum(filter), history.size);
   Hand mean = history.samples[0];
-  if (count == 1) return mean;
+  const double gain = filter.as_printed ? (filter.window + 1.0) / filter.window : 1.0;
+  if (count == 1 && gain == 1.0) return mean;
   for (int i = 1; i < count; ++i) {
     const Hand& sample = history.samples[static_cast<std::size_t>(i)];
     mean.palm.position += sample.palm.position;
@@ -58,6 +64,8 @@ Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory
   mean.palm_width /= count;
   mean.palm.orientation = mean_orientation(history, count);
   for (std::size_t c = 0; c < kCapsules; ++c) mean.capsules[c] = mean_capsule(history, count, c);
+  if (gain == 1.0) return mean;
+  for (std::size_t point = 0; point < kHandPoints; ++point) hand_point(mean, point) *= gain;
   return mean;
 }
 
@@ -70,6 +78,6 @@ extern const HandFilter window_filter{
     []() -> std::vector<FilterSetting> {
       return {{"window", "", {1, kMaxFilterWindow}, {1, kMaxFilterWindow}, &FilterConfiguration::window}};
     },
-    [](const FilterConfiguration& filter) { return std::min(filter.window, kMaxFilterWindow); }, window_mean};
+    samples_in_sum, window_mean};
 
 }  // namespace mrhi

@@ -29,6 +29,23 @@ double distance_to(const Manifold& manifold, const Vector3& place) {
   return least;
 }
 
+// Side by side and one above the other, flush: each direction alone has a face, both together only an edge.
+TEST(BodyManifold, boxes_that_share_an_edge_alone_pass_each_other_and_one_that_stands_on_its_edge_touches) {
+  constexpr double kBreadth = 1e-6;
+  const auto touches = [&](const Pose& pose) {
+    return body_manifold(kCube, pose, kCube, {}, 1e-5, kBreadth).count > 0;
+  };
+  EXPECT_TRUE(touches(at(0.05, 0, 0)));
+  EXPECT_TRUE(touches(at(0, 0, 0.05)));
+  EXPECT_FALSE(touches(at(0.05, 0, 0.05)));
+  EXPECT_FALSE(touches(at(0.05 - 5e-7, 0, 0.05 - 5e-7)));
+  EXPECT_FALSE(touches(at(0.05, 0.05, 0.05)));
+  EXPECT_TRUE(touches(at(0.05 - 3e-6, 0, 0.05)));
+  EXPECT_EQ(body_manifold(kCube, at(0.05, 0, 0.05), kCube, {}, 1e-5).count, 2);
+  const Pose on_edge{{0, 0, 0.025 * std::sqrt(2.0)}, turn(M_PI / 4, Vector3::UnitX())};
+  EXPECT_EQ(body_manifold(kCube, on_edge, plate(), plate_pose(), 1e-5, kBreadth).count, 2);
+}
+
 TEST(BodyManifold, spheres_touch_on_the_line_between_their_centres) {
   const Vector3 between(0.01, 0.02, 0.02);  // 30 mm long
   const Manifold m =

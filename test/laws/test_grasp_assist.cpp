@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "mr_hand_interaction/response/grip.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "support/grips.h"
 
 namespace mrhi {
@@ -68,6 +72,122 @@ TEST(GraspAssist, holds_what_the_hand_closes_through) {
     EXPECT_LT(outcome.off, 0.012) << ahead;
     EXPECT_LT(outcome.strongest, 1.1 * HandStrength::of_a_person().finger) << ahead;
   }
+}
+
+/// A cube of a mode of its own, in the hand that closes and carries it, with the shipped configuration.
+struct ModeOutcome {
+  Vector3 place, velocity;
+  double off = 0.0;
+  bool grasped = false;
+};
+
+ModeOutcome outcome_of(GraspMode mode, bool parameter) {
+  Configuration configuration;
+  configuration.contact.grasp_assist = parameter;
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1);
+  cube.grasp = mode;
+  Simulation simulation(testing::scene_of(cube), configuration);
+  ModeOutcome outcome;
+  Vector3 shift = Vector3::Zero();
+  testing::play(
+      simulation, 0.0, 1.5, 120.0,
+      [&](double t) {
+        shift = 0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitY();
+        return reaching(std::min(t / 0.2, 1.0), 0.012, 0.01, shift);
+      },
+      [&](const Simulation& s) {
+        for (const Event& event : s.result().events)
+          outcome.grasped = outcome.grasped || event.kind == EventKind::grasp_begin;
+      });
+  outcome.place = simulation.state().bodies[0].pose.position;
+  outcome.velocity = testing::object_twist(simulation).linear;
+  outcome.off = (outcome.place - shift).norm();
+  return outcome;
+}
+
+TEST(GraspAssist, an_object_says_itself_whether_it_is_assisted) {
+  for (const bool parameter : {true, false}) {
+    const ModeOutcome with = outcome_of(GraspMode::parameter, true),
+                      without = outcome_of(GraspMode::parameter, false),
+                      assist = outcome_of(GraspMode::assist, parameter),
+                      free = outcome_of(GraspMode::free, parameter);
+    EXPECT_EQ(assist.place, with.place) << parameter;
+    EXPECT_EQ(free.place, without.place) << parameter;
+    EXPECT_NE(with.place, without.place);
+  }
+}
+
+// Of the 10 cm by which the hand carries others it makes only what fingers gave it as they closed.
+TEST(GraspAssist, what_is_never_grasped_is_pushed_and_not_carried) {
+  for (const bool parameter : {true, false}) {
+    const ModeOutcome never = outcome_of(GraspMode::never, parameter);
+    EXPECT_FALSE(never.grasped) << parameter;
+    EXPECT_LT(std::abs(never.place.y()), 0.01) << parameter;
+    EXPECT_TRUE(outcome_of(GraspMode::parameter, parameter).grasped) << parameter;
+  }
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1);
+  cube.grasp = GraspMode::never;
+  Simulation simulation(testing::scene_of(cube), Configuration());
+  testing::play(simulation, 0.0, 1.0, 120.0, [&](double t) {
+    Hand hand = testing::empty_hand();
+    testing::add_fingertip(hand, capsule_index(1, 3), Vector3(0.03 - 0.04 * testing::smooth(t, 0.5), 0, 0),
+                           Vector3::UnitX(), 1.2);
+    return hand;
+  });
+  EXPECT_LT(simulation.state().bodies[0].pose.position.x(), -0.025);
+}
+
+/// Two plates with a hinge between them, closed, as thick together as the cube: the thumb reaches for the
+/// base and the index for the lid.
+Scene book(double friction) {
+  constexpr double kEdge = 0.03;  // half of it [m]
+  Scene scene;
+  for (const double side : {-1.0, 1.0}) {
+    Body plate = testing::stiff_box(Vector3(kHalf, 2.0 * kEdge, 2.0 * kEdge), 0.22);
+    plate.name = side < 0.0 ? "base" : "lid";
+    plate.start.position.x() = side * 0.5 * kHalf;
+    plate.material.static_friction = plate.material.dynamic_friction = friction;
+    scene.bodies.push_back(plate);
+  }
+  Joint hinge;
+  hinge.name = "hinge";
+  hinge.parent = 0, hinge.child = 1;
+  hinge.axis = -Vector3::UnitZ();
+  hinge.in_parent.position = Vector3(0.5 * kHalf, -kEdge, 0);
+  hinge.in_child.position = Vector3(-0.5 * kHalf, -kEdge, 0);
+  hinge.lower = 0.0, hinge.upper = 1.5;
+  scene.joints.push_back(hinge);
+  return scene;
+}
+
+// The hand accelerates by 1 g. Friction of both fingers carries 3.2 N of the 4.3 N that 0.44 kg need.
+TEST(GraspAssist, takes_a_linkage_as_a_whole) {
+  std::array<double, 2> off{};
+  for (const bool assist : {true, false}) {
+    Configuration configuration;
+    configuration.contact.grasp_assist = assist;
+    Simulation simulation(book(0.1), configuration);
+    bool active = false;
+    std::size_t grips = 0;
+    Vector3 shift = Vector3::Zero();
+    testing::play(
+        simulation, 0.0, 0.9, 120.0,
+        [&](double t) {
+          const double moved = std::max(0.0, t - 0.5);
+          shift = 0.5 * 9.81 * moved * moved * Vector3::UnitZ();
+          return reaching(testing::smooth(t, 0.3), 0.012, 0.0, shift);
+        },
+        [&](const Simulation& s) {
+          grips = std::max(grips, s.state().grips.size());
+          for (const Grip& grip : s.state().grips) active = active || grip.active;
+        });
+    off[assist ? 0 : 1] = std::abs(simulation.state().bodies[0].pose.position.z() - shift.z());
+    EXPECT_EQ(grips, assist ? 1u : 0u);
+    EXPECT_EQ(active, assist);
+    EXPECT_LT(simulation.state().joints[0].position, 0.05) << "it stays shut";
+  }
+  EXPECT_LT(off[0], 0.025) << "it stays between the fingers";
+  EXPECT_GT(off[1], 0.05);
 }
 
 TEST(GraspAssist, without_it_the_first_finger_decides) {

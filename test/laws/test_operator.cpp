@@ -346,6 +346,50 @@ TEST(Operator, pull_beyond_the_hands_strength_slips_off_and_the_rail_is_lost) {
   EXPECT_LT(state_of(simulation).pose.position.x(), 0.55);  // the hand slid along the rail
 }
 
+// ---- Pushing off.
+
+/// A hand flat on the wall y = 0, pressed in by `depth`.
+Hand on_wall(std::uint32_t id, double x, double depth) {
+  Hand hand = empty_hand();
+  hand.id = id;
+  hand.side = id == 1 ? Side::left : Side::right;
+  const double y = depth - kTip;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    const double across = x + 0.02 * (finger - 2);
+    add_finger(hand, capsule_index(finger, 3), Vector3(across, y, 0.08), Vector3(across, y, 0.1), kTip);
+  }
+  add_finger(hand, kPalm, Vector3(x - 0.03, y - 0.007, 0), Vector3(x + 0.03, y - 0.007, 0), kTip + 0.007);
+  hand.palm.position = Vector3(x, y, 0);
+  return hand;
+}
+
+/// Astronauts on the KC-135 pushed off with 151 N of a hand on average, and 267 N at most (Klute 1992). Both
+/// arms stretch by 0.3 m in 0.5 s here.
+TEST(Operator, push_off_is_as_strong_as_astronauts_are_and_no_stronger) {
+  Body wall = box_body(Vector3(2, 0.2, 2), 1.0);
+  wall.fixed = true;
+  wall.start.position.y() = 0.1;
+  wall.material.stiffness = 2000.0;
+  complete(wall);
+  Configuration configuration;
+  configuration.filter.type = FilterKind::none;
+  Simulation simulation(with_operator(scene_of(wall), Vector3(0, -0.5, 0)), configuration);
+  double most = 0.0;
+  for (double t = 0.0; t < 2.0; t += 1.0 / 120.0) {
+    const double stretched = -0.002 + 0.3 * smooth(t - 0.2, 0.5);
+    simulation.advance({at(t), {on_wall(1, -0.2, stretched), on_wall(2, 0.2, stretched)}});
+    Vector3 force = Vector3::Zero();
+    for (const Contact& contact : simulation.result().contacts) force += contact.force;
+    most = std::max(most, force.norm());
+  }
+  EXPECT_GT(most, 151.0);  // both hands
+  EXPECT_LT(most, 2.0 * 151.0);
+  EXPECT_LT(operator_twist(simulation).linear.y(), -0.3);
+  EXPECT_GT(operator_twist(simulation).linear.y(), -1.0);
+  RecordProperty("newtons", std::to_string(most));
+  RecordProperty("speed", std::to_string(-operator_twist(simulation).linear.y()));
+}
+
 // ---- Two operators and one crate.
 
 TEST(Operator, two_and_the_crate_that_they_hold_keep_all_momentum) {

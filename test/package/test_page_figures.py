@@ -40,7 +40,7 @@ class Mechanism(unittest.TestCase):
         self.addCleanup(setattr, page_figures, "PACKAGE", self.before)
         page_figures.PACKAGE = self.root
         for path, text in (("README.md", "It takes <!-- figure speed/step -->9 s<!-- /figure -->.\n"),
-                           ("src/a.cpp", "int a = 1;  // one\n"), ("docs/page.md", "")):
+                           ("src/a.cpp", "int a = 1;  // one\n"), (os.path.join("docs", "page.md"), "")):
             os.makedirs(os.path.dirname(os.path.join(self.root, path)) or self.root, exist_ok=True)
             page_figures.write(path, text)
         os.makedirs(os.path.join(self.root, page_figures.RESULTS))

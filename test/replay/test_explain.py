@@ -217,6 +217,14 @@ class CommandsTest(Folders):
         refused = script('explain', output, '--set', 'gravity=[0,0,-1]')
         self.assertEqual((refused.returncode, refused.stderr.count('\n')), (2, 1), refused.stderr)
 
+    def test_a_bag_of_hands_alone_is_said_to_run_through_the_scene_and_not_to_be_at_fault(self):
+        Attempt(until=0.3).replay(self.folder)
+        scene, bag, again = (os.path.join(self.folder, name) for name in ('pinch.urdf', 'pinch.bag', 'again'))
+        done = replay('--scene', scene, '--input', bag, '--output', again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("runs the hands of %s through scene 'pinch'" % bag, done.stderr)
+        self.assertNotIn('not known', done.stderr)
+
     def test_a_recording_is_replayed_with_the_options_that_follow_it(self):
         output = Attempt(**OPENING).replay(self.folder)
         shutil.rmtree(output)

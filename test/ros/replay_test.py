@@ -188,6 +188,7 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_recorder()
                 self.wait_for_inputs()
                 self.call("set", SetParameter, "material/static_friction", "1.1")
+                self.call("set", SetParameter, "grasp/cube", "free")
                 Client("interaction_node/tune", timeout=30.0).update_configuration(
                     {"filter_window": 5, "contact_model": "seed", "gravity_z": -0.1})
                 self.wait_for_inputs()
@@ -207,7 +208,7 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_inputs(100)
         live = self.check_it_is_the_live_run(self.bag)["live_run"]
         said = "\n".join(live["changes"])
-        for what in ("material/static_friction=1.1", "contact_model=seed", "gravity", "spawn 'box'", "spawn 'of_mesh'",
+        for what in ("material/static_friction=1.1", "grasp/cube=free", "contact_model=seed", "gravity", "spawn 'box'", "spawn 'of_mesh'",
                      "pause", "go on", "delete 'box'", "reset"):
             self.assertIn(what, said)
         summary, _, _ = self.replay(self.bag, "--set", "material/dynamic_friction=0.3")

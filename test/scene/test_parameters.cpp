@@ -66,6 +66,7 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.contact.edge_grip, c.contact.edge_grip);
   EXPECT_EQ(d.contact.entry_face, c.contact.entry_face);
   EXPECT_EQ(d.contact.impact_friction, c.contact.impact_friction);
+  EXPECT_EQ(d.contact.literal, c.contact.literal);
   EXPECT_EQ(d.contact.object_stiffness, c.contact.object_stiffness);
   EXPECT_EQ(d.contact.sleep, c.contact.sleep);
   EXPECT_EQ(d.contact.sweep, c.contact.sweep);
@@ -80,11 +81,12 @@ Configuration unlike_defaults() {
   c.contact_model = ContactModelKind::impulse;
   c.step = 0.004;
   c.gravity = Vector3(1, 2, 3);
-  c.filter = {FilterKind::none, 7, 11, 12, 13, 0.014, 15, 16};
+  c.filter = {FilterKind::none, 7, false, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
-  c.contact = {false, false, false, false, false, false, false,
-               false, false, false, false, false, 1,     {7, 8, 0.001, 0.03, 0.5, 0.25}};
+  c.contact = {false, false, false, false, false,
+               false, false, false, false, false,
+               false, false, true,  1,     {7, 8, 0.001, 0.03, 0.5, 0.25}};
   c.tracking = {1.5, 3};
   return c;
 }
@@ -146,6 +148,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "material/static_friction",
                                           "material/stiffness",
                                           "scene/density",
+                                          "seed/literal",
                                           "step",
                                           "tracking/hold_time",
                                           "tracking/max_speed"};

@@ -72,6 +72,7 @@ void expect_same(const Simulation& a, const Simulation& b) {
     EXPECT_LT((x.linear_momentum - y.linear_momentum).norm(), 1e-10) << one.name;
     EXPECT_LT((x.angular_momentum - y.angular_momentum).norm(), 1e-10) << one.name;
     EXPECT_EQ(one.material.restitution, other.material.restitution) << one.name;
+    EXPECT_EQ(one.grasp, other.grasp) << one.name;
   }
   for (std::size_t j = 0; j < a.scene().joints.size(); ++j) {
     const Joint& one = a.scene().joints[j];
@@ -107,6 +108,7 @@ TEST_F(SavedScene, goes_on_as_it_was_going) {
   for (Body& body : scene.bodies) body.link_in_body = {};
   Body free = testing::box_body({0.04, 0.05, 0.06}, 0.1);
   free.name = "free";
+  free.grasp = GraspMode::never;
   free.start = {{0.4, 0.1, 0.6}, Quaternion(Eigen::AngleAxisd(1.0, Vector3(1, 2, 3).normalized()))};
   free.start_twist = {{0.1, 0.2, 0.3}, {1.0, -2.0, 0.5}};
   scene.bodies.push_back(free);

@@ -53,9 +53,29 @@ TEST_F(SceneYaml, ItsMaterialsStandAboveTheDefaultsAndItsGravityBelowTheOption) 
   EXPECT_EQ(Vector3(0, 0, -1.62), scene.gravity);
 }
 
+TEST_F(SceneYaml, SaysHowObjectsAreGrasped) {
+  EXPECT_EQ(GraspMode::parameter, load("").bodies.at(0).grasp);
+  for (const GraspMode mode : {GraspMode::free, GraspMode::assist, GraspMode::never})
+    EXPECT_EQ(mode, load("grasp: {thing: " + name_of(mode) + "}").bodies.at(0).grasp);
+  test::expect_words(error("grasp: {thing: sometimes}"),
+                     {"test.yaml:1", "grasp/thing", "sometimes", "free, assist or never"});
+  test::expect_words(error("grasp: {thin: never}"), {"test.yaml:1", "'thin'", "thing"});
+}
+
+// A linkage that floats has the mode of the body that it hangs on.
+TEST_F(SceneYaml, AFloatingLinkageIsGraspedAsAWhole) {
+  const std::string content = std::string(test::kInertial) + test::kBox;
+  urdf_ = folder_.write("test.urdf", test::robot(test::link("base", content) + test::link("lid", content) +
+                                                 test::joint("floating", "world", "base") +
+                                                 test::joint("continuous", "base", "lid")));
+  const Scene scene = load("grasp: {base: never}");
+  EXPECT_EQ(GraspMode::never, grasp_of(scene, *find_body(scene, "lid")));
+  test::expect_words(error("grasp: {lid: never}"), {"'lid'", "allowed: base"});
+}
+
 TEST_F(SceneYaml, RefusesUnknownKeysAndLinks) {
   test::expect_words(error("gravty: [0, 0, 0]"),
-                     {"test.yaml:1", "'gravty'", "gravity, bounds, materials, twists, joints"});
+                     {"test.yaml:1", "'gravty'", "gravity, bounds, materials, grasp, twists, joints"});
   test::expect_words(error("bounds: {low: [0, 0, 0]}"), {"bounds", "'low'", "min, max"});
   test::expect_words(error("materials:\n  thin: {restitution: 0}"),
                      {"test.yaml:", "materials", "'thin'", "thing"});

@@ -112,6 +112,21 @@ TEST(LiveSimulation, what_is_not_changed_keeps_its_bits_when_an_object_comes_or_
   }
 }
 
+TEST(LiveSimulation, an_object_that_is_never_to_be_grasped_from_now_on_is_let_go) {
+  Held held;
+  held.play(0.7);
+  ASSERT_TRUE(held.holds());
+  EXPECT_EQ(held.live().parameter("grasp/object"), "");
+  held.live().set_parameters({{"grasp/object", "never"}});
+  EXPECT_EQ(held.live().parameter("grasp/object"), "never");
+  held.play(1.2);
+  EXPECT_FALSE(held.holds());
+  EXPECT_EQ(held.live().simulation().scene().bodies[held.index("first")].grasp, GraspMode::parameter);
+  EXPECT_THROW(held.live().set_parameters({{"grasp/object", "maybe"}}), ParameterError);
+  EXPECT_THROW(held.live().set_parameters({{"grasp/nothing", "never"}}), ParameterError);
+  EXPECT_THROW(held.live().parameter("grasp/nothing"), ParameterError);
+}
+
 TEST(LiveSimulation, goes_on_after_a_far_body_is_gone_as_if_it_had_never_been) {
   Held changed, unchanged;
   changed.play(0.6), unchanged.play(0.6);

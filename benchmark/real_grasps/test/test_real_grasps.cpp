@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
 #include "../arctic.h"
@@ -146,7 +148,7 @@ std::vector<Event> scripted(const Configuration& configuration, const Disturbanc
   std::vector<Event> events;
   for (const Closing& closing : closings(recording, row))
     events.push_back(
-        {"scripted", closing, play(recording, closing, row, disturbance, ours(configuration).player)});
+        {"scripted", closing, play(recording, closing, row, disturbance, ours(configuration).player), ""});
   return events;
 }
 
@@ -237,10 +239,35 @@ TEST(Statistics, AQuantileLiesBetweenItsNeighbours) {
   EXPECT_DOUBLE_EQ(quantile({}, 0.9), 0.0);
 }
 
-TEST(Halves, WindowsOfOneCaptureAreInOne) {
-  EXPECT_EQ(capture_of("s01_laptop_use_01_412"), "s01_laptop_use_01");
-  EXPECT_EQ(half_of("ul_vr_a"), Half::held_out);
-  EXPECT_EQ(half_of("ul_vr_d"), Half::tuned);
+// Trials of one group that all end alike are one trial, as far as an interval goes.
+TEST(Statistics, AnIntervalByGroupsIsWiderWhereTheirTrialsDependOnEachOther) {
+  const std::vector<Share> apart(40, {0, 1});
+  std::vector<Share> even = apart, clustered;
+  for (std::size_t i = 0; i < even.size(); i += 2) even[i].successes = 1;
+  for (int i = 0; i < 4; ++i) clustered.push_back({i % 2 == 0 ? 10u : 0u, 10u});
+  const Interval independent = grouped(even), dependent = grouped(clustered), single = wilson(20, 40);
+  EXPECT_NEAR(independent.low, single.low, 0.03);
+  EXPECT_NEAR(independent.high, single.high, 0.03);
+  EXPECT_LT(dependent.low, 0.1);
+  EXPECT_GT(dependent.high, 0.9);
+  EXPECT_EQ(grouped({}).high, 1.0) << "nothing known";
+  EXPECT_LT(grouped({{5, 5}, {5, 5}}).low, 0.8) << "not as sure as the bootstrap of equal groups says";
+}
+
+TEST(Recordings, TheirDescriptionMaySayWhatTheHandHadBeforeIt) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "mrhi_described_recordings";
+  std::filesystem::create_directories(folder);
+  const std::string csv = (folder / "one.csv").string(), description = (folder / "one.meta.json").string();
+  std::ofstream(csv) << "time_s,hand_id,is_left,index_j4_x,index_j4_y,index_j4_z\n0,1,0,0,0.2,0\n";
+  std::filesystem::remove(description);
+  EXPECT_EQ(load_recording(csv).object, "");
+  for (const char* object : kObjects) {
+    std::ofstream(description) << "{\"name\": \"one\", \"object\": \"" << object << "\"}";
+    EXPECT_EQ(load_recording(csv).object, object);
+  }
+  std::ofstream(description) << "{\"object\": \"heard\"}";
+  EXPECT_THROW(load_recording(csv), std::runtime_error);
+  std::filesystem::remove_all(folder);
 }
 
 /// Two hands that move by `step` along x from frame to frame, the left one twice as fast, and an object that
@@ -304,6 +331,18 @@ TEST(Arctic, AnObjectOnAHingeIsLetFreeWithTheSpeedThatItsHingeHad) {
     EXPECT_LT(outcome.away[i], 1e-5);
     EXPECT_LT(outcome.turned[i], 1e-4);
   }
+}
+
+// The hands go along x by 3 cm a frame and have reached 8.9 cm with their skin in the first one.
+TEST(Arctic, AWindowIsLedFromWhereNoHandTouchesItsObject) {
+  Window window = carried(0.03, 0.0);
+  window.scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};
+  const Vector3 from_first_to_second(0.14, 0.0, 0.04);
+  window.scene.bodies = {
+      body_of(kCube, device_mount() * Pose{from_first_to_second, Quaternion::Identity()}, {})};
+  for (Pose& place : window.places) place = window.scene.bodies[0].start;
+  window.free_from = 3;
+  EXPECT_EQ(last_clear(window, Configuration()), 1u);
 }
 
 TEST(Arctic, AHingeThatIsElsewhereIsNotWithin) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,14 @@
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {
+
+/// What hands can do with a body beyond touching it, under `implicit`.
+enum class GraspMode : std::uint8_t {
+  parameter,  ///< `assist` or `free`, as the parameter contact/grasp_assist says
+  free,       ///< contact alone
+  assist,     ///< contact and grasp assist
+  never       ///< hands push it, but exert no force on it while they have it between two sides
+};
 
 /// What does not change about one object. The body frame has its origin at the centre of mass and the axes of
 /// the URDF link.
@@ -26,10 +36,19 @@ struct Body {
   Pose link_in_body;  ///< the URDF link's frame in the body frame (rotation is identity)
   Material material;
   OwnMaterial own_material;
+  GraspMode grasp = GraspMode::parameter;
   std::vector<PlacedShape> shapes;  ///< for collision
   std::vector<Visual> visuals;
   double bounding_radius = 0.0;  ///< of all shapes, about the body frame's origin [m]
 };
+
+/// What a mode may be called, for messages.
+constexpr const char* kGraspModes = "free, assist or never";
+
+/// A mode by its name in files: free, assist or never. Nothing for another name.
+std::optional<GraspMode> grasp_mode(const std::string& name);
+/// Empty for GraspMode::parameter.
+std::string name_of(GraspMode mode);
 
 /// Fills inverse_inertia (zero for a fixture), its principal axes and bounding_radius from the rest. Throws
 /// std::invalid_argument naming the body and the value if a free body's mass or inertia is not positive

@@ -70,6 +70,10 @@ Pose joint_motion(const Joint& joint, double position);
 /// a parent that is not there, numbers out of their limits.
 void arrange_joints(Scene& scene);
 
+/// The free body that a body hangs on through joints, or the body itself if it is free. Nothing for a fixture
+/// and for what hangs on a fixture or on the world.
+std::optional<int> floating_root(const Scene& scene, int body);
+
 /// Index of the joint of that name, or nothing.
 std::optional<int> find_joint(const Scene& scene, const std::string& name);
 

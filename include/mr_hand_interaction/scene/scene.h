@@ -55,6 +55,13 @@ struct Scene {
 /// Index of the body of that name, or nothing.
 std::optional<int> find_body(const Scene& scene, const std::string& name);
 
+/// Names of the bodies that may have a GraspMode of their own: all but fixtures and the parts of a floating
+/// linkage, which has that of the body that it hangs on.
+std::vector<std::string> graspable_bodies(const Scene& scene);
+
+/// What holds for a body: its own mode, or that of the floating linkage that it is part of.
+GraspMode grasp_of(const Scene& scene, int body);
+
 /// The free body of that name. Throws std::invalid_argument that lists those there are.
 Body& free_body(Scene& scene, const std::string& name);
 
