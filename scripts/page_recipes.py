@@ -148,7 +148,7 @@ def operators():
     try:
         chosen = [word for model in MODELS for word in ('--model', model)]
         run('simulated_study', '--output', os.path.join(folder, 'study'), '--seed', '1', *chosen)
-        return operators_figures(folder, os.path.join(folder, 'study')), {}
+        return operators_figures(os.path.join(folder, 'study')), {}
     finally:
         shutil.rmtree(folder)
 
@@ -175,10 +175,15 @@ def _table_1(comparison, pairs, trials):
     return table(['', 'system', 'time [s]', 'attempts', 'all drops, sum', 'time over `soft_pad` (95 % interval)'], lines)
 
 
-def operators_figures(folder, sessions):
-    run('analyse_study', sessions, '--output', os.path.join(folder, 'results'))
-    comparison, trials, pairs = (rows_of_file(os.path.join(folder, 'results'), name + '.csv')
-                                 for name in ('comparison', 'trials', 'post_hoc'))
+def _rows(frame):
+    return [dict(row, gravity_g='%g' % row['gravity_g']) for row in frame.to_dict('records')]
+
+
+def operators_figures(folder):
+    from study import analysis, measures, session_folder, study_data
+    data = study_data.gather([session_folder.read_session(path) for path in session_folder.find_sessions([folder])])
+    found = analysis.analyse(data._replace(cells=data.cells[data.cells['measure'].isin(measures.MAIN)]))
+    comparison, trials, pairs = (_rows(frame) for frame in (found.comparison, data.trials, found.post_hoc))
     lines = []
     for gravity in ('0', '1'):
         for model in MODELS:

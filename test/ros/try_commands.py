@@ -22,6 +22,8 @@ NOT_TRIED = (  # what the command begins with, and why it is not run here; beyon
     (r"scripts/test( --no-\w+)*$", "runs by itself: scripts/test_on"),
     ("scripts/test_on", "brings us here"),
     ("scripts/benchmark --(full|real|jolt)|scripts/fuzz|scripts/calibrate_study", "takes long"),
+    ("scripts/figures", "measures, for minutes"),
+    ("scripts/import_captures", "needs captures; test_import_captures makes its own"),
     ("scripts/sanitize", "builds the core anew with sanitizers, over a quarter of an hour on two processors"),
     ("scripts/ask_ratings .*--page", "asks on a page in a browser; test_ask_ratings"),
     ("rosrun mr_hand_interaction training_keys", "needs a participant; training.test"),
