@@ -72,7 +72,8 @@ double common_ball(const Solid& a, const Solid& b) {
   constexpr int kStarts = kAcross * kAcross * kAcross;
   for (int i = 0; i < kStarts; ++i) {
     const int start = (i + kStarts / 2) % kStarts;
-    const Vector3 part(start % kAcross, start / kAcross % kAcross, start / kAcross / kAcross);
+    const int row = start / kAcross, layer = row / kAcross;
+    const Vector3 part(start % kAcross, row % kAcross, layer);
     const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9;
     Vector3 place = a.pose * Vector3(box.centre + offset.cwiseProduct(box.half));
     for (int step = 0; step < kMostSteps; ++step) {

@@ -18,7 +18,8 @@ class ImpulseModel : public ContactModel {
 }  // namespace
 
 // Eqs. 9 to 15 alone. That `struck` is forgotten in every step makes each step an approach of its own; as
-// nothing pushes where nothing approaches, a body slides out of any grip (docs/speed_accuracy.md#where-each-contact-model-is-stable).
+// nothing pushes where nothing approaches, a body slides out of any grip
+// (docs/speed_accuracy.md#where-each-contact-model-is-stable).
 void ImpulseModel::respond(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     contact.force.setZero();

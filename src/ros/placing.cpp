@@ -75,7 +75,8 @@ void Placing::follow(const Simulation& simulation) {
   if (!server_) return;
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const Body& body = simulation.scene().bodies[b];
-    if (!body.fixed && !body.is_operator) server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
+    if (!body.fixed && !body.is_operator)
+      server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
   }
   server_->applyChanges();
 }

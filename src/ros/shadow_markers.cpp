@@ -210,10 +210,9 @@ class Shadow {
 };
 
 bool is_under_all(double height, const Scene& scene) {
-  return std::none_of(scene.bodies.begin(), scene.bodies.end(),
-                      [&](const Body& body) {
-                        return !body.fixed && !body.shapes.empty() && body.start.position.z() < height;
-                      });
+  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
+    return !body.fixed && !body.shapes.empty() && body.start.position.z() < height;
+  });
 }
 
 bool is_level(const Pose& pose) {
@@ -225,7 +224,8 @@ bool is_level(const Pose& pose) {
 double ground_height(const Scene& scene) {
   double lowest = kGrid + kClearance;
   for (const Body& body : scene.bodies)
-    if (!body.fixed && !body.shapes.empty()) lowest = std::min(lowest, body.start.position.z() - body.bounding_radius);
+    if (!body.fixed && !body.shapes.empty())
+      lowest = std::min(lowest, body.start.position.z() - body.bounding_radius);
   double ground = lowest - kClearance;
   for (const Body& body : scene.bodies) {
     for (const PlacedShape& placed : body.shapes) {

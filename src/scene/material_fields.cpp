@@ -17,7 +17,8 @@ const std::array<MaterialField, 4>& material_fields() {
 std::optional<std::string> material_conflict(const Material& material) {
   if (material.dynamic_friction <= material.static_friction) return {};
   return "dynamic_friction " + text::number(material.dynamic_friction) + " is above static_friction " +
-         text::number(material.static_friction) + "; allowed: at most static_friction, both set at once if need be";
+         text::number(material.static_friction) +
+         "; allowed: at most static_friction, both set at once if need be";
 }
 
 }  // namespace mrhi

@@ -211,6 +211,7 @@ std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
     if (files.size() == 1) return {{{}, error.what()}};
   }
   std::vector<LoadedMesh> meshes;
+  meshes.reserve(files.size());
   for (const MeshFile& file : files) meshes.push_back(load_meshes({file}).front());
   return meshes;
 }

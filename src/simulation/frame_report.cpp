@@ -46,6 +46,14 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
   }
 }
 
+/// True if the hand has a grip on another body of the same floating linkage, and so on the whole of it.
+bool is_gripped_elsewhere(const FrameEnd& end, int slot, int body) {
+  const std::optional<int> root = floating_root(end.scene, body);
+  return root && std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
+           return grip.active && grip.hand == slot && floating_root(end.scene, grip.body) == root;
+         });
+}
+
 void update_interactions(const FrameEnd& end, FrameResult& result) {
   SimulationState& state = end.state;
   const std::size_t bodies = end.scene.bodies.size();
@@ -77,6 +85,8 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
               ? (grip->active ? InteractionLevel::grasp : InteractionLevel::contact)
               : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
                            state.bodies[b].pose, result.contacts, interaction.level);
+      if (seen == InteractionLevel::contact && is_gripped_elsewhere(end, static_cast<int>(slot), body))
+        seen = InteractionLevel::grasp;
       if (grasp_of(end.scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,
                          result.events);

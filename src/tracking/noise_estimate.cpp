@@ -118,8 +118,8 @@ void observe_noise(const SampleHistory& history, SeenNoise& noise) {
   noise.variance = low_variance(noise);
 }
 
-// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight on
-// what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
+// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight
+// on what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
 double filter_noise(const SeenNoise& seen) {
   constexpr double kIgnored = 0.001;  // [m]
   const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);

@@ -216,7 +216,7 @@ class Learning(Labs):
         self.assertEqual(len(pages), 2, pages)
         with open(os.path.join(folder, 'P_1.html'), encoding='utf-8') as file:
             page = file.read()
-        for told in ('<h2>0 g</h2>', '<h2>1 g</h2>', '0.0123', '0.0456'):
+        for told in ('<h2>0 g</h2>', '<h2>1 g</h2>', '12.3', '45.6'):
             self.assertIn(told, page)
 
     def test_practice_counts_in_no_table_but_that_of_trials(self):
