@@ -11,7 +11,7 @@ namespace {
 
 using Element = YamlElement;
 
-/// Explicit coupling of an operator to what is heavier needs a body of some mass (docs/training_for_0g.md)
+/// Explicit coupling of an operator to what is heavier needs a body of some mass (docs/training.md)
 /// [kg].
 constexpr Range kOperatorMass{10, 1000};
 constexpr Range kRestraintReach{0, 3};  // [m]
