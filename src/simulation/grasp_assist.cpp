@@ -41,15 +41,6 @@ constexpr double kMinReach = 0.04, kMaxReach = 0.06;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
-/// Whether the hand touches the same body on a face opposite to this contact's, or is about to (contacts
-/// begin 1 mm before the surface).
-bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
-    return other.key.hand == contact.key.hand && other.key.body == contact.key.body && !other.ignored &&
-           other.normal.dot(contact.normal) < kOpposite;
-  });
-}
-
 /// Opening by which the hand releases the body: `fraction` of the way to where both sides just touch it [m].
 double release_opening(const Grip& grip, double fraction) {
   return std::max(kMinRelease, fraction * (grip.touch_aperture - grip.min_aperture));
@@ -146,6 +137,16 @@ GraspAssist::TouchingSides GraspAssist::touching_sides(const Grip& grip,
     (is_base(grip.by_palm, contact.key.capsule) ? sides.base : sides.fingers) = true;
   }
   return sides;
+}
+
+/// True if the hand touches the same object on a face opposite to this contact's, or is about to (contacts
+/// begin 1 mm before the surface).
+bool GraspAssist::is_opposed(const Contact& contact, const std::vector<Contact>& contacts) const {
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
+    return other.key.hand == contact.key.hand && !other.ignored &&
+           object_index_[other.key.body] == object_index_[contact.key.body] &&
+           other.normal.dot(contact.normal) < kOpposite;
+  });
 }
 
 bool GraspAssist::slips(const std::vector<Contact>& contacts, const Grip& grip) const {
@@ -389,7 +390,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   });
   if (!released && contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
   const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
-    return pair.hand == contact.key.hand && pair.body == contact.key.body;
+    return pair.hand == contact.key.hand && object_index_[pair.body] == object_index_[contact.key.body];
   });
   const bool opposed = closes && is_opposed(contact, state.contacts);
   if (released || (closes && !opposed)) {

@@ -46,6 +46,7 @@ class GraspAssist {
     return grip.hand == hand && object_index_[grip.body] == object_index_[body];
   }
   const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
+  bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) const;
   bool slips(const std::vector<Contact>& contacts, const Grip& grip) const;
   bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
