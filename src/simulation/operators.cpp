@@ -13,6 +13,9 @@ namespace {
 /// What hands' forces may move an operator's hands off the path that was foreseen, before neighbours are
 /// listed anew [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
 constexpr double kMaxDeparture = 0.002;
+/// That departure in a short frame is at most this times the frame's squared duration: far more than a
+/// person's strength gives 80 kg [m/s^2].
+constexpr double kMaxDepartureRate = 20.0;
 /// Of a hand from its operator's centre of mass, where that departure is bounded [m].
 constexpr double kMaxReach = 1.5;
 /// How fast a tether pulls in what it is too long by: what a swing stretches it by in a step, but not what
@@ -96,16 +99,17 @@ void Operators::begin_frame(double seconds, const SimulationState& state) {
 }
 
 void Operators::foresee(double seconds) {
+  const double allowed = std::min(kMaxDeparture, kMaxDepartureRate * seconds * seconds);
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
     const CarrierMotion& now = carriers_[o];
-    courses_[o] = {now.twist, 0.0, seconds};
+    courses_[o] = {now.twist, 0.0, seconds, allowed};
     carried_[o] = {now.rotation,
                    now.origin + 0.5 * seconds * now.twist.linear,
                    now.centre,
                    now.twist.linear.norm(),
                    now.twist.angular.norm(),
                    seconds,
-                   kMaxDeparture};
+                   allowed};
   }
 }
 
@@ -129,7 +133,7 @@ bool Operators::begin_step(double left, const SimulationState& state) {
                         kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
     course.departed += rate * std::max(course.left - left, 0.0);
     course.left = left;
-    on_course = on_course && course.departed + rate * left < kMaxDeparture;
+    on_course = on_course && course.departed + rate * left <= course.allowed;
   }
   return on_course;
 }

@@ -76,6 +76,7 @@ class Operators {
   struct Course {
     Twist foreseen;
     double departed = 0.0, left = 0.0;  // [m], [s]
+    double allowed = 0.0;               // departure before neighbours are listed anew [m]
   };
   std::vector<CarrierMotion> carriers_;  // by operator
   std::vector<Pose> start_;              // of their frames at the frame's start
