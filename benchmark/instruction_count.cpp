@@ -50,6 +50,21 @@ Scene pinch() {
   return PinchScene().scene();
 }
 
+/// Scene (a) by an operator who floats.
+Scene pinch_afloat() {
+  Scene scene = pinch();
+  Body person;
+  person.name = "operator";
+  person.is_operator = true;
+  person.mass = 80.0;
+  person.inertia = Vector3(11.0, 12.0, 1.5).asDiagonal();
+  person.link_in_body.position = Vector3(0.0, 0.4, 0.0);
+  person.start.position = -person.link_in_body.position;
+  scene.operators.push_back({static_cast<int>(scene.bodies.size()), {}, 1.5});
+  scene.bodies.push_back(person);
+  return scene;
+}
+
 Scene pinch_19_more() {
   Scene scene = pinch();
   for (int i = 0; i < 19; ++i) {
@@ -137,6 +152,7 @@ std::vector<Hand> pushing(double t) {
 constexpr double kTrackerFrame = 1.0 / 120.0;  // [s]
 const Plan kPlans[] = {
     {"pinch", pinch, swinging, 0.001, 0.6, false, true},
+    {"pinch_afloat", pinch_afloat, swinging, 0.001, 0.6, false, true},
     {"pinch_19_more", pinch_19_more, swinging, 0.001, 0.6, false, true},
     {"stack", stack, none, 0.001, 1.0, false, false},
     {"stack_asleep", stack, none, 0.001, 1.0, false, true},

@@ -110,7 +110,9 @@ TRIALS = collections.OrderedDict(
                                      'release_speed')] +
     [('tracking_losses', count)])
 # Of sessions since they are measured; before, grasps are the attempts, and these drops are counted in events.csv.
-ADDED = collections.OrderedDict([('grasps', count), ('manipulation_drops', count)])
+ADDED = collections.OrderedDict(
+    [('grasps', count), ('manipulation_drops', count), ('touches', count)] +
+    [(column, amount) for column in ('arrival_speed', 'misplacement', 'misalignment', 'operator_speed', 'operator_spin')])
 EVENTS = collections.OrderedDict([('trial', count), ('stage', str), ('event', str)])
 CHANGES = collections.OrderedDict([('time', amount), ('event', str), ('detail', str)])
 RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
@@ -118,15 +120,14 @@ RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 
 def read_table(path, columns, notes, added=()):
     """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash.
-    `added`: columns that may all be missing."""
+    `added`: columns that may be missing."""
     text = _text_of(path, LARGEST_TABLE, 'utf-8-sig')
     reader = csv.reader(io.StringIO(text, newline=''))
     header = [cell.strip() for _, cells in itertools.islice(_lines(reader, path), 1) for cell in cells]
     missing = [column for column in columns if column not in header]
     if missing:
         raise StudyError("%s: line 1: no column '%s'" % (path, missing[0]))
-    if set(added) <= set(header):
-        columns = collections.OrderedDict(list(columns.items()) + list(dict(added).items()))
+    columns = collections.OrderedDict(list(columns.items()) + [item for item in dict(added).items() if item[0] in header])
     places, rows = [(column, header.index(column), parse) for column, parse in columns.items()], []
     whole = text.endswith(('\n', '\r'))
     lines = list(_lines(reader, path))

@@ -1,5 +1,8 @@
 #include "body_problem.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "impact.h"
 #include "spring_contact.h"
 
@@ -10,6 +13,13 @@ namespace {
 /// operator. A lighter one hardly moves a person: there the operator's velocity of the step's start is stable
 /// at any step.
 constexpr double kMinCoupled = 0.02;
+
+double lightest_operator(const Scene& scene) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const Operator& op : scene.operators)
+    lightest = std::min(lightest, scene.bodies[static_cast<std::size_t>(op.body)].mass);
+  return lightest;
+}
 
 /// Fills the last four up.
 template <typename Touch>
@@ -58,6 +68,7 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
   begin_body(body, state, step.gravity);
   coupled_ = false;
   if (step.operators == nullptr || !objects_.empty()) return;
+  if (body.mass <= kMinCoupled * lightest_operator(step.scene)) return;
   const int op = sole_operator(step);
   if (op >= 0 && body.mass > kMinCoupled * step.scene.bodies[static_cast<std::size_t>(op)].mass)
     couple(step, body, state, static_cast<std::size_t>(op));

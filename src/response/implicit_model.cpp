@@ -4,6 +4,7 @@
 
 #include "finger_limits.h"
 #include "newton.h"
+#include "operator_reaction.h"
 
 namespace mrhi {
 namespace {
@@ -86,7 +87,8 @@ void ImplicitModel::press(ContactStep& step) {
 void ImplicitModel::solve_one(ContactStep& step, const Island& island) {
   one_.begin(step, island, configuration_);
   bool agree = Newton<BodyProblem>(one_).solve();
-  if (!agree && step.operators != nullptr) {
+  // Where contacts' forces are what an operator receives, they are to make the momenta.
+  if (!agree && step.operators != nullptr && !reacts_by_momentum(step, island.bodies.begin()->body)) {
     one_.evaluate(true);  // it has moved on since
     agree = true;
   }

@@ -3,6 +3,7 @@
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <vector>
@@ -167,7 +168,10 @@ visualization_msgs::MarkerArray training_markers(
   MarkerLayer instructions = layer("instructions"), timer = layer("timer"), result = layer("result");
   const bool active = status.phase == Status::RUNNING || status.phase == Status::PAUSED;
   const Goal& goal = session.task().goals[session.trial().goal()];
-  const bool somewhere = goal.kind == GoalKind::nudge_into || goal.stage == TrainingStage::maintenance;
+  const bool comes_to_rest =
+      goal.kind == GoalKind::rest && !goal.of_operator && std::isfinite(goal.tolerance);
+  const bool somewhere =
+      goal.kind == GoalKind::nudge_into || comes_to_rest || goal.stage == TrainingStage::maintenance;
   if (active && somewhere) {
     add_goal(session, body, status, target);
     write(timer, 0, kTimerPlace, timer_text(goal, status), kTimer);

@@ -5,6 +5,7 @@
 #include <mr_hand_interaction/SpawnObject.h>
 #include <mr_hand_interaction/SpawnUrdf.h>
 #include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -27,7 +28,9 @@ TrainingScene::TrainingScene(ros::NodeHandle node, const std::string& simulation
       spawn_urdf_(node.serviceClient<mr_hand_interaction::SpawnUrdf>(simulation + "/spawn_urdf")),
       delete_(node.serviceClient<mr_hand_interaction::DeleteObject>(simulation + "/delete")),
       set_(node.serviceClient<mr_hand_interaction::SetParameter>(simulation + "/set")),
-      pause_(node.serviceClient<std_srvs::SetBool>(simulation + "/pause")) {
+      pause_(node.serviceClient<std_srvs::SetBool>(simulation + "/pause")),
+      reset_(node.serviceClient<std_srvs::Trigger>(simulation + "/reset")) {
+  needs_operator_ = !load_surroundings(task, scene_folders(), scene_options({})).operators.empty();
   for (const TaskObject& object : task.objects)
     models_[object.name] = load_object(object, task.goals, scene_folders(), scene_options({}));
   for (const Fixture& fixture : task.fixtures)
@@ -50,12 +53,18 @@ std::string TrainingScene::set_up() {
 
 std::string TrainingScene::prepare(const TaskObject& object) {
   if (!names_) return "the simulation has not told yet what moves in its scene";
+  if (needs_operator_ && !has_operator_)
+    return "the simulation has no operator; allowed: its scene is that of the task (" + task_.scene + ")";
   for (const TaskObject& other : task_.objects) {
     if (models_.at(other.name).is_device()) remove(other.name);
   }
   for (const std::string& name : *names_) remove(name);
   if (!set_up_) {
     if (const std::string wrong = set_up(); !wrong.empty()) return wrong;
+  }
+  std_srvs::Trigger reset;
+  if (needs_operator_) {
+    if (const std::string wrong = call(reset_, reset); !wrong.empty()) return wrong;
   }
   return spawn(models_.at(object.name));
 }

@@ -171,9 +171,14 @@ void TrainingServer::advertise_services(ros::NodeHandle& private_node) {
 
 void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) {
   std::set<std::string> names;
-  for (const auto& object : message.objects)
+  person_.reset();
+  for (const auto& object : message.objects) {
     if (!object.is_operator) names.insert(object.name);
-  scene_.note_objects(std::move(names));
+    if (object.is_operator && !person_)
+      person_ = OperatorMotion{from_message(object.pose),
+                               {from_message(object.twist.linear), from_message(object.twist.angular)}};
+  }
+  scene_.note_objects(std::move(names), person_.has_value());
   fixed_frame_ = message.header.frame_id;
   seen_ = object_of(message, watched().name);
   if (session_.phase() != SessionPhase::running) return;
@@ -181,7 +186,7 @@ void TrainingServer::take(const mr_hand_interaction::ObjectStateArray& message) 
   at_start_ |= seen && starts(*seen);
   if (!seen || !at_start_) return;
   session_.update(*seen);
-  tracking_losses_ = 0;
+  tracking_losses_ = touches_ = 0;
   put_back_ = false;
   if (session_.phase() != SessionPhase::running) note_end();
   if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
@@ -243,6 +248,8 @@ std::optional<Observation> TrainingServer::observed(const mr_hand_interaction::O
   seen.pose = model.scene.bodies[model.body].start;  // of a fixture, which no message has
   seen.tracking_losses = tracking_losses_;
   seen.put_back = put_back_;
+  seen.touches = touches_;
+  seen.person = person_;
   std::set<std::string> parts;
   bool there = false;
   for (const Body& body : model.scene.bodies) {
@@ -281,6 +288,7 @@ void TrainingServer::feel(const ros::Time& stamp, const std::set<std::string>& p
 void TrainingServer::take_event(const mr_hand_interaction::InteractionEvent& event) {
   if (!at_start_) return;
   tracking_losses_ += event.kind == event.HAND_LOST;
+  touches_ += event.kind == event.CONTACT_BEGIN;
   put_back_ |= event.kind == event.OUT_OF_BOUNDS &&
                find_body(scene_.model(session_.object().name).scene, event.object).has_value();
 }
@@ -316,7 +324,7 @@ void TrainingServer::tick() {
 std::string TrainingServer::begin_trial() {
   const std::string wrong = scene_.prepare(session_.object());
   if (!wrong.empty()) return wrong;
-  tracking_losses_ = 0;
+  tracking_losses_ = touches_ = 0;
   put_back_ = at_start_ = false;
   session_.begin(now());
   return "";

@@ -85,7 +85,8 @@ class TrainingServer {
   mr_hand_interaction::ContactArray contacts_;
   sensor_msgs::JointState joints_;
   std::optional<mr_hand_interaction::ObjectState> seen_;  ///< what is to be looked at, if it is there
-  int tracking_losses_ = 0;
+  int tracking_losses_ = 0, touches_ = 0;
+  std::optional<OperatorMotion> person_;
   bool put_back_ = false;
 
   ros::Publisher status_, markers_;

@@ -26,6 +26,16 @@ void append(const Scene& part, Scene& scene) {
     if (joint.parent != Joint::kWorld) joint.parent += first;
     scene.joints.push_back(joint);
   }
+  for (Operator op : part.operators) {
+    op.body += first;
+    if (op.restraint) *op.restraint += first;
+    scene.operators.push_back(op);
+  }
+  for (Tether tether : part.tethers) {
+    tether.body += first;
+    tether.fixture += first;
+    scene.tethers.push_back(tether);
+  }
 }
 
 }  // namespace mrhi

@@ -7,7 +7,8 @@
 
 namespace mrhi {
 
-/// Adds the bodies and joints of `part`. Throws std::invalid_argument for a name that is taken.
+/// Adds the bodies, joints, operators and tethers of `part`. Throws std::invalid_argument for a name that is
+/// taken.
 void append(const Scene& part, Scene& scene);
 
 /// The body and all that hangs on it by joints, in the scene's order.

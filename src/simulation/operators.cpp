@@ -5,6 +5,7 @@
 
 #include "../response/impact.h"
 #include "../response/newton.h"
+#include "../response/operator_reaction.h"
 
 namespace mrhi {
 namespace {
@@ -12,6 +13,9 @@ namespace {
 /// What hands' forces may move an operator's hands off the path that was foreseen, before neighbours are
 /// listed anew [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
 constexpr double kMaxDeparture = 0.002;
+/// That departure in a short frame is at most this times the frame's squared duration: far more than a
+/// person's strength gives 80 kg [m/s^2].
+constexpr double kMaxDepartureRate = 20.0;
 /// Of a hand from its operator's centre of mass, where that departure is bounded [m].
 constexpr double kMaxReach = 1.5;
 /// How fast a tether pulls in what it is too long by: what a swing stretches it by in a step, but not what
@@ -37,11 +41,13 @@ Hand placed(const Pose& frame, const Hand& hand) {
 Operators::Operators(const Scene& scene, const ContactConfiguration& configuration)
     : scene_(scene),
       configuration_(configuration),
+      inverse_inertia_(scene.operators.size()),
       carriers_(scene.operators.size()),
       start_(scene.operators.size()),
       courses_(scene.operators.size()),
       carried_(scene.operators.size()),
       in_world_(scene.operators.empty() ? 0 : kMaxHands) {
+  touched_.reserve(none() ? 0 : scene.bodies.size());
   bodies_of_hands_.fill(none() ? 0 : scene.operators.front().body);
   on_fixtures_.reserve(64 * kMaxHands);
 }
@@ -93,16 +99,17 @@ void Operators::begin_frame(double seconds, const SimulationState& state) {
 }
 
 void Operators::foresee(double seconds) {
+  const double allowed = std::min(kMaxDeparture, kMaxDepartureRate * seconds * seconds);
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
     const CarrierMotion& now = carriers_[o];
-    courses_[o] = {now.twist, 0.0, seconds};
+    courses_[o] = {now.twist, 0.0, seconds, allowed};
     carried_[o] = {now.rotation,
                    now.origin + 0.5 * seconds * now.twist.linear,
                    now.centre,
                    now.twist.linear.norm(),
                    now.twist.angular.norm(),
                    seconds,
-                   kMaxDeparture};
+                   allowed};
   }
 }
 
@@ -119,32 +126,45 @@ bool Operators::begin_step(double left, const SimulationState& state) {
     carrier.centre = now.pose.position;
     carrier.origin = carrier.centre + carrier.rotation * body.link_in_body.position;
     carrier.twist.linear = now.linear_momentum / body.mass;
-    carrier.twist.angular =
-        carrier.rotation * (body.inverse_inertia * (carrier.rotation.transpose() * now.angular_momentum));
+    inverse_inertia_[o] = carrier.rotation * body.inverse_inertia * carrier.rotation.transpose();
+    carrier.twist.angular = inverse_inertia_[o] * now.angular_momentum;
     Course& course = courses_[o];
     const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
                         kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
     course.departed += rate * std::max(course.left - left, 0.0);
     course.left = left;
-    on_course = on_course && course.departed + rate * left < kMaxDeparture;
+    on_course = on_course && course.departed + rate * left <= course.allowed;
   }
   return on_course;
 }
 
 //     n' K n,     K = 1/M - [r]x I^-1 [r]x     of the operator at the contact
 // A hand that is as strong as it takes moves its operator in an impact: to the object it weighs as much.
-void Operators::begin_contacts(const SimulationState& state, std::vector<Contact>& contacts) const {
-  for (Contact& contact : contacts) {
+void Operators::begin_contacts(SimulationState& state) {
+  touched_.clear();
+  touches_fixture_ = false;
+  for (Contact& contact : state.contacts) {
     contact.carrier_inverse_mass = 0.0;
+    note_momenta(contact.key.body, state);
     if (contact.struck || contact.ignored) continue;
-    const auto index =
-        static_cast<std::size_t>(scene_.operators[static_cast<std::size_t>(owners_[contact.key.hand])].body);
-    const Body& body = scene_.bodies[index];
-    const Pose& pose = state.bodies[index].pose;
-    const Vector3 arm = pose.orientation.conjugate() * (contact.point - pose.position);
-    const Vector3 across = arm.cross(pose.orientation.conjugate() * contact.normal);
-    contact.carrier_inverse_mass = 1.0 / body.mass + across.dot(body.inverse_inertia * across);
+    const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
+    const Vector3 across = (contact.point - carriers_[o].centre).cross(contact.normal);
+    const double mass = scene_.bodies[static_cast<std::size_t>(scene_.operators[o].body)].mass;
+    contact.carrier_inverse_mass = 1.0 / mass + across.dot(inverse_inertia_[o] * across);
   }
+  for (const Grip& grip : state.grips)
+    if (grip.active) note_momenta(grip.body, state);
+}
+
+void Operators::note_momenta(std::size_t body, const SimulationState& state) {
+  if (!touched_.empty() && touched_.back().body == body) return;
+  if (scene_.bodies[body].fixed) {
+    touches_fixture_ = true;
+    return;
+  }
+  for (const Touched& touched : touched_)
+    if (touched.body == body) return;
+  touched_.push_back({body, state.bodies[body].linear_momentum, state.bodies[body].angular_momentum});
 }
 
 // Of an object that flies on with p' = p + sum q, each impulse q at the arm r and, in a step with impacts,
@@ -153,7 +173,8 @@ void Operators::begin_contacts(const SimulationState& state, std::vector<Contact
 //     x' = x + h p' / m - sum t q / m,      x' x p' + L' = x x p + L + sum (x + t p' / m + r) x q
 //
 // so that q acts at x + r + t p' / m. There its opposite acts on the operator, whose x' = x + h P' / M has no
-// part in its angular momentum about the origin. With that both keep their sum to rounding.
+// part in its angular momentum about the origin. With that both keep their sum to rounding. Where all t are 0
+// and nothing else acts on the object, the sums are p' - p and x x (p' - p) + L' - L, without its contacts.
 Twist Operators::react(const ContactStep& step, int body) const {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // on objects, about the origin [N], [N m]
   Twist impulse;                                              // likewise [N s], [N m s]
@@ -162,6 +183,20 @@ Twist Operators::react(const ContactStep& step, int body) const {
     if (time <= 0.0 || !scene_.bodies[object].flies) return point;
     return point + time / scene_.bodies[object].mass * step.bodies[object].linear_momentum;
   };
+  bool by_momentum = true;
+  for (const Touched& touched : touched_) {
+    by_momentum = by_momentum && reacts_by_momentum(step, touched.body);
+    if (!by_momentum) break;
+    const BodyState& now = step.bodies[touched.body];
+    Vector3 given = now.linear_momentum - touched.linear_momentum;
+    if (step.changes.solved(touched.body))
+      given -= step.step * scene_.bodies[touched.body].mass * step.gravity;
+    impulse.linear += given;
+    impulse.angular += now.pose.position.cross(given) + now.angular_momentum - touched.angular_momentum;
+  }
+  const Vector3& centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
+  if (by_momentum) return {-impulse.linear, centre.cross(impulse.linear) - impulse.angular};
+  impulse = Twist();
   std::size_t last = scene_.bodies.size();
   bool fixed = false;
   double time = 0.0;
@@ -189,13 +224,16 @@ Twist Operators::react(const ContactStep& step, int body) const {
   }
   impulse.linear += step.step * force;
   impulse.angular += step.step * torque;
-  const Vector3& centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
   return {-impulse.linear, centre.cross(impulse.linear) - impulse.angular};
 }
 
 void Operators::touch_fixtures(ContactStep& step, int body) {
   on_fixtures_.clear();
   std::size_t owner = 0;
+  if (!touches_fixture_) {
+    step.bodies[static_cast<std::size_t>(body)].pushed = Twist();
+    return;
+  }
   for (Contact& contact : step.contacts) {
     const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
     if (contact.ignored || !scene_.bodies[contact.key.body].fixed || scene_.operators[o].body != body)

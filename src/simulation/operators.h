@@ -45,7 +45,7 @@ class Operators {
   }
 
   /// Before the response: by how much the operators give way to impacts of their hands.
-  void begin_contacts(const SimulationState& state, std::vector<Contact>& contacts) const;
+  void begin_contacts(SimulationState& state);
   /// After the response: gives the operators the opposite of what their hands did to objects, lets their
   /// hands hold and push fixtures, and keeps restraints and tethers.
   void respond(ContactStep& step, const std::vector<char>& restrained);
@@ -54,6 +54,7 @@ class Operators {
   const Operator& owner(std::size_t slot, const SimulationState& state) const;
   Pose frame(const Operator& op, const SimulationState& state) const;
   Twist react(const ContactStep& step, int body) const;
+  void note_momenta(std::size_t body, const SimulationState& state);
   void touch_fixtures(ContactStep& step, int body);
   void pull(ContactStep& step, const Tether& tether) const;
 
@@ -62,10 +63,20 @@ class Operators {
   BodyProblem problem_;
   std::vector<Contact*> on_fixtures_;
 
+  /// A body that hands touch or grasp, before the response.
+  struct Touched {
+    std::size_t body;
+    Vector3 linear_momentum, angular_momentum;
+  };
+  std::vector<Touched> touched_;          // free bodies, each once
+  std::vector<Matrix3> inverse_inertia_;  // by operator, world axes, at the step's start
+  bool touches_fixture_ = false;          // some contact is with a fixture
+
   /// How far the motion of an operator in a frame is from what was foreseen.
   struct Course {
     Twist foreseen;
     double departed = 0.0, left = 0.0;  // [m], [s]
+    double allowed = 0.0;               // departure before neighbours are listed anew [m]
   };
   std::vector<CarrierMotion> carriers_;  // by operator
   std::vector<Pose> start_;              // of their frames at the frame's start

@@ -43,7 +43,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
   assist.begin_step(fraction, step, state);
-  if (!operators.none()) operators.begin_contacts(state, state.contacts);
+  if (!operators.none()) operators.begin_contacts(state);
   end_stage(Stage::hand_contacts);
   body_finder.find(neighbours, state.bodies, state.asleep, step, driven(step), state.body_contacts);
   end_stage(Stage::body_contacts);

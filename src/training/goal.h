@@ -11,7 +11,7 @@ bool asks_to_hold(GoalKind kind);
 bool asks_to_touch(GoalKind kind);
 
 /// Whether the goal's condition holds now; `start`: where the object was as the trial began. For kinds with a
-/// condition that lasts: pick, place, insert, catch_it, nudge_into, joint.
+/// condition that lasts: pick, place, insert, catch_it, nudge_into, joint, rest.
 bool is_met(const Goal& goal, const Observation& seen, const Vector3& start);
 
 }  // namespace mrhi

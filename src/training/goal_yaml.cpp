@@ -58,6 +58,8 @@ const std::map<std::string, std::function<void(const Element&, Goal&)>>& goal_ke
       {"max_speed", [](E e, Goal& g) { g.max_speed = number(e, kAboveZero, " [m/s]"); }},
       {"min_speed", [](E e, Goal& g) { g.min_speed = number(e, kAboveZero, " [m/s]"); }},
       {"speed", [](E e, Goal& g) { speed_range(e, g); }},
+      {"max_spin", [](E e, Goal& g) { g.max_spin = number(e, kAboveZero, " [rad/s]"); }},
+      {"body", [](E e, Goal& g) { g.of_operator = choice(e, "object", "operator") == "operator"; }},
       {"drift_time", [](E e, Goal& g) { g.drift_time = number(e, kFromZero, " [s]"); }},
   };
   return keys;
@@ -93,6 +95,12 @@ const std::map<std::string, GoalForm>& goal_forms() {
        {Kind::nudge_into, Stage::manipulation, {"position", "size", "max_speed"}, {"hold", "leaving"}}},
       {"joint",
        {Kind::joint, Stage::manipulation, {"name"}, {"above", "below", "within", "hold", "leaving"}}},
+      {"rest",
+       {Kind::rest,
+        Stage::manipulation,
+        {},
+        {"body", "position", "tolerance", "orientation", "angle_tolerance", "axis", "max_speed", "max_spin",
+         "hold", "leaving"}}},
       {"tap", {Kind::strike, Stage::manipulation, {"speed"}, {}}},
       {"slap", {Kind::strike, Stage::manipulation, {"min_speed"}, {}}},
       {"release", {Kind::release, Stage::release, {}, {"drift_time"}}},
@@ -104,6 +112,12 @@ void check_range(const Element& keys, const Goal& goal) {
   if (goal.above == -Joint::kUnlimited && goal.below == Joint::kUnlimited)
     keys.fail("neither above nor below; allowed: either, or both");
   if (goal.above > goal.below) keys.fail("above is more than below; allowed: at most as much");
+}
+
+void check_rest(const Element& keys, Goal& goal) {
+  if (!keys.node["position"] && !keys.node["max_speed"] && !keys.node["max_spin"])
+    keys.fail("neither position, max_speed nor max_spin; allowed: at least one of them");
+  if (!keys.node["position"]) goal.tolerance = std::numeric_limits<double>::infinity();
 }
 
 std::vector<std::string> keys_of(const GoalForm& form) {
@@ -126,12 +140,13 @@ Goal read_goal(const YamlElement& element) {
   goal.kind = form.kind;
   goal.stage = form.stage;
   goal.hold = form.hold;
-  if (kind == "slap") goal.max_speed = std::numeric_limits<double>::max();
+  if (kind == "slap" || kind == "rest") goal.max_speed = std::numeric_limits<double>::max();
   const Element keys = element.at(kind);
-  if (keys.node.IsNull() && form.needed.empty()) return goal;
+  if (keys.node.IsNull() && form.needed.empty() && goal.kind != GoalKind::rest) return goal;
   for (const std::string& key : checked_keys(keys, keys_of(form))) goal_keys().at(key)(keys.at(key), goal);
   check_has(keys, form.needed);
   if (goal.kind == GoalKind::joint) check_range(keys, goal);
+  if (goal.kind == GoalKind::rest) check_rest(keys, goal);
   return goal;
 }
 
@@ -141,11 +156,12 @@ void check_order(const YamlElement& element, const std::vector<Goal>& goals) {
     if (goals[i].stage > goals[i + 1].stage) {
       element.at(i + 1).fail(
           std::string(to_string(goals[i + 1].kind)) + " after " + to_string(goals[i].kind) +
-          "; allowed: pick, catch, nudge_into, joint, tap, slap, then place, insert, then release");
+          "; allowed: pick, catch, nudge_into, joint, rest, tap, slap, then place, insert, then release");
     }
   }
   const auto holds = [](GoalKind kind) {
-    return kind != GoalKind::nudge_into && kind != GoalKind::strike && kind != GoalKind::joint;
+    return kind != GoalKind::nudge_into && kind != GoalKind::strike && kind != GoalKind::joint &&
+           kind != GoalKind::rest;
   };
   if (goals.back().kind == GoalKind::release && (goals.size() == 1 || !holds(goals[goals.size() - 2].kind)))
     element.at(goals.size() - 1)

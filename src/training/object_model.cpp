@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "../scene/scene_edit.h"
@@ -96,6 +97,23 @@ ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>&
                      "' is of links on joints; allowed: one link with a shape");
   model.scene.bodies.front().fixed = true;
   return model;
+}
+
+Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
+                        const SceneOptions& options) {
+  if (task.scene.empty()) return {};
+  const std::string urdf = find_scene_file(task.scene, scene_folders);
+  Scene scene = load_scene(urdf, options);
+  for (std::size_t b = scene.bodies.size(); b-- > 0;) {
+    if (b >= scene.bodies.size() || scene.bodies[b].fixed || scene.bodies[b].is_operator) continue;
+    remove_body(b, scene);
+  }
+  const bool asked =
+      std::any_of(task.goals.begin(), task.goals.end(), [](const Goal& goal) { return goal.of_operator; });
+  if (asked && scene.operators.empty())
+    throw SceneError(urdf + ": has no operator, whose rest a goal of task '" + task.name +
+                     "' asks for; allowed: a scene with 'operator' in its YAML file");
+  return scene;
 }
 
 }  // namespace mrhi

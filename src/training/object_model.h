@@ -26,4 +26,9 @@ ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals
 ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
                          const SceneOptions& options);
 
+/// The fixtures and operators of the task's scene, without its free bodies; empty if the task names no scene.
+/// Throws SceneError for a file that cannot be read, or without the operator that a goal asks for.
+Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
+                        const SceneOptions& options);
+
 }  // namespace mrhi

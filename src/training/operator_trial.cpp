@@ -49,6 +49,8 @@ std::optional<PractisedGoal> practised(const Goal& goal) {
       return PractisedGoal{goal.max_speed < kSlap ? Skilled::tap : Skilled::slap};
     case GoalKind::release:
       return std::nullopt;
+    case GoalKind::rest:
+      throw std::invalid_argument("a simulated operator does no goal 'rest'; allowed: the other goals");
     default:
       break;
   }
@@ -108,10 +110,13 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
   append(model.scene, scene);
   for (const Fixture& fixture : task.fixtures)
     append(load_fixture(fixture, stage.scene_folders, stage.scene_options).scene, scene);
+  const Scene surroundings = load_surroundings(task, stage.scene_folders, stage.scene_options);
+  append(surroundings, scene);
   scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
   const Vector3 end = object.start.position + kFlight * object.twist.linear;
   scene.bounds.min = scene.bounds.min.cwiseMin((end.array() - kReach).matrix());
   scene.bounds.max = scene.bounds.max.cwiseMax((end.array() + kReach).matrix());
+  if (!task.scene.empty()) scene.bounds = surroundings.bounds;
   if (task.gravity != Vector3::Zero() && !model.is_device()) {
     scene.bodies.push_back(stand_under(scene.bodies.front()));
     const Body& stand = scene.bodies.back();

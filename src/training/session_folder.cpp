@@ -32,7 +32,9 @@ const char *const kTrials = "trials.csv", *const kEvents = "events.csv", *const 
 const char* const kTrialColumns =
     "trial,object,condition,repetition,result,start,completion_time,manipulation_time,maintenance_time,"
     "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
-    "tracking_losses,grasps,manipulation_drops";
+    "tracking_losses,grasps,manipulation_drops,touches,arrival_speed,misplacement,misalignment,operator_"
+    "speed,"
+    "operator_spin";
 const char* const kEventColumns = "time,trial,stage,event,object,detail,stamp,utc";
 const char* const kHandColumns = "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching";
 
@@ -248,7 +250,8 @@ void SessionFolder::log(const TrialRow& row) {
   for (const std::optional<double>& time : m.stage_times) line << time;
   line << m.attempts << m.drops << m.path_length << m.grip_force_mean << m.grip_force_max;
   line << m.release_drift << m.release_speed << m.tracking_losses;
-  line << m.attempts << m.manipulation_drops;
+  line << m.attempts << m.manipulation_drops << m.touches;
+  line << m.arrival_speed << m.misplacement << m.misalignment << m.operator_speed << m.operator_spin;
   trials_.write(line.text());
 }
 

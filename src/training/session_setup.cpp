@@ -156,6 +156,7 @@ SessionSetup session_setup(const std::string& task_file, const Task& task, Confi
   };
   for (const TaskObject& object : task.objects) add(object.name, object.file);
   for (const Fixture& fixture : task.fixtures) add(fixture.name, fixture.file);
+  if (!task.scene.empty()) add(fs::path(task.scene).stem().string(), task.scene);
   configuration.gravity = task.gravity;
   setup.files["task.yaml"] = bytes_of(task_file);
   setup.files["parameters.yaml"] = parameters_text(configuration);

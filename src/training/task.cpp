@@ -1,6 +1,7 @@
 #include "mr_hand_interaction/training/task.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../text/text.h"
 
@@ -12,8 +13,8 @@ const char* to_string(TrainingStage stage) {
 }
 
 const char* to_string(GoalKind kind) {
-  static const char* const names[] = {"pick",       "place",  "insert", "catch",
-                                      "nudge_into", "strike", "joint",  "release"};
+  static const char* const names[] = {"pick",   "place", "insert", "catch",  "nudge_into",
+                                      "strike", "joint", "rest",   "release"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -50,6 +51,10 @@ std::string instruction(const Task& task, std::size_t index, const std::string& 
              text::number(goal.max_speed) + " m/s";
     case GoalKind::joint:
       return "Work the " + text::with_spaces(goal.joint);
+    case GoalKind::rest:
+      if (!goal.of_operator) return "Bring " + thing + " to rest at its place";
+      return std::isfinite(goal.tolerance) ? "Move yourself to " + thing + " and stop there"
+                                           : "Stop your own motion";
     case GoalKind::release:
       break;
   }

@@ -70,6 +70,15 @@ void check_names(const Element& root, const Task& task) {
   if (twice != names.end()) root.fail("objects: '" + *twice + "' is there twice; allowed: each name once");
 }
 
+void check_operator_is_there(const Element& root, const Task& task) {
+  for (const Goal& goal : task.goals) {
+    if (goal.of_operator && task.scene.empty())
+      root.fail(
+          "goals: rest of the operator, and no key 'scene'; allowed: 'scene' with a scene that has an "
+          "operator");
+  }
+}
+
 int repetitions(const Element& element) {
   const std::optional<int> count = yaml_integer(element.node);
   if (!count || *count < 1 || *count > 1000) element.refuse("a whole number from 1 to 1000");
@@ -84,6 +93,7 @@ const std::map<std::string, std::function<void(const Element&, Task&)>>& task_ke
       {"gravity", [](E e, Task& t) { t.gravity = read_vector(e, body_limits::kGravity); }},
       {"objects", [](E e, Task& t) { t.objects = read_list(e, read_object); }},
       {"fixtures", [](E e, Task& t) { t.fixtures = read_list(e, read_fixture); }},
+      {"scene", [](E e, Task& t) { t.scene = body_file(e); }},
       {"order",
        [](E e, Task& t) { t.latin_square = choice(e, "latin_square", "as_listed") == "latin_square"; }},
       {"practice", [](E e, Task& t) { t.practice = choice(e, "true", "false") == "true"; }},
@@ -111,6 +121,7 @@ Task load_task(const std::string& file) {
       if (!root.node[key]) throw SceneError(file + ": no key '" + key + "'; needed: name, objects, goals");
     }
     check_names(root, task);
+    check_operator_is_there(root, task);
   });
   return task;
 }

@@ -62,6 +62,11 @@ void Trial::measure(const Observation& seen, Nanoseconds passed) {
   for (int i = 0; i < seen.tracking_losses; ++i) add(TrialEventKind::tracking_lost);
   measures_.tracking_losses += seen.tracking_losses;
   if (seen.put_back) add(TrialEventKind::put_back);
+  measures_.touches += seen.touches;
+  if (seen.person) {
+    measures_.operator_speed = seen.person->twist.linear.norm();
+    measures_.operator_spin = seen.person->twist.angular.norm();
+  }
   if (!seen.held || !last_ || !last_->held || seen.put_back) return;
   measures_.path_length += (seen.pose.position - last_->pose.position).norm();
   if (!seen.grip_force) return;
@@ -108,8 +113,10 @@ void Trial::hold(const Observation& seen, Nanoseconds passed) {
     if (goal.leaving == Leaving::reset) timer_ = 0;
   }
   inside_ = met;
+  const bool achieved = met && timer_ >= nanoseconds(goal.hold);
+  if (goal.kind == GoalKind::rest) note_rest(seen, achieved);
   if (untouched_ >= kTouchOver) touching_ = false;
-  if (met && timer_ >= nanoseconds(goal.hold)) {
+  if (achieved) {
     achieve();
   } else if (too_late()) {
     finish(TrialResult::timed_out);
@@ -173,7 +180,7 @@ void Trial::achieve() {
     finish(TrialResult::completed);
     return;
   }
-  inside_ = false;
+  inside_ = arrived_ = false;
   goal_begun_ = elapsed_;
   ++goal_;
 }
@@ -234,7 +241,13 @@ Observation observe(const Simulation& simulation, std::size_t body) {
     pressing += std::max(0.0, -contact.normal.dot(contact.force));
   }
   seen.grip_force = 0.5 * pressing;
+  if (const std::vector<Operator>& operators = simulation.scene().operators; !operators.empty()) {
+    const auto b = static_cast<std::size_t>(operators.front().body);
+    const BodyState& person = simulation.state().bodies[b];
+    seen.person = OperatorMotion{person.pose, twist_of(simulation.scene().bodies[b], person)};
+  }
   for (const Event& event : result.events) {
+    seen.touches += event.kind == EventKind::contact_begin;
     seen.tracking_losses += event.kind == EventKind::hand_lost;
     seen.put_back |= event.kind == EventKind::out_of_bounds && is_part(event.body);
   }
@@ -248,11 +261,27 @@ Observation observe(const Simulation& simulation, std::size_t body) {
 
 namespace {
 
-bool lies_as_asked(const Goal& goal, const Quaternion& orientation) {
-  if (!goal.angle_tolerance) return true;
-  if (!goal.axis) return orientation.angularDistance(goal.orientation) <= *goal.angle_tolerance;
+/// Angle between the orientation and the goal's, of its axis alone if it has one [rad].
+double misalignment(const Goal& goal, const Quaternion& orientation) {
+  if (!goal.axis) return orientation.angularDistance(goal.orientation);
   const double cosine = (orientation * *goal.axis).dot(goal.orientation * *goal.axis);
-  return std::acos(std::min(1.0, std::abs(cosine))) <= *goal.angle_tolerance;
+  return std::acos(std::min(1.0, std::abs(cosine)));
+}
+
+bool lies_as_asked(const Goal& goal, const Quaternion& orientation) {
+  return !goal.angle_tolerance || misalignment(goal, orientation) <= *goal.angle_tolerance;
+}
+
+/// The body that a goal `rest` is about; nothing: there is no operator.
+std::optional<OperatorMotion> resting_body(const Goal& goal, const Observation& seen) {
+  return goal.of_operator ? seen.person : OperatorMotion{seen.pose, seen.twist};
+}
+
+bool is_at_rest(const Goal& goal, const Observation& seen) {
+  const std::optional<OperatorMotion> body = resting_body(goal, seen);
+  return body && (body->pose.position - goal.position).norm() <= goal.tolerance &&
+         lies_as_asked(goal, body->pose.orientation) && body->twist.linear.norm() <= goal.max_speed &&
+         body->twist.angular.norm() <= goal.max_spin;
 }
 
 bool in_box(const Goal& goal, const Vector3& position) {
@@ -287,11 +316,27 @@ bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
       return std::any_of(seen.joints.begin(), seen.joints.end(), [&goal](const auto& joint) {
         return joint.first == goal.joint && joint.second >= goal.above && joint.second <= goal.below;
       });
+    case GoalKind::rest:
+      return is_at_rest(goal, seen);
     case GoalKind::strike:
     case GoalKind::release:
       break;
   }
   return false;
+}
+
+void Trial::note_rest(const Observation& seen, bool achieved) {
+  const Goal& goal = current_goal();
+  const std::optional<OperatorMotion> body = resting_body(goal, seen);
+  if (!body || !std::isfinite(goal.tolerance)) return;
+  const double distance = (body->pose.position - goal.position).norm();
+  if (!arrived_ && distance <= goal.tolerance) {
+    arrived_ = true;
+    measures_.arrival_speed = body->twist.linear.norm();
+  }
+  if (!achieved) return;
+  measures_.misplacement = distance;
+  if (goal.angle_tolerance) measures_.misalignment = misalignment(goal, body->pose.orientation);
 }
 
 }  // namespace mrhi

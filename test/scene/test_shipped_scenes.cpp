@@ -221,9 +221,10 @@ TEST(ShippedScenes, AreFoundByNameAndListedWhenTheNameIsWrong) {
       find_scene_file(wrong, {"config/scenes"});
       ADD_FAILURE() << wrong;
     } catch (const SceneError& error) {
-      test::expect_words(error.what(), {wrong,
-                                        "ball, crate, cube, cube_on_table, flat_cuboid, handrails, hatch, "
-                                        "long_cuboid, mixed, panel, rack, tongs"});
+      test::expect_words(error.what(),
+                         {wrong,
+                          "bag, ball, crate, cube, cube_on_table, docking, flat_cuboid, handrails, "
+                          "hatch, long_cuboid, mixed, panel, rack, tongs"});
     }
   }
 }

@@ -132,6 +132,11 @@ TEST_F(TaskFile, refuses_what_makes_no_sense_together) {
   test::expect_words(error(kHead + "goals: [{place: {position: [0, 0, 0]}}, {pick: {}}]\n"),
                      {"goals/2", "pick after place"});
   test::expect_words(goal_error("joint: {name: hinge}"), {"goals/1/joint", "neither above nor below"});
+  test::expect_words(goal_error("rest: {body: object, hold: 1}"),
+                     {"goals/1/rest", "neither position, max_speed nor max_spin"});
+  test::expect_words(goal_error("rest: {body: hand, max_speed: 1}"),
+                     {"goals/1/rest/body", "hand", "object or operator"});
+  test::expect_words(goal_error("rest: {body: operator, max_speed: 1}"), {"no key 'scene'"});
   test::expect_words(goal_error("joint: {name: hinge, above: 1, below: 0}"), {"above is more than below"});
   test::expect_words(error(kHead + "goals: [{joint: {name: hinge, above: 1}}, {release: {}}]\n"),
                      {"goals/2", "held"});
@@ -162,7 +167,7 @@ TEST(ShippedTasks, load_and_name_bodies_that_there_are) {
       EXPECT_TRUE(scene.bodies[0].fixed);
     }
   }
-  EXPECT_EQ(7, tasks);
+  EXPECT_EQ(11, tasks);
 }
 
 TEST(ObjectModels, are_refused_without_what_the_task_asks_of_them) {
@@ -208,8 +213,10 @@ TEST(ShippedTasks, are_listed_where_another_is_asked_for) {
     find_task_file("juggle", {"config/tasks"});
     FAIL();
   } catch (const SceneError& error) {
-    test::expect_words(error.what(),
-                       {"'juggle'", "assemble, catch, hatch, nudge_into_box, pick_and_place, slap, tap"});
+    test::expect_words(
+        error.what(),
+        {"'juggle'",
+         "assemble, catch, dock, hatch, hatch_0g, nudge_into_box, pick_and_place, rail, slap, tap, throw"});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ enum class GoalKind : std::uint8_t {
   nudge_into,  ///< not held, in the box and slower than max_speed
   strike,      ///< touched, and on leaving the hand as fast as between min_speed and max_speed (tap, slap)
   joint,       ///< a joint of the object is from `above` to `below`
+  rest,        ///< the object or the operator's body is within the tolerances, no faster than max_speed and
+               ///< max_spin
   release      ///< let go; ends drift_time later
 };
 /// As in a task's file; tap and slap are both "strike".
@@ -38,7 +41,7 @@ struct Goal {
 
   Vector3 position = Vector3::Zero();               ///< of the object's centre of mass, in world [m]
   Quaternion orientation = Quaternion::Identity();  ///< of the object's link
-  double tolerance = 0.03;                          ///< [m]
+  double tolerance = 0.03;                          ///< [m]; rest without a position: infinite
   std::optional<double> angle_tolerance;            ///< [rad]; nothing: any orientation will do
   std::optional<Vector3> axis;       ///< unit, of the object: it alone is to lie as in `orientation`,
                                      ///< either end first
@@ -50,7 +53,9 @@ struct Goal {
   std::string joint;                 ///< as the object's URDF names it
   double above = -Joint::kUnlimited, below = Joint::kUnlimited;  ///< [rad], of one that slides [m]
   double min_speed = 0.0, max_speed = 0.0;                       ///< [m/s]
-  double drift_time = 2.0;                                       ///< [s]
+  bool of_operator = false;  ///< rest: `position` is that of the operator's centre of mass
+  double max_spin = std::numeric_limits<double>::infinity();  ///< [rad/s]
+  double drift_time = 2.0;                                    ///< [s]
 };
 
 /// An object of a task and how it is at the start of a trial. It is one body, or a device: links that hang by
@@ -74,7 +79,8 @@ struct Task {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   std::vector<TaskObject> objects;    ///< one trial has one of them
   std::vector<Fixture> fixtures;      ///< there in all trials
-  bool latin_square = true;           ///< order of objects; else as listed
+  std::string scene;         ///< whose fixtures and operator are there too: a name or a path; empty: none
+  bool latin_square = true;  ///< order of objects; else as listed
   int repetitions = 1;
   bool practice = false;    ///< once through all objects before, as repetition 0, which no analysis counts
   double time_out = 120.0;  ///< of a trial [s]

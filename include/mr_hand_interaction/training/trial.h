@@ -12,6 +12,12 @@
 
 namespace mrhi {
 
+/// The operator's body at one time.
+struct OperatorMotion {
+  Pose pose;    ///< of the centre of mass in world
+  Twist twist;  ///< world axes
+};
+
 /// What a trial sees of its object at one time.
 struct Observation {
   Nanoseconds stamp = 0;
@@ -21,7 +27,9 @@ struct Observation {
   bool touched = false;              ///< by a hand
   std::optional<double> grip_force;  ///< half the sum of the forces that press on the object [N]
   int tracking_losses = 0;           ///< hands lost since the observation before
-  bool put_back = false;             ///< left the bounds since then, and was put back where it started
+  int touches = 0;  ///< contacts of a hand with a body that began since the observation before
+  std::optional<OperatorMotion> person;  ///< nothing: the scene has no operator
+  bool put_back = false;                 ///< left the bounds since then, and was put back where it started
   std::vector<std::pair<std::string, double>> joints;  ///< by name: where it is [rad], [m]
 };
 
@@ -45,6 +53,11 @@ struct TrialMeasures {
   std::optional<double> release_drift;                    ///< from where it was let go, drift_time later [m]
   std::optional<double> release_speed;                    ///< as it was let go [m/s]
   int tracking_losses = 0;
+  int touches = 0;  ///< times that a hand began to touch an object or a fixture
+  /// Of the last goal `rest` with a position: the speed at which its body first came within the tolerance
+  /// [m/s]; where it was and how it lay as the goal was achieved [m], [rad].
+  std::optional<double> arrival_speed, misplacement, misalignment;
+  std::optional<double> operator_speed, operator_spin;  ///< at the trial's end [m/s], [rad/s]
 };
 
 enum class TrialEventKind : std::uint8_t {
@@ -111,6 +124,7 @@ class Trial {
   void note_touch(const Observation& seen, Nanoseconds passed);
   void strike(const Observation& seen);
   void note_drop();
+  void note_rest(const Observation& seen, bool achieved);
   void release(const Observation& seen);
   Vector3 position_at(Nanoseconds elapsed, const Observation& seen) const;
   void achieve();
@@ -128,6 +142,7 @@ class Trial {
 
   Vector3 start_ = Vector3::Zero();
   bool inside_ = false;    ///< of the goal's condition
+  bool arrived_ = false;   ///< rest: within its tolerance once
   bool touching_ = false;  ///< or it is not long ago
   Nanoseconds timer_ = 0, untouched_ = 0, gripped_ = 0;
   double grip_impulse_ = 0.0;         ///< over gripped_ [N s]
