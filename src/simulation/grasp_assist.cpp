@@ -280,7 +280,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   if (grip.released) return touching.none() || still_closes(track, grip);
   if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
   // Parts of a linkage follow the fingers as they open, as tongs do: their contacts keep their force.
-  grip.released = grip.active && !floating_root(scene_, grip.body);
+  grip.released = grip.active && object_of(grip.body).size() == 1;
   grip.active = false;
   return !grip.released;
 }
