@@ -48,6 +48,12 @@ COMMON = {
     'value': ('of the measure or answer', "the measure's"), 'age': ('at the first session', 'years'),
     'consent': ('given in writing', ''), 'consent_form': ('name and version of the form', ''),
     'consent_time': ('when it was noted, UTC', ''), 'table': ('file without .csv', ''), 'column': ('in that table', ''),
+    'touches': ('times that a hand began to touch an object or a fixture', ''),
+    'arrival_speed': ("of the last goal rest's body as it first came within the tolerance", 'm/s'),
+    'misplacement': ("distance of that body from the goal's position as the goal was achieved", 'm'),
+    'misalignment': ("angle of that body from the goal's orientation as the goal was achieved", 'rad'),
+    'operator_speed': ("of the operator's body at the trial's end", 'm/s'),
+    'operator_spin': ("of the operator's body at the trial's end", 'rad/s'),
     'meaning': ('of the column', ''), 'completed': ('1: completed', ''),
 }
 
