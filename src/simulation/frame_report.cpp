@@ -46,12 +46,14 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
   }
 }
 
-/// True if the hand has a grip on another body of the same floating linkage, and so on the whole of it.
-bool is_gripped_elsewhere(const FrameEnd& end, int slot, int body) {
-  const std::optional<int> root = floating_root(end.scene, body);
-  return root && std::any_of(end.state.grips.begin(), end.state.grips.end(), [&](const Grip& grip) {
-           return grip.active && grip.hand == slot && floating_root(end.scene, grip.body) == root;
-         });
+/// The hand's grip on the object that the body belongs to, a linkage as a whole, where it supports or has
+/// released it.
+const Grip* grip_on(const FrameEnd& end, std::size_t slot, int body) {
+  const auto object = [&](int part) { return floating_root(end.scene, part).value_or(part); };
+  for (const Grip& grip : end.state.grips)
+    if (grip.hand == slot && (grip.active || grip.released) && object(grip.body) == object(body))
+      return &grip;
+  return nullptr;
 }
 
 void update_interactions(const FrameEnd& end, FrameResult& result) {
@@ -73,19 +75,13 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       if ((end.scene.bodies[b].fixed && !is_held_fixture) || end.scene.bodies[b].is_operator ||
           (!is_near && !may_end))
         continue;
-      const auto grip = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& candidate) {
-        if (candidate.hand != slot) return false;
-        // A hand that lets go has let go of the whole linkage.
-        const std::optional<int> root = floating_root(end.scene, body);
-        const bool whole = candidate.released && root && floating_root(end.scene, candidate.body) == root;
-        return whole || (candidate.body == b && (candidate.active || candidate.released));
-      });
-      InteractionLevel seen =
-          grip != state.grips.end()
-              ? (grip->active ? InteractionLevel::grasp : InteractionLevel::contact)
-              : seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
-                           state.bodies[b].pose, result.contacts, interaction.level);
-      if (seen == InteractionLevel::contact && is_gripped_elsewhere(end, static_cast<int>(slot), body))
+      const Grip* const grip = grip_on(end, slot, body);
+      InteractionLevel seen = InteractionLevel::contact;
+      if (grip == nullptr || (grip->active && grip->body != b))
+        seen = seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
+                          state.bodies[b].pose, result.contacts, interaction.level);
+      // An object that is supported is grasped, and of a linkage the parts that the hand touches.
+      if (grip != nullptr && grip->active && seen == InteractionLevel::contact)
         seen = InteractionLevel::grasp;
       if (grasp_of(end.scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,

@@ -1,6 +1,7 @@
-// A tracked hand closes on an object: "recording" is told from our own converged solution, "recording_self"
-// from each engine's own solution at a small step. Where there is no recording a scripted hand with a
-// tracker's noise and rate stands in, and the scenes are "scripted_hand" and "scripted_hand_self".
+// A tracked hand closes on an object: the error of "recording" is against our own converged solution,
+// "recording_self" from each engine's own solution at a small step. Where there is no recording a scripted
+// hand with a tracker's noise and rate stands in, and the scenes are "scripted_hand" and
+// "scripted_hand_self".
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
