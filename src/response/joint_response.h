@@ -47,9 +47,4 @@ class JointedModel : public ImplicitModel {
   Eigen::VectorXd positions_;
 };
 
-/// The contact model of a configuration for a scene with joints, whichever it is: hands do to bodies what the
-/// model has them do, joints make of it what they can, and objects touch by `implicit`.
-std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
-                                                 SimulationState& state, std::vector<Event>& events);
-
 }  // namespace mrhi
