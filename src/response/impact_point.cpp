@@ -33,7 +33,8 @@ Vector3 ImpactPoint::Partner::velocity_of_centre() const {
 // v + w x r (Eq. 7), or J u. The hand's own velocity is in `hand_velocity`.
 Vector3 ImpactPoint::Partner::velocity() const {
   if (joints != nullptr) return joints->jacobian * *joints->velocity;
-  if (state == nullptr) return recoil;
+  if (recoil != nullptr) return *recoil;
+  if (state == nullptr) return Vector3::Zero();
   return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
 }
 
@@ -42,15 +43,13 @@ void ImpactPoint::Partner::apply(const Vector3& impulse) {
     joints->velocity->noalias() += joints->response * impulse;
     return;
   }
-  if (state == nullptr) {
-    recoil += inverse_mass * impulse;
-    return;
-  }
+  if (recoil != nullptr) *recoil += inverse_mass * impulse;
+  if (state == nullptr) return;
   state->linear_momentum += impulse;
   state->angular_momentum += arm.cross(impulse);
 }
 
-// A phalanx is a point mass; 1/m is 0 of the paper's hand and of fixtures.
+// A capsule of the hand is a point mass; 1/m is 0 of the paper's hand and of fixtures.
 Matrix3 ImpactPoint::Partner::inverse_effective_mass() const {
   if (joints != nullptr) return joints->jacobian.lazyProduct(joints->response);
   if (state == nullptr) return inverse_mass * Matrix3::Identity();
@@ -119,7 +118,7 @@ void ImpactPoint::advance_arms(double seconds, double closed) {
 void ImpactPoint::begin() {
   normal_impulse = 0.0;
   friction_impulse.setZero();
-  a.recoil.setZero();
+  if (a.recoil != nullptr) a.recoil->setZero();
   // Eq. 12 of both: an impulse p parts the points by (K_a + K_b) p.
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
   const auto mass = [](double response) { return response > 0.0 ? 1.0 / response : 0.0; };

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+
 #include "mr_hand_interaction/collision/body_contact.h"
+#include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/body.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -13,17 +17,31 @@ struct JointCoordinates {
   Eigen::VectorXd* velocity;                          ///< of the island's joints, which the impulses change
 };
 
+/// How far impacts have slowed each capsule of the hands [m/s]: the points of a capsule share its mass.
+class HandRecoils {
+ public:
+  /// Returns that of the contact's capsule, at rest.
+  Vector3* begin(const ContactKey& key) {
+    Vector3& recoil = recoils_[std::size_t(key.hand) * kCapsules + key.capsule];
+    recoil.setZero();
+    return &recoil;
+  }
+
+ private:
+  std::array<Vector3, kMaxHands * kCapsules> recoils_;
+};
+
 /// One contact point of an impact: two surfaces that collide, or may, within a step.
 struct ImpactPoint {
   /// One of the two sides. A fixture has nothing set, and no impulse moves it. A hand has its inverse mass
-  /// and its recoil; the tracked hand itself moves on. A body on joints has its coordinates.
+  /// and its capsule's recoil; the tracked hand itself moves on. A body on joints has its coordinates.
   struct Partner {
     BodyState* state = nullptr;
     const JointCoordinates* joints = nullptr;
     double inverse_mass = 0.0;
-    Vector3 recoil = Vector3::Zero();  // of a hand in this impact [m/s]
-    Matrix3 inverse_inertia;           // world axes
-    Vector3 arm;                       // from the centre of mass [m]
+    Vector3* recoil = nullptr;  // of the hand's capsule in this impact
+    Matrix3 inverse_inertia;    // world axes
+    Vector3 arm;                // from the centre of mass [m]
 
     Vector3 velocity_of_centre() const;
     Vector3 velocity() const;

@@ -194,6 +194,7 @@ void ImpactSolver::add(ContactStep& step, Contact& contact) {
   contact.time_of_impact = point.time;
   point.b = partner(step, contact.key.body, contact.point - state.pose.position);
   point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
+  point.a.recoil = recoils_.begin(contact.key);
   point.by_hand = true;
   point.gap = -contact.depth;
   point.hand_velocity = contact.hand_velocity;

@@ -61,6 +61,7 @@ class ImpactSolver {
   std::vector<ImpactPoint> points_;   // of an island
   std::vector<double> times_;         // of their collisions, as the bodies move now [s]
   std::vector<ImpactPoint*> impact_;  // points that are resolved together
+  HandRecoils recoils_;
   std::vector<BodyImpact> reported_;
   std::vector<Twist> twists_;  // by body, of a large island's
   std::vector<ImpactLaws> laws_;

@@ -70,6 +70,7 @@ void LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       point.by_hand = true;
       point.hand_velocity = contact.hand_velocity;
       point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
+      point.a.recoil = recoils_.begin(contact.key);
       if (friction) point.friction = material.static_friction;
       point.total = &contact.impulse, point.struck = &contact.struck;
       add_point_jacobian(problem, place(body.body), contact.point - step.bodies[body.body].pose.position, 1.0,

@@ -31,6 +31,7 @@ class LinkageImpacts {
 
   std::vector<ImpactPoint> points_;
   std::deque<JointCoordinates> coordinates_;  // at least as many as points; keep their memory
+  HandRecoils recoils_;
   LinkageProblem::Vector velocity_, column_;
 };
 
