@@ -140,7 +140,23 @@ def study():
 
 def study_figures(rows):
     from study import calibration
-    return {'calibration': calibration.as_text(rows).strip()}
+    return {'calibration': shortened(calibration.as_text(rows).strip())}
+
+
+def shortened(text):
+    """The table without its unremarkable tests: those with no bold number are one row for each population, with their range."""
+    head, line, *rows = text.split('\n')
+    populations = collections.OrderedDict()
+    for row in rows:
+        populations.setdefault(row.split('|')[1].strip(), []).append(row)
+    lines = [head, line]
+    for population, tests in populations.items():
+        plain = [row for row in tests if '**' not in row]
+        lines += [row for row in tests if row not in plain]
+        numbers = [[float(cell) for cell in row.strip('|').split('|')[2:] if cell.strip()] for row in plain]
+        lines += plain if len(plain) < 2 else ['| %s | the other %d tests | %s |' % (population, len(plain), ' | '.join(
+            '%.1f to %.1f' % (min(column), max(column)) for column in zip(*numbers)))]
+    return '\n'.join(lines)
 
 
 MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')
