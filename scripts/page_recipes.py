@@ -125,9 +125,10 @@ def _grasps(rows, correlation):
     rows = [row for row in rows if float(row['correlation']) == correlation and float(row['dropped']) == 0]
     columns = list(dict.fromkeys((row['where'], row['frames_per_s']) for row in rows))
     cells = {(row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
-    return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns], [
-        ['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
-        for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
+    lines = [['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
+             for noise in dict.fromkeys(row['noise_mm'] for row in rows)]
+    return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns],
+                 [line for line in lines if set(line[1:]) != {'100 (100)'}])
 
 
 def study():
