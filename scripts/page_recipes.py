@@ -69,8 +69,8 @@ def contact():
     return {
         'refinements': benefits.strip(),
         'instructions': _range_of(costs, instructions),
-        'tiers': table(['geometry', "error from the palm's side: rms, mean, largest", 'from the back', 'time over capsules\''], [
-            [name, *['%.2f, %.2f, %.1f mm' % tuple(side[:3]) for side in sides],
+        'tiers': table(['geometry', "rms error from the palm's side", 'from the back', 'time over capsules\''], [
+            [name, *['%.2f mm' % side[0] for side in sides],
              '%.1f' % (sides[0][3] / next(some for n, some in tiers.items() if n.startswith('capsule'))[0][3])]
             for name, sides in tiers.items()]),
     }, {}
@@ -104,16 +104,16 @@ def filters():
     lines = []
     for panel in dict.fromkeys((row['input'], row['frames_per_s']) for row in recorded):
         of_panel = {_filter_name(row): row for row in recorded if (row['input'], row['frames_per_s']) == panel}
-        lines.append(['**%s, %s frames/s**' % panel] + [''] * 5)
+        lines.append(['**%s, %s frames/s**' % panel] + [''] * 4)
         for name, label in FILTERS.items():
             row = {key: value for key, value in of_panel[name].items()}
             lines.append([label, '%.3f' % float(row['jitter_mm']),
                           '%.1f (%.1f)' % (abs(round(float(row['lag_ms']), 1)), float(row['lag_p90_ms'])),
-                          *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm', 'bone_error_mm')]])
+                          *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm')]])
     of_held = {_filter_name(row): row for row in held}
     grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
     return {
-        'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]', 'bones [mm]'], lines),
+        'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]'], lines),
         'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]"], [
             [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
             for name, label in FILTERS.items()]),
@@ -145,19 +145,24 @@ def study_figures(rows):
 
 
 def shortened(text):
-    """The table without its unremarkable tests: those with no bold number are one row for each population, with their range."""
+    """The table with a row for tests that have no bold number, and one for many that have, each with their range."""
     head, line, *rows = text.split('\n')
     populations = collections.OrderedDict()
     for row in rows:
         populations.setdefault(row.split('|')[1].strip(), []).append(row)
     lines = [head, line]
     for population, tests in populations.items():
-        plain = [row for row in tests if '**' not in row]
-        lines += [row for row in tests if row not in plain]
-        numbers = [[float(cell) for cell in row.strip('|').split('|')[2:] if cell.strip()] for row in plain]
-        lines += plain if len(plain) < 2 else ['| %s | the other %d tests | %s |' % (population, len(plain), ' | '.join(
-            '%.1f to %.1f' % (min(column), max(column)) for column in zip(*numbers)))]
+        bold = [row for row in tests if '**' in row]
+        plain = [row for row in tests if row not in bold]
+        lines += bold if len(bold) < 4 else [_range_of_tests(population, '%d tests, above 5 %%', bold)]
+        lines += plain if len(plain) < 2 else [_range_of_tests(population, 'the other %d tests', plain)]
     return '\n'.join(lines)
+
+
+def _range_of_tests(population, label, rows):
+    numbers = [[float(cell.strip(' *')) for cell in row.strip('|').split('|')[2:] if cell.strip()] for row in rows]
+    return '| %s | %s | %s |' % (population, label % len(rows), ' | '.join(
+        '%.1f to %.1f' % (min(column), max(column)) for column in zip(*numbers)))
 
 
 MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')
@@ -215,11 +220,11 @@ def operators_figures(folder):
             drops = ['%d' % sum(int(float(row['drops'] or 0)) for row in some if row['object'] == name)
                      for name in ('cube', 'flat_cuboid', 'long_cuboid')]
             time, attempts = of['completion_time'], of['manipulation_drops']
-            lines.append([gravity + ' g', '`%s`' % model, *['%.1f ± %.1f' % (float(time['mean']), float(time[key]))
-                                                           for key in ('sd', 'ci95')],
+            lines.append([gravity + ' g', '`%s`' % model, '%.1f ± %.1f (± %.1f)' % tuple(
+                float(time[key]) for key in ('mean', 'sd', 'ci95')),
                           '%.2f ± %.2f' % (float(attempts['mean']), float(attempts['sd'])), *drops,
                           '%d of %d' % (sum(row['result'] == 'completed' for row in some), len(some))])
-    return {'seed_1': table(['', '', 'time [s], mean ± sd', 'mean ± its 95 % interval', 'drops while manipulated, mean ± sd',
+    return {'seed_1': table(['', '', 'time [s], mean ± sd (± 95 %)', 'drops while manipulated, mean ± sd',
                              'drops: cube', 'flat', 'long', 'completed'], lines),
             'table_1': _table_1(comparison, pairs, trials)}
 
