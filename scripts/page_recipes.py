@@ -117,15 +117,17 @@ def filters():
         'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]"], [
             [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
             for name, label in FILTERS.items()]),
-        'grasps': _grasps(grasps, 0.0), 'grasps_coloured': _grasps(grasps, 0.5),
+        'grasps': _grasps(grasps),
     }, {}
 
 
-def _grasps(rows, correlation):
-    rows = [row for row in rows if float(row['correlation']) == correlation and float(row['dropped']) == 0]
+def _grasps(rows):
+    rows = [row for row in rows if float(row['dropped']) == 0]
     columns = list(dict.fromkeys((row['where'], row['frames_per_s']) for row in rows))
-    cells = {(row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
-    lines = [['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
+    cells = {(row['correlation'], row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
+    lines = [['%g mm%s' % (float(noise), ', correlated' if float(correlation) else '')] + [
+        '%(held_estimated)s (%(held_fixed)s)' % cells[(correlation, noise, *column)] for column in columns]
+             for correlation in dict.fromkeys(row['correlation'] for row in rows)
              for noise in dict.fromkeys(row['noise_mm'] for row in rows)]
     return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns],
                  [line for line in lines if set(line[1:]) != {'100 (100)'}])
