@@ -32,8 +32,9 @@ constexpr int kMaxPartings = 3;
 /// Sweeps through a patch some of whose contacts do not press.
 constexpr int kInnerSweeps = 3;
 
-bool same_shapes(const BodyContactKey& x, const BodyContactKey& y) {
-  return x.a == y.a && x.b == y.b && x.shape_a == y.shape_a && x.shape_b == y.shape_b;
+/// Of one pair of shapes, with one normal.
+bool same_patch(const BodyContact& x, const BodyContact& y) {
+  return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
 }
 
 }  // namespace
@@ -110,10 +111,10 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
 void CrowdProblem::add_links(const ContactStep& step, const Island& island) {
   const std::vector<Vector3>& carried = *carried_;
   for (const Link* link = island.links.begin(); link != island.links.end();) {
-    const BodyContactKey& key = step.body_contacts[link->index].key;
+    const BodyContact& first = step.body_contacts[link->index];
     Touch touch{link->index, link->index};
     bool bore = false;
-    for (; link != island.links.end() && same_shapes(step.body_contacts[link->index].key, key); ++link) {
+    for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link) {
       bore = bore || carried[touch.last] != Vector3::Zero();
       ++touch.last;
     }
