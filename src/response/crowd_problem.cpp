@@ -32,8 +32,9 @@ constexpr int kMaxPartings = 3;
 /// Sweeps through a patch some of whose contacts do not press.
 constexpr int kInnerSweeps = 3;
 
-bool same_shapes(const BodyContactKey& x, const BodyContactKey& y) {
-  return x.a == y.a && x.b == y.b && x.shape_a == y.shape_a && x.shape_b == y.shape_b;
+/// Of one pair of shapes, with one normal.
+bool same_patch(const BodyContact& x, const BodyContact& y) {
+  return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ void CrowdProblem::add_body(const mrhi::Body& body, const BodyState& state, cons
 }
 
 template <typename AnyContact>
-SpringContact<double>& CrowdProblem::add_spring(const ContactStep& step, const AnyContact& contact) {
+SpringContact& CrowdProblem::add_spring(const ContactStep& step, const AnyContact& contact) {
   contacts_.emplace_back();
   make_spring(step, *configuration_, contact, contacts_.back());
   return contacts_.back();
@@ -110,10 +111,10 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
 void CrowdProblem::add_links(const ContactStep& step, const Island& island) {
   const std::vector<Vector3>& carried = *carried_;
   for (const Link* link = island.links.begin(); link != island.links.end();) {
-    const BodyContactKey& key = step.body_contacts[link->index].key;
+    const BodyContact& first = step.body_contacts[link->index];
     Touch touch{link->index, link->index};
     bool bore = false;
-    for (; link != island.links.end() && same_shapes(step.body_contacts[link->index].key, key); ++link) {
+    for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link) {
       bore = bore || carried[touch.last] != Vector3::Zero();
       ++touch.last;
     }
@@ -200,9 +201,9 @@ bool CrowdProblem::admit(const ContactStep& step) {
   return points_.size() > before;
 }
 
-CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contact, int a, int b,
+CrowdProblem::Point& CrowdProblem::add_point(const SpringContact& contact, int a, int b,
                                              const Vector3& arm_a) {
-  const Spring<double>& spring = contact.spring;
+  const Spring& spring = contact.spring;
   points_.emplace_back();
   Point& point = points_.back();  // with impulses in place of forces: stiffness is times the step
   point.a = a, point.b = b;
@@ -465,8 +466,8 @@ void CrowdProblem::relax(Patch& patch) {
 // to 2/3 mu a p. Body a is a hand, which nothing turns.
 void CrowdProblem::twist(std::size_t i) {
   Point& point = points_[i];
-  const SpringContact<double>& contact = contacts_[i];
-  const Spring<double>& spring = contact.spring;
+  const SpringContact& contact = contacts_[i];
+  const Spring& spring = contact.spring;
   Body& b = bodies_[static_cast<std::size_t>(point.b)];
   const Vector3 turned = b.inverse_inertia * point.normal;
   const double spin = contact.drive_spin - point.normal.dot(b.motion.spin);
@@ -575,7 +576,7 @@ void CrowdProblem::report(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
   const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
-  SpringContact<double>& contact = contacts_[i];
+  SpringContact& contact = contacts_[i];
   contact.response = {};
   contact.response.force = triple((point.given.drag - point.given.push * point.normal) / step_);
   contact.response.push = point.given.push / step_;

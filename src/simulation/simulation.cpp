@@ -60,7 +60,6 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       body_finder(scene, geometry, gravity),
       operators(scene, refinements(configuration)),
       alone(scene),
-      flights(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, operators, configuration),
       renderer(scene, finder) {
