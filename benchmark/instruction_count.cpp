@@ -203,10 +203,6 @@ int print_compiler() {
 #endif
   std::cout << __VERSION__ << ", Eigen " << EIGEN_WORLD_VERSION << '.' << EIGEN_MAJOR_VERSION << '.'
             << EIGEN_MINOR_VERSION << ", " << 8 * sizeof(void*) << " bit";
-#ifdef __x86_64__
-  // Springs are worked on in the widest registers that there are.
-  if (__builtin_cpu_supports("avx2")) std::cout << ", AVX2";
-#endif
   std::cout << '\n';
   return 0;
 }

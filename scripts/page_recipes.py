@@ -60,7 +60,7 @@ def table(head, rows):
 def contact():
     benefits, costs = run('ablation').split('\n\nA step of scene (a): ')
     instructions, costs = costs.split(' instructions', 1)
-    costs = [re.match(r'\| `(\w+)` \| .*\(([-+][\d.]+ %)\) \|', line) for line in costs.split('\n')]
+    costs = re.findall(r'^\| (`\w+`) \| .*\(([-+][\d.]+) %\) \|', costs, re.MULTILINE)
     tiers = collections.OrderedDict()
     for line in run('geometry_tiers').split('\n'):
         found = re.match(r'(.{18}) +([-\d.]+) +([-\d.]+) +([-\d.]+) +([-\d.]+)$', line)
@@ -68,13 +68,17 @@ def contact():
             tiers.setdefault(found.group(1).strip(), []).append([float(x) for x in found.groups()[1:]])
     return {
         'refinements': benefits.strip(),
-        'instructions': table(['refinement', 'instructions of %s' % instructions], [
-            ['`%s`' % cost.group(1), cost.group(2)] for cost in costs if cost]),
+        'instructions': _range_of(costs, instructions),
         'tiers': table(['geometry', "error from the palm's side: rms, mean, largest", 'from the back', 'time over capsules\''], [
             [name, *['%.2f, %.2f, %.1f mm' % tuple(side[:3]) for side in sides],
              '%.1f' % (sides[0][3] / next(some for n, some in tiers.items() if n.startswith('capsule'))[0][3])]
             for name, sides in tiers.items()]),
     }, {}
+
+
+def _range_of(costs, instructions):
+    least, most = sorted(costs, key=lambda cost: float(cost[1]))[::len(costs) - 1]
+    return '%s %% (%s) to %s %% (%s) of %s instructions' % (least[1], least[0], most[1], most[0], instructions)
 
 
 FILTERS = collections.OrderedDict([
@@ -136,7 +140,23 @@ def study():
 
 def study_figures(rows):
     from study import calibration
-    return {'calibration': calibration.as_text(rows).strip()}
+    return {'calibration': shortened(calibration.as_text(rows).strip())}
+
+
+def shortened(text):
+    """The table without its unremarkable tests: those with no bold number are one row for each population, with their range."""
+    head, line, *rows = text.split('\n')
+    populations = collections.OrderedDict()
+    for row in rows:
+        populations.setdefault(row.split('|')[1].strip(), []).append(row)
+    lines = [head, line]
+    for population, tests in populations.items():
+        plain = [row for row in tests if '**' not in row]
+        lines += [row for row in tests if row not in plain]
+        numbers = [[float(cell) for cell in row.strip('|').split('|')[2:] if cell.strip()] for row in plain]
+        lines += plain if len(plain) < 2 else ['| %s | the other %d tests | %s |' % (population, len(plain), ' | '.join(
+            '%.1f to %.1f' % (min(column), max(column)) for column in zip(*numbers)))]
+    return '\n'.join(lines)
 
 
 MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')

@@ -12,6 +12,8 @@
 #include "collision/neighbours.h"
 #include "collision/scene_geometry.h"
 #include "integration/free_flight.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/simulation_state.h"
 #include "response/contact_step.h"
 #include "response/crowd_problem.h"
 #include "response/impact_solver.h"
@@ -64,7 +66,7 @@ class Falling {
         geometry_(scene_),
         neighbours_(scene_),
         finder_(scene_, geometry_, scene_.gravity),
-        model_(make_contact_model(configuration_)),
+        model_(make_contact_model(configuration_, scene_, state_, events_)),
         asleep_(scene_.bodies.size(), 0) {
     for (const Body& body : scene_.bodies) bodies_.push_back(start_state(body));
     neighbours_.begin_frame({}, bodies_);
@@ -138,6 +140,8 @@ class Falling {
   const SceneGeometry geometry_;
   Neighbours neighbours_;
   BodyContactFinder finder_;
+  SimulationState state_;
+  std::vector<Event> events_;
   const std::unique_ptr<ContactModel> model_;
   CrowdProblem problem_;
   StepChanges changes_;

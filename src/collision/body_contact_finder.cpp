@@ -140,9 +140,9 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
-  contact.normal = touch.manifold.normal;
+  contact.normal = touch.manifold.normal_of(point.region);
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
-  contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count;
+  contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count_of(point.region);
   contact.first_touch = touch.time;
   if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kApart;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../math/triple.h"
 #include "free_rotation.h"
 
 namespace mrhi {
@@ -36,8 +37,158 @@ double spread(const Body& body) {
   return body.inverse_moments.maxCoeff() - body.inverse_moments.minCoeff();
 }
 
-Triple<double> triple(const Vector3& v) {
-  return {v.x(), v.y(), v.z()};
+/// The momentum turns in the body by at most this in a short turn [rad]: series end below rounding.
+constexpr double kShortWay = 0.025;
+/// And the body turns by at most this [rad].
+constexpr double kShortAngle = 0.25;
+
+double series(double, double last) {
+  return last;
+}
+/// first + x (second + x (third + ...)).
+template <typename... Others>
+double series(double x, double first, Others... others) {
+  return first + x * series(x, others...);
+}
+
+/// Euler's equations from the principal momentum m on, as in free_rotation.h.
+/// Series as in elliptic(), without halving: a short turn's S needs none.
+class Way {
+ public:
+  Way(const Triple& m, const Triple& moments)
+      : m_(m),
+        j_{moments.z - moments.y, moments.x - moments.z, moments.y - moments.x},
+        slope_(slope(m)),
+        both_(j_.x * j_.z * (m.y * m.y)),
+        a_(both_ - j_.x * j_.y * (m.z * m.z)),
+        b_(both_ - j_.y * j_.z * (m.x * m.x)) {
+    const double sum = a_ + b_, product = a_ * b_, squared = sum * sum;
+    s3_ = -1.0 / 6.0 * sum;
+    s5_ = 1.0 / 120.0 * squared + 12.0 / 120.0 * product;
+    s7_ = sum * (-1.0 / 5040.0 * squared - 132.0 / 5040.0 * product);
+    s9_ = 1.0 / 362880.0 * (squared * squared) +
+          product * (1224.0 / 362880.0 * squared + 3024.0 / 362880.0 * product);
+  }
+
+  /// By how much the momentum differs from m after the time t.
+  Triple after(double t) const {
+    const double t2 = t * t;
+    const double s = t + t * (t2 * (s3_ + t2 * (s5_ + t2 * (s7_ + t2 * s9_)))), q = s * s;
+    const double za = a_ * q, zb = b_ * q, less = both_ * q;
+    return at(s, za * series(za, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0, 5.0 / 128.0, 7.0 / 256.0),
+              zb * series(zb, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0, 5.0 / 128.0, 7.0 / 256.0), less,
+              1.0 / (1.0 - less));
+  }
+  /// Where 1e-12 of it is enough, and t half a short turn.
+  Triple nearly_after(double t) const {
+    const double t2 = t * t, s = t + t * (t2 * (s3_ + t2 * (s5_ + t2 * s7_))), q = s * s;
+    const double za = a_ * q, zb = b_ * q, less = both_ * q;
+    return at(s, za * series(za, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0),
+              zb * series(zb, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0), less, series(less, 1.0, 1.0, 1.0, 1.0));
+  }
+  /// Rate at which a principal momentum changes.
+  Triple slope(const Triple& m) const { return {j_.x * (m.y * m.z), j_.y * (m.x * m.z), j_.z * (m.x * m.y)}; }
+
+ private:
+  /// With 1 - c, 1 - d, 1 - D and 1 / D. Whatever the error of `s`, it is on the momentum's way: energy
+  /// holds.
+  Triple at(double s, double c_less, double d_less, double less, double scale) const {
+    return {scale * (m_.x * (less - c_less) + slope_.x * s * (1.0 - d_less)),
+            scale * (m_.y * (less - c_less - d_less + c_less * d_less) + slope_.y * s),
+            scale * (m_.z * (less - d_less) + slope_.z * s * (1.0 - c_less))};
+  }
+
+  Triple m_, j_, slope_;
+  double both_, a_, b_, s3_, s5_, s7_, s9_;
+};
+
+Triple each(const Triple& a, const Triple& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// A turn about the momentum by twice an angle: its cosine, and its sine by the size of the momentum.
+struct About {
+  double cosine, sine;
+};
+
+/// With n the way of m, e = n^2 / (4 L^2) and k = 2 E / L^2 - J, the whole angle is
+///
+///     (2 E t + integral of n . k n / (4 (1 - e)) dt) / L,
+///
+/// of which the integral is small. Simpson's rule with the slopes at the ends is exact for it, to rounding.
+/// It comes of free_rotation.h's integrand by what the motion keeps. |m + n| = |m| makes m.n = -n^2 / 2, so
+/// L^2 + m.m(t) = 2 L^2 (1 - e); the same energy makes m.J n = -n.J n / 2, so what is above is 2 (2 E) -
+/// n.J n / 2; and 2 E / L^2 taken off leaves n.k n / (4 L^2 (1 - e)). With f that integrand, f and f' are 0
+/// at the start, and
+///
+///     integral of f = t / 30 (16 f(t/2) + 7 f(t)) - t^2 / 60 f'(t)
+About about(const Way& way, const Triple& m, const Triple& n, const Triple& moments, double over, double t) {
+  const double over4 = 0.25 * over;
+  const Triple rate = each(moments, m);
+  const double twice_energy = rate.dot(m), mean = twice_energy * over;
+  const Triple k{mean - moments.x, mean - moments.y, mean - moments.z};
+  const Triple middle = way.nearly_after(0.5 * t);
+  const double at_middle =
+      each(k, middle).dot(middle) * series(over4 * middle.dot(middle), 1.0, 1.0, 1.0, 1.0);
+  const Triple kn = each(k, n), slope = way.slope(m + n);
+  const double grown = series(over4 * n.dot(n), 1.0, 1.0, 1.0, 1.0), at_end = kn.dot(n) * grown;
+  const double half_slope = grown * (kn.dot(slope) + at_end * over4 * n.dot(slope));
+  const double integral =
+      t * (16.0 / 120.0 * at_middle + 7.0 / 120.0 * at_end) - t * t * (2.0 / 240.0 * half_slope);
+
+  const double turned = 0.5 * (t * twice_energy + integral), by_momentum = turned * over;
+  const double x = turned * by_momentum;  // the angle's square
+  return {series(x, 1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0),
+          by_momentum * series(x, 1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0)};
+}
+
+/// Turns the orientation on by a unit quaternion, as turn_on() above. A short turn's cosine is near 1, so
+/// that there is no other case.
+void turn_on(double cosine, const Triple& sine, Quaternion& q) {
+  const double w = q.w();
+  const Triple u{q.x(), q.y(), q.z()};
+  const double stretched = 0.5 * (1.0 - (w * w + u.dot(u)));
+  const double w_more = stretched * cosine - sine.dot(sine) / (1.0 + cosine);
+  const Triple vector = (1.0 + stretched) * sine;
+  const Triple more = w * vector + w_more * u + u.cross(vector);
+  q = Quaternion(w + (w_more * w - u.dot(vector)), u.x + more.x, u.y + more.y, u.z + more.z);
+}
+
+/// What free_rotation.h has, for short turns: without roots and with few divisions. The momentum's shortest
+/// way and the turn about it make a quaternion of norm sqrt(1 - e) if the scalar part of the one is 1 - e and
+/// the vector of the other along m + n / 2.
+///
+///     (2 L^2 (1 - e), n x m)  then  (cos, sin m / L),  over 2 L^2:
+///     scalar  cos (1 - e),     vector  cos n x m / 2 L^2 + sin / L (m + n / 2)
+///
+/// as m x (n x m) = n L^2 - m (m.n) = n L^2 + m n^2 / 2. cos and sin are those of half the angle; `sine`
+/// has the 1 / L in it, so that no root of L^2 is needed.
+void turn_shortly(const Body& body, const Vector3& angular_momentum, double step, Quaternion& q) {
+  const Triple momentum = triple(angular_momentum);
+  const Triple u{q.x(), q.y(), q.z()}, across = momentum.cross(u), twice = across + across;
+  const Triple local = momentum + q.w() * twice + twice.cross(u);
+  const Triple axes[] = {triple(body.principal_axes.col(0)), triple(body.principal_axes.col(1)),
+                         triple(body.principal_axes.col(2))};
+  const Triple m{axes[0].dot(local), axes[1].dot(local), axes[2].dot(local)};
+  const Triple moments = triple(body.inverse_moments);
+  const double over = 1.0 / m.dot(m);
+  const Way way(m, moments);
+  const Triple n = way.after(step);
+  const About turn = about(way, m, n, moments, over, step);
+
+  const double e = 0.25 * over * n.dot(n);
+  const double root_over = series(e, 1.0, 1.0 / 2.0, 3.0 / 8.0, 5.0 / 16.0, 35.0 / 128.0);
+  const double cosine = turn.cosine * root_over, sine = turn.sine * root_over;
+  const Triple v = 0.5 * cosine * over * n.cross(m) + sine * (m + 0.5 * n);
+  turn_on(cosine - cosine * e, v.x * axes[0] + v.y * axes[1] + v.z * axes[2], q);
+}
+
+// x += h p / m + h^2 g / 2 with the p of the step's start, then p += m h g. Where contacts have been solved
+// implicitly the caller gives g = 0: p is the end's already, and x += h v(h) is backward Euler's.
+void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
+  const Vector3 velocity = state.linear_momentum / mass;
+  state.pose.position += step * velocity + (0.5 * step * step) * gravity;
+  state.linear_momentum += (mass * step) * gravity;
 }
 
 }  // namespace
@@ -49,18 +200,7 @@ void free_flight(const Body& body, const Vector3& gravity, double step, BodyStat
   fly_on(body.mass, gravity, step, state);
   const Turn turn = turn_of(quickness(body), state.angular_momentum, step);
   if (turn == Turn::long_one) turn_far(body, state.angular_momentum, step, state.pose.orientation);
-  if (turn != Turn::short_one) return;
-  Turning<double> turning = turning_of(state, step);
-  turn_shortly(spinner_of(body), turning);
-  state.pose.orientation = Quaternion(turning.w, turning.x, turning.y, turning.z);
-}
-
-// x += h p / m + h^2 g / 2 with the p of the step's start, then p += m h g. Where contacts have been solved
-// implicitly the caller gives g = 0: p is the end's already, and x += h v(h) is backward Euler's.
-void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
-  const Vector3 velocity = state.linear_momentum / mass;
-  state.pose.position += step * velocity + (0.5 * step * step) * gravity;
-  state.linear_momentum += (mass * step) * gravity;
+  if (turn == Turn::short_one) turn_shortly(body, state.angular_momentum, step, state.pose.orientation);
 }
 
 //     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortWay, (1/I_min) / kShortAngle)^2
@@ -77,17 +217,6 @@ Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
 double quickness(const Body& body) {
   const double most = std::max(spread(body) / kShortWay, body.inverse_moments.maxCoeff() / kShortAngle);
   return most * most;
-}
-
-Spinner<double> spinner_of(const Body& body) {
-  const auto axis = [&body](int i) { return triple(body.principal_axes.col(i)); };
-  const Vector3& moments = body.inverse_moments;
-  return {{axis(0), axis(1), axis(2)}, {moments[0], moments[1], moments[2]}};
-}
-
-Turning<double> turning_of(const BodyState& state, double step) {
-  const Quaternion& q = state.pose.orientation;
-  return {q.w(), q.x(), q.y(), q.z(), triple(state.angular_momentum), step};
 }
 
 // In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -

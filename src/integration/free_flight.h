@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mr_hand_interaction/integration/body_state.h"
-#include "short_turn.h"
 
 namespace mrhi {
 
@@ -10,15 +9,11 @@ namespace mrhi {
 /// included (free_rotation.h). What hangs on joints is left to them (src/joints).
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state);
 
-/// What it is made of. The centre alone:
-void fly_on(double mass, const Vector3& gravity, double step, BodyState& state);
-/// What turns a body in a step: nothing worth it; a short turn (turn_shortly), with what it needs to know; or
-/// any.
+/// How a body turns in a step: not worth mention; by so little that short series suffice; or by more.
 enum class Turn { none, short_one, long_one };
 Turn turn_of(double quickness, const Vector3& angular_momentum, double step);
 double quickness(const Body& body);  ///< for turn_of [1/(kg^2 m^4)]
-Spinner<double> spinner_of(const Body& body);
-Turning<double> turning_of(const BodyState& state, double step);
+/// Turns the orientation by any amount.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation);
 
 }  // namespace mrhi

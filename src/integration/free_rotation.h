@@ -25,7 +25,7 @@ namespace mrhi {
 ///     L * integral of (2 E + m(0) . J m(t)) / (L^2 + m(0) . m(t)) dt,
 ///
 /// by Lobatto's five points, which are exact to rounding as far as a step goes. Short turns have a way of
-/// their own (short_turn.h).
+/// their own (free_flight.cpp).
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step);
 
 /// Rate at which `momentum` turns in the body, at most, times the step, in one free_rotation [rad].

@@ -15,7 +15,7 @@ class JointLaw {
   /// shorter ones over [s].
   void begin(const Joint& joint, const JointState& state, double inertia, double step, double usual);
   /// Takes down what a limit has given within this step already, when it was struck [N m s].
-  void note_blow(double impulse) { blow_ += impulse; }
+  void note_limit_impulse(double impulse) { blow_ += impulse; }
 
   /// Whether it gives anything up to this speed either way.
   bool acts(double speed) const;

@@ -21,16 +21,16 @@ double lightest_operator(const Scene& scene) {
   return lightest;
 }
 
-/// Fills the last four up.
-template <typename Touch>
-void fill_up(Touch& none, std::vector<Touch*>& touches) {
-  while (touches.size() % kLanes != 0) touches.push_back(&none);
-}
-
 }  // namespace
 
-BodyProblem::BodyProblem() {
-  no_contact_.share = no_body_contact_.share = 0.0;
+/// The first contact of each kind begins with the first partial sum.
+template <typename Contacts>
+void BodyProblem::make_springs(const ContactStep& step, const ContactConfiguration& configuration,
+                               const Contacts& contacts, BodySpring* spring) {
+  for (std::size_t i = 0; i < contacts.size(); ++i, ++spring) {
+    spring->part = static_cast<int>(i % kParts);
+    make_spring(step, configuration, *contacts[i], *spring);
+  }
 }
 
 void BodyProblem::begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration) {
@@ -40,26 +40,21 @@ void BodyProblem::begin(ContactStep& step, const Island& island, const ContactCo
     if (!step.contacts[i].ignored) hands_.push_back(&step.contacts[i]);
   }
   for (const Link& link : island.links) objects_.push_back(&step.body_contacts[link.index]);
-  fill_up(no_contact_, hands_);
-  fill_up(no_body_contact_, objects_);
   grips_.clear();
   for (Grip& grip : step.grips) {
     if (grip.active && grip.body == touched.body) grips_.push_back(&grip);
   }
-  static_assert(kGripPoints == kLanes, "a grip fills one group of lanes");
-  springs_.resize((hands_.size() + objects_.size()) / kLanes + grips_.size());
-  auto spring = springs_.begin();
-  for (std::size_t i = 0; i < hands_.size(); i += kLanes)
-    make_springs(step, configuration, &hands_[i], *spring++);
-  for (std::size_t i = 0; i < objects_.size(); i += kLanes)
-    make_springs(step, configuration, &objects_[i], *spring++);
+  springs_.resize(hands_.size() + objects_.size() + kGripPoints * grips_.size());
+  BodySpring* spring = springs_.data();
+  make_springs(step, configuration, hands_, spring);
+  make_springs(step, configuration, objects_, spring += hands_.size());
+  spring += objects_.size();
+  static_assert(kGripPoints == kParts, "a grip has one point in each partial sum");
   for (const Grip* grip : grips_) {
-    SpringContact<double> one;
-    for (int point = 0; point < kGripPoints; ++point) {
-      make_grip_spring(step, configuration, *grip, point, one);
-      put_in(point, one, *spring);
+    for (int point = 0; point < kGripPoints; ++point, ++spring) {
+      spring->part = point;
+      make_grip_spring(step, configuration, *grip, point, *spring);
     }
-    ++spring;
   }
 
   step_ = step.step;
@@ -82,19 +77,18 @@ int BodyProblem::sole_operator(const ContactStep& step) const {
     several = several || (op >= 0 && op != (*step.operators)[hand]);
     op = (*step.operators)[hand];
   };
-  for (const Contact* contact : hands_)
-    if (contact != &no_contact_) see(contact->key.hand);
+  for (const Contact* contact : hands_) see(contact->key.hand);
   for (const Grip* grip : grips_) see(grip->hand);
   return several ? -1 : op;
 }
 
 namespace {
 
-/// The drive of springs without the motion of what carries their ends, a twist at the centre of their arms.
-void leave_carrier(const Twist& carrier, SpringContact<Wide>& four) {
-  const Triple<Wide> spin = everywhere<Wide>(carrier.angular);
-  four.drive = four.drive - everywhere<Wide>(carrier.linear) - spin.cross(four.arm);
-  four.drive_spin = four.drive_spin - four.spring.normal.dot(spin);
+/// The drive of a spring without the motion of what carries its end, a twist at the centre of its arm.
+void leave_carrier(const Twist& carrier, SpringContact& spring) {
+  const Triple spin = triple(carrier.angular);
+  spring.drive = spring.drive - triple(carrier.linear) - spin.cross(spring.arm);
+  spring.drive_spin = spring.drive_spin - spring.spring.normal.dot(spin);
 }
 
 }  // namespace
@@ -112,7 +106,7 @@ void BodyProblem::couple(const ContactStep& step, const Body& body, const BodySt
   const Vector3 offset = state.pose.position - person_state.pose.position;
   const Twist twist = twist_of(person, person_state);
   carrier_ = {twist.linear + twist.angular.cross(offset), twist.angular};
-  for (SpringContact<Lanes>& four : springs_) leave_carrier(carrier_, wide(four));
+  for (BodySpring& spring : springs_) leave_carrier(carrier_, spring);
   const Matrix3 across = cross_matrix(offset);
   const Matrix3 inverse_inertia = world_inverse_inertia(person, person_state.pose.orientation);
   Matrix6 inverse;
@@ -153,6 +147,84 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
   velocity_.tail<3>() = free_.tail<3>() + step_ * state.pushed.angular;
 }
 
+// Of all springs on a body with velocity v and angular velocity w, at arms r from its centre:
+//
+//     u = u_1 - (v + w x r),     spin = n.(w_1 - w)
+//     F = sum f,                 T = sum r x f + T_n n
+SpringSum respond(Triple velocity, Triple spin, bool renew_limits, std::vector<BodySpring>& springs) {
+  SpringSum parts[kParts] = {};
+  for (BodySpring& spring : springs) {
+    const Triple& n = spring.spring.normal;
+    const Triple u = spring.drive - velocity - spin.cross(spring.arm);
+    SpringResponse& response = spring.response;
+    spring.spring.respond(u, spring.drive_spin - n.dot(spin), renew_limits, response);
+    SpringSum& sum = parts[spring.part];
+    sum.force = sum.force + response.force;
+    sum.torque = sum.torque + spring.arm.cross(response.force) + response.torque * n;
+    sum.push = sum.push + response.push + spring.spring.bond;
+  }
+  return {(parts[0].force + parts[1].force) + (parts[2].force + parts[3].force),
+          (parts[0].torque + parts[1].torque) + (parts[2].torque + parts[3].torque),
+          (parts[0].push + parts[1].push) + (parts[2].push + parts[3].push)};
+}
+
+namespace {
+
+/// A symmetric matrix.
+struct Symmetric3 {
+  double xx, xy, yy, xz, yz, zz;
+
+  /// Adds weight v v'.
+  void add(double weight, const Triple& v) {
+    const Triple w = weight * v;
+    xx += w.x * v.x, xy += w.x * v.y, yy += w.y * v.y;
+    xz += w.x * v.z, yz += w.y * v.z, zz += w.z * v.z;
+  }
+};
+
+}  // namespace
+
+// The point of the body at the arm r moves by J (v, w) = v - [r]x w, so J' = (1; [r]x) and
+//
+//     J' S J = (  S         .             )      S = s_t 1 + (s_n - s_t) n n' - slip d d' / d'd
+//              (  [r]x S    [r]x S [r]x'  )      and the twist's s_T n n' is added at the lower right
+//
+// s are the slopes of SpringResponse. A row of A [r]x' is r x that row of A, as [r]x' = -[r]x. Only the
+// lower triangle is summed, in three blocks: what is symmetric is made once.
+SpringSlope slope_of(const std::vector<BodySpring>& springs) {
+  SpringSlope parts[kParts] = {};
+  for (const BodySpring& spring : springs) {
+    const SpringResponse& response = spring.response;
+    const Triple& r = spring.arm;
+    const Triple& n = spring.spring.normal;
+    // S of the contact point; [r]x S, of the torque by the velocity; and [r]x S [r]x' with the twist's.
+    const double along = response.tangential_slope;
+    Symmetric3 s{along, 0.0, along, 0.0, 0.0, along};
+    s.add(response.normal_slope - along, n);
+    if (response.slip > 0.0) s.add(-response.slip / std::max(response.drawn_squared, 1e-300), response.drawn);
+    const Triple x = r.cross({s.xx, s.xy, s.xz}), y = r.cross({s.xy, s.yy, s.yz}),
+                 z = r.cross({s.xz, s.yz, s.zz});
+    const Triple row_x = r.cross({x.x, y.x, z.x}), row_y = r.cross({x.y, y.y, z.y}),
+                 row_z = r.cross({x.z, y.z, z.z});
+    Symmetric3 turn{row_x.x, row_x.y, row_y.y, row_x.z, row_y.z, row_z.z};
+    turn.add(response.torque_slope, n);
+    const double entries[] = {s.xx, s.xy, s.yy, s.xz,    s.yz,    s.zz,  //
+                              x.x,  y.x,  z.x,  turn.xx,                 //
+                              x.y,  y.y,  z.y,  turn.xy, turn.yy,        //
+                              x.z,  y.z,  z.z,  turn.xz, turn.yz, turn.zz};
+    SpringSlope& sum = parts[spring.part];
+#pragma GCC unroll 21
+    for (int i = 0; i < Cholesky6::kEntries; ++i) sum.entry[i] += entries[i];
+  }
+  SpringSlope result;
+#pragma GCC unroll 21
+  for (int i = 0; i < Cholesky6::kEntries; ++i) {
+    const auto of = [&](int part) { return parts[part].entry[i]; };
+    result.entry[i] = (of(0) + of(1)) + (of(2) + of(3));
+  }
+  return result;
+}
+
 // Backward Euler: M (v - v_free) = h J' f(v), with forces as they are at the step's end. The gradient is the
 // impulse that is still missing.
 //
@@ -162,23 +234,23 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
 // complementarity problem, in place of constraints; convex as Todorov (2014) and, with springs, Castro,
 // Permenter & Han (2023) have it.
 void BodyProblem::evaluate(bool renew_limits) {
-  lanes_.respond(springs_.data(), springs_.data() + springs_.size(), velocity_.data(), renew_limits, sum_);
+  sum_ = respond(triple(velocity_.head<3>()), triple(velocity_.tail<3>()), renew_limits, springs_);
+  const Vector3 impulse = step_ * vector(sum_.force), turn = step_ * vector(sum_.torque);
   const Vector6 change = velocity_ - free_;
   if (coupled_) {
     gradient_ = reduced_ * change;
-    gradient_.head<3>() -= step_ * Eigen::Map<const Vector3>(sum_.force);
-    gradient_.tail<3>() -= step_ * Eigen::Map<const Vector3>(sum_.torque);
+    gradient_.head<3>() -= impulse;
+    gradient_.tail<3>() -= turn;
     return;
   }
-  gradient_.head<3>() = mass_ * change.head<3>() - step_ * Eigen::Map<const Vector3>(sum_.force);
-  gradient_.tail<3>() = inertia_ * change.tail<3>() - step_ * Eigen::Map<const Vector3>(sum_.torque);
+  gradient_.head<3>() = mass_ * change.head<3>() - impulse;
+  gradient_.tail<3>() = inertia_ * change.tail<3>() - turn;
 }
 
 // M - h J' (df/dv) J: symmetric, and positive definite as no contact's slope is negative.
-// H = M + h sum J' S J of SpringLanes::slope().
+// H = M + h sum J' S J of slope_of().
 void BodyProblem::factorise() {
-  SpringSlope slope;
-  lanes_.slope(springs_.data(), springs_.data() + springs_.size(), slope);
+  SpringSlope slope = slope_of(springs_);
   for (double& entry : slope.entry) entry *= step_;
   for (int i = 0; coupled_ && i < 6; ++i) {
     for (int j = 0; j <= i; ++j) slope.entry[Cholesky6::at(i, j)] += reduced_(i, j);
@@ -203,22 +275,18 @@ double BodyProblem::energy() const {
   double energy = coupled_ ? 0.5 * change.dot(reduced_ * change)
                            : 0.5 * (mass_ * change.head<3>().squaredNorm() +
                                     change.tail<3>().dot(inertia_ * change.tail<3>()));
-  const Triple<double> linear = triple(velocity_.head<3>()), angular = triple(velocity_.tail<3>());
-  for (const SpringContact<Lanes>& four : springs_) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const SpringContact<double> one = contact_in(lane, four);
-      if (one.spring.stiffness <= 0.0) continue;
-      const Triple<double> u = one.drive - linear - angular.cross(one.arm);
-      energy += step_ * potential(one.spring, u, one.drive_spin - one.spring.normal.dot(angular));
-    }
+  const Triple linear = triple(velocity_.head<3>()), angular = triple(velocity_.tail<3>());
+  for (const BodySpring& one : springs_) {
+    if (one.spring.stiffness <= 0.0) continue;
+    const Triple u = one.drive - linear - angular.cross(one.arm);
+    energy += step_ * potential(one.spring, u, one.drive_spin - one.spring.normal.dot(angular));
   }
   return energy;
 }
 
 void BodyProblem::finish_body(bool agree, BodyState& state) const {
   if (coupled_) {
-    const Vector3 impulse = step_ * Eigen::Map<const Vector3>(sum_.force),
-                  turn = step_ * Eigen::Map<const Vector3>(sum_.torque);
+    const Vector3 impulse = step_ * vector(sum_.force), turn = step_ * vector(sum_.torque);
     state.pushed = {(velocity_ - free_).head<3>() / step_, (velocity_ - free_).tail<3>() / step_};
     state.linear_momentum += impulse + step_ * mass_ * gravity_;
     state.angular_momentum += turn;
@@ -239,12 +307,10 @@ void BodyProblem::finish_body(bool agree, BodyState& state) const {
 void BodyProblem::finish(bool agree, ContactStep& step, const Island& island) const {
   finish_body(agree, step.bodies[island.bodies.begin()[0].body]);
   auto spring = springs_.begin();
-  for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, *spring++, &hands_[i]);
-  for (std::size_t i = 0; i < objects_.size(); i += kLanes) settle(step, *spring++, &objects_[i]);
+  for (Contact* contact : hands_) settle(step, *spring++, *contact);
+  for (BodyContact* contact : objects_) settle(step, *spring++, *contact);
   for (Grip* grip : grips_) {
-    for (int point = 0; point < kGripPoints; ++point)
-      settle_grip(step, contact_in(point, *spring), point, *grip);
-    ++spring;
+    for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *spring++, point, *grip);
   }
 }
 
@@ -270,19 +336,19 @@ BodyState opposite(const BodyState& state) {
 // the operator's momentum by -h f, and the opposite momentum by h f, as it would the body's.
 void BodyProblem::begin_operator(ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
                                  const Twist& carrier, const ContactConfiguration& configuration) {
-  hands_.clear(), objects_.clear(), grips_.clear();
-  for (Contact* contact : contacts) {
-    if (!hands_.empty() && hands_.back()->key.body != contact->key.body) fill_up(no_contact_, hands_);
-    hands_.push_back(contact);
-  }
-  fill_up(no_contact_, hands_);
-  springs_.resize(hands_.size() / kLanes);
+  objects_.clear(), grips_.clear();
+  hands_ = contacts;
+  springs_.resize(hands_.size());
+  make_springs(step, configuration, hands_, springs_.data());
   const Vector3& centre = step.bodies[body].pose.position;
-  for (std::size_t i = 0; i < hands_.size(); i += kLanes) {
-    make_springs(step, configuration, &hands_[i], springs_[i / kLanes]);
-    SpringContact<Wide>& four = wide(springs_[i / kLanes]);
-    four.arm = four.arm + everywhere<Wide>(step.bodies[hands_[i]->key.body].pose.position - centre);
-    leave_carrier(carrier, four);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    BodySpring& spring = springs_[i];
+    const std::size_t fixture = hands_[i]->key.body;
+    // Each fixture begins with the first partial sum.
+    const bool same = i > 0 && hands_[i - 1]->key.body == fixture;
+    spring.part = same ? (springs_[i - 1].part + 1) % kParts : 0;
+    spring.arm = spring.arm + triple(step.bodies[fixture].pose.position - centre);
+    leave_carrier(carrier, spring);
   }
   coupled_ = false;
   step_ = step.step;
@@ -294,7 +360,7 @@ void BodyProblem::finish_operator(bool agree, ContactStep& step, std::size_t bod
   if (!agree) evaluate(true);  // it has moved on since
   finish_body(true, state);
   step.bodies[body] = opposite(state);
-  for (std::size_t i = 0; i < hands_.size(); i += kLanes) settle(step, springs_[i / kLanes], &hands_[i]);
+  for (std::size_t i = 0; i < hands_.size(); ++i) settle(step, springs_[i], *hands_[i]);
 }
 
 }  // namespace mrhi

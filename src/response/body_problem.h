@@ -6,17 +6,39 @@
 #include "islands.h"
 #include "newton.h"
 #include "spring_contact.h"
-#include "spring_lanes.h"
 
 namespace mrhi {
 
+/// A spring of a body, and which of the partial sums below it belongs to.
+/// Sums over springs are four partial ones, which do not wait for each other, added up in a fixed order: a
+/// sum of floating-point numbers depends on its order.
+struct BodySpring : SpringContact {
+  int part;  // 0..3
+};
+constexpr int kParts = 4;
+
+/// What springs do to a body together.
+struct SpringSum {
+  Triple force;   ///< [N]
+  Triple torque;  ///< about the body's centre [N m]
+  double push;    ///< sum of the pushes' sizes, and of the bonds' [N]
+};
+/// Lets each spring respond at the body's velocity and angular velocity.
+SpringSum respond(Triple velocity, Triple spin, bool renew_limits, std::vector<BodySpring>& springs);
+
+/// -d (force, torque) / d (velocity, angular velocity) of the body, by the last responses: the lower
+/// triangle, row by row.
+struct SpringSlope {
+  double entry[Cholesky6::kEntries];
+};
+SpringSlope slope_of(const std::vector<BodySpring>& springs);
+
 /// One body and what presses it, hands and fixtures: six unknowns, M (V - V*) = h sum J' f(V), whatever the
-/// number of contacts. A Problem for Newton. Contacts are worked on four at a time.
+/// number of contacts. A Problem for Newton.
 class BodyProblem {
  public:
   static constexpr bool kTrustsLastStep = true;  // nothing shares momentum with the body
 
-  BodyProblem();
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
 
   /// The body of an operator whose hands touch fixtures. The operator moves against the fixtures as a body
@@ -53,19 +75,19 @@ class BodyProblem {
 
   using Matrix6 = BlockSystem::Matrix6;
 
+  template <typename Contacts>
+  static void make_springs(const ContactStep& step, const ContactConfiguration& configuration,
+                           const Contacts& contacts, BodySpring* spring);
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
   int sole_operator(const ContactStep& step) const;
   void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
   void finish_body(bool agree, BodyState& state) const;
 
-  const SpringLanes& lanes_ = spring_lanes();
-  // What presses the body, filled up to fours, and all of it as springs.
+  // What presses the body, and all of it as springs in this order.
   std::vector<Contact*> hands_;
   std::vector<BodyContact*> objects_;
   std::vector<Grip*> grips_;
-  std::vector<SpringContact<Lanes>> springs_;
-  Contact no_contact_;
-  BodyContact no_body_contact_;
+  std::vector<BodySpring> springs_;
 
   double step_ = 0.0, mass_ = 0.0;
   double unseen_ = 0.0;

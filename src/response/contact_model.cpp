@@ -14,56 +14,31 @@ MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
 
-/// A model of what hands do to objects, with `implicit` for what objects do to each other.
-/// In this order, as far as a step goes: hands change momenta, and objects meet each other with what that
-/// has made of them. A hand does not feel in the same step what lies behind the object that it pushes.
-class WithObjects : public ContactModel {
+/// A model of what hands do to objects, followed by `implicit` for what is left: joints, and contacts between
+/// objects unless the first model has them. A hand does not feel in the same step what lies behind the object
+/// that it pushes.
+class HandsThenRest : public ContactModel {
  public:
-  WithObjects(std::unique_ptr<ContactModel> hands, const Configuration& configuration)
-      : hands_(std::move(hands)), objects_(configuration.contact) {}
+  HandsThenRest(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> rest)
+      : hands_(std::move(hands)), of_objects_(of_objects), rest_(std::move(rest)) {}
 
   void respond(ContactStep& step) override {
-    ContactStep of_hands{step.scene, step.gravity, step.step,    step.contacts,
-                         nothing_,   step.bodies,  step.changes, no_grips_};
+    const auto part = [&](std::vector<Contact>& contacts, std::vector<BodyContact>& body_contacts) {
+      return ContactStep{step.scene,    step.gravity, step.step,    contacts,
+                         body_contacts, step.bodies,  step.changes, no_grips_};
+    };
+    ContactStep of_hands = part(step.contacts, of_objects_ ? step.body_contacts : no_body_contacts_);
     hands_->respond(of_hands);
-    if (step.body_contacts.empty()) return;
-    ContactStep of_bodies{step.scene,         step.gravity, step.step,    no_hand_,
-                          step.body_contacts, step.bodies,  step.changes, no_grips_};
-    objects_.respond(of_bodies);
-  }
-
- private:
-  std::unique_ptr<ContactModel> hands_;
-  ImplicitModel objects_;
-  std::vector<Contact> no_hand_;
-  std::vector<BodyContact> nothing_;
-  std::vector<Grip> no_grips_;
-};
-
-/// A model of what hands do to objects, with joints after it, and `implicit` for what objects do to each
-/// other if the model does not say.
-class WithJoints : public ContactModel {
- public:
-  WithJoints(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> joints)
-      : hands_(std::move(hands)), of_objects_(of_objects), joints_(std::move(joints)) {}
-
-  void respond(ContactStep& step) override {
-    ContactStep of_hands{
-        step.scene,  step.gravity, step.step, step.contacts, of_objects_ ? step.body_contacts : nothing_,
-        step.bodies, step.changes, no_grips_};
-    hands_->respond(of_hands);
-    ContactStep of_joints{
-        step.scene,  step.gravity, step.step, no_hand_, of_objects_ ? nothing_ : step.body_contacts,
-        step.bodies, step.changes, no_grips_};
-    joints_->respond(of_joints);
+    ContactStep of_rest = part(no_contacts_, of_objects_ ? no_body_contacts_ : step.body_contacts);
+    rest_->respond(of_rest);
   }
 
  private:
   std::unique_ptr<ContactModel> hands_;
   bool of_objects_;
-  std::unique_ptr<ContactModel> joints_;
-  std::vector<Contact> no_hand_;
-  std::vector<BodyContact> nothing_;
+  std::unique_ptr<ContactModel> rest_;
+  std::vector<Contact> no_contacts_;
+  std::vector<BodyContact> no_body_contacts_;
   std::vector<Grip> no_grips_;
 };
 
@@ -79,19 +54,20 @@ const std::vector<const ContactModelEntry*>& contact_models() {
   return models;
 }
 
-std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
+std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration, const Scene& scene,
                                                  SimulationState& state, std::vector<Event>& events) {
-  auto joints = std::make_unique<JointedModel>(configuration, scene, state, events);
-  if (configuration.contact_model == ContactModelKind::implicit) return joints;
+  const bool jointed = !scene.joints.empty();
   const ContactModelEntry& model = entry_of(configuration.contact_model);
-  return std::make_unique<WithJoints>(model.make(configuration.contact), model.of_objects, std::move(joints));
-}
-
-std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration) {
-  const ContactModelEntry& model = entry_of(configuration.contact_model);
-  std::unique_ptr<ContactModel> made = model.make(configuration.contact);
-  if (model.of_objects) return made;
-  return std::make_unique<WithObjects>(std::move(made), configuration);
+  if (!jointed && model.of_objects) return model.make(configuration.contact);
+  std::unique_ptr<ContactModel> rest;
+  if (jointed) {
+    rest = std::make_unique<JointedModel>(configuration, scene, state, events);
+    if (configuration.contact_model == ContactModelKind::implicit) return rest;
+  } else {
+    rest = std::make_unique<ImplicitModel>(configuration.contact);
+  }
+  return std::make_unique<HandsThenRest>(model.make(configuration.contact), model.of_objects,
+                                         std::move(rest));
 }
 
 Material default_material(const Configuration& configuration) {

@@ -14,6 +14,9 @@
 
 namespace mrhi {
 
+struct Event;
+struct SimulationState;
+
 /// An impact on one body.
 struct BodyImpact {
   int body;         ///< index in Scene::bodies
@@ -89,6 +92,9 @@ class ContactModel {
 
 /// Objects touch each other by the law of `implicit` under every model. Throws std::invalid_argument for a
 /// name that is not known.
-std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration);
+/// The model of a scene with joints keeps references: to the state for what joints remember, and to the
+/// events, to which it adds those of joints.
+std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration, const Scene& scene,
+                                                 SimulationState& state, std::vector<Event>& events);
 
 }  // namespace mrhi

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impact.h"
 #include "spring_contact.h"
 
 namespace mrhi {
@@ -31,29 +32,9 @@ constexpr int kMaxPartings = 3;
 /// Sweeps through a patch some of whose contacts do not press.
 constexpr int kInnerSweeps = 3;
 
-/// W = 1/m - [r]x I^-1 [r]x: change of a point's velocity by an impulse there (Eq. 12 of the paper) [1/kg].
-Matrix3 response_of(double inverse_mass, const Matrix3& inverse_inertia, const Vector3& arm) {
-  const Matrix3 cross = cross_matrix(arm);
-  return inverse_mass * Matrix3::Identity() - cross * inverse_inertia * cross;
-}
-
-/// The larger eigenvalue of W across n. Friction is relaxed by this one number for both directions: by less
-/// of a mobility than there is it would overshoot, and to and fro between contacts it would not end.
-///
-///     T'WT = ( tt ts )      lambda = (tt + ss) / 2 + sqrt((tt - ss)^2 / 4 + ts^2)
-///            ( ts ss )
-///
-/// A grip's spring has no n: there the trace bounds all three eigenvalues.
-double most_across(const Matrix3& response, const Vector3& n) {
-  if (n.isZero(0.0)) return response.trace();
-  const Vector3 t = n.unitOrthogonal(), s = n.cross(t);
-  const Vector3 by_s = response * s;
-  const double tt = t.dot(response * t), ss = s.dot(by_s), ts = t.dot(by_s);
-  return 0.5 * (tt + ss) + std::sqrt(0.25 * (tt - ss) * (tt - ss) + ts * ts);
-}
-
-bool same_shapes(const BodyContactKey& x, const BodyContactKey& y) {
-  return x.a == y.a && x.b == y.b && x.shape_a == y.shape_a && x.shape_b == y.shape_b;
+/// Of one pair of shapes, with one normal.
+bool same_patch(const BodyContact& x, const BodyContact& y) {
+  return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
 }
 
 }  // namespace
@@ -94,7 +75,7 @@ void CrowdProblem::add_body(const mrhi::Body& body, const BodyState& state, cons
 }
 
 template <typename AnyContact>
-SpringContact<double>& CrowdProblem::add_spring(const ContactStep& step, const AnyContact& contact) {
+SpringContact& CrowdProblem::add_spring(const ContactStep& step, const AnyContact& contact) {
   contacts_.emplace_back();
   make_spring(step, *configuration_, contact, contacts_.back());
   return contacts_.back();
@@ -130,10 +111,10 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
 void CrowdProblem::add_links(const ContactStep& step, const Island& island) {
   const std::vector<Vector3>& carried = *carried_;
   for (const Link* link = island.links.begin(); link != island.links.end();) {
-    const BodyContactKey& key = step.body_contacts[link->index].key;
+    const BodyContact& first = step.body_contacts[link->index];
     Touch touch{link->index, link->index};
     bool bore = false;
-    for (; link != island.links.end() && same_shapes(step.body_contacts[link->index].key, key); ++link) {
+    for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link) {
       bore = bore || carried[touch.last] != Vector3::Zero();
       ++touch.last;
     }
@@ -220,9 +201,9 @@ bool CrowdProblem::admit(const ContactStep& step) {
   return points_.size() > before;
 }
 
-CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contact, int a, int b,
+CrowdProblem::Point& CrowdProblem::add_point(const SpringContact& contact, int a, int b,
                                              const Vector3& arm_a) {
-  const Spring<double>& spring = contact.spring;
+  const Spring& spring = contact.spring;
   points_.emplace_back();
   Point& point = points_.back();  // with impulses in place of forces: stiffness is times the step
   point.a = a, point.b = b;
@@ -254,13 +235,13 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact<double>& contac
 /// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
 void CrowdProblem::weigh(const Vector3& stretch, Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
-  const Matrix3 response = response_of(a.inverse_mass, a.inverse_inertia, point.arm_a) +
-                           response_of(b.inverse_mass, b.inverse_inertia, point.arm_b);
+  const Matrix3 response = collision_matrix(a.inverse_mass, a.inverse_inertia, point.arm_a) +
+                           collision_matrix(b.inverse_mass, b.inverse_inertia, point.arm_b);
   const Vector3 by_push = response * point.normal;
   point.normal_mobility = point.normal.dot(by_push);
   // W n has a part across n where the arm is not along it: a push makes the surfaces slide as well.
   point.slides = by_push - point.normal_mobility * point.normal;
-  const double tangential_mobility = most_across(response, point.normal);
+  const double tangential_mobility = max_tangential_response(response, point.normal);
   point.compliance = 1.0 / (point.stiffness * point.ahead);
   point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
   const double give = 1.0 / (1.0 + point.stiffness * point.ahead * tangential_mobility);
@@ -485,8 +466,8 @@ void CrowdProblem::relax(Patch& patch) {
 // to 2/3 mu a p. Body a is a hand, which nothing turns.
 void CrowdProblem::twist(std::size_t i) {
   Point& point = points_[i];
-  const SpringContact<double>& contact = contacts_[i];
-  const Spring<double>& spring = contact.spring;
+  const SpringContact& contact = contacts_[i];
+  const Spring& spring = contact.spring;
   Body& b = bodies_[static_cast<std::size_t>(point.b)];
   const Vector3 turned = b.inverse_inertia * point.normal;
   const double spin = contact.drive_spin - point.normal.dot(b.motion.spin);
@@ -595,7 +576,7 @@ void CrowdProblem::report(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
   const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
-  SpringContact<double>& contact = contacts_[i];
+  SpringContact& contact = contacts_[i];
   contact.response = {};
   contact.response.force = triple((point.given.drag - point.given.push * point.normal) / step_);
   contact.response.push = point.given.push / step_;

@@ -80,8 +80,8 @@ class CrowdProblem {
   void add_patch(const ContactStep& step, const Touch& touch);
   void weigh(Patch& patch) const;
   template <typename AnyContact>
-  SpringContact<double>& add_spring(const ContactStep& step, const AnyContact& contact);
-  Point& add_point(const SpringContact<double>& contact, int a, int b, const Vector3& arm_a);
+  SpringContact& add_spring(const ContactStep& step, const AnyContact& contact);
+  Point& add_point(const SpringContact& contact, int a, int b, const Vector3& arm_a);
   void weigh(const Vector3& stretch, Point& point) const;
   void carry(const Vector3& borne, Point& point);
 
@@ -114,12 +114,12 @@ class CrowdProblem {
   std::vector<Motion> free_;  // at the step's end without contact
   std::vector<Point> points_;
   std::vector<Patch> patches_;
-  std::vector<SpringContact<double>> contacts_;  // the same
-  std::vector<std::size_t> linked_;              // of the last of them: in ContactStep::body_contacts
-  std::vector<Touch> apart_;                     // between bodies, none of whose contacts will press as it is
-  std::vector<Motion> seen_;                     // when those were last looked at
-  double least_missing_ = 0.0;                   // of the speed at which they would have to close then [m/s]
-  double longest_arm_ = 0.0;                     // of any contact [m]
+  std::vector<SpringContact> contacts_;  // the same
+  std::vector<std::size_t> linked_;      // of the last of them: in ContactStep::body_contacts
+  std::vector<Touch> apart_;             // between bodies, none of whose contacts will press as it is
+  std::vector<Motion> seen_;             // when those were last looked at
+  double least_missing_ = 0.0;           // of the speed at which they would have to close then [m/s]
+  double longest_arm_ = 0.0;             // of any contact [m]
   // Before a turn, and where turns lead to.
   std::vector<Motion> motions_before_, motions_along_;
   std::vector<Given> given_before_, given_along_;

@@ -14,10 +14,19 @@ namespace mrhi {
 //     K = 1/m + [r]x I^-1 [r]x'             [r]x' = -[r]x: positive definite, as 1/m is
 //
 // The paper has `K determined by the mass` (Eq. 12) and Eq. 15 without an angular part: with K = 1/m alone
-// a blow off the centre would spin nothing. This is Mirtich's (1996) collision matrix.
+// an impact off the centre would spin nothing. This is Mirtich's (1996) collision matrix.
 Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r) {
   const Matrix3 arm = cross_matrix(r);
   return inverse_mass * Matrix3::Identity() - arm * world_inverse_inertia * arm;
+}
+
+//     T'KT = ( tt ts )      lambda = (tt + ss) / 2 + sqrt((tt - ss)^2 / 4 + ts^2)
+//            ( ts ss )
+double max_tangential_response(const Matrix3& k, const Vector3& n) {
+  if (n.isZero(0.0)) return k.trace();
+  const Vector3 t = n.unitOrthogonal(), s = n.cross(t), k_s = k * s;
+  const double tt = t.dot(k * t), ss = s.dot(k_s), ts = t.dot(k_s);
+  return 0.5 * (tt + ss) + std::sqrt(0.25 * (tt - ss) * (tt - ss) + ts * ts);
 }
 
 // p += J, L += r x J: Eq. 15 by momenta, which are the state, and what turns.
@@ -34,36 +43,36 @@ Vector3 relative_velocity(const Contact& contact, const Body& body, const BodySt
 // An impulse J on 2 and -J on 1 does the work J.(v_2 + v_2') / 2 - J.(v_1 + v_1') / 2, the velocities being
 // the means of before and after (Thomson & Tait 1867): -J.(w + w') / 2 with w = v_1 - v_2. Of a hand, which
 // is driven, J.v_1 is its own work, and this is what the object has beyond it.
-double energy_gained(const Vector3& approach, const Vector3& given, const Vector3& after) {
-  return -0.5 * given.dot(approach + after);
+double energy_gained(const Vector3& approach, const Vector3& impulse, const Vector3& after) {
+  return -0.5 * impulse.dot(approach + after);
 }
 
-// With s the share of Newton's blow, J(s) = J_0 + s dJ and w'(s) = w_0' + s dw', where 0 is the blow
+// With s the weight of Newton's impact, J(s) = J_0 + s dJ and w'(s) = w_0' + s dw', where 0 is the impact
 // without restitution:
 //
 //     G(s) = -1/2 sum J(s).(w + w'(s)) = least + linear s + square s^2,      least <= 0 < G(1)
 //     linear = -1/2 sum (dJ.(w + w_0') + J_0.dw'),       square = -1/2 sum dJ.dw'
 //
-// and s the positive zero of G. All points of a blow have one share, as they act on each other: the blend
-// of two solutions then has a blow's momenta, and friction within Coulomb's disc, which is convex.
-void keep_from_gaining(std::vector<TwoBlows>& strikes) {
+// and s the positive zero of G. All points have one weight, as they act on each other: the blend of two
+// solutions has an impact's momenta, and friction within Coulomb's disc, which is convex.
+void keep_from_gaining(std::vector<ImpactLaws>& points) {
   double least = 0.0, exchanged = 0.0;
-  for (const TwoBlows& strike : strikes) {
-    least += energy_gained(strike.approach, strike.least, strike.after_least);
-    exchanged += strike.least.norm() * strike.approach.norm();
+  for (const ImpactLaws& point : points) {
+    least += energy_gained(point.approach, point.plastic, point.after_plastic);
+    exchanged += point.plastic.norm() * point.approach.norm();
   }
   if (least > kNoGain * exchanged) {
-    for (TwoBlows& strike : strikes) {
-      strike.newtons = strike.least, strike.after_newtons = strike.after_least;
-      strike.least.setZero(), strike.after_least = strike.approach;
+    for (ImpactLaws& point : points) {
+      point.newtons = point.plastic, point.after_newtons = point.after_plastic;
+      point.plastic.setZero(), point.after_plastic = point.approach;
     }
     least = 0.0;
   }
-  // Impulses and velocities are linear in the share of Newton's, so the energy gained is a parabola of it.
+  // Impulses and velocities are linear in the weight, so the energy gained is a parabola of it.
   double linear = 0.0, square = 0.0;
-  for (const TwoBlows& strike : strikes) {
-    const Vector3 more = strike.newtons - strike.least, faster = strike.after_newtons - strike.after_least;
-    linear -= 0.5 * (more.dot(strike.approach + strike.after_least) + strike.least.dot(faster));
+  for (const ImpactLaws& point : points) {
+    const Vector3 more = point.newtons - point.plastic, faster = point.after_newtons - point.after_plastic;
+    linear -= 0.5 * (more.dot(point.approach + point.after_plastic) + point.plastic.dot(faster));
     square -= 0.5 * more.dot(faster);
   }
   // Its zero in the form that does not cancel.
@@ -75,7 +84,7 @@ void keep_from_gaining(std::vector<TwoBlows>& strikes) {
   else if (square > 0.0)
     share = (root - linear) / (2.0 * square);
   share = least <= 0.0 ? std::clamp(share, 0.0, 1.0) : 0.0;
-  for (TwoBlows& strike : strikes) strike.newtons = strike.least + share * (strike.newtons - strike.least);
+  for (ImpactLaws& point : points) point.newtons = point.plastic + share * (point.newtons - point.plastic);
 }
 
 double time_to_close(double gap, double rate, double acceleration) {

@@ -11,6 +11,10 @@ namespace mrhi {
 /// kinematic): K = I/m - [r]x I^-1 [r]x, symmetric positive definite [1/kg].
 Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r);
 
+/// Returns the largest eigenvalue of K across the unit vector `n` [1/kg]; for n = 0 the trace, which bounds
+/// all eigenvalues. Friction that is relaxed by its inverse in all directions does not overshoot.
+double max_tangential_response(const Matrix3& k, const Vector3& n);
+
 /// Changes the momenta of a body by `impulse` [N s] at `point` (Eq. 15 with its angular part).
 void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& state);
 
@@ -20,19 +24,21 @@ Vector3 relative_velocity(const Contact& contact, const Body& body, const BodySt
 /// A gain of energy up to this part of what is exchanged is rounding.
 constexpr double kNoGain = 1e-7;
 
-/// One strike of a blow, as two laws have it: impulses on the second body [N s], and its point's velocity
-/// against it before the blow, and after it by each law [m/s].
-struct TwoBlows {
-  Vector3 approach, newtons, after_newtons, least, after_least;
+/// A point of an impact under two laws, Newton's and one without restitution: impulses on the second body
+/// [N s], and the first surface's velocity against the second before the impact and after it by each law
+/// [m/s].
+struct ImpactLaws {
+  Vector3 approach, newtons, after_newtons, plastic, after_plastic;
 };
 
-/// What a blow has given to the bodies beyond the work of the hands [J].
-double energy_gained(const Vector3& approach, const Vector3& given, const Vector3& after);
+/// Returns the energy that an impact gives to the bodies beyond the work of the hands [J].
+double energy_gained(const Vector3& approach, const Vector3& impulse, const Vector3& after);
 
 /// Newton's restitution and Coulomb's friction together may make energy (Kane & Levinson, Dynamics, 1985).
-/// Moves `newtons` as far towards the blow without restitution, which only takes, as it needs to make none.
-/// Where that one makes some too, as what joints hold may jam and it has not been found, towards no blow.
-void keep_from_gaining(std::vector<TwoBlows>& strikes);
+/// Moves `newtons` towards the impact without restitution, which only dissipates, until no energy is made.
+/// Where that impact makes energy too (joints may jam, and its solution was not found), moves it towards no
+/// impact.
+void keep_from_gaining(std::vector<ImpactLaws>& points);
 
 /// When a gap [m] that changes by `rate` [m/s], which itself changes by `acceleration`, is closed: the first
 /// time from now on, 0 if it is closed already, infinite if never [s].

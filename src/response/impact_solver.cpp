@@ -9,37 +9,35 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kUsualStrikes = 64;  // in one step; for more memory grows
-constexpr double kTogether = 1e-12;        // blows nearer to each other in time than this are one [s]
-constexpr std::size_t kBlowsEach = 4;  // of an island's contacts, on average, in one step; then springs act
-/// Where so many strikes have been relaxed for an island, no more blows are looked for in this step.
-constexpr std::size_t kMostWork = 1500;
-/// An island of more contacts between bodies is a crowd.
+constexpr std::size_t kUsualPoints = 64;          // in one step; memory grows for more
+constexpr double kSameTime = 1e-12;               // impacts closer in time are simultaneous [s]
+constexpr std::size_t kMaxImpactsPerContact = 4;  // of an island in one step, on average; then springs act
+/// After so many relaxed points of an island, no further impact of the step is sought.
+constexpr std::size_t kMaxWork = 1500;
+/// An island of more contacts between bodies is large.
 constexpr std::size_t kFewLinks = 16;
-/// A crowd's blow is swept through so often as comes to this many strikes relaxed, within limits.
-constexpr int kCrowdWork = 1500, kLeastSweeps = 8;
-/// Slower strikes are none in a crowd [m/s].
+/// Number of points that the sweeps of a large island's impact relax, and their minimum.
+constexpr int kLargeIslandWork = 1500, kMinSweeps = 8;
+/// Slower approaches are no impacts in a large island [m/s].
 constexpr double kSlow = 1e-3;
-bool is_crowd(const Island& island) {
+/// Impulses whose sum exceeds this multiple of the largest sum that the impacts can need diverge.
+/// Each point needs at most (1 + epsilon) m |u|, as n'Kn >= 1/m. Between fingers that close from opposite
+/// directions each impulse turns the body into the other finger, and they grow from sweep to sweep.
+constexpr double kDiverged = 4.0;
+
+bool is_large(const Island& island) {
   return island.links.size() > kFewLinks;
 }
 
-/// What gravity makes of things in a step counts as slow too [m/s].
+/// Approaches that gravity alone makes in a step are slow too [m/s].
 /// slow = 1 mm/s + h g.
 double slow_in(const ContactStep& step) {
   return kSlow + step.step * step.gravity.norm();
 }
 
-/// Impulses that grow beyond this multiple of what the blows need have no end.
-/// The sum of what they need is at most (1 + epsilon) m |u| of each, as n'Kn >= 1/m. Between fingers that
-/// close from both sides every impulse that turns the body from one is taken up by the other, and they grow
-/// from sweep to sweep.
-constexpr double kPressed = 4.0;
-
-// Of a fixture 1/m and I^-1 are 0, which is what it is made with.
-Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
+ImpactPoint::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
   const Body& body = step.scene.bodies[index];
-  Strike::Partner partner;
+  ImpactPoint::Partner partner;
   if (body.fixed) return partner;
   partner.state = &step.bodies[index];
   partner.inverse_mass = 1.0 / body.mass;
@@ -48,84 +46,73 @@ Strike::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm
   return partner;
 }
 
-/// The radius of a body that is a ball about its centre of mass; 0 of others.
+/// Returns the radius of a body that is a ball about its centre of mass; 0 for others.
 double radius_of_ball(const Body& body) {
   if (body.fixed || body.shapes.size() != 1 || !body.shapes[0].pose.position.isZero(0.0)) return 0.0;
   const Sphere* ball = std::get_if<Sphere>(&body.shapes[0].shape);
   return ball == nullptr ? 0.0 : ball->radius;
 }
 
-/// Of two bodies, as it is at the step's start.
-/// n.(c_a' - c_b') < 0 approaches. A pair that is followed through the step (swept) comes with the time of
-/// its first touch, and its gap is closed then.
-Strike strike_of(ContactStep& step, BodyContact& contact) {
-  Strike strike;
-  strike.a = partner(step, contact.key.a, contact.arm_a);
-  strike.b = partner(step, contact.key.b, contact.arm_b);
-  strike.normal = contact.normal;
+/// Returns the point of a contact between two bodies at the step's start.
+/// n.(c_a' - c_b') < 0 approaches. A pair that is swept through the step comes with the time of its first
+/// touch, when its gap is closed.
+ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
+  ImpactPoint point;
+  point.a = partner(step, contact.key.a, contact.arm_a);
+  point.b = partner(step, contact.key.b, contact.arm_b);
+  point.normal = contact.normal;
   // Free bodies fall together.
-  strike.acceleration = strike.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
-  strike.gap = -contact.depth;
-  strike.between = &contact;
-  strike.impulse = &contact.impulse;
-  strike.struck = &contact.struck;
-  strike.radius_a = radius_of_ball(step.scene.bodies[contact.key.a]);
-  strike.radius_b = radius_of_ball(step.scene.bodies[contact.key.b]);
-  if (strike.is_of_balls()) {
-    strike.a.arm = step.bodies[contact.key.b].pose.position - step.bodies[contact.key.a].pose.position;
-    strike.b.arm.setZero();
-    strike.move_to(0.0);
+  point.acceleration = point.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
+  point.gap = -contact.depth;
+  point.between = &contact;
+  point.total = &contact.impulse;
+  point.struck = &contact.struck;
+  point.radius_a = radius_of_ball(step.scene.bodies[contact.key.a]);
+  point.radius_b = radius_of_ball(step.scene.bodies[contact.key.b]);
+  if (point.is_of_balls()) {
+    point.a.arm = step.bodies[contact.key.b].pose.position - step.bodies[contact.key.a].pose.position;
+    point.b.arm.setZero();
+    point.advance_to(0.0);
   } else if (contact.first_touch >= 0.0) {
-    strike.gap = 0.0;
-    strike.time = contact.first_touch;
-    strike.move_to(0.0);
+    point.gap = 0.0;
+    point.time = contact.first_touch;
+    point.advance_to(0.0);
   }
-  return strike;
+  return point;
 }
 
-/// An island of one body that a hand presses.
-/// `struck` tells that it is not in its approach any more: a finger that is about to strike holds nothing
-/// yet.
-bool is_held(const ContactStep& step, const Island& island) {
-  if (island.bodies.size() != 1) return false;
-  const IslandBody& body = *island.bodies.begin();
-  return std::any_of(step.contacts.begin() + static_cast<std::ptrdiff_t>(body.first),
-                     step.contacts.begin() + static_cast<std::ptrdiff_t>(body.last),
-                     [](const Contact& contact) { return contact.touching() && contact.struck; });
-}
-
-/// The springs look at where their ends are going from the step's start on: a gap that changes otherwise, by
-/// a blow within the step, is for them what it would have had to be then to end up the same.
+/// Sets the depth from which the springs' constant velocity leads to the gap at the step's end: an impact
+/// within the step changes the velocity under way.
 ///
 ///     d+ = d - h u = -gap(h)      so      d = h u - gap(h)
 ///
-/// at the end's velocity u. A blow late in the step sends a body at its neighbour for the rest of the step
-/// only: with the depth that was found, d - h u would be an overlap that there is not.
-void widen(Strike strike, double step) {
-  strike.move_to(step);
-  BodyContact& contact = *strike.between;
-  strike.normal = contact.normal;
-  strike.a.arm = contact.arm_a;
-  strike.b.arm = contact.arm_b;
-  contact.depth = std::min(contact.depth, step * strike.rate() - strike.gap);
+/// at the end's velocity u. A late impact drives a body at its neighbour for the rest of the step only: with
+/// the depth of the step's start, d - h u would be an overlap that does not exist.
+void widen(ImpactPoint point, double step) {
+  point.advance_to(step);
+  BodyContact& contact = *point.between;
+  point.normal = contact.normal;
+  point.a.arm = contact.arm_a;
+  point.b.arm = contact.arm_b;
+  contact.depth = std::min(contact.depth, step * point.rate() - point.gap);
 }
 
 }  // namespace
 
-const ImpactSolver::Care ImpactSolver::kExact{500, 1e-13};
-const ImpactSolver::Care ImpactSolver::kVisible{30, 1e-6};
+const ImpactSolver::Precision ImpactSolver::kExact{500, 1e-13};
+const ImpactSolver::Precision ImpactSolver::kVisible{30, 1e-6};
 
-ImpactSolver::ImpactSolver() {
-  strikes_.reserve(kUsualStrikes);
-  blow_.reserve(kUsualStrikes);
-  meetings_.reserve(kUsualStrikes);
-  impacts_.reserve(2 * kUsualStrikes);
-  both_.reserve(kUsualStrikes);
+ImpactSolver::ImpactSolver() : precision_(kExact) {
+  points_.reserve(kUsualPoints);
+  impact_.reserve(kUsualPoints);
+  times_.reserve(kUsualPoints);
+  reported_.reserve(2 * kUsualPoints);
+  laws_.reserve(kUsualPoints);
 }
 
-// What a hand strikes is dealt at once, bodies among themselves in turn: elastic ones pass momentum on as
-// they should only if each blow finds what the one before has left (of Newton's cradle dealt at once the
-// first ball would bounce back and the others go on as one). A crowd has no time for that.
+// Impacts by a hand are simultaneous, those between bodies sequential: elastic bodies pass momentum on only
+// if each impact starts from the result of the one before (in Newton's cradle, solved simultaneously, the
+// first ball would bounce back and the others move on as one). A large island has no time for that.
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                            const SpringMotion& springs) {
   friction_ = friction;
@@ -133,26 +120,34 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
   for (const Island& island : islands.all()) {
     collect(step, island);
-    if (springs && by_hand_ && is_held(step, island)) spare_carried(step, springs(island));
-    const bool crowd = is_crowd(island);
-    care_ = crowd ? kVisible : kExact;
+    if (springs && by_hand_ && island.bodies.size() == 1 && is_held(step, island))
+      drop_separating(step, springs(island));
+    const bool large = is_large(island);
+    precision_ = large ? kVisible : kExact;
     work_ = 0;
-    if (crowd) spare_slow(step);
-    if (crowd && !strikes_.empty()) {
-      const int often = kCrowdWork / static_cast<int>(strikes_.size());
-      care_.sweeps = std::clamp(often, kLeastSweeps, kVisible.sweeps);
+    if (large) drop_slow(step);
+    if (points_.empty()) continue;
+    if (large) {
+      const int sweeps = kLargeIslandWork / static_cast<int>(points_.size());
+      precision_.max_sweeps = std::clamp(sweeps, kMinSweeps, kVisible.max_sweeps);
     }
-    if (strikes_.empty()) continue;
-    if (by_hand_ || crowd) {
-      deal_at_once(step);
+    if (by_hand_ || large) {
+      resolve_simultaneously(step);
     } else {
-      deal_in_turn(step, island);
+      resolve_sequentially(step, island);
     }
   }
 }
 
+bool ImpactSolver::resolve(ContactStep& step, std::vector<ImpactPoint>& points) {
+  precision_ = kExact;
+  impact_.clear();
+  for (ImpactPoint& point : points) impact_.push_back(&point);
+  return resolve_impact(step);
+}
+
 void ImpactSolver::collect(ContactStep& step, const Island& island) {
-  strikes_.clear();
+  points_.clear();
   by_hand_ = false;
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
@@ -160,11 +155,11 @@ void ImpactSolver::collect(ContactStep& step, const Island& island) {
       if (!contact.ignored && !contact.struck) add(step, contact);
     }
   }
-  const bool crowd = is_crowd(island);
-  if (crowd) note_twists(step, island);
+  const bool large = is_large(island);
+  if (large) note_twists(step, island);
   for (const Link& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
-    if (contact.struck || (crowd && is_slow(step, contact))) continue;
+    if (contact.struck || (large && is_slow(step, contact))) continue;
     add(step, contact);
   }
 }
@@ -175,7 +170,7 @@ void ImpactSolver::note_twists(const ContactStep& step, const Island& island) {
     twists_[body.body] = twist_of(step.scene.bodies[body.body], step.bodies[body.body]);
 }
 
-/// Of a crowd: too slow to strike.
+/// True if the approach is too slow for an impact in a large island.
 bool ImpactSolver::is_slow(const ContactStep& step, const BodyContact& contact) const {
   const Body &a = step.scene.bodies[contact.key.a], &b = step.scene.bodies[contact.key.b];
   if (radius_of_ball(a) > 0.0 && radius_of_ball(b) > 0.0) return false;
@@ -185,218 +180,198 @@ bool ImpactSolver::is_slow(const ContactStep& step, const BodyContact& contact) 
   return contact.normal.dot(velocity) > -slow_in(step);
 }
 
-// A hand's points go on as they do for the whole step; the object's fall with g, so that the gap closes by
-// g t^2 / 2 more or less. What would close later than this step is left for its own.
+// A hand's points keep their velocity through the step; the object falls, which changes the gap by g t^2 / 2.
+// A gap that closes after the step's end is left to its own step.
 void ImpactSolver::add(ContactStep& step, Contact& contact) {
   const Body& body = step.scene.bodies[contact.key.body];
   const BodyState& state = step.bodies[contact.key.body];
   const double rate = contact.normal.dot(relative_velocity(contact, body, state));
   if (classify(rate) != Approach::colliding) return;
-  Strike strike;
-  strike.acceleration = -contact.normal.dot(step.gravity);
-  strike.time = time_to_close(-contact.depth, rate, strike.acceleration);
-  if (strike.time >= step.step) return;
-  contact.time_of_impact = strike.time;
-  strike.b = partner(step, contact.key.body, contact.point - state.pose.position);
-  strike.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
-  strike.by_hand = true;
-  strike.gap = -contact.depth;
-  strike.drive = contact.hand_velocity;
-  strike.normal = contact.normal;
-  strike.impulse = &contact.impulse;
-  strike.struck = &contact.struck;
+  ImpactPoint point;
+  point.acceleration = -contact.normal.dot(step.gravity);
+  point.time = time_to_close(-contact.depth, rate, point.acceleration);
+  if (point.time >= step.step) return;
+  contact.time_of_impact = point.time;
+  point.b = partner(step, contact.key.body, contact.point - state.pose.position);
+  point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
+  point.a.recoil = recoils_.begin(contact.key);
+  point.by_hand = true;
+  point.gap = -contact.depth;
+  point.hand_velocity = contact.hand_velocity;
+  point.normal = contact.normal;
+  point.total = &contact.impulse;
+  point.struck = &contact.struck;
   by_hand_ = true;
-  add(strike, body.material);
-  strikes_.back().restitution = contact.restitution.value_or(body.material.restitution);
+  add(point, body.material);
+  points_.back().restitution = contact.restitution.value_or(body.material.restitution);
 }
 
 void ImpactSolver::add(ContactStep& step, BodyContact& contact) {
-  const Strike strike = strike_of(step, contact);
-  if (strike.meeting() < step.step) {
-    add(strike, contact.material);
-  } else if (strike.is_of_balls() && strike.gap > 0.0) {
-    widen(strike, step.step);  // they pass each other
+  const ImpactPoint point = point_of(step, contact);
+  if (point.collision_time() < step.step) {
+    add(point, contact.material);
+  } else if (point.is_of_balls() && point.gap > 0.0) {
+    widen(point, step.step);  // they pass each other
   }
 }
 
-void ImpactSolver::add(Strike strike, const Material& material) {
-  strike.restitution = material.restitution;
-  if (friction_ == ImpactFriction::coulomb) strike.friction = material.static_friction;
-  strikes_.push_back(strike);
+void ImpactSolver::add(ImpactPoint point, const Material& material) {
+  point.restitution = material.restitution;
+  if (friction_ == ImpactFriction::coulomb) point.friction = material.static_friction;
+  points_.push_back(point);
 }
 
-// Parts is what has gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give the body at
-// the step's end: backward Euler's gap, as the springs see it.
-void ImpactSolver::spare_carried(const ContactStep& step, const Twist& carried) {
-  const auto parts = [&](const Strike& strike) {
-    const Vector3 velocity = carried.linear + carried.angular.cross(strike.b.arm);
-    const double rate = strike.normal.dot(strike.drive - velocity);
-    return strike.by_hand && strike.gap + step.step * rate > 0.0;
+// A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give the body
+// at the step's end: backward Euler's gap, as the springs see it.
+void ImpactSolver::drop_separating(const ContactStep& step, const Twist& carried) {
+  const auto separates = [&](const ImpactPoint& point) {
+    const Vector3 velocity = carried.linear + carried.angular.cross(point.b.arm);
+    const double rate = point.normal.dot(point.hand_velocity - velocity);
+    return point.by_hand && point.gap + step.step * rate > 0.0;
   };
-  strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), parts), strikes_.end());
+  points_.erase(std::remove_if(points_.begin(), points_.end(), separates), points_.end());
 }
 
-void ImpactSolver::spare_slow(const ContactStep& step) {
+void ImpactSolver::drop_slow(const ContactStep& step) {
   const double slow = slow_in(step);
-  const auto is_slow = [slow](const Strike& strike) { return !strike.by_hand && strike.rate() > -slow; };
-  strikes_.erase(std::remove_if(strikes_.begin(), strikes_.end(), is_slow), strikes_.end());
+  const auto is_slow = [slow](const ImpactPoint& point) { return !point.by_hand && point.rate() > -slow; };
+  points_.erase(std::remove_if(points_.begin(), points_.end(), is_slow), points_.end());
 }
 
-void ImpactSolver::deal_at_once(ContactStep& step) {
-  blow_.clear();
-  for (Strike& strike : strikes_) {
-    if (!strike.by_hand) strike.move_to(strike.meeting());
-    blow_.push_back(&strike);
+void ImpactSolver::resolve_simultaneously(ContactStep& step) {
+  impact_.clear();
+  for (ImpactPoint& point : points_) {
+    if (!point.by_hand) point.advance_to(point.collision_time());
+    impact_.push_back(&point);
   }
-  deal(step);
+  resolve_impact(step);
 }
 
-// All links are looked at, also those that would not meet as they move now: a blow may send them to each
-// other. Each sweep of the loop is one blow; that the series may be infinite (a ball that bounces to rest
-// between two others within a step: Zeno) is why blows and work are bounded.
-void ImpactSolver::deal_in_turn(ContactStep& step, const Island& island) {
-  strikes_.clear();
+// All links take part, also those that do not approach now: an impact may make them. The number of impacts
+// and the work are bounded as the series may be infinite (a ball that bounces to rest between two others
+// within a step: Zeno).
+void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island) {
+  points_.clear();
   for (const Link& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
-    const Strike strike = strike_of(step, contact);
-    const bool pressed = contact.struck && classify(strike.rate()) == Approach::colliding;
-    if (!pressed) add(strike, contact.material);
+    const ImpactPoint point = point_of(step, contact);
+    const bool keeps_approaching = contact.struck && classify(point.rate()) == Approach::colliding;
+    if (!keeps_approaching) add(point, contact.material);
   }
-  for (std::size_t blows = 0; blows < kBlowsEach * strikes_.size() && work_ < kMostWork; ++blows) {
-    if (!find_blow(step.step) || !deal(step)) break;
+  for (std::size_t i = 0; i < kMaxImpactsPerContact * points_.size() && work_ < kMaxWork; ++i) {
+    if (!find_next_impact(step.step) || !resolve_impact(step)) break;
   }
-  for (const Strike& strike : strikes_) widen(strike, step.step);
+  for (const ImpactPoint& point : points_) widen(point, step.step);
 }
 
-/// Finds the next blow before `end`, and moves all strikes on to it.
-bool ImpactSolver::find_blow(double end) {
-  meetings_.clear();
-  for (const Strike& strike : strikes_) meetings_.push_back(strike.meeting());
-  const double first = *std::min_element(meetings_.begin(), meetings_.end());
+/// Finds the next impact before `end`, and advances all points to it.
+bool ImpactSolver::find_next_impact(double end) {
+  times_.clear();
+  for (const ImpactPoint& point : points_) times_.push_back(point.collision_time());
+  const double first = *std::min_element(times_.begin(), times_.end());
   if (first >= end) return false;
-  blow_.clear();
-  // One blow is all points, as far as they meet in this step, of each pair that has a point that meets now:
-  // dealt one after the other they would tip a box that lands flat.
-  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+  impact_.clear();
+  // An impact has all points that collide in this step of each pair that has a point that collides now:
+  // resolved one after the other they would tip a box that lands flat.
+  for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto now = [&](std::size_t other) {
-      return meetings_[other] <= first + kTogether && strikes_[i].same_pair(strikes_[other]);
+      return times_[other] <= first + kSameTime && points_[i].same_pair(points_[other]);
     };
-    bool in_blow = false;
-    for (std::size_t other = 0; meetings_[i] < end && other < strikes_.size(); ++other)
-      in_blow = in_blow || now(other);
-    if (in_blow) blow_.push_back(&strikes_[i]);
-    strikes_[i].move_to(in_blow ? meetings_[i] : first);
+    bool in_impact = false;
+    for (std::size_t other = 0; times_[i] < end && other < points_.size(); ++other)
+      in_impact = in_impact || now(other);
+    if (in_impact) impact_.push_back(&points_[i]);
+    points_[i].advance_to(in_impact ? times_[i] : first);
   }
   return true;
 }
 
-/// One blow, from the velocities that the blows before it have left; false if there is none that only pushes.
-bool ImpactSolver::deal(ContactStep& step) {
-  double most = 0.0;  // of the magnitudes' sum that blows of these speeds can need [N s]
-  const auto passes = [&most](Strike* strike) {
-    strike->prepare();
-    strike->approach = strike->velocity_on_impact();
-    // Eqs. 10, 11 at the time of the blow, u' = -epsilon u with u = rate + t a, in terms of the rate, which
-    // is the momenta's: rate' = u' - t a = rate - (1 + epsilon) u. That way gravity of the step is neither
-    // lost nor given twice.
-    strike->target = strike->rate();
-    const double speed = strike->target + strike->time * strike->acceleration;
+/// Resolves the points of one impact; false if no impulses that only push satisfy Newton's law.
+bool ImpactSolver::resolve_impact(ContactStep& step) {
+  double max_impulse = 0.0;  // sum of normal impulses that these approaches can need [N s]
+  const auto separates = [&max_impulse](ImpactPoint* point) {
+    point->begin();
+    point->approach = point->velocity_on_impact();
+    // Eqs. 10, 11 at the time of impact, u' = -epsilon u with u = rate + t a, in terms of the momenta's rate:
+    // rate' = u' - t a = rate - (1 + epsilon) u. So the step's gravity is neither lost nor applied twice.
+    point->target = point->rate();
+    const double speed = point->target + point->time * point->acceleration;
     if (classify(speed) != Approach::colliding) return true;
-    strike->target -= (1.0 + strike->restitution) * speed;
-    most += -(1.0 + strike->restitution) * speed / strike->b.inverse_mass;
-    *strike->struck = true;
+    point->target -= (1.0 + point->restitution) * speed;
+    max_impulse += -(1.0 + point->restitution) * speed * point->max_normal_mass();
+    if (point->struck != nullptr) *point->struck = true;
     return false;
   };
-  blow_.erase(std::remove_if(blow_.begin(), blow_.end(), passes), blow_.end());
-  if (blow_.empty()) return true;
-  if (solve(most)) {
-    keep_to_energy(most);
+  impact_.erase(std::remove_if(impact_.begin(), impact_.end(), separates), impact_.end());
+  if (impact_.empty()) return true;
+  if (solve(max_impulse)) {
+    limit_energy(max_impulse);
     report(step);
     return true;
   }
-  // Fingers that close from both sides press the body, they do not strike it: Newton's law has no solution,
-  // and the springs take over.
-  for (Strike* strike : blow_) {
-    strike->a.push(strike->given());
-    strike->b.push(-strike->given());
-  }
+  // Fingers that close from opposite directions have no solution by Newton's law: the springs take over.
+  for (ImpactPoint* point : impact_) point->undo();
   return false;
 }
 
-/// Finds impulses that together give every strike its velocity; false if there are none.
-/// In velocities: the error is the largest change of one in a sweep, its scale the largest j n'Kn. Friction
-/// hangs on j, so both are relaxed in the same sweep, the normal first.
-bool ImpactSolver::solve(double most) {
-  for (int sweep = 0; sweep < care_.sweeps; ++sweep) {
-    work_ += blow_.size();
+/// Finds impulses that together give every point its target rate; false if they diverge.
+/// The error is the largest change of a velocity in a sweep, its scale the largest j n'Kn. Friction depends
+/// on j, so both are relaxed in the same sweep, the normal first.
+bool ImpactSolver::solve(double max_impulse) {
+  for (int sweep = 0; sweep < precision_.max_sweeps; ++sweep) {
+    work_ += impact_.size();
     double error = 0.0, scale = 0.0, sum = 0.0;
-    for (Strike* strike : blow_) {
-      error = std::max({error, strike->relax_normal(), strike->relax_tangential()});
-      scale = std::max(scale, strike->magnitude / strike->normal_mass);
-      sum += strike->magnitude;
+    for (ImpactPoint* point : impact_) {
+      error = std::max({error, point->relax_normal(), point->relax_tangential()});
+      if (point->normal_mass > 0.0) scale = std::max(scale, point->normal_impulse / point->normal_mass);
+      sum += point->normal_impulse;
     }
-    if (error <= care_.converged * scale) return true;
-    if (sum > kPressed * most) return false;
+    if (error <= precision_.converged * scale) return true;
+    if (sum > kDiverged * max_impulse) return false;
   }
   return true;
 }
 
-/// Energy that the blow has given to the bodies beyond the work of the hands [J].
-/// G = sum -J.(w + w') / 2, see energy_gained().
-double ImpactSolver::gain() const {
-  double sum = 0.0;
-  for (const Strike* strike : blow_)
-    sum += energy_gained(strike->approach, strike->given(), strike->velocity_on_impact());
-  return sum;
+/// Where restitution together with friction makes energy, blends the impact with one without restitution.
+/// The impact without restitution, u' = 0, starts from the same velocities: the impulses are taken back and
+/// the target is raised by epsilon u.
+void ImpactSolver::limit_energy(double max_impulse) {
+  laws_.clear();
+  double gain = 0.0, exchanged = 0.0;
+  for (const ImpactPoint* point : impact_) {
+    const Vector3 impulse = point->impulse(), after = point->velocity_on_impact();
+    laws_.push_back({point->approach, impulse, after, {}, {}});
+    gain += energy_gained(point->approach, impulse, after);
+    exchanged += impulse.norm() * point->approach.norm();
+  }
+  if (gain <= kNoGain * exchanged) return;
+  for (ImpactPoint* point : impact_) point->undo();
+  for (ImpactPoint* point : impact_) {
+    point->begin();
+    point->target += point->restitution * point->normal.dot(point->approach);
+  }
+  solve(max_impulse);
+  for (std::size_t i = 0; i < impact_.size(); ++i)
+    laws_[i].plastic = impact_[i]->impulse(), laws_[i].after_plastic = impact_[i]->velocity_on_impact();
+  keep_from_gaining(laws_);
+  for (std::size_t i = 0; i < impact_.size(); ++i) impact_[i]->set_impulse(laws_[i].newtons);
 }
 
-/// Where restitution together with friction makes energy, the blow is one between theirs and one without
-/// restitution.
-/// The blow without restitution, u' = 0, is found from the same start: what has been given is taken back
-/// first, and target is raised by epsilon u. Then the difference to the blend is given along n and across.
-void ImpactSolver::keep_to_energy(double most) {
-  double exchanged = 0.0;
-  for (const Strike* strike : blow_) exchanged += strike->given().norm() * strike->approach.norm();
-  if (gain() <= kNoGain * exchanged) return;
-  both_.clear();
-  for (const Strike* strike : blow_)
-    both_.push_back({strike->approach, strike->given(), strike->velocity_on_impact(), {}, {}});
-  for (Strike* strike : blow_) {
-    strike->a.push(strike->given());
-    strike->b.push(-strike->given());
-  }
-  for (Strike* strike : blow_) {
-    strike->prepare();
-    strike->target += strike->restitution * strike->normal.dot(strike->approach);
-  }
-  solve(most);
-  for (std::size_t i = 0; i < blow_.size(); ++i)
-    both_[i].least = blow_[i]->given(), both_[i].after_least = blow_[i]->velocity_on_impact();
-  keep_from_gaining(both_);
-  for (std::size_t i = 0; i < blow_.size(); ++i) {
-    const Vector3 more = both_[i].newtons - blow_[i]->given();
-    const double pressed = -blow_[i]->normal.dot(more);
-    blow_[i]->magnitude += pressed;
-    blow_[i]->drag += more + pressed * blow_[i]->normal;
-    blow_[i]->a.push(-more);
-    blow_[i]->b.push(more);
-  }
-}
-
-// J and its time, on both: the flight takes back the way that J made before it fell (StepChanges).
+// J and its time, for both bodies: the flight takes back J's displacement before that time (StepChanges).
 void ImpactSolver::report(ContactStep& step) {
-  impacts_.clear();
-  const auto note = [&](const Strike& strike, const Strike::Partner& partner, const Vector3& impulse) {
+  reported_.clear();
+  const auto note = [&](const ImpactPoint& point, const ImpactPoint::Partner& partner,
+                        const Vector3& impulse) {
     if (partner.state == nullptr) return;
     const auto body = static_cast<int>(partner.state - step.bodies.data());
-    impacts_.push_back({body, impulse, partner.arm, strike.time});
+    reported_.push_back({body, impulse, partner.arm, point.time});
   };
-  for (const Strike* strike : blow_) {
-    *strike->impulse += strike->given();
-    note(*strike, strike->a, -strike->given());
-    note(*strike, strike->b, strike->given());
+  for (const ImpactPoint* point : impact_) {
+    if (point->total != nullptr) *point->total += point->impulse();
+    note(*point, point->a, -point->impulse());
+    note(*point, point->b, point->impulse());
   }
-  step.changes.note_impacts(impacts_, step.bodies);
+  step.changes.note_impacts(reported_, step.bodies);
 }
 
 }  // namespace mrhi

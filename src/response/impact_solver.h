@@ -5,66 +5,69 @@
 
 #include "contact_step.h"
 #include "impact.h"
+#include "impact_point.h"
 #include "islands.h"
-#include "strike.h"
 
 namespace mrhi {
 
 enum class ImpactFriction { none, coulomb };
 
-/// The impulse phase: Newton's impact law along the normal, once per approach. Strikes of one pair of bodies,
-/// and all on an island that a hand strikes, are one blow: each one's relative velocity becomes at least
-/// -restitution times what it was on impact, with impulses that only push. Blows between other pairs follow
-/// each other in time, each as the ones before it have left the bodies, up to several of one pair in a step.
-/// In a crowd, an island of many contacts, all strikes of a step are one blow, found to what can be seen, and
-/// only those that are faster than gravity makes things in a step: springs do the rest.
-/// Where that together with friction would give the bodies more energy than they had, they part by less.
-/// With ImpactFriction::coulomb, sliding at the point is stopped as far as static friction times the normal
-/// impulse goes.
+/// The impulse phase: Newton's impact law along the normal, once per approach. Points of one pair of bodies,
+/// all of an island that a hand hits, and all of an island with joints are one simultaneous impact: each
+/// relative velocity becomes at least -restitution times the approach velocity, with impulses that only
+/// push. Impacts of other pairs follow each other in time, up to several of one pair in a step. In a large
+/// island all impacts of a step are simultaneous, solved to a visible precision, and slow ones are left to
+/// the springs. Where restitution and friction together would give the bodies energy, the bodies part more
+/// slowly. With ImpactFriction::coulomb, sliding at the point is stopped within Coulomb's limit of static
+/// friction.
 class ImpactSolver {
  public:
   ImpactSolver();
-  /// Gives where its springs alone take the body of an island of one: its velocity at the step's end.
+  /// Returns the velocity at the step's end that the springs alone give the body of an island of one.
   using SpringMotion = std::function<Twist(const Island&)>;
-  /// With `springs`, what a hand holds is struck only by what its springs do not carry it away from: by its
-  /// velocity at the step's start alone, every phalanx beside a grip that speeds up would strike.
+  /// `springs`, if any, exempt the points of a held body that its springs carry away from the hand: by the
+  /// velocity at the step's start alone, every phalanx beside a grip that accelerates would hit the body.
   void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                const SpringMotion& springs = {});
+  /// Resolves points in joint coordinates as one impact. False if no impulses that only push satisfy
+  /// Newton's law; the points are then as they were.
+  bool resolve(ContactStep& step, std::vector<ImpactPoint>& points);
 
  private:
+  /// How precisely an impact is solved.
+  struct Precision {
+    int max_sweeps;
+    double converged;  // relative to the approach velocity
+  };
+  static const Precision kExact, kVisible;
+
   void collect(ContactStep& step, const Island& island);
   void add(ContactStep& step, Contact& contact);
   void add(ContactStep& step, BodyContact& contact);
-  void add(Strike strike, const Material& material);
+  void add(ImpactPoint point, const Material& material);
   void note_twists(const ContactStep& step, const Island& island);
   bool is_slow(const ContactStep& step, const BodyContact& contact) const;
-  void spare_carried(const ContactStep& step, const Twist& carried);
-  void spare_slow(const ContactStep& step);
-  void deal_at_once(ContactStep& step);
-  void deal_in_turn(ContactStep& step, const Island& island);
-  bool find_blow(double end);
-  bool deal(ContactStep& step);
-  bool solve(double most);
-  double gain() const;
-  void keep_to_energy(double most);
+  void drop_separating(const ContactStep& step, const Twist& carried);
+  void drop_slow(const ContactStep& step);
+  void resolve_simultaneously(ContactStep& step);
+  void resolve_sequentially(ContactStep& step, const Island& island);
+  bool find_next_impact(double end);
+  bool resolve_impact(ContactStep& step);
+  bool solve(double max_impulse);
+  void limit_energy(double max_impulse);
   void report(ContactStep& step);
 
   ImpactFriction friction_ = ImpactFriction::none;
-  std::vector<Strike> strikes_;   // those of an island
-  std::vector<double> meetings_;  // when each of them will collide, as the bodies move now [s]
-  std::vector<Strike*> blow_;     // those dealt together
-  std::vector<BodyImpact> impacts_;
-  std::vector<Twist> twists_;  // by body, of a crowd's
-  std::vector<TwoBlows> both_;
-  bool by_hand_ = false;  // a hand takes part in this island's strikes
-  /// How exactly a blow is solved.
-  struct Care {
-    int sweeps;
-    double converged;  // of the approach velocity
-  };
-  static const Care kExact, kVisible;
-  Care care_ = kExact;
-  std::size_t work_ = 0;  // strikes relaxed for this island
+  std::vector<ImpactPoint> points_;   // of an island
+  std::vector<double> times_;         // of their collisions, as the bodies move now [s]
+  std::vector<ImpactPoint*> impact_;  // points that are resolved together
+  HandRecoils recoils_;
+  std::vector<BodyImpact> reported_;
+  std::vector<Twist> twists_;  // by body, of a large island's
+  std::vector<ImpactLaws> laws_;
+  bool by_hand_ = false;  // a hand takes part in the island's impacts
+  Precision precision_;
+  std::size_t work_ = 0;  // points relaxed for the island
 };
 
 }  // namespace mrhi

@@ -30,6 +30,7 @@ bool strikes_nothing(const ContactStep& step, const Island& island) {
 // Eqs. 9 to 15 and then Eqs. 16 to 20, both at the step's end. The order matters: blows are dealt by the
 // velocities of the step's start, and the springs find what the blows have left.
 void ImplicitModel::respond(ContactStep& step) {
+  if (step.contacts.empty() && step.body_contacts.empty() && step.grips.empty()) return;
   begin_touches(step);
   islands_.build(step);
   strike(step);

@@ -29,7 +29,6 @@ class ImplicitModel : public ContactModel {
   void solve_crowd(ContactStep& step, const Island& island);
   static void note(ContactStep& step, const Island& island, bool pressed);
 
-  ImpactSolver impacts_;
   BodyProblem one_;
   IslandProblem several_;
   CrowdProblem many_;
@@ -38,6 +37,7 @@ class ImplicitModel : public ContactModel {
  protected:
   const ContactConfiguration configuration_;
   Islands islands_;
+  ImpactSolver impacts_;
 };
 
 }  // namespace mrhi

@@ -14,7 +14,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 /// k_n n n' + k_t (1 - n n') - s d d' / d'd. The last is there where friction slips: at its limit it turns
 /// with the stretch d and grows no more along it.
 Matrix3 slope_at_point(const IslandContact& contact) {
-  const SpringResponse<double>& response = contact.response;
+  const SpringResponse& response = contact.response;
   const Vector3 n = vector(contact.spring.normal);
   Matrix3 slope = (response.normal_slope - response.tangential_slope) * n * n.transpose();
   slope.diagonal().array() += response.tangential_slope;
@@ -151,8 +151,8 @@ double IslandProblem::relative_spin(const IslandContact& contact) const {
 /// d+ = d - tau u.n <= 0, in a form without the spring's other work. Two things forbid the short cut: a
 /// bond, which pulls without any push, and limits that are held, by which friction acts on though the push
 /// is gone.
-bool IslandProblem::stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits) {
-  Spring<double>& spring = contact.spring;
+bool IslandProblem::stays_apart(IslandContact& contact, const Triple& u, bool renew_limits) {
+  Spring& spring = contact.spring;
   if (spring.bond > 0.0 || spring.depth > spring.ahead * u.dot(spring.normal)) return false;
   if (!renew_limits && (spring.slip_limit > 0.0 || spring.twist_limit > 0.0)) return false;
   spring.slip_limit = spring.twist_limit = 0.0;
@@ -177,8 +177,8 @@ void IslandProblem::evaluate(bool renew_limits) {
   }
   scale_ = 0.0;
   for (IslandContact& contact : contacts_) {
-    SpringResponse<double>& response = contact.response;
-    const Triple<double> u = triple(relative_velocity(contact));
+    SpringResponse& response = contact.response;
+    const Triple u = triple(relative_velocity(contact));
     if (stays_apart(contact, u, renew_limits)) continue;
     contact.spring.respond(u, relative_spin(contact), renew_limits, response);
     scale_ += step_ * (response.push + contact.spring.bond);

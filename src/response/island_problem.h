@@ -11,7 +11,7 @@ namespace mrhi {
 
 /// Of the bodies of an island, which are numbered from 0: body 2 is number `b`, body 1 number `a` or, moving
 /// by itself, none of them.
-struct IslandContact : SpringContact<double> {
+struct IslandContact : SpringContact {
   static constexpr int kAlone = -1;
   int a, b;
   Vector3 arm_a;         // from the centre of a [m]
@@ -77,7 +77,7 @@ class IslandProblem {
   void couple();
   void add_slope(const IslandContact& contact);
   void assemble();
-  static bool stays_apart(IslandContact& contact, const Triple<double>& u, bool renew_limits);
+  static bool stays_apart(IslandContact& contact, const Triple& u, bool renew_limits);
 
   std::vector<IslandContact> contacts_;
   double step_ = 0.0;

@@ -15,6 +15,33 @@ int Island::place_of(int body) const {
   return found != bodies.end() && found->body == index ? static_cast<int>(found - bodies.begin()) : -1;
 }
 
+namespace {
+
+template <typename Predicate>
+bool any_contact(const ContactStep& step, const Island& island, Predicate predicate) {
+  return std::any_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
+    return std::any_of(step.contacts.begin() + static_cast<std::ptrdiff_t>(body.first),
+                       step.contacts.begin() + static_cast<std::ptrdiff_t>(body.last), predicate);
+  });
+}
+
+}  // namespace
+
+bool is_touched(const ContactStep& step, const Island& island) {
+  const auto is_gripped = [&](const IslandBody& body) {
+    return std::any_of(step.grips.begin(), step.grips.end(),
+                       [&](const Grip& grip) { return grip.active && grip.body == body.body; });
+  };
+  return island.links.size() > 0 ||
+         any_contact(step, island, [](const Contact& contact) { return !contact.ignored; }) ||
+         std::any_of(island.bodies.begin(), island.bodies.end(), is_gripped);
+}
+
+bool is_held(const ContactStep& step, const Island& island) {
+  return any_contact(step, island,
+                     [](const Contact& contact) { return contact.touching() && contact.struck; });
+}
+
 // Disjoint sets, each a tree of parents, halved on the way (Tarjan & van Leeuwen 1984). The smaller index
 // becomes the root: so islands come in the order of their first bodies, whatever the order of the contacts.
 int Islands::root_of(int body) {

@@ -37,6 +37,11 @@ struct Island {
   int place_of(int body) const;
 };
 
+/// True if anything touches or grips the island.
+bool is_touched(const ContactStep& step, const Island& island);
+/// True if a hand touches the island and is past its approach: a finger that is about to hit holds nothing.
+bool is_held(const ContactStep& step, const Island& island);
+
 /// Bodies that touch nothing, and fixtures, belong to none.
 class Islands {
  public:

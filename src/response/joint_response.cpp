@@ -14,28 +14,9 @@ constexpr double kStill = 1e-6;
 /// What has been still for so long sleeps [s].
 constexpr double kTired = 0.5;
 
-bool has_touch(const ContactStep& step, const Island& island) {
-  return island.links.size() > 0 ||
-         std::any_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
-           return body.first < body.last ||
-                  std::any_of(step.grips.begin(), step.grips.end(),
-                              [&](const Grip& grip) { return grip.active && grip.body == body.body; });
-         });
-}
-
 bool has(const Island& island, int body) {
   return std::any_of(island.bodies.begin(), island.bodies.end(),
                      [body](const IslandBody& one) { return static_cast<int>(one.body) == body; });
-}
-
-/// An island that a hand presses.
-bool is_held(const ContactStep& step, const Island& island) {
-  for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (step.contacts[i].touching() && step.contacts[i].struck) return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -74,7 +55,7 @@ void JointedModel::respond(ContactStep& step) {
 
 /// It has lain still for long, and nothing has pushed it since.
 bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
-  if (!configuration_.sleep || has_touch(step, island)) return false;
+  if (!configuration_.sleep || is_touched(step, island)) return false;
   const auto moves = [&](const IslandBody& body) {
     const BodyState& state = step.bodies[body.body];
     return !state.linear_momentum.isZero(0.0) || !state.angular_momentum.isZero(0.0);
@@ -120,19 +101,19 @@ void JointedModel::begin(ContactStep& step) {
   }
 }
 
-// A held island is solved once before the blow, as ImplicitModel does, to see what its springs carry away
-// from the hand. What limits gave in the blow is told to the joints last: start_with() begins their laws
-// anew.
+// A held island is solved once before the impact, as ImplicitModel does, to see what its springs carry away
+// from the hand. The impulses of limits are reported last: start_with() begins the joints' laws anew.
 void JointedModel::strike(ContactStep& step, const Island& island, LinkageProblem& problem) {
-  if (!blows_.find(step, island, problem, state_.joints)) return;
+  linkage_impacts_.find(step, island, problem, state_.joints, configuration_.impact_friction);
+  if (linkage_impacts_.points().empty()) return;
   if (is_held(step, island)) {
     Newton<LinkageProblem>(problem).solve();
-    blows_.spare_carried(step, problem.velocity());
+    linkage_impacts_.drop_separating(step.step, problem.velocity());
   }
-  // Fingers from both sides have no solution under Newton's law: nothing is dealt, and they press.
-  if (!blows_.deal(problem, configuration_.impact_friction, struck_velocity_)) return;
-  problem.start_with(struck_velocity_, step, state_.joints);
-  blows_.tell_limits(problem);
+  // Fingers from opposite directions have no solution by Newton's law: they press.
+  if (!impacts_.resolve(step, linkage_impacts_.points())) return;
+  problem.start_with(linkage_impacts_.velocity(), step, state_.joints);
+  linkage_impacts_.note_limits(problem);
 }
 
 // Where nothing acts the island is left to the flight, which has gravity and no forces: that is exact to

@@ -43,13 +43,8 @@ class JointedModel : public ImplicitModel {
   std::vector<std::unique_ptr<LinkageProblem>> problems_;  // as many as there were islands at most
   std::vector<const Island*> islands_apart_;               // awake, one for each of the first problems
   std::vector<char> at_work_, solved_;                     // by linkage: awake, and gravity has been given
-  LinkageImpacts blows_;
-  Eigen::VectorXd struck_velocity_, positions_;
+  LinkageImpacts linkage_impacts_;
+  Eigen::VectorXd positions_;
 };
-
-/// The contact model of a configuration for a scene with joints, whichever it is: hands do to bodies what the
-/// model has them do, joints make of it what they can, and objects touch by `implicit`.
-std::unique_ptr<ContactModel> make_jointed_model(const Configuration& configuration, const Scene& scene,
-                                                 SimulationState& state, std::vector<Event>& events);
 
 }  // namespace mrhi

@@ -1,70 +1,38 @@
 #pragma once
 
+#include <deque>
 #include <vector>
 
-#include "impact.h"
+#include "impact_point.h"
 #include "linkage_problem.h"
 
 namespace mrhi {
 
-/// The impulse phase of an island with joints: Newton's impact law along the normal, once per approach, and
-/// Coulomb's friction, all strikes of a step as one blow, which joints pass on. Impulses only push, and where
-/// restitution together with friction would make energy, things part by less. Fingers
-/// that close from both sides press and do not strike: then there is none.
+/// The impact points of an island with joints, in the coordinates of its LinkageProblem: contacts with hands,
+/// between bodies, and joints that reach a limit. Linkages transmit the impulses.
 class LinkageImpacts {
  public:
-  /// What strikes in this step, by the problem's velocities at its start.
-  bool find(ContactStep& step, const Island& island, const LinkageProblem& problem,
-            const std::vector<JointState>& joints);
-  /// Leaves out what springs carry the hand's contacts away from by themselves: at this velocity.
-  void spare_carried(const ContactStep& step, const LinkageProblem::Vector& velocity);
-  /// Gives the impulses, if any; `velocity` is what they make of the problem's start.
-  bool deal(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity);
-  /// Tells the problem, once it starts with that velocity, what limits gave.
-  void tell_limits(LinkageProblem& problem);
+  /// Finds what collides within the step by the problem's velocities at its start.
+  void find(ContactStep& step, const Island& island, const LinkageProblem& problem,
+            const std::vector<JointState>& joints, bool friction);
+  /// Drops the hand's contacts that separate within the step at this velocity.
+  void drop_separating(double step, const LinkageProblem::Vector& velocity);
+  std::vector<ImpactPoint>& points() { return points_; }
+  /// Joint velocities with the impulses applied so far.
+  const LinkageProblem::Vector& velocity() const { return velocity_; }
+  /// Reports the impulses of limits to the problem.
+  void note_limits(LinkageProblem& problem) const;
 
  private:
-  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-  struct Strike {
-    Contact* hand = nullptr;
-    BodyContact* between = nullptr;
-    Eigen::Index joint = -1;  // an unknown: its limit is struck
-    Vector3 normal, drive;
-    Rows rows;  // relative velocity of 1 against 2 = drive + rows * unknowns
-    Eigen::Matrix<double, Eigen::Dynamic, 3> answer;  // of the unknowns to an impulse on 1
-    Matrix3 tangential_mass;
-    double time = 0.0, gap = 0.0, restitution = 0.0, friction = 0.0, inverse_mass = 0.0;
-    double normal_mass = 0.0, target = 0.0, magnitude = 0.0;
-    Vector3 approach, drag, recoil;
-
-    Vector3 relative_velocity(const LinkageProblem::Vector& velocity) const {
-      return drive + recoil + rows * velocity;
-    }
-    /// What 2 has got of this blow [N s].
-    Vector3 given() const { return drag - magnitude * normal; }
-    void push(const Vector3& on_first, LinkageProblem::Vector& velocity);
-    double relax_normal(LinkageProblem::Vector& velocity);
-    double relax_tangential(LinkageProblem::Vector& velocity);
-  };
-  /// One to be filled in, whose room is that of strikes of earlier steps; add() keeps it if it strikes.
-  Strike& next();
-  struct Strikes {
-    Strike *first, *last;
-    Strike* begin() const { return first; }
-    Strike* end() const { return last; }
-  };
-  Strikes strikes() { return {strikes_.data(), strikes_.data() + count_}; }
+  ImpactPoint new_point(const Vector3& normal, double gap, double restitution);
+  void add(double step, const LinkageProblem& problem, const ImpactPoint& point);
   void find_limits(const ContactStep& step, const LinkageProblem& problem,
                    const std::vector<JointState>& joints);
-  void add(double step, const LinkageProblem& problem);
-  void prepare(const LinkageProblem& problem, Strike& strike);
-  bool solve(bool friction, LinkageProblem::Vector& velocity);
-  void keep_to_energy(const LinkageProblem& problem, bool friction, LinkageProblem::Vector& velocity);
 
-  std::vector<Strike> strikes_;  // the first count_ of them are of this step
-  std::size_t count_ = 0;
-  std::vector<TwoBlows> both_;
-  LinkageProblem::Vector column_;
+  std::vector<ImpactPoint> points_;
+  std::deque<JointCoordinates> coordinates_;  // at least as many as points; keep their memory
+  HandRecoils recoils_;
+  LinkageProblem::Vector velocity_, column_;
 };
 
 }  // namespace mrhi

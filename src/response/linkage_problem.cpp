@@ -21,17 +21,6 @@ constexpr int kFewBodies = 4;
 
 constexpr int kNoJoint = -1;
 
-bool touched(const ContactStep& step, const Island& island) {
-  const auto is_touched = [&](const IslandBody& body) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (!step.contacts[i].ignored) return true;
-    }
-    return std::any_of(step.grips.begin(), step.grips.end(),
-                       [&](const Grip& grip) { return grip.active && grip.body == body.body; });
-  };
-  return island.links.size() > 0 || std::any_of(island.bodies.begin(), island.bodies.end(), is_touched);
-}
-
 }  // namespace
 
 // u0 = M^-1 sum J_b' p_b: momenta of the bodies as the joints see them. What of them joints do not let
@@ -44,7 +33,7 @@ void LinkageProblem::begin(ContactStep& step, const Island& island, const Contac
                            const std::vector<JointState>& joints) {
   step_ = step.step;
   scene_ = &step.scene;
-  acts_ = touched(step, island);
+  acts_ = is_touched(step, island);
   several_.begin(step, island, configuration);
   number(step, island, linkages, motions);
   mass_factors_.compute(mass_);

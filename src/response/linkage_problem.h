@@ -25,7 +25,7 @@ class LinkageProblem {
   void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration,
              const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
              const std::vector<JointState>& joints);
-  /// Takes other velocities at the step's start, as blows have left them.
+  /// Takes other velocities at the step's start, as impacts have left them.
   void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
 
   /// What many bodies may take is bounded, and their error what can be seen.
@@ -47,8 +47,8 @@ class LinkageProblem {
   const Matrix& jacobian() const { return jacobian_; }
   /// Which joint's velocity an unknown is, as an index in Scene::joints; -1 of a body that flies.
   int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
-  void note_blow(Eigen::Index joint, double impulse) {
-    laws_[static_cast<std::size_t>(joint)].note_blow(impulse);
+  void note_limit_impulse(Eigen::Index joint, double impulse) {
+    laws_[static_cast<std::size_t>(joint)].note_limit_impulse(impulse);
   }
   /// Solves the mass matrix for velocities, in place.
   void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }

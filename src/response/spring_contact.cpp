@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "penetration_force.h"
-#include "side_by_side.h"
 
 namespace mrhi {
 namespace {
@@ -32,81 +31,12 @@ constexpr double kPatchTorque = 2.0 / 3.0;
 /// Nothing is damped before it touches.
 /// A gap is a spring of depth < 0 that closes at the step's end if h u.n < depth: with the dashpot's time
 /// in place of h it would push on what only comes near.
-template <typename Real>
-Real look_ahead(double step, const Real& depth, bool damping) {
-  return where_at_most(depth, constant<Real>(0.0), constant<Real>(step),
-                       constant<Real>(mrhi::look_ahead(step, damping)));
+double look_ahead(double step, double depth, bool damping) {
+  return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
 }
 
 double friction_of(const Material& material, Friction friction) {
   return friction == Friction::sticking ? material.static_friction : material.dynamic_friction;
-}
-
-/// With a hand; all on the same body.
-/// The share is of the stiffness, so that N = k share d sums to what the phalanx bears, and of the
-/// strength, but friction and patch are each point's own. Friction is that of the state before, mu or phi:
-/// which one it is to be is found as the step is settled.
-template <typename Each, typename Real>
-void make_from(const ContactStep& step, const ContactConfiguration& configuration, const Contact& first,
-               const Each& each, SpringContact<Real>& result) {
-  const Material& material = step.scene.bodies[first.key.body].material;
-  const Triple<Real> n = each(&Contact::normal), point = each(&Contact::point);
-  const Triple<Real> reach = each(&Contact::hand_point) - point + each(&Contact::lever);
-  Spring<Real>& spring = result.spring;
-  spring.normal = n;
-  // Eqs. 16 to 18: of p - c, with p brought back to the surface the way it came, what is along the surface.
-  spring.stretch = reach - n.dot(reach) * n;
-  spring.depth = each(&Contact::pressed);
-  spring.twist = each(&Contact::twist);
-  // Kelvin and Voigt's f = k (q + tau q') at the step's end: there q has grown by h q', so it is k (q + (h +
-  // tau) q') with the q of now and the rate that is solved for. `ahead` is h + tau.
-  spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
-  spring.fade = constant<Real>(release_fade(configuration.release_fade));
-  const HandStrength& hand = configuration.hand;
-  spring.pad = constant<Real>(hand.pad);
-  spring.half_over_pad = constant<Real>(hand.pad > 0.0 ? 0.5 / hand.pad : 0.0);
-  spring.stiffness = constant<Real>(material.stiffness) * each(&Contact::share);
-  // In metres of a spring at full stiffness; divided by no stiffness it would be no number in a lane that is
-  // filled up.
-  spring.yields = each(&Contact::strength) / greater(spring.stiffness, constant<Real>(1e-300));
-  spring.bond = constant<Real>(0.0);
-  // Springs k at a lever l: a turn by 1 rad stretches them by l, and they give k l at that lever.
-  const double twisting = configuration.torsion ? kTwistLever * kTwistLever : 0.0;
-  spring.twist_stiffness = spring.stiffness * constant<Real>(twisting);
-  spring.friction =
-      each([&](const Contact& contact) { return contact.grip * friction_of(material, contact.friction); });
-  spring.patch_friction = constant<Real>(kPatchTorque) * spring.friction * each(&Contact::patch);
-  result.arm = point - everywhere<Real>(step.bodies[first.key.body].pose.position);
-  result.drive = each(&Contact::hand_velocity);
-  result.drive_spin = each(&Contact::hand_spin);
-}
-
-/// Of bodies: the stretch is that of the anchors, along n is nothing to remember. No pad, no torsion: points
-/// of a manifold share the load, and twist is what they bear together. Body a moves too: its velocity is the
-/// solver's, not `drive`.
-template <typename Each, typename Real>
-void make_from(const ContactStep& step, const ContactConfiguration& configuration, const BodyContact&,
-               const Each& each, SpringContact<Real>& result) {
-  const Real zero = constant<Real>(0.0);
-  Spring<Real>& spring = result.spring;
-  spring.normal = each(&BodyContact::normal);
-  spring.stretch = each(&BodyContact::stretch);
-  spring.depth = each(&BodyContact::depth);
-  spring.ahead = look_ahead<Real>(step.step, spring.depth, configuration.damping);
-  spring.fade = constant<Real>(release_fade(configuration.release_fade));
-  spring.stiffness = constant<Real>(configuration.object_stiffness) * each(&BodyContact::share);
-  spring.friction =
-      each([](const BodyContact& contact) { return friction_of(contact.material, contact.friction); });
-  spring.twist = spring.twist_stiffness = spring.patch_friction = zero;
-  spring.pad = spring.half_over_pad = spring.bond = zero;
-  spring.yields = constant<Real>(HandStrength::kUnlimited);
-  result.arm = each(&BodyContact::arm_b);
-  result.drive = {zero, zero, zero};
-  result.drive_spin = zero;
-}
-
-SpringContact<double> contact_in(int, const SpringContact<double>& only) {
-  return only;
 }
 
 /// By how much the end on 2 has to follow along the surface where it slips: what the spring and its damping,
@@ -120,9 +50,9 @@ SpringContact<double> contact_in(int, const SpringContact<double>& only) {
 /// Without the dashpot, e = h, the end is dragged to where the spring has just F (Eq. 20, and the god
 /// object of Zilles & Salisbury 1995). F itself is at the limit of the state before; where that was mu,
 /// `rim` takes it back to phi N.
-Vector3 slide(const SpringContact<double>& solved, double dynamic_friction, double step) {
-  const Spring<double>& spring = solved.spring;
-  const SpringResponse<double>& response = solved.response;
+Vector3 slide(const SpringContact& solved, double dynamic_friction, double step) {
+  const Spring& spring = solved.spring;
+  const SpringResponse& response = solved.response;
   // The ends part by h u = (h / ahead) (drawn - stretch). Spring and dashpot take up as much of it as the
   // force F at the rim stretches them by in h, (h / ahead) (F / k - stretch). The rest is slid.
   const double followed = step / spring.ahead;
@@ -152,12 +82,12 @@ constexpr double kStaticSpeed = 0.01;
 
 /// Which friction a contact of bodies has that has yielded in this step: by the way that it slides with
 /// static friction.
-void settle_friction(const ContactStep& step, const SpringContact<double>& solved, BodyContact& touch) {
+void settle_friction(const ContactStep& step, const SpringContact& solved, BodyContact& touch) {
   const Vector3 way = slide(solved, touch.material.static_friction, step.step);
   const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
   touch.friction = way.norm() > speed * step.step ? Friction::slipping : Friction::sticking;
 }
-void settle_friction(const ContactStep&, const SpringContact<double>&, Contact&) {}
+void settle_friction(const ContactStep&, const SpringContact&, Contact&) {}
 
 double grip_of(const Contact& contact) {
   return contact.grip;
@@ -175,112 +105,104 @@ const Material& material_of(const ContactStep&, const BodyContact& contact) {
 /// The turn that is left of the twist, as far as the torque holds it.
 /// As in slide(): theta(h) = theta + (h / e) (T / k_t - theta), which is theta + h spin while T is within
 /// its limit. A point that turns freely, k_t = 0, keeps what it has, and the quotient is not used.
-template <typename Real>
-Real kept_twist(const SpringContact<Real>& solved, double step) {
-  const Spring<Real>& spring = solved.spring;
-  const Real followed = constant<Real>(step) / spring.ahead;
-  const Real kept =
-      spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
-  return where_at_most(spring.twist_stiffness, constant<Real>(0.0), spring.twist, kept);
+double kept_twist(const SpringContact& solved, double step) {
+  const Spring& spring = solved.spring;
+  if (spring.twist_stiffness <= 0.0) return spring.twist;
+  const double followed = step / spring.ahead;
+  return spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
 }
-void keep_twist(double twist, Contact& contact) {
-  contact.twist = twist;
-}
-void keep_twist(double, BodyContact&) {}
-void keep_torque(double torque, Contact& contact) {
-  contact.torque = torque;
-}
-void keep_torque(double, BodyContact&) {}
-
-/// One contact of those that `solved` stands for.
+/// Force, friction and the end on the body.
 ///
 ///     sticks:     |k q+| <= mu N            from sticking
 ///                 |k q+| <= 0.9 phi N       from slipping
 ///
 /// Friction of the step just solved had the limit of the state before: one that breaks away in this step
 /// bore mu N, and bears phi N in the next one. An open contact, N = 0, has nothing to follow.
-template <typename Stored, typename Touch>
-void settle_lane(const ContactStep& step, const SpringContact<Stored>& solved, int lane, Touch& touch) {
-  const auto of = [lane](const auto& value) { return lane_of(lane, value); };
-  touch.force = vector(of(solved.response.force));
+template <typename Touch>
+void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& touch) {
+  touch.force = vector(solved.response.force);
   // Eqs. 19, 20 with mu while it sticks and phi while it slides, by the push of the step's end.
   // What slips sticks again well within the limit only: at the limit it would change over in every step.
-  const double limit =
-      (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * of(solved.spring.slip_limit);
-  const bool sticks = of(solved.response.wanted_squared) <= limit * limit;
+  const double limit = (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * solved.spring.slip_limit;
+  const bool sticks = solved.response.wanted_squared <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
-  if (sticks || of(solved.response.push) <= 0.0) return;
-  const SpringContact<double> one = contact_in(lane, solved);
-  settle_friction(step, one, touch);
+  if (sticks || solved.response.push <= 0.0) return;
+  settle_friction(step, solved, touch);
   const double friction = grip_of(touch) * friction_of(material_of(step, touch), touch.friction);
-  follow(step, slide(one, friction, step.step), touch);
+  follow(step, slide(solved, friction, step.step), touch);
 }
 
 }  // namespace
-
-SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four) {
-  constexpr std::size_t kNumbers = sizeof(SpringContact<double>) / sizeof(double);
-  // One struct of doubles is a column of the other's Lanes: the number i of one is the lane `lane` of the
-  // i-th of four. That holds as long as both have the same members in the same order, all of them Real.
-  static_assert(sizeof(four) == kNumbers * sizeof(Lanes), "the same members, each a number or four");
-  SpringContact<double> result;
-  for (std::size_t i = 0; i < kNumbers; ++i)
-    reinterpret_cast<double*>(&result)[i] = reinterpret_cast<const Lanes*>(&four)[i].lane[lane];
-  return result;
-}
-
-void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& four) {
-  constexpr std::size_t kNumbers = sizeof(SpringContact<double>) / sizeof(double);
-  for (std::size_t i = 0; i < kNumbers; ++i)
-    reinterpret_cast<Lanes*>(&four)[i].lane[lane] = reinterpret_cast<const double*>(&one)[i];
-}
 
 // e = h + max(0, tau - h / 2): see kRelaxation.
 double look_ahead(double step, bool damping) {
   return step + (damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
 }
 
-template <typename Touch>
-void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Touch& touch,
-                 SpringContact<double>& result) {
-  make_from(step, configuration, touch, One<Touch>(touch), result);
+// The share is of the stiffness, so that N = k share d sums to what the phalanx bears, and of the strength,
+// but friction and patch are each point's own. Friction is that of the state before, mu or phi: which one it
+// is to be is found as the step is settled.
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Contact& contact,
+                 SpringContact& result) {
+  const Body& body = step.scene.bodies[contact.key.body];
+  const Triple n = triple(contact.normal), point = triple(contact.point);
+  const Triple reach = triple(contact.hand_point) - point + triple(contact.lever);
+  Spring& spring = result.spring;
+  spring.normal = n;
+  // Eqs. 16 to 18: of p - c, with p brought back to the surface the way it came, what is along the surface.
+  spring.stretch = reach - n.dot(reach) * n;
+  spring.depth = contact.pressed();
+  spring.twist = contact.twist;
+  // Kelvin and Voigt's f = k (q + tau q') at the step's end: there q has grown by h q', so it is k (q + (h +
+  // tau) q') with the q of now and the rate that is solved for. `ahead` is h + tau.
+  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.fade = release_fade(configuration.release_fade);
+  const HandStrength& hand = configuration.hand;
+  spring.pad = hand.pad;
+  spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
+  spring.stiffness = body.material.stiffness * contact.share;
+  // In metres of a spring at full stiffness.
+  spring.yields = contact.strength / std::max(spring.stiffness, 1e-300);
+  spring.bond = 0.0;
+  // Springs k at a lever l: a turn by 1 rad stretches them by l, and they give k l at that lever.
+  spring.twist_stiffness = configuration.torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
+  spring.friction = contact.grip * friction_of(body.material, contact.friction);
+  spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
+  result.arm = point - triple(step.bodies[contact.key.body].pose.position);
+  result.drive = triple(contact.hand_velocity);
+  result.drive_spin = contact.hand_spin;
 }
 
-template <typename Touch>
-void make_springs(const ContactStep& step, const ContactConfiguration& configuration, Touch* const* touches,
-                  SpringContact<Lanes>& result) {
-  make_from(step, configuration, *touches[0], Four<Touch>(touches), wide(result));
+// The stretch is that of the anchors, along n is nothing to remember. No pad, no torsion: points of a
+// manifold share the load, and twist is what they bear together. Body a moves too: its velocity is the
+// solver's, not `drive`.
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration,
+                 const BodyContact& contact, SpringContact& result) {
+  Spring& spring = result.spring;
+  spring.normal = triple(contact.normal);
+  spring.stretch = triple(contact.stretch);
+  spring.depth = contact.depth;
+  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.fade = release_fade(configuration.release_fade);
+  spring.stiffness = configuration.object_stiffness * contact.share;
+  spring.friction = friction_of(contact.material, contact.friction);
+  spring.twist = spring.twist_stiffness = spring.patch_friction = 0.0;
+  spring.pad = spring.half_over_pad = spring.bond = 0.0;
+  spring.yields = HandStrength::kUnlimited;
+  result.arm = triple(contact.arm_b);
+  result.drive = {0.0, 0.0, 0.0};
+  result.drive_spin = 0.0;
 }
 
-template <typename Touch>
-void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch) {
-  keep_twist(kept_twist(solved, step.step), touch);
-  keep_torque(solved.response.torque, touch);
-  settle_lane(step, solved, 0, touch);
+void settle(const ContactStep& step, const SpringContact& solved, Contact& contact) {
+  contact.twist = kept_twist(solved, step.step);
+  contact.torque = solved.response.torque;
+  settle_touch(step, solved, contact);
 }
 
-template <typename Touch>
-void settle(const ContactStep& step, const SpringContact<Lanes>& solved, Touch* const* touches) {
-  const Wide twist = kept_twist(wide(solved), step.step);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    keep_twist(lane_of(lane, twist), *touches[lane]);
-    keep_torque(lane_of(lane, solved.response.torque), *touches[lane]);
-    settle_lane(step, solved, lane, *touches[lane]);
-  }
+void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
+  settle_touch(step, solved, contact);
 }
-
-template void make_spring(const ContactStep&, const ContactConfiguration&, const Contact&,
-                          SpringContact<double>&);
-template void make_springs(const ContactStep&, const ContactConfiguration&, Contact* const*,
-                           SpringContact<Lanes>&);
-template void settle(const ContactStep&, const SpringContact<double>&, Contact&);
-template void settle(const ContactStep&, const SpringContact<Lanes>&, Contact* const*);
-template void make_spring(const ContactStep&, const ContactConfiguration&, const BodyContact&,
-                          SpringContact<double>&);
-template void make_springs(const ContactStep&, const ContactConfiguration&, BodyContact* const*,
-                           SpringContact<Lanes>&);
-template void settle(const ContactStep&, const SpringContact<double>&, BodyContact&);
-template void settle(const ContactStep&, const SpringContact<Lanes>&, BodyContact* const*);
 
 namespace {
 
@@ -304,7 +226,7 @@ double integral(double from, double to, Function function) {
 }
 
 // N(v) as in Spring::respond().
-double push(const Spring<double>& spring, double rate) {
+double push(const Spring& spring, double rate) {
   const double deep = std::max(0.0, spring.depth - spring.ahead * rate);
   const double parting = std::min(std::max(rate, 0.0) * spring.fade, 1.0);
   double pressed, steepness;
@@ -315,7 +237,7 @@ double push(const Spring<double>& spring, double rate) {
 /// Depth at which the spring begins to give way.
 /// Spring::press() solved for p(d) = Y: d = Y + D / 2 beyond the pad, where p >= D / 2, and d = sqrt(2 Y D)
 /// within it.
-double yielding_depth(const Spring<double>& spring) {
+double yielding_depth(const Spring& spring) {
   if (spring.yields >= 0.5 * spring.pad) return spring.yields + 0.5 * spring.pad;
   return std::sqrt(2.0 * spring.yields * spring.pad);
 }
@@ -326,7 +248,7 @@ double yielding_depth(const Spring<double>& spring) {
 ///
 /// Kinks are where the finger begins to give way, where the pad ends, at rest, from where on the fade acts,
 /// and where the push ends: at d+ = 0 or at the release speed, whichever is slower.
-double push_energy(const Spring<double>& spring, double rate) {
+double push_energy(const Spring& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
   const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
   std::array<double, 4> kinks{rate_at(yielding_depth(spring)), rate_at(spring.pad), 0.0, end};
@@ -349,9 +271,9 @@ double push_energy(const Spring<double>& spring, double rate) {
 // rate grows; so the step has one solution, and a line search along Newton's direction finds it.
 // In watts: a force times a velocity, the rate form of an incremental potential (Kane et al. 2000). It is
 // an energy over the time tau.
-double potential(const Spring<double>& spring, const Triple<double>& u, double spin) {
+double potential(const Spring& spring, const Triple& u, double spin) {
   const double rate = u.dot(spring.normal);
-  const Triple<double> drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
+  const Triple drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
   const double turned = std::abs(spring.twist + spring.ahead * spin);
   return push_energy(spring, rate) +
          (yielding_energy(spring.stiffness, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
@@ -367,11 +289,11 @@ double potential(const Spring<double>& spring, const Triple<double>& u, double s
 // Depth and fade are 0, so N is 0. The four are at corners of a tetrahedron: forces alone, they bear
 // torques about any axis.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
-                      int point, SpringContact<double>& result) {
+                      int point, SpringContact& result) {
   const auto i = static_cast<std::size_t>(point);
   const Pose& pose = step.bodies[grip.body].pose;
   const Vector3 on_body = pose * grip.in_body[i];
-  result = SpringContact<double>();
+  result = SpringContact();
   result.spring.stretch = triple(grip.point[i] - on_body);
   result.spring.ahead = look_ahead(step.step, configuration.damping);
   result.spring.stiffness = grip.stiffness;
@@ -381,9 +303,9 @@ void make_grip_spring(const ContactStep& step, const ContactConfiguration& confi
   result.drive = triple(grip.velocity[i]);
 }
 
-void settle_grip(const ContactStep& step, const SpringContact<double>& solved, int point, Grip& grip) {
-  const Spring<double>& spring = solved.spring;
-  const SpringResponse<double>& response = solved.response;
+void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip) {
+  const Spring& spring = solved.spring;
+  const SpringResponse& response = solved.response;
   const Vector3 force = vector(response.force);
   if (point == 0) {
     grip.force.setZero();

@@ -3,43 +3,32 @@
 #include "contact_step.h"
 #include "islands.h"
 #include "mr_hand_interaction/configuration.h"
-#include "side_by_side.h"
 #include "spring.h"
 
 namespace mrhi {
 
-/// Makes the springs that touches stand for, one or four of the same body; Touch is Contact or BodyContact.
-/// One without share does nothing.
-template <typename Touch>
-void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Touch& touch,
-                 SpringContact<double>& result);
-template <typename Touch>
-void make_springs(const ContactStep& step, const ContactConfiguration& configuration, Touch* const* touches,
-                  SpringContact<Lanes>& result);
+/// Makes the spring of a contact with a hand, or of one between bodies. One without share does nothing.
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Contact& contact,
+                 SpringContact& result);
+void make_spring(const ContactStep& step, const ContactConfiguration& configuration,
+                 const BodyContact& contact, SpringContact& result);
 
-/// Writes what the solution made of them back.
-template <typename Touch>
-void settle(const ContactStep& step, const SpringContact<double>& solved, Touch& touch);
-template <typename Touch>
-void settle(const ContactStep& step, const SpringContact<Lanes>& solved, Touch* const* touches);
+/// Writes what the solution made of it back.
+void settle(const ContactStep& step, const SpringContact& solved, Contact& contact);
+void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact);
 
 /// How far ahead a spring that touches is evaluated: the step, and what damping adds [s].
 double look_ahead(double step, bool damping);
 
-/// One of four.
-SpringContact<double> contact_in(int lane, const SpringContact<Lanes>& four);
-/// The other way round.
-void put_in(int lane, const SpringContact<double>& one, SpringContact<Lanes>& four);
-
 /// Convex function of the velocities whose gradient gives the response at the limits that are set [W].
-double potential(const Spring<double>& spring, const Triple<double>& u, double spin);
+double potential(const Spring& spring, const Triple& u, double spin);
 
 /// Makes the spring of one of a grip's points: it bears any direction alike, without a push.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
-                      int point, SpringContact<double>& result);
+                      int point, SpringContact& result);
 
 /// Writes what the solution made of it back: where it has yielded its end on the body is dragged along.
-void settle_grip(const ContactStep& step, const SpringContact<double>& solved, int point, Grip& grip);
+void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip);
 
 /// Writes back to all that hands press an island with, contacts and then grips, what comes from `solved` on
 /// in that order; returns what comes after.

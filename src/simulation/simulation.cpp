@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "../joints/joint_law.h"
-#include "../response/joint_response.h"
 #include "../text/text.h"
 #include "../tracking/tracker.h"
 #include "frame_report.h"
@@ -53,8 +52,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       configuration(configuration_in),
       gravity(configuration.gravity.value_or(scene.gravity)),
       step_length(checked_step(configuration.step)),
-      model(scene.joints.empty() ? make_contact_model(configuration)
-                                 : make_jointed_model(configuration, scene, state, result.events)),
+      model(make_contact_model(configuration, scene, state, result.events)),
       quiet_frame(scene.joints.empty() ? kQuietFrame : 0),
       geometry(scene),
       neighbours(scene),
@@ -62,7 +60,6 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       body_finder(scene, geometry, gravity),
       operators(scene, refinements(configuration)),
       alone(scene),
-      flights(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, operators, configuration),
       renderer(scene, finder) {

@@ -9,7 +9,6 @@
 #include "../collision/contact_finder.h"
 #include "../collision/neighbours.h"
 #include "../collision/scene_geometry.h"
-#include "../integration/free_flights.h"
 #include "../rendering/hand_renderer.h"
 #include "../response/contact_step.h"
 #include "flying_alone.h"
@@ -63,7 +62,6 @@ struct Simulation::Impl {
   BodyContactFinder body_finder;
   Operators operators;
   FlyingAlone alone;
-  FreeFlights flights;
   Sleeping sleeping;
   GraspAssist assist;
   HandRenderer renderer;

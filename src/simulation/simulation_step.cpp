@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "../integration/free_flight.h"
 #include "../joints/linkage.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
@@ -59,10 +60,9 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
     if (state.asleep[b] || (alone[b] && !last)) continue;
-    flights.fly(b, changes.solved(b) ? Vector3::Zero() : gravity, alone[b] ? frame_seconds() : step,
-                state.bodies[b]);
+    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity,
+                alone[b] ? frame_seconds() : step, state.bodies[b]);
   }
-  flights.turn(state.bodies);
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   sleeping.settle(neighbours, step, state);
   keep_in_bounds();

@@ -1,5 +1,3 @@
-#include "response/contact_step.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -7,6 +5,8 @@
 #include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
 namespace {
@@ -34,7 +34,7 @@ TEST(ContactModels, can_be_set_by_name_made_and_have_their_own_stiffness) {
     Configuration configuration;
     set_parameter(configuration, "contact_model", model->name);
     EXPECT_EQ(configuration.contact_model.name, model->name);
-    EXPECT_NE(make_contact_model(configuration), nullptr);
+    EXPECT_NO_THROW(Simulation(Scene(), configuration));
     EXPECT_EQ(default_material(configuration).stiffness, model->stiffness);
   }
 }
@@ -43,7 +43,7 @@ TEST(ContactModels, one_that_is_not_known_is_refused_by_name) {
   Configuration configuration;
   configuration.contact_model = {"springs"};
   try {
-    make_contact_model(configuration);
+    Simulation(Scene(), configuration);
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("'springs' is not known; allowed: implicit, "),

@@ -91,5 +91,36 @@ TEST(HandStrength, a_blow_has_the_mass_of_the_phalanx) {
   EXPECT_NEAR(speed(2.5), (1.0 + e) * 0.05 / 2.55, 1e-3);
 }
 
+// A palm that lies flat touches with two points where it is near enough, and is one mass all the same:
+// Newton's law between two masses of 0.4 kg, to the precision of the solver. The step of 0.1 ms brings the
+// slow hand near enough before it hits.
+TEST(HandStrength, all_points_of_a_flat_palm_have_its_mass_together) {
+  HandStrength hand;
+  hand.palm_mass = 0.4;
+  constexpr double kSpeed = 0.2;
+  Configuration configuration = with(hand);
+  configuration.step = 0.0001;
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(0.1), 0.4, 1.0)),
+                        configuration);
+  Vector3 struck = Vector3::Zero();
+  int points = 0;
+  testing::play(
+      simulation, 0.0, 0.1, 1000.0,
+      [&](double t) {
+        Hand palm = testing::empty_hand();
+        testing::add_flat_finger(palm, kPalm, Vector3(0.06 - kSpeed * t, 0, 0), Vector3::UnitX(),
+                                 Vector3::UnitY());
+        return palm;
+      },
+      [&](const Simulation& s) {
+        for (const Contact& contact : s.result().contacts) {
+          struck += contact.impulse;
+          points += contact.impulse.isZero(0.0) ? 0 : 1;
+        }
+      });
+  EXPECT_EQ(points, 2);
+  EXPECT_NEAR(struck.norm() / 0.4, (1.0 + Material().restitution) * 0.5 * kSpeed, 1e-9);
+}
+
 }  // namespace
 }  // namespace mrhi

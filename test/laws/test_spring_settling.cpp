@@ -49,7 +49,7 @@ class Touch {
   double stretch_left() const { return contact.hand_point.x() - (bodies_[0].pose * contact.god_object).x(); }
 
   Contact contact;
-  SpringContact<double> spring{};
+  SpringContact spring{};
 
  private:
   Scene scene_;

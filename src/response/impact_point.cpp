@@ -1,0 +1,178 @@
+#include "impact_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../collision/god_object.h"
+#include "impact.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+/// When two points `apart` that part by `velocity` are `distance` from each other for the first time [s].
+double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
+  // |apart + t velocity| = distance has two roots: the first, in the form that does not cancel.
+  //
+  //     v^2 t^2 - 2 c t + o = 0,    o = x^2 - d^2,  c = -x.v:    t = (c - root) / v^2 = o / (c + root)
+  const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
+  if (outside <= 0.0) return 0.0;
+  const double discriminant = closing * closing - velocity.squaredNorm() * outside;
+  if (closing <= 0.0 || discriminant < 0.0) return kNever;
+  return outside / (closing + std::sqrt(discriminant));
+}
+
+}  // namespace
+
+Vector3 ImpactPoint::Partner::velocity_of_centre() const {
+  if (state == nullptr) return Vector3::Zero();
+  return inverse_mass * state->linear_momentum;
+}
+
+// v + w x r (Eq. 7), or J u. The hand's own velocity is in `hand_velocity`.
+Vector3 ImpactPoint::Partner::velocity() const {
+  if (joints != nullptr) return joints->jacobian * *joints->velocity;
+  if (recoil != nullptr) return *recoil;
+  if (state == nullptr) return Vector3::Zero();
+  return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
+}
+
+void ImpactPoint::Partner::apply(const Vector3& impulse) {
+  if (joints != nullptr) {
+    joints->velocity->noalias() += joints->response * impulse;
+    return;
+  }
+  if (recoil != nullptr) *recoil += inverse_mass * impulse;
+  if (state == nullptr) return;
+  state->linear_momentum += impulse;
+  state->angular_momentum += arm.cross(impulse);
+}
+
+// A capsule of the hand is a point mass; 1/m is 0 of the paper's hand and of fixtures.
+Matrix3 ImpactPoint::Partner::inverse_effective_mass() const {
+  if (joints != nullptr) return joints->jacobian.lazyProduct(joints->response);
+  if (state == nullptr) return inverse_mass * Matrix3::Identity();
+  return collision_matrix(inverse_mass, inverse_inertia, arm);
+}
+
+// The gap closes at t + wait. Surfaces that part again by then, or only rest on each other, do not collide
+// (Eq. 8's cases).
+double ImpactPoint::collision_time() const {
+  const double wait =
+      is_of_balls()
+          ? time_to_reach(b.arm - a.arm, a.velocity_of_centre() - b.velocity_of_centre(), radius_a + radius_b)
+          : time_to_close(gap, rate() + time * acceleration, acceleration);
+  if (wait == kNever) return kNever;
+  ImpactPoint then = *this;
+  then.advance_to(time + wait);
+  const double speed = then.rate() + then.time * acceleration;
+  return classify(speed) == Approach::colliding ? then.time : kNever;
+}
+
+void ImpactPoint::advance_to(double later) {
+  const double wait = later - time;
+  time = later;
+  if (!is_of_balls()) {
+    // rate() is the step's start's: gravity has added a t, on the mean over the wait a (t - wait / 2).
+    const double closed = -wait * (rate() + acceleration * (time - 0.5 * wait));
+    gap -= closed;
+    advance_arms(wait, closed);
+    return;
+  }
+  // Balls: the line of centres is followed exactly, whatever their spin, and the point divides it by the
+  // radii. With the normal of the step's start a later impact would turn smooth balls.
+  const Vector3 apart = b.arm - a.arm + wait * (a.velocity_of_centre() - b.velocity_of_centre());
+  const double distance = apart.norm(), radii = radius_a + radius_b;
+  gap = distance - radii;
+  normal = apart / distance;
+  a.arm = -(radius_a / radii) * apart;
+  b.arm = (radius_b / radii) * apart;
+}
+
+// r += t (c' - v), the rate of an arm from a moving centre to a moving point c. Both arms end at the same
+// c, so that the impact keeps angular momentum: two points would turn the pair by (c_b - c_a) x J.
+void ImpactPoint::advance_arms(double seconds, double closed) {
+  if (radius_a > 0.0 || radius_b > 0.0) {
+    // The point of a ball moves with its centre, and from the middle of the gap to its surface as the gap
+    // closes.
+    const Partner& ball = radius_b > 0.0 ? b : a;
+    const Vector3 to_surface = (radius_b > 0.0 ? -0.5 : 0.5) * closed * normal;
+    for (Partner* partner : {&a, &b}) {
+      if (partner->state == nullptr) continue;
+      partner->arm += seconds * (ball.velocity_of_centre() - partner->velocity_of_centre()) + to_surface;
+    }
+    return;
+  }
+  const Vector3 point = 0.5 * (a.velocity() + b.velocity());
+  for (Partner* partner : {&a, &b}) {
+    if (partner->state != nullptr) partner->arm += seconds * (point - partner->velocity_of_centre());
+  }
+}
+
+//     m_n = 1 / n'Kn  (Eq. 14's denominator),     m_t = 1 / lambda_max(T'KT),     K = K_a + K_b
+//
+// One number serves both tangential directions, though K is not isotropic: with a matrix the fixed point of
+// relax_tangential() would not oppose the sliding. The largest eigenvalue keeps it from overshooting. Joints
+// may leave a point no direction: it then has an effective mass of 0.
+void ImpactPoint::begin() {
+  normal_impulse = 0.0;
+  friction_impulse.setZero();
+  if (a.recoil != nullptr) a.recoil->setZero();
+  // Eq. 12 of both: an impulse p parts the points by (K_a + K_b) p.
+  const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
+  const auto mass = [](double response) { return response > 0.0 ? 1.0 / response : 0.0; };
+  normal_mass = mass(normal.dot(k * normal));
+  if (friction > 0.0) tangential_mass = mass(max_tangential_response(k, normal));
+}
+
+// A row of projected Gauss-Seidel (Catto 2005): the sum of the impulses must not pull, a single one may.
+//
+//     j <- max(0, j + m_n (target - u)),      u = n.w with all impulses so far
+//
+// which for a single point is Eq. 14 at once. At the end 0 <= j, target <= u, and one of them with =:
+// Newton's law for many points as Moreau (1988) has it.
+double ImpactPoint::relax_normal() {
+  const double velocity = normal.dot(relative_velocity());
+  const double wanted = std::max(0.0, normal_impulse + normal_mass * (target - velocity));
+  const double change = wanted - normal_impulse;
+  normal_impulse = wanted;
+  a.apply(change * normal);
+  b.apply(-change * normal);
+  return error_of(std::abs(change));
+}
+
+// Likewise, within Coulomb's disc of radius mu j. Both directions at once: limited one by one they would make
+// a square, and friction at its corners would be 1.4 times too strong.
+//
+//     d <- disc(d + m_t (w - n n.w)),    |d| <= mu j,    on b, along the sliding of a over it
+//
+// j is the last one of the same sweep. Impacts use static friction, the limit of Coulomb's law.
+double ImpactPoint::relax_tangential() {
+  if (friction <= 0.0) return 0.0;
+  const Vector3 velocity = relative_velocity();
+  Vector3 wanted = friction_impulse + tangential_mass * (velocity - normal.dot(velocity) * normal);
+  const double most = friction * normal_impulse, length = wanted.norm();
+  if (length > most) wanted *= most / length;
+  const Vector3 change = wanted - friction_impulse;
+  friction_impulse = wanted;
+  a.apply(-change);
+  b.apply(change);
+  return error_of(change.norm());
+}
+
+void ImpactPoint::undo() {
+  a.apply(impulse());
+  b.apply(-impulse());
+}
+
+void ImpactPoint::set_impulse(const Vector3& impulse) {
+  const Vector3 more = impulse - this->impulse();
+  const double pushed = -normal.dot(more);
+  normal_impulse += pushed;
+  friction_impulse += more + pushed * normal;
+  a.apply(-more);
+  b.apply(more);
+}
+
+}  // namespace mrhi
