@@ -40,8 +40,9 @@ struct PlacedPair {
     return n.dot(pose_a.position - pose_b.position) - reach(a, pose_a, n) - reach(b, pose_b, n);
   }
 
-  /// The greatest gap found: `directions` at random, the best of them improved by random steps that shrink.
-  double search(Random& random, int directions, int climbs) const {
+  /// The greatest gap found: `directions` at random, the best of them improved by random steps that shrink
+  /// down to `finest` [rad].
+  double search(Random& random, int directions, int climbs, double finest = 1e-8) const {
     std::vector<std::pair<double, Vector3>> tried;
     for (int i = 0; i < directions; ++i) {
       const Vector3 n = random.direction();
@@ -50,12 +51,13 @@ struct PlacedPair {
     std::partial_sort(tried.begin(), tried.begin() + climbs, tried.end(),
                       [](const auto& x, const auto& y) { return x.first > y.first; });
     double best = -1e300;
-    for (int i = 0; i < climbs; ++i) best = std::max(best, climb(random, tried[std::size_t(i)].second));
+    for (int i = 0; i < climbs; ++i)
+      best = std::max(best, climb(random, tried[std::size_t(i)].second, finest));
     return best;
   }
-  double climb(Random& random, Vector3 n) const {
+  double climb(Random& random, Vector3 n, double finest) const {
     double best = gap(n);
-    for (double step = 0.05; step > 1e-8;) {
+    for (double step = 0.05; step > finest;) {
       bool better = false;
       for (int i = 0; i < 12; ++i) {
         const Vector3 next = (n + step * random.direction()).normalized();
@@ -84,10 +86,11 @@ PlacedPair random_pair(Random& random) {
   const Vector3 away = random.direction();
   double near = 0.0, far = 0.2;
   const double gap = random.between(-0.004, 0.002);
+  constexpr double kCoarse = 5e-3;  // [rad], 0.2 mm at these sizes, as fine as the bisection places the pair
   for (int i = 0; i < 10; ++i) {
     const double middle = 0.5 * (near + far);
     pair.pose_a.position = pair.pose_b.position + middle * away;
-    (pair.search(random, 60, 1) < gap ? near : far) = middle;
+    (pair.search(random, 60, 1, kCoarse) < gap ? near : far) = middle;
   }
   return pair;
 }

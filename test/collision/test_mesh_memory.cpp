@@ -100,6 +100,8 @@ TEST(MeshMemory, changes_no_bit_where_more_faces_are_near_than_are_remembered) {
   }
 }
 
+// Two simulations with the same mesh share its collider and know nothing of it (shared_collider): a program
+// that runs each in a thread of its own must not need a lock.
 TEST(MeshMemory, may_be_shared_between_threads) {
   const TriangleMesh mesh = meshes().front();
   const MeshCollider shared(mesh), alone(mesh);

@@ -5,10 +5,18 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.dont_write_bytecode = True
+sys.path[:0] = [os.path.join(PACKAGE, "scripts"), os.path.join(PACKAGE, "test", "support")]
+
+import forked  # noqa: E402
+import runs.page  # noqa: E402,F401 pylint: disable=unused-import
+import study.run  # noqa: E402,F401 pylint: disable=unused-import
+
 LIMIT = 120  # s, far beyond what any takes
 DEEP = 100000
 HEADER = "version: 1\nparticipant: P01\ngroup: beginner\ncondition: implicit\ngravity: [0, 0, -9.81]\n"
@@ -37,6 +45,12 @@ def run(name, *arguments, **options):
         process.kill()
         raise
     return process.returncode, said, complaint
+
+
+def refused(name, *arguments):
+    """As `run`, where only a file is wrong."""
+    done = forked.run(os.path.join(PACKAGE, "scripts", name), *arguments)
+    return done.returncode, done.stdout, done.stderr
 
 
 def write(path, content):
@@ -94,12 +108,12 @@ class EndsTest(unittest.TestCase):
                 ("[" * DEEP, "is nested too deep")))
         for what, make, why in cases:
             with self.subTest(what=what), self.there("summary.json", make) as path:
-                self.assert_refused("explain", run("explain", self.folder), path, why)
+                self.assert_refused("explain", refused("explain", self.folder), path, why)
 
     def test_a_file_of_points_that_is_none_is_named(self):
         for what, make, why in NO_FILES + (("deep", lambda path: write(path, "[" * DEEP), "is nested too deep"),):
             with self.subTest(what=what), self.there("points.yaml", make) as path:
-                self.assert_refused("calibrate_mount", run("calibrate_mount", path), path, why)
+                self.assert_refused("calibrate_mount", refused("calibrate_mount", path), path, why)
 
     def test_a_session_that_is_none_is_named(self):
         cases = NO_FILES + tuple((text[:60], lambda path, text=text: write(path, text), why) for text, why in (
@@ -111,10 +125,10 @@ class EndsTest(unittest.TestCase):
         for what, make, why in cases:
             with self.subTest(what=what), self.there("session.yaml", make) as path:
                 for script in ("ask_participant", "ask_ratings"):
-                    self.assert_refused(script, run(script, self.folder), path, why)
+                    self.assert_refused(script, refused(script, self.folder), path, why)
         with self.there("session.yaml", os.mkfifo) as path:
             for script in ("analyse_study", "power_study"):
-                self.assert_refused(script, run(script, self.folder), path, "is a pipe; allowed: a file")
+                self.assert_refused(script, refused(script, self.folder), path, "is a pipe; allowed: a file")
 
     def test_a_table_that_is_none_is_named(self):
         write(self.path("session.yaml"), HEADER)
@@ -122,12 +136,13 @@ class EndsTest(unittest.TestCase):
             ("a" * 200000, "line 1: field larger than field limit"), ('"' + "a" * 200000, "line 1: field larger")))
         for what, make, why in cases:
             with self.subTest(what=what), self.there("trials.csv", make) as path:
-                self.assert_refused("analyse_study", run("analyse_study", self.folder, "--output", self.path("out")), path, why)
+                answer = refused("analyse_study", self.folder, "--output", self.path("out"))
+                self.assert_refused("analyse_study", answer, path, why)
         with self.there("ratings.csv", os.mkfifo) as path:
-            self.assert_refused("ask_ratings", run("ask_ratings", self.folder), path, "is no file; allowed: a file")
+            self.assert_refused("ask_ratings", refused("ask_ratings", self.folder), path, "is no file; allowed: a file")
         for what, make, why in NO_FILES[:3]:
             with self.subTest(what=what), self.there("hands.csv", make) as path:
-                answer = run("analyse_study", "--trajectory", path, path, "--output", self.path("out"))
+                answer = refused("analyse_study", "--trajectory", path, path, "--output", self.path("out"))
                 self.assert_refused("analyse_study", answer, path, why)
 
     def test_a_plan_ends_before_time_does(self):

@@ -393,7 +393,7 @@ void expect_corrupt_bags_are_read_or_refused(rosbag::CompressionType compression
   ASSERT_EQ(message_of(bag.file), "");
   const std::string corrupt = bag.folder / "corrupt.bag";
   int refused = 0;
-  for (std::size_t at = 0; at + 4 <= whole.size(); at += at < 4200 ? 151 : 61) {
+  for (std::size_t at = 0; at + 4 <= whole.size(); at += at < 4200 ? 151 : 127) {
     for (const char* bytes : {"\xFF\xFF\xFF\xFF", "\xFF\xFF\xFF\x7F", "\x10\x27\x00"}) {
       std::string changed = whole;
       changed.replace(at, 4, std::string(bytes, 4));
@@ -401,7 +401,7 @@ void expect_corrupt_bags_are_read_or_refused(rosbag::CompressionType compression
       refused += !message_of(corrupt).empty();
     }
   }
-  for (std::size_t size = 0; size < whole.size(); size += 197) {
+  for (std::size_t size = 0; size < whole.size(); size += 397) {
     std::ofstream(corrupt, std::ios::binary) << whole.substr(0, size);
     EXPECT_NE(message_of(corrupt), "") << size;
   }
