@@ -50,7 +50,10 @@ Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAng
         inverse * error + (JointMatrix::Identity() - inverse * jacobian) * (gain * (preferred - angles));
     const double largest = change.cwiseAbs().maxCoeff();
     if (largest > kLongestStep) change *= kLongestStep / largest;
-    angles = (angles + change).cwiseMax(finger.lower).cwiseMin(finger.upper);
+    const FingerAngles next = (angles + change).cwiseMax(finger.lower).cwiseMin(finger.upper);
+    // An iteration depends on the angles and the gain alone: what has converged to the bit stays so.
+    if (next == angles) i = i < kIterations / 2 ? kIterations / 2 - 1 : kIterations;
+    angles = next;
   }
   return {angles, (target - tip(finger, angles)).norm()};
 }

@@ -181,11 +181,14 @@ Grasp narrowest_grasp(const Body& body) {
       for (int z = -4; z <= 8; ++z) {
         grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
         double error = 0.0, of_all = 0.0, of_open = 0.0;
+        const double moved = 1e-4 * std::hypot(y, z);
+        if (moved >= least) continue;  // each further term adds to this one
         place_fingertips(human_hand(), grasp.wrist, pressing, -1.0, grasp.preferred, &error);
+        if (error + moved >= least) continue;
         place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred, &of_all);
         place_fingertips(human_hand(), grasp.wrist, pressing, grasp.opening, grasp.preferred, &of_open);
         error += 0.3 * of_all + 0.2 * of_open;
-        error += 1e-4 * std::hypot(y, z);
+        error += moved;
         if (error < least) least = error, best = grasp;
       }
   }

@@ -8,7 +8,7 @@
 namespace mrhi::fuzzing {
 namespace {
 
-constexpr int kMutants = 100;
+constexpr int kMutants = 30;
 
 using Input = std::vector<std::uint8_t>;
 

@@ -48,6 +48,13 @@ def has_pandas():
 
 
 class TrainingTest(unittest.TestCase):
+    begun = None  # the folder of begin_session
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.begun is not None:
+            shutil.rmtree(cls.begun)
+
     @classmethod
     def setUpClass(cls):
         rospy.init_node("training_test")
@@ -300,9 +307,19 @@ class TrainingTest(unittest.TestCase):
                 wait_until(lambda: len(trials(self.folder)) == count, "the row")
             self.assertEqual([row["result"] for row in trials(self.folder)], count * ["aborted"])
 
+    def begin_session(self):
+        """As training.launch leaves a folder whose session has begun: launched once for all tests that are refused it."""
+        cls = type(self)
+        if cls.begun is None:
+            with self.training("record:=false"):
+                self.wait_for(TrainingStatus.READY)
+            cls.begun = tempfile.mkdtemp()
+            shutil.copytree(self.folder, os.path.join(cls.begun, "session"))
+        else:
+            shutil.copytree(os.path.join(cls.begun, "session"), self.folder)
+
     def test_refuses_the_folder_of_another_participant(self):
-        with self.training("record:=false"):
-            self.wait_for(TrainingStatus.READY)
+        self.begin_session()
         command = roslib.packages.find_node("mr_hand_interaction", "training_node")[:1] + [
             "_participant:=P02", "_group:=beginner", "_handedness:=right", "_condition:=implicit",
             "_folder:=" + self.folder, "__name:=refused"]
@@ -356,8 +373,7 @@ class TrainingTest(unittest.TestCase):
 
     def test_refuses_to_go_on_with_another_contact_model_under_the_same_condition(self):
         """The folder keeps what the session was begun with, and the events have the time of the clock."""
-        with self.training("record:=false"):
-            self.wait_for(TrainingStatus.READY)
+        self.begin_session()
         with open(os.path.join(self.folder, "events.csv"), newline="") as file:
             begun = next(csv.DictReader(file))
         self.assertLess(abs(float(begun["stamp"]) - time.time()), 600.0)

@@ -4,50 +4,35 @@ modules: what is tested about either needs a process of its own."""
 
 import os
 import runpy
-import signal
 import subprocess
 import sys
 import tempfile
-import time
-
-LIMIT = 120  # s, far beyond what any script takes
 
 
-def run(path, *arguments):
-    """The finished process: status and both outputs as text. Standard input is empty."""
-    with tempfile.TemporaryFile('w+') as said, tempfile.TemporaryFile('w+') as complaint:
+def run(path, *arguments, typed=''):
+    """The finished process: status and both outputs as text. `typed` is its standard input."""
+    with tempfile.TemporaryFile('w+') as answers, tempfile.TemporaryFile('w+') as said, tempfile.TemporaryFile('w+') as complaint:
+        answers.write(typed)
+        answers.seek(0)
         sys.stdout.flush()
         sys.stderr.flush()
         child = os.fork()
         if child == 0:
-            _be(path, arguments, said, complaint)
-        status = _wait(child)
+            _be(path, arguments, answers, said, complaint)
+        _, ended = os.waitpid(child, 0)  # run_python_tests.py ends what hangs
+        status = -os.WTERMSIG(ended) if os.WIFSIGNALED(ended) else os.WEXITSTATUS(ended)
         for file in (said, complaint):
             file.seek(0)
         return subprocess.CompletedProcess([path, *arguments], status, said.read(), complaint.read())
 
 
-def _wait(child):
-    end = time.monotonic() + LIMIT
-    while True:
-        ended, status = os.waitpid(child, os.WNOHANG)
-        if ended:
-            return -os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status)
-        if time.monotonic() > end:
-            os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
-            raise AssertionError('a script did not end within %d s' % LIMIT)
-        time.sleep(0.005)
-
-
-def _be(path, arguments, said, complaint):
+def _be(path, arguments, answers, said, complaint):
     """In the child, and never back to the test."""
     code = 1
     try:
-        with open(os.devnull) as nothing:
-            os.dup2(nothing.fileno(), 0)
-        os.dup2(said.fileno(), 1)
-        os.dup2(complaint.fileno(), 2)
+        for number, file in enumerate((answers, said, complaint)):
+            os.dup2(file.fileno(), number)
+        sys.stdin = open(0, closefd=False)
         sys.stdout, sys.stderr = open(1, 'w', closefd=False), open(2, 'w', closefd=False)
         sys.argv = [path, *arguments]
         try:
