@@ -6,8 +6,7 @@
 
 #include "../text/file_text.h"
 #include "../text/text.h"
-#include "csv_columns.h"
-#include "frame_source.h"
+#include "inputs.h"
 
 namespace mrhi {
 namespace {
