@@ -9,10 +9,10 @@
 
 #include "../ros/node.h"
 #include "../ros/synthetic_hand_publisher.h"
-#include "../synthetic/recording_writer.h"
 #include "../text/command_line.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "exit_status.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace {
 

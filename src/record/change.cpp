@@ -6,9 +6,9 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "../text/file_text.h"
-#include "../text/safe_yaml.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "record_yaml.h"
 

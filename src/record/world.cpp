@@ -6,10 +6,10 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "../scene/scene_edit.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "record_yaml.h"
 
 namespace mrhi {

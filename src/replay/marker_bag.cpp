@@ -13,7 +13,7 @@
 
 #include "../ros/result_conversion.h"
 #include "../ros/scene_view.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 

@@ -7,7 +7,7 @@
 #include "../record/scratch_folder.h"
 #include "../record/world.h"
 #include "../simulation/state_bytes.h"
-#include "../text/csv.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "dictionary.h"
 #include "mr_hand_interaction/parameters.h"

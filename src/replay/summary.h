@@ -8,7 +8,7 @@
 
 #include "../math/duration_histogram.h"
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 

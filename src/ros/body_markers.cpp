@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "../rendering/light.h"
+#include "../rendering/skin.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {

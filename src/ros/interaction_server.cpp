@@ -16,9 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "between_frames.h"
 #include "input_log.h"
 #include "input_statistics.h"

@@ -11,7 +11,7 @@
 
 #include "../training/operator_trial.h"
 #include "leap_human_publisher.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
 

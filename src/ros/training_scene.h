@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "../training/object_model.h"
+#include "../training/operator_trial.h"
 
 namespace mrhi {
 

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "mr_hand_interaction/training/session.h"
-#include "mr_hand_interaction/training/session_folder.h"
 #include "parameter_watch.h"
 #include "training_scene.h"
 

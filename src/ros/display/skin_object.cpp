@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "../../rendering/skin_paint.h"
+#include "../../rendering/skin.h"
 #include "../hand_markers.h"
 #include "marker_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "../../rendering/skin_paint.h"
+#include "../../rendering/skin.h"
 #include "mr_hand_interaction/ros/markers.h"
 
 namespace Ogre {
