@@ -2,14 +2,13 @@
 file(GLOB ros_sources src/record/*.cpp src/ros/*.cpp src/replay/*.cpp)
 set(SANITIZED_SOURCES "" CACHE STRING "What scripts/sanitize adds to the ROS library")
 add_library(${PROJECT_NAME}_ros ${ros_sources} ${SANITIZED_SOURCES})
-write_tracker_registry(src/ros)
 target_include_directories(${PROJECT_NAME}_ros PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated src)
 target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 precompile(${PROJECT_NAME}_ros <ros/ros.h> <visualization_msgs/MarkerArray.h>)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
-set_source_files_properties(src/ros/training_server.cpp src/nodes/simulated_study.cpp src/record/world.cpp src/replay/run.cpp PROPERTIES
+set_source_files_properties(src/ros/training_system.cpp src/nodes/simulated_study.cpp src/record/record.cpp src/replay/run.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 # Scenes are found from a devel space even where no environment has been sourced.
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES

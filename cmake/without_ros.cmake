@@ -5,10 +5,10 @@ list(APPEND replay_library_sources src/ros/package_paths.cpp)
 add_library(${PROJECT_NAME}_replay STATIC ${replay_library_sources})
 target_link_libraries(${PROJECT_NAME}_replay PUBLIC ${PROJECT_NAME}_core PRIVATE yaml-cpp)
 # Scenes are found from where it was built, too.
-set_source_files_properties(src/record/world.cpp src/replay/run.cpp PROPERTIES
+set_source_files_properties(src/record/record.cpp src/replay/run.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES
-  COMPILE_DEFINITIONS MR_HAND_INTERACTION_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+  COMPILE_DEFINITIONS "MR_HAND_INTERACTION_SOURCE_DIR=\"${CMAKE_CURRENT_SOURCE_DIR}\";MR_HAND_INTERACTION_WITHOUT_ROS")
 add_executable(replay src/nodes/replay.cpp)
 target_link_libraries(replay ${PROJECT_NAME}_replay)
 

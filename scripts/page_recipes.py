@@ -60,7 +60,7 @@ def table(head, rows):
 def contact():
     benefits, costs = run('ablation').split('\n\nA step of scene (a): ')
     instructions, costs = costs.split(' instructions', 1)
-    costs = [re.match(r'\| `(\w+)` \| .*\(([-+][\d.]+ %)\) \|', line) for line in costs.split('\n')]
+    costs = re.findall(r'^\| (`\w+`) \| .*\(([-+][\d.]+) %\) \|', costs, re.MULTILINE)
     tiers = collections.OrderedDict()
     for line in run('geometry_tiers').split('\n'):
         found = re.match(r'(.{18}) +([-\d.]+) +([-\d.]+) +([-\d.]+) +([-\d.]+)$', line)
@@ -68,13 +68,17 @@ def contact():
             tiers.setdefault(found.group(1).strip(), []).append([float(x) for x in found.groups()[1:]])
     return {
         'refinements': benefits.strip(),
-        'instructions': table(['refinement', 'instructions of %s' % instructions], [
-            ['`%s`' % cost.group(1), cost.group(2)] for cost in costs if cost]),
-        'tiers': table(['geometry', "error from the palm's side: rms, mean, largest", 'from the back', 'time over capsules\''], [
-            [name, *['%.2f, %.2f, %.1f mm' % tuple(side[:3]) for side in sides],
+        'instructions': _range_of(costs, instructions),
+        'tiers': table(['geometry', "rms error from the palm's side", 'from the back', 'time over capsules\''], [
+            [name, *['%.2f mm' % side[0] for side in sides],
              '%.1f' % (sides[0][3] / next(some for n, some in tiers.items() if n.startswith('capsule'))[0][3])]
             for name, sides in tiers.items()]),
     }, {}
+
+
+def _range_of(costs, instructions):
+    least, most = sorted(costs, key=lambda cost: float(cost[1]))[::len(costs) - 1]
+    return '%s %% (%s) to %s %% (%s) of %s instructions' % (least[1], least[0], most[1], most[0], instructions)
 
 
 FILTERS = collections.OrderedDict([
@@ -100,30 +104,33 @@ def filters():
     lines = []
     for panel in dict.fromkeys((row['input'], row['frames_per_s']) for row in recorded):
         of_panel = {_filter_name(row): row for row in recorded if (row['input'], row['frames_per_s']) == panel}
-        lines.append(['**%s, %s frames/s**' % panel] + [''] * 5)
+        lines.append(['**%s, %s frames/s**' % panel] + [''] * 4)
         for name, label in FILTERS.items():
             row = {key: value for key, value in of_panel[name].items()}
             lines.append([label, '%.3f' % float(row['jitter_mm']),
                           '%.1f (%.1f)' % (abs(round(float(row['lag_ms']), 1)), float(row['lag_p90_ms'])),
-                          *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm', 'bone_error_mm')]])
+                          *['%.2f' % float(row[key]) for key in ('moving_error_mm', 'still_error_mm')]])
     of_held = {_filter_name(row): row for row in held}
     grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
     return {
-        'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]', 'bones [mm]'], lines),
+        'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]'], lines),
         'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]"], [
             [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
             for name, label in FILTERS.items()]),
-        'grasps': _grasps(grasps, 0.0), 'grasps_coloured': _grasps(grasps, 0.5),
+        'grasps': _grasps(grasps),
     }, {}
 
 
-def _grasps(rows, correlation):
-    rows = [row for row in rows if float(row['correlation']) == correlation and float(row['dropped']) == 0]
+def _grasps(rows):
+    rows = [row for row in rows if float(row['dropped']) == 0]
     columns = list(dict.fromkeys((row['where'], row['frames_per_s']) for row in rows))
-    cells = {(row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
-    return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns], [
-        ['%g mm' % float(noise)] + ['%(held_estimated)s (%(held_fixed)s)' % cells[(noise, *column)] for column in columns]
-        for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
+    cells = {(row['correlation'], row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
+    lines = [['%g mm%s' % (float(noise), ', correlated' if float(correlation) else '')] + [
+        '%(held_estimated)s (%(held_fixed)s)' % cells[(correlation, noise, *column)] for column in columns]
+             for correlation in dict.fromkeys(row['correlation'] for row in rows)
+             for noise in dict.fromkeys(row['noise_mm'] for row in rows)]
+    return table(['noise'] + ['%s, %.0f Hz' % (where, float(rate)) for where, rate in columns],
+                 [line for line in lines if set(line[1:]) != {'100 (100)'}])
 
 
 def study():
@@ -136,7 +143,28 @@ def study():
 
 def study_figures(rows):
     from study import calibration
-    return {'calibration': calibration.as_text(rows).strip()}
+    return {'calibration': shortened(calibration.as_text(rows).strip())}
+
+
+def shortened(text):
+    """The table with a row for tests that have no bold number, and one for many that have, each with their range."""
+    head, line, *rows = text.split('\n')
+    populations = collections.OrderedDict()
+    for row in rows:
+        populations.setdefault(row.split('|')[1].strip(), []).append(row)
+    lines = [head, line]
+    for population, tests in populations.items():
+        bold = [row for row in tests if '**' in row]
+        plain = [row for row in tests if row not in bold]
+        lines += bold if len(bold) < 4 else [_range_of_tests(population, '%d tests, above 5 %%', bold)]
+        lines += plain if len(plain) < 2 else [_range_of_tests(population, 'the other %d tests', plain)]
+    return '\n'.join(lines)
+
+
+def _range_of_tests(population, label, rows):
+    numbers = [[float(cell.strip(' *')) for cell in row.strip('|').split('|')[2:] if cell.strip()] for row in rows]
+    return '| %s | %s | %s |' % (population, label % len(rows), ' | '.join(
+        '%.1f to %.1f' % (min(column), max(column)) for column in zip(*numbers)))
 
 
 MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')
@@ -194,11 +222,11 @@ def operators_figures(folder):
             drops = ['%d' % sum(int(float(row['drops'] or 0)) for row in some if row['object'] == name)
                      for name in ('cube', 'flat_cuboid', 'long_cuboid')]
             time, attempts = of['completion_time'], of['manipulation_drops']
-            lines.append([gravity + ' g', '`%s`' % model, *['%.1f ± %.1f' % (float(time['mean']), float(time[key]))
-                                                           for key in ('sd', 'ci95')],
+            lines.append([gravity + ' g', '`%s`' % model, '%.1f ± %.1f (± %.1f)' % tuple(
+                float(time[key]) for key in ('mean', 'sd', 'ci95')),
                           '%.2f ± %.2f' % (float(attempts['mean']), float(attempts['sd'])), *drops,
                           '%d of %d' % (sum(row['result'] == 'completed' for row in some), len(some))])
-    return {'seed_1': table(['', '', 'time [s], mean ± sd', 'mean ± its 95 % interval', 'drops while manipulated, mean ± sd',
+    return {'seed_1': table(['', '', 'time [s], mean ± sd (± 95 %)', 'drops while manipulated, mean ± sd',
                              'drops: cube', 'flat', 'long', 'completed'], lines),
             'table_1': _table_1(comparison, pairs, trials)}
 

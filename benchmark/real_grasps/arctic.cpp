@@ -12,7 +12,6 @@
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "recording.h"
-#include "replay/csv_columns.h"
 #include "statistics.h"
 
 namespace mrhi::real_grasps {

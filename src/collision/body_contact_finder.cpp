@@ -1,9 +1,11 @@
 #include "body_contact_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "contact_region.h"
 #include "sweep.h"
 
 namespace mrhi {
@@ -95,22 +97,67 @@ std::optional<Touch> find_touch(const ShapePair& pair, double step, double follo
   return swept(pair, step, margin);
 }
 
-/// The anchors' stretch is kept; they move along with the place where the surfaces meet, so that rolling
+/// The anchors' stretch is kept; they move along with the place where friction acts, so that rolling
 /// stretches nothing.
 ///
 /// xi = A - B less its part along n, from the two body-fixed places that stick to each other. Both are set
-/// anew half of it to either side of the point: A - B is still xi, but a pair that rolls or turns has its
+/// anew half of it to either side of that place: A - B is still xi, but a pair that rolls or turns has its
 /// anchors where it touches now, at the arms that its forces have.
-void anchor(const MovingBody& a, const MovingBody& b, bool lasting, BodyContact& contact) {
-  contact.stretch.setZero();
-  if (lasting) {
-    const Vector3 apart = a.pose * contact.anchor_a - b.pose * contact.anchor_b;
-    contact.stretch = apart - contact.normal.dot(apart) * contact.normal;
-  } else {
-    contact.friction = Friction::sticking;
+void anchor(const MovingBody& a, const MovingBody& b, BodyContact& contact) {
+  const Vector3 place = contact.point + contact.friction_offset;
+  contact.anchor_a = a.pose.to_local(place + 0.5 * contact.stretch);
+  contact.anchor_b = b.pose.to_local(place - 0.5 * contact.stretch);
+}
+
+/// Corners that are this much alike in their distances from the middle may be places on a rim.
+constexpr double kOnRim = 0.01;
+/// Mean distance of a disc's places from its middle, over its radius.
+constexpr double kDisc = 2.0 / 3.0;
+
+/// True if four places on the rim of a can's cap touch.
+bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place, 4>& places) {
+  const auto stands = [&](const ManifoldShape& shape, const Pose& pose) {
+    return shape.prism && shape.prism->round &&
+           std::abs((pose.orientation * Vector3::UnitZ()).dot(normal)) > kSameFace;
+  };
+  if (!stands(pair.shape_a, pair.a.pose * pair.placed_a.pose) &&
+      !stands(pair.shape_b, pair.b.pose * pair.placed_b.pose))
+    return false;
+  Place middle{};
+  for (const Place& place : places) middle = {middle[0] + 0.25 * place[0], middle[1] + 0.25 * place[1]};
+  std::array<double, 4> distances{};
+  std::transform(places.begin(), places.end(), distances.begin(),
+                 [&](const Place& place) { return std::hypot(place[0] - middle[0], place[1] - middle[1]); });
+  const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
+  return *most - *least < kOnRim * *most;
+}
+
+/// Draws the places of friction in towards the centre of the load, by spread_of(): sliding has the same force
+/// and the same moment as before, spinning that of a face that presses evenly. The load is that of the step
+/// before, or even.
+void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& region, int count) {
+  if (count < 2) return;
+  const Vector3& normal = region[0]->normal;
+  const Vector3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::array<Place, 4> places{};
+  Vector3 centre = Vector3::Zero(), even = Vector3::Zero();
+  double load = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const BodyContact& contact = *region[static_cast<std::size_t>(i)];
+    const Vector3 offset = contact.point - region[0]->point;
+    const double push = std::max(0.0, -normal.dot(contact.force));
+    places[static_cast<std::size_t>(i)] = {u.dot(offset), v.dot(offset)};
+    centre += push * contact.point;
+    load += push;
+    even += contact.point / count;
   }
-  contact.anchor_a = a.pose.to_local(contact.point + 0.5 * contact.stretch);
-  contact.anchor_b = b.pose.to_local(contact.point - 0.5 * contact.stretch);
+  centre = load > 0.0 ? Vector3(centre / load) : even;
+  const double spread = count == 4 && on_rim(pair, normal, places) ? kDisc : spread_of(places, count);
+  for (int i = 0; i < count; ++i) {
+    BodyContact& contact = *region[static_cast<std::size_t>(i)];
+    const Vector3 inwards = (1.0 - spread) * (centre - contact.point);
+    contact.friction_offset = inwards - normal.dot(inwards) * normal;
+  }
 }
 
 /// What all points of a touch have in common.
@@ -140,16 +187,23 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
-  contact.normal = touch.manifold.normal;
+  contact.normal = touch.manifold.normal_of(point.region);
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
-  contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count;
+  contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count_of(point.region);
   contact.first_touch = touch.time;
   if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kApart;
   contact.material = common.material;
   contact.arm_a = point.point - common.centre_a;
   contact.arm_b = point.point - common.centre_b;
-  anchor(pair.a, pair.b, lasting, contact);
+  contact.friction_offset.setZero();
+  contact.stretch.setZero();
+  if (lasting) {
+    const Vector3 apart = pair.a.pose * contact.anchor_a - pair.b.pose * contact.anchor_b;
+    contact.stretch = apart - contact.normal.dot(apart) * contact.normal;
+  } else {
+    contact.friction = Friction::sticking;
+  }
   return contact;
 }
 
@@ -263,13 +317,22 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
       if (!touch) continue;
       sort_points(touch->manifold);
       const Common common = common_of(pair, *touch);
+      const std::size_t first = found_.size();
+      std::array<std::array<BodyContact*, 4>, Manifold::kMaxRegions> regions{};
+      std::array<int, Manifold::kMaxRegions> counts{};
+      found_.reserve(first + static_cast<std::size_t>(touch->manifold.count));  // its places stay
       for (int p = 0; p < touch->manifold.count; ++p) {
         const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
         if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
         found_.push_back(make_contact(key, pair, *touch, common, point, memory_of(key, before)));
+        const auto region = static_cast<std::size_t>(point.region);
+        regions[region][static_cast<std::size_t>(counts[region]++)] = &found_.back();
       }
+      for (std::size_t region = 0; region < counts.size(); ++region)
+        place_friction(pair, regions[region], counts[region]);
+      for (std::size_t k = first; k < found_.size(); ++k) anchor(a, b, found_[k]);
     }
   }
 }

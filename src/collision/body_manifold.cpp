@@ -41,6 +41,7 @@ Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const Manifol
   if (!comes_first(a, b)) {
     Manifold manifold = body_manifold(b, pose_b, a, pose_a, margin, least_breadth);
     manifold.normal = -manifold.normal;
+    for (Vector3& normal : manifold.other_normals) normal = -normal;
     return manifold;
   }
   if (a.core) return core_manifold(*a.core, pose_a, b, pose_b, margin);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,16 +12,29 @@ namespace mrhi {
 
 /// One place where two bodies touch.
 struct ManifoldPoint {
-  Vector3 point;         ///< world, midway between the two surfaces
-  double depth;          ///< along the manifold's normal: > 0 overlap, < 0 gap [m]
-  std::uint8_t feature;  ///< names the corners, edges or rims that meet; the same from step to step
+  Vector3 point;            ///< world, midway between the two surfaces
+  double depth;             ///< along the manifold's normal: > 0 overlap, < 0 gap [m]
+  std::uint8_t feature;     ///< names the corners, edges or rims that meet; the same from step to step
+  std::uint8_t region = 0;  ///< of the surface, with a normal of its own
 };
 
-/// How two shapes touch. Empty if they are farther apart than the margin.
+/// How two shapes touch. Empty if they are farther apart than the margin. Only meshes that are not convex
+/// touch in several regions at a time, as a die in a cup touches floor and wall; the first has the deepest
+/// point, the others overlap.
 struct Manifold {
+  static constexpr int kMaxRegions = 3;
   Vector3 normal = Vector3::UnitZ();  ///< unit, world, out of b towards a: moving a along it separates
-  std::array<ManifoldPoint, 8> points{};
+  std::array<Vector3, kMaxRegions - 1> other_normals{};  ///< of the further regions, likewise
+  std::array<ManifoldPoint, 4 * kMaxRegions> points{};
   int count = 0;
+  const Vector3& normal_of(int region) const {
+    return region == 0 ? normal : other_normals[static_cast<std::size_t>(region - 1)];
+  }
+  int count_of(int region) const {
+    return static_cast<int>(
+        std::count_if(points.begin(), points.begin() + count,
+                      [=](const ManifoldPoint& point) { return point.region == region; }));
+  }
   /// Overlap of two prisms across the normal: the breadth of the strip in which they touch; unlimited of
   /// other shapes [m].
   double breadth = 1e300;

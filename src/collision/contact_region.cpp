@@ -102,6 +102,49 @@ void ContactRegion::reduce() {
   }
 }
 
+// With p the distance of an edge's line from the middle, t along it from where it is nearest, and r that of
+// its ends, the triangle of the middle and the edge has the area p (t_2 - t_1) / 2 and
+//
+//     integral of r dA = (p / 6) [ t_2 r_2 - t_1 r_1 + p^2 log((t_2 + r_2) / (t_1 + r_1)) ]
+double spread_of(std::array<Place, 4> corners, int count) {
+  if (count < 2) return 1.0;
+  if (count == 2) return 0.5;
+  // In order around: of four, such that both diagonals part the other two.
+  if (count == 4) {
+    const auto parts = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+      return cross(corners[i], corners[j], corners[k]) * cross(corners[i], corners[j], corners[l]) < 0.0;
+    };
+    if (parts(0, 1, 2, 3)) {
+      std::swap(corners[1], corners[2]);
+    } else if (parts(0, 3, 1, 2)) {
+      std::swap(corners[2], corners[3]);
+    }
+  }
+  Place middle{};
+  for (int i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 2; ++k) middle[k] += corners[static_cast<std::size_t>(i)][k] / count;
+  std::array<double, 4> away{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    corners[i] = {corners[i][0] - middle[0], corners[i][1] - middle[1]};
+    away[i] = std::sqrt(corners[i][0] * corners[i][0] + corners[i][1] * corners[i][1]);
+  }
+  double moment = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const std::size_t next = i + 1 < static_cast<std::size_t>(count) ? i + 1 : 0;
+    const double x = corners[next][0] - corners[i][0], y = corners[next][1] - corners[i][1];
+    const double length = std::sqrt(x * x + y * y);
+    const double distance = cross({}, corners[i], corners[next]) / length;
+    if (!(std::abs(distance) > 1e-9 * length)) continue;
+    const double start = (x * corners[i][0] + y * corners[i][1]) / length, end = start + length;
+    moment += distance / 6.0 *
+              (end * away[next] - start * away[i] +
+               distance * distance * std::log((end + away[next]) / (start + away[i])));
+    area += 0.5 * distance * length;
+  }
+  const double of_corners = (away[0] + away[1] + away[2] + away[3]) / count;
+  return area != 0.0 ? moment / area / of_corners : 0.5;
+}
+
 /// The direction is (0.137, 0.241, 0.961), of length 1 and square to nothing that is likely in a scene: faces
 /// that meet exactly upright still have one that is below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal) {

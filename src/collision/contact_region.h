@@ -65,6 +65,12 @@ struct ContactRegion {
   std::uint8_t first_deepest() const;
 };
 
+/// How much nearer to the middle the places of a face are than its corners, on average: the mean distance of
+/// a convex polygon's places from the mean of its corners, over that of the corners. A face that presses
+/// evenly and spins has the friction of all its places. 1/2 of a line, 1 of a point. In any order, at most
+/// four corners.
+double spread_of(std::array<Place, 4> corners, int count);
+
 /// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it
 /// is the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal);

@@ -188,21 +188,22 @@ class Touches {
     if (count_ > kRemembered) return measure(wanted, see);
     for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
   }
-  /// The bound grows as it is found: nodes that cannot beat it are left out.
-  double greatest_depth() const {
-    double depth = -1e300;
+  /// Returns the first of the deepest of those that `fits` accepts and that are deeper than `least`.
+  /// The bound grows with what is found: nodes that cannot exceed it are left out.
+  template <typename Fits>
+  std::optional<Touch> deepest(double least, const Fits& fits) const {
+    double depth = least;
     each([&](const Probing& probing, const MeshTree::Node& node) { return probing.most(node) > depth; },
-         [&](const Touch& touch) { depth = std::max(depth, touch.depth); });
-    return depth;
-  }
-  /// The first of those that are as deep.
-  std::optional<Touch> deepest() const {
-    const double depth = greatest_depth() - kSameDepth;
+         [&](const Touch& touch) {
+           if (touch.depth > depth && fits(touch)) depth = touch.depth;
+         });
+    if (depth <= least) return std::nullopt;
+    depth -= kSameDepth;
     std::optional<Touch> found;
     each([&](const Probing& probing,
              const MeshTree::Node& node) { return !found && probing.most(node) >= depth; },
          [&](const Touch& touch) {
-           if (!found && touch.depth >= depth) found = touch;
+           if (!found && touch.depth >= depth && fits(touch)) found = touch;
          });
     return found;
   }
@@ -272,16 +273,14 @@ class Spread {
   std::array<Touch, kDirections> outermost_;
 };
 
-/// Seen along the normal, in the plane of u and v; `feature` counts the points while they are sorted, and is
-/// a name again at the end. Two that have the same name, which numbers modulo 100 and 28 may give, are told
-/// apart by the next free one.
-Manifold chosen(const Touches& touches) {
-  Manifold manifold;
-  const auto deepest = touches.deepest();
-  if (!deepest) return manifold;
-  manifold.normal = deepest->normal;
-  const Spread spread(touches, *deepest);
-  const Vector3 u = manifold.normal.unitOrthogonal(), v = manifold.normal.cross(u);
+using Names = std::array<bool, 256>;
+
+/// Adds the region of the deepest touch, seen along the normal, in the plane of u and v. While they are
+/// sorted, `feature` counts the points; in the end it is a name again. Two with the same name, which numbers
+/// modulo 100 and 28 may give, are told apart by the next free one.
+void add_region(const Touches& touches, const Touch& deepest, int number, Names& named, Manifold& manifold) {
+  const Spread spread(touches, deepest);
+  const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
   std::array<const Touch*, kDirections + 1> taken{};
   ContactRegion region;
   const auto take = [&](const Touch& touch) {
@@ -290,21 +289,41 @@ Manifold chosen(const Touches& touches) {
           taken[static_cast<std::size_t>(i)]->point == touch.point)
         return;
     taken[static_cast<std::size_t>(region.count)] = &touch;
-    const Vector3 offset = touch.point - deepest->point;
+    const Vector3 offset = touch.point - deepest.point;
     region.add({{{u.dot(offset), v.dot(offset)}}, touch.depth, static_cast<std::uint8_t>(region.count), 0});
   };
-  take(*deepest);
+  take(deepest);
   for (const Touch& touch : spread.outermost()) take(touch);
   region.sort_around();
   region.reduce();
   region.straighten();
-  std::array<bool, 256> named{};
   for (int i = 0; i < region.count; ++i) {
     const Touch& touch = *taken[region[i].feature];
     std::uint8_t name = touch.feature;
     while (named[name]) ++name;
     named[name] = true;
     add_point(manifold, touch.point, touch.depth, name);
+    manifold.points[static_cast<std::size_t>(manifold.count - 1)].region = static_cast<std::uint8_t>(number);
+  }
+}
+
+/// Two convex shapes touch in one region: what agrees with no other is a corner near an edge.
+/// Elsewhere each further region begins with the deepest overlap that agrees with none of the others. Gaps do
+/// not begin one: beyond the rim of a table the nearest surface of it is its side.
+Manifold chosen(const Touches& touches, bool convex) {
+  Manifold manifold;
+  Names named{};
+  auto deepest = touches.deepest(-1e300, [](const Touch&) { return true; });
+  for (int region = 0; deepest; ++region) {
+    (region == 0 ? manifold.normal : manifold.other_normals[static_cast<std::size_t>(region - 1)]) =
+        deepest->normal;
+    add_region(touches, *deepest, region, named, manifold);
+    if (convex || region + 1 == Manifold::kMaxRegions) break;
+    deepest = touches.deepest(0.0, [&](const Touch& touch) {
+      for (int k = 0; k <= region; ++k)
+        if (touch.normal.dot(manifold.normal_of(k)) >= kAgrees) return false;
+      return true;
+    });
   }
   return manifold;
 }
@@ -313,7 +332,11 @@ Manifold chosen(const Touches& touches) {
 
 Manifold mesh_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
                        double margin) {
-  return chosen({{a, pose_a, b, pose_b, true, margin}, {b, pose_b, a, pose_a, false, margin}});
+  const auto is_convex = [](const ManifoldShape& shape) {
+    return shape.mesh == nullptr || shape.mesh->shape().surface.convex();
+  };
+  return chosen({{a, pose_a, b, pose_b, true, margin}, {b, pose_b, a, pose_a, false, margin}},
+                is_convex(a) && is_convex(b));
 }
 
 }  // namespace mrhi

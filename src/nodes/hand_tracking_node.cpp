@@ -1,5 +1,3 @@
-#include <ros/ros.h>
-
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
@@ -27,9 +25,5 @@ Takes what hand trackers publish, and publishes the hands in world on hand_frame
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    const mrhi::HandTracking tracking(node, private_node);
-    ros::spin();
-  };
-  return mrhi::run_node(argc, argv, "hand_tracking_node", kUsage, body);
+  return mrhi::run_node<mrhi::HandTracking>(argc, argv, "hand_tracking_node", kUsage);
 }

@@ -1,8 +1,19 @@
+#include <mr_hand_interaction/HandFrame.h>
 #include <ros/ros.h>
 
-#include "../ros/hand_merging.h"
-#include "../ros/node.h"
+#include <boost/make_shared.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "../ros/input_statistics.h"
+#include "../ros/node.h"
+#include "../text/text.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/tracking/hand_merger.h"
+
+namespace mrhi {
 namespace {
 
 constexpr const char* kUsage =
@@ -16,12 +27,79 @@ their hands in one frame.
             fused: all topics have the hands of one person; of each side one hand comes, by the trackers' confidence
 )";
 
+constexpr int kQueue = 10;
+const char* const kWrongFrame = "wrong frame";
+const char* const kUnusable = "unusable hand";
+
+struct Parameters {
+  explicit Parameters(const ros::NodeHandle& node) {
+    NodeParameters known;
+    known.texts("inputs", 2, 8, "topics with hand frames", inputs);
+    known.choice<HandMerger::Mode>(
+        "mode", {{"people", HandMerger::Mode::people}, {"fused", HandMerger::Mode::fused}}, mode);
+    known.read(node);
+    if (inputs.empty())
+      throw ParameterError(
+          "parameter 'inputs' is missing; allowed: a list of 2 to 8 topics with hand frames");
+  }
+
+  std::vector<std::string> inputs;
+  HandMerger::Mode mode = HandMerger::Mode::people;
+};
+
 }  // namespace
 
+/// Merges the hand_frame topics of several hand_tracking_nodes into one. Throws ParameterError for a bad
+/// parameter.
+class HandMerging {
+ public:
+  HandMerging(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+      : HandMerging(node, private_node, Parameters(private_node)) {}
+
+ private:
+  HandMerging(ros::NodeHandle node, const ros::NodeHandle& private_node, const Parameters& parameters)
+      : inputs_(parameters.inputs),
+        merger_(inputs_.size(), parameters.mode),
+        diagnostics_(node, private_node, "merged hands", "hand input", {kWrongFrame, kUnusable}),
+        publisher_(node.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue)) {
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const auto take_one = [this, i](const mr_hand_interaction::HandFrame::ConstPtr& message) {
+        take(i, *message);
+      };
+      subscribers_.push_back(node.subscribe<mr_hand_interaction::HandFrame>(
+          inputs_[i], kQueue, take_one, nullptr, ros::TransportHints().tcpNoDelay()));
+    }
+  }
+
+  void take(std::size_t stream, const mr_hand_interaction::HandFrame& message) {
+    if (frame_id_.empty()) frame_id_ = message.header.frame_id;
+    if (message.header.frame_id != frame_id_) {
+      diagnostics_.rejected(kWrongFrame, inputs_[stream] + ": '" +
+                                             text::one_line(message.header.frame_id, 64) +
+                                             "'; allowed: " + frame_id_ + ", as of the others");
+      return;
+    }
+    try {
+      for (const HandFrame& frame : merger_.take(stream, from_message(message))) {
+        publisher_.publish(
+            boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(frame, frame_id_)));
+        diagnostics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
+      }
+    } catch (const std::invalid_argument& error) {
+      diagnostics_.rejected(kUnusable, inputs_[stream] + ": " + error.what());
+    }
+  }
+
+  std::vector<std::string> inputs_;
+  HandMerger merger_;
+  std::string frame_id_;  // of the first frame; all must have it
+  NodeDiagnostics diagnostics_;
+  ros::Publisher publisher_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+}  // namespace mrhi
+
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    const mrhi::HandMerging merging(node, private_node);
-    ros::spin();
-  };
-  return mrhi::run_node(argc, argv, "merge_hands", kUsage, body);
+  return mrhi::run_node<mrhi::HandMerging>(argc, argv, "merge_hands", mrhi::kUsage);
 }

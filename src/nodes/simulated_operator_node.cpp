@@ -1,8 +1,22 @@
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
 
-#include "../ros/node.h"
-#include "../ros/operator_publisher.h"
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <vector>
 
+#include "../ros/leap_human_publisher.h"
+#include "../ros/node.h"
+#include "../training/operator_trial.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
+
+namespace mrhi {
 namespace {
 
 constexpr const char* kUsage =
@@ -18,12 +32,162 @@ hand on /leap_motion/leap_device.
   ~rate    frames per second; default 115
 )";
 
+using Status = mr_hand_interaction::TrainingStatus;
+
+/// A person whom the machine has kept waiting goes on from where he was [periods].
+constexpr double kLongestMove = 2.0;
+
+Body body_of(const TaskObject& object) {
+  constexpr double kUsualFriction = 0.8;
+  SceneOptions options;
+  options.default_material.static_friction = kUsualFriction;
+  const Scene scene = load_scene(find_scene_file(object.file, scene_folders()), options);
+  Body body = scene.bodies.at(find_body(scene, object.name).value_or(0));
+  body.start = object.start;
+  return body;
+}
+
+/// What the node is told on the parameter server.
+struct Parameters {
+  explicit Parameters(const ros::NodeHandle& node) {
+    NodeParameters known;
+    known.text("group", group).number("noise", 0.0, 10.0, noise).number("rate", 1.0, 1000.0, rate);
+    known.whole("seed", 0, seed).text("task", task).read(node);
+  }
+
+  std::string group = "none", task = "pick_and_place";
+  double noise = 1.0, rate = 115.0;  ///< [Hz]
+  std::uint64_t seed = 1;
+};
+
+Task checked_task(const std::string& name) {
+  Task task = load_task(find_task_file(name, task_folders()));
+  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // or says why not
+  return task;
+}
+
 }  // namespace
 
+/// A simulated operator does the trials of a running training_node: sees `objects` and `training/status`, and
+/// its hand is on /leap_motion/leap_device, at default_device_mount(), as long as a trial runs.
+class OperatorPublisher {
+ public:
+  /// Throws an exception that names what is wrong and what is allowed.
+  OperatorPublisher(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+      : OperatorPublisher(node, Parameters(private_node)) {}
+
+ private:
+  OperatorPublisher(ros::NodeHandle node, const Parameters& parameters)
+      : task_(checked_task(parameters.task)),
+        skill_(parameters.group == "none" ? OperatorSkill{} : draw_skill(parameters.group, parameters.seed)),
+        seed_(parameters.seed),
+        rate_(parameters.rate),
+        noise_(parameters.noise, seed_),
+        publisher_(node, rate_) {
+    for (const TaskObject& object : task_.objects) {
+      if (const Body body = body_of(object); body.fixed) fixed_[object.name] = body.start;
+    }
+    const auto hints = ros::TransportHints().tcpNoDelay();
+    subscribers_ = {
+        node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
+        node.subscribe<mr_hand_interaction::ContactArray>(
+            "contacts", 1,
+            [this](const mr_hand_interaction::ContactArray::ConstPtr& message) { contacts_ = *message; },
+            nullptr, hints),
+        node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
+    timer_ =
+        node.createWallTimer(ros::WallDuration(1.0 / rate_), [this](const ros::WallTimerEvent&) { tick(); });
+  }
+
+  void take(const mr_hand_interaction::ObjectStateArray& message) {
+    for (const auto& object : message.objects) {
+      if (object.name == status_.object) object_ = object;
+    }
+  }
+
+  void take_status(const mr_hand_interaction::TrainingStatus& status) { status_ = status; }
+  void tick() {
+    const ros::Time now = ros::Time::now();
+    const double since = std::clamp(seconds_between(ticked_, now), 0.0, kLongestMove / rate_);
+    ticked_ = now;
+    if (const auto fixed = fixed_.find(status_.object); fixed != fixed_.end()) {
+      object_.name = fixed->first;
+      object_.pose = to_message(fixed->second);
+    }
+    const bool other = person_ && trial_ != status_.trial;
+    if (!at_work() || other) {
+      person_.reset();
+      hands_.clear();
+      object_.name.clear();
+    } else if (status_.phase == Status::RUNNING && object_.name == status_.object) {
+      if (person_) {
+        time_ += since;
+      } else {
+        begin();
+      }
+      move();
+    }
+    JointsFrame frame{from_ros_time(now), hands_};
+    noise_.apply(frame);
+    publisher_.publish(frame);
+  }
+
+  bool at_work() const { return status_.phase == Status::RUNNING || status_.phase == Status::PAUSED; }
+
+  void begin() {
+    trial_ = status_.trial;
+    time_ = 0.0;
+    const auto named = [this](const TaskObject& object) { return object.name == object_.name; };
+    const auto object = std::find_if(task_.objects.begin(), task_.objects.end(), named);
+    if (object == task_.objects.end())
+      throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
+                                  "': training_node and the simulated operator must have the same task");
+    person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_);
+  }
+
+  void move() {
+    const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
+    const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
+    Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+    sight.grip = grip();
+    const HandPlace hand = person_->move(time_, sight);
+    hands_ = {
+        hand_joints(human_hand(), Side::right, default_device_mount().inverse() * hand.wrist, hand.posture)};
+    hands_.front().id = trial_;
+  }
+
+  /// As observe() has it.
+  double grip() const {
+    double pressing = 0.0;
+    for (const auto& contact : contacts_.contacts) {
+      if (contact.object == object_.name)
+        pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+    }
+    return 0.5 * pressing;
+  }
+
+  Task task_;
+  OperatorSkill skill_;
+  std::uint64_t seed_;
+  double rate_;
+  TrackingNoise noise_;
+  mr_hand_interaction::TrainingStatus status_;
+  mr_hand_interaction::ObjectState object_;  ///< of the trial; without a name: not seen yet
+  std::map<std::string, Pose> fixed_;        ///< what no message has: devices, by name
+  mr_hand_interaction::ContactArray contacts_;
+  std::unique_ptr<Person> person_;
+  std::uint32_t trial_ = 0;
+  ros::Time ticked_;
+  double time_ = 0.0;  ///< that the person has moved since the trial's begin, by the frames' stamps [s]
+  std::vector<HandJoints> hands_;
+
+  LeapHumanPublisher publisher_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace mrhi
+
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    const mrhi::OperatorPublisher publisher(node, private_node);
-    ros::spin();
-  };
-  return mrhi::run_node(argc, argv, "simulated_operator_node", kUsage, body);
+  return mrhi::run_node<mrhi::OperatorPublisher>(argc, argv, "simulated_operator_node", mrhi::kUsage);
 }

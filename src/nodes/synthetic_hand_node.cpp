@@ -1,19 +1,26 @@
 #include <ros/ros.h>
+#include <std_srvs/Trigger.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "../ros/leap_human_publisher.h"
 #include "../ros/node.h"
-#include "../ros/synthetic_hand_publisher.h"
 #include "../text/command_line.h"
 #include "../text/files.h"
 #include "exit_status.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
+namespace mrhi {
 namespace {
 
 constexpr const char* kUsage =
@@ -36,12 +43,18 @@ recording, which needs no master.
   ~reset    the service that a run begins with; default none
 )";
 
+/// The motion of that name; grasp_object's is made for the scene, a name or a URDF's path. Throws
+/// std::invalid_argument, or SceneError.
+ScriptedMotion motion_for(const std::string& motion, const std::string& scene) {
+  if (motion != "grasp_object") return make_motion(motion);
+  return grasp_object(load_scene(find_scene_file(scene, scene_folders()), scene_options({})));
+}
+
 /// Writes one run as a recording; needs no master.
 int write_recording(const std::vector<std::string>& arguments) {
-  using mrhi::Given;
-  mrhi::SyntheticHandOptions options;
+  SyntheticHandOptions options;
   std::string file, scene;
-  mrhi::CommandLine line;
+  CommandLine line;
   line.once("--csv", "FILE", file).once("--motion", "NAME", options.motion);
   line.once("--scene", "NAME|FILE", scene);
   line.once("--side", "left|right", options.side);
@@ -54,26 +67,115 @@ int write_recording(const std::vector<std::string>& arguments) {
     std::cout << kUsage;
     return 0;
   }
-  if (file.empty()) throw mrhi::UsageError("--csv FILE is missing; see --help");
-  const auto frames = mrhi::record_motion(options, mrhi::motion_for(options.motion, scene));
-  std::ofstream out = mrhi::file_to_write(file);
-  mrhi::write_recording_csv(out, frames);
+  if (file.empty()) throw UsageError("--csv FILE is missing; see --help");
+  const auto frames = record_motion(options, motion_for(options.motion, scene));
+  std::ofstream out = file_to_write(file);
+  write_recording_csv(out, frames);
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + file);
   return 0;
 }
 
+/// What the node is told on the parameter server.
+struct Parameters {
+  explicit Parameters(const ros::NodeHandle& node) {
+    NodeParameters known;
+    known.truth("loop", loop).text("motion", options.motion).number("noise", 0.0, 10.0, options.noise);
+    known.number("rate", 1.0, 1000.0, options.rate).text("reset", reset_service).text("scene", scene);
+    known.whole("seed", 0, options.seed).text("side", options.side).read(node);
+  }
+
+  SyntheticHandOptions options;
+  std::string scene, reset_service;
+  bool loop = true;
+};
+
 }  // namespace
+
+/// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on a schedule of its own.
+/// Before each run but the first it calls the std_srvs/Trigger service that ~reset names.
+class SyntheticHandPublisher {
+ public:
+  /// Throws std::invalid_argument naming what is wrong and what is allowed.
+  SyntheticHandPublisher(const ros::NodeHandle& node, const Parameters& parameters)
+      : node_(node),
+        hand_(parameters.options, motion_for(parameters.options.motion, parameters.scene)),
+        loop_(parameters.loop),
+        reset_service_(parameters.reset_service),
+        publisher_(node_, parameters.options.rate) {}
+
+  /// Returns at shutdown, or after the first run if not looping. Begins once somebody listens, or after five
+  /// seconds.
+  void run() {
+    wait_for_listener();
+    if (!ros::Time::waitForValid()) return;
+    looked_ = start_ = from_ros_time(ros::Time::now());
+    for (int run = 0; node_.ok();) {
+      if (hand_.next_run() != run) {
+        if (!loop_) return;
+        run = hand_.next_run();
+        reset_scene();
+      }
+      wait_for_next();
+      if (node_.ok()) {
+        JointsFrame frame = hand_.next();
+        frame.stamp += start_;
+        publisher_.publish(frame);
+      }
+      ros::spinOnce();
+    }
+  }
+
+ private:
+  void wait_for_listener() const {
+    const ros::WallTime latest = ros::WallTime::now() + ros::WallDuration(5.0);
+    while (node_.ok() && !publisher_.has_listener() && ros::WallTime::now() < latest) {
+      ros::WallDuration(0.005).sleep();
+      ros::spinOnce();
+    }
+  }
+
+  /// The run moves along with a clock that leaps, either way: it neither makes up for the time nor waits for
+  /// it.
+  void wait_for_next() {
+    constexpr Nanoseconds kLeap = 1'000'000'000, kLongestSleep = 50'000'000, kLookAtClock = 1'000'000;
+    const Nanoseconds longest = ros::Time::isSimTime() ? kLookAtClock : kLongestSleep;
+    while (node_.ok()) {
+      const Nanoseconds now = from_ros_time(ros::Time::now()), passed = now - std::exchange(looked_, now);
+      if (std::abs(passed) > kLeap) start_ += passed;
+      const Nanoseconds left = start_ + hand_.next_stamp() - now;
+      if (left <= 0) return;
+      ros::WallDuration().fromNSec(std::min(left, longest)).sleep();
+    }
+  }
+
+  void reset_scene() {
+    if (reset_service_.empty()) return;
+    std_srvs::Trigger trigger;
+    if (!ros::service::call(reset_service_, trigger)) {
+      ROS_WARN_THROTTLE(30, "service %s did not answer; the scene is not reset", reset_service_.c_str());
+    }
+  }
+
+  ros::NodeHandle node_;
+  SyntheticHand hand_;
+  bool loop_;
+  Nanoseconds start_ = 0, looked_ = 0;  // ROS time of the first run, and of the last look at the clock
+  std::string reset_service_;
+  LeapHumanPublisher publisher_;
+};
+
+}  // namespace mrhi
 
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
   if (arguments.size() > 1) {
     return mrhi::exit_status("synthetic_hand_node", [&] {
-      return write_recording({arguments.begin() + 1, arguments.end()});
+      return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
     });
   }
   return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
-    mrhi::SyntheticHandPublisher(node, private_node).run();
+    mrhi::SyntheticHandPublisher(node, mrhi::Parameters(private_node)).run();
   });
 }

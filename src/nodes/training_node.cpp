@@ -1,8 +1,29 @@
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/InteractionEvent.h>
+#include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/TrainingEvent.h>
+#include <mr_hand_interaction/TrainingStatus.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "../ros/node.h"
-#include "../ros/training_server.h"
+#include "../ros/training_system.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/training/session.h"
 
+namespace mrhi {
 namespace {
 
 constexpr const char* kUsage =
@@ -21,12 +42,385 @@ all that it needs. Publishes training/status and training/markers. Services: ~ne
                                see docs/training.md
 )";
 
+constexpr int kQueue = 100;
+constexpr double kFresh = 0.1;       // contacts that are older say nothing [s]
+constexpr double kStartRoom = 0.02;  // an object this near its start has been put there [m]
+constexpr double kStartDelay = 0.5;  // it may have moved this long before it is first seen [s]
+constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than messages are ever late
+const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
+
+Nanoseconds now() {
+  return from_ros_time(ros::Time::now());
+}
+
+std::optional<mr_hand_interaction::ObjectState> object_of(
+    const mr_hand_interaction::ObjectStateArray& message, const std::string& name) {
+  for (const auto& object : message.objects) {
+    if (object.name == name) return object;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
+/// Runs a session with the objects of an interaction_node, and shows how far it is. One thread.
+class TrainingServer {
+ public:
+  /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
+  /// operator cannot do, SessionError for a folder that cannot be used.
+  TrainingServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+      : TrainingServer(node, private_node, TrainingParameters(private_node)) {}
+
+  ~TrainingServer() {
+    try {
+      session_.abort(now());
+    } catch (const std::exception& error) {
+      if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that is told
+    }
+  }
+
+ private:
+  TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters)
+      : event_(node.advertise<mr_hand_interaction::TrainingEvent>("training/events", kQueue)),
+        session_(open_session(node, parameters, now(), [this](const EventRow& row) { publish(row); })),
+        scene_(node, parameters.simulation, session_.task()),
+        parameters_(told_configuration(node, parameters, session_.task().gravity)),
+        participant_(parameters.header.participant),
+        auto_next_(parameters.auto_next) {
+    for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
+    if (parameters.auto_start) next_ = ros::WallTime::now();
+    status_ = node.advertise<mr_hand_interaction::TrainingStatus>("training/status", kQueue, true);
+    markers_ = node.advertise<visualization_msgs::MarkerArray>("training/markers", 10);
+    advertise_services(private_node);
+    const auto hints = ros::TransportHints().tcpNoDelay();
+    subscribers_ = {
+        node.subscribe("objects", kQueue, &TrainingServer::take, this, hints),
+        node.subscribe("interaction_events", kQueue, &TrainingServer::take_event, this, hints),
+        node.subscribe("simulation_input", kQueue, &TrainingServer::take_input, this, hints),
+        node.subscribe("contacts", kQueue, &TrainingServer::take_contacts, this, hints),
+        node.subscribe("joint_states", kQueue, &TrainingServer::take_joints, this, hints),
+        node.subscribe("hand_frame", kQueue, &TrainingServer::take_hands, this, hints),
+        node.subscribe("tracked_hands", kQueue, &TrainingServer::take_filtered_hands, this, hints)};
+    timer_ = node.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { tick(); });
+  }
+
+  void advertise_services(ros::NodeHandle& private_node) {
+    using Trigger = std_srvs::Trigger;
+    using SetBool = std_srvs::SetBool;
+    // roscpp goes on after an exception of a service; what cannot be written any more ends the node.
+    const auto answer = [this](const auto& action, auto& response) {
+      std::string wrong = failed_;
+      try {
+        session_.folder().check_there();
+        if (wrong.empty()) wrong = action();
+      } catch (const SessionError& error) {
+        wrong = failed_ = error.what();
+      }
+      response.success = wrong.empty();
+      response.message = wrong;
+      publish();
+      return true;
+    };
+    const auto offer = [&](const char* name, std::string (TrainingServer::*action)()) {
+      services_.push_back(private_node.advertiseService<Trigger::Request, Trigger::Response>(
+          name, [this, answer, action](Trigger::Request&, Trigger::Response& response) {
+            return answer([&] { return (this->*action)(); }, response);
+          }));
+    };
+    offer("skip", &TrainingServer::skip);
+    offer("repeat", &TrainingServer::repeat);
+    offer("next", &TrainingServer::next);
+    services_.push_back(private_node.advertiseService<SetBool::Request, SetBool::Response>(
+        "pause", [this, answer](SetBool::Request& request, SetBool::Response& response) {
+          return answer([&] { return pause(request.data); }, response);
+        }));
+  }
+
+  void take(const mr_hand_interaction::ObjectStateArray& message) {
+    std::set<std::string> names;
+    person_.reset();
+    for (const auto& object : message.objects) {
+      if (!object.is_operator) names.insert(object.name);
+      if (object.is_operator && !person_)
+        person_ = OperatorMotion{from_message(object.pose),
+                                 {from_message(object.twist.linear), from_message(object.twist.angular)}};
+    }
+    scene_.note_objects(std::move(names), person_.has_value());
+    fixed_frame_ = message.header.frame_id;
+    seen_ = object_of(message, watched().name);
+    if (session_.phase() != SessionPhase::running) return;
+    const std::optional<Observation> seen = observed(message);
+    at_start_ |= seen && starts(*seen);
+    if (!seen || !at_start_) return;
+    session_.update(*seen);
+    tracking_losses_ = touches_ = 0;
+    put_back_ = false;
+    if (session_.phase() != SessionPhase::running) note_end();
+    if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
+  }
+
+  /// Where a trial has it begin; from messages that came before it was put there it may be elsewhere.
+  bool starts(const Observation& seen) const {
+    const ObjectModel& model = scene_.model(session_.object().name);
+    const Body& body = model.scene.bodies[model.body];
+    if ((seen.pose.position - body.start.position).norm() >=
+        kStartRoom + kStartDelay * body.start_twist.linear.norm())
+      return false;
+    if (seen.joints.size() != model.scene.joints.size()) return false;
+    return std::all_of(seen.joints.begin(), seen.joints.end(), [&](const auto& joint) {
+      const double start =
+          model.scene.joints[static_cast<std::size_t>(*find_joint(model.scene, joint.first))].start;
+      return std::abs(joint.second - start) < kStartRoom;
+    });
+  }
+
+  /// What the participant is to look at: of a device what the goal's joint moves.
+  const Body& watched() const {
+    const ObjectModel& model = scene_.model(session_.object().name);
+    const Goal& goal = session_.task().goals[session_.trial().goal()];
+    if (goal.kind != GoalKind::joint) return model.scene.bodies[model.body];
+    const auto joint = static_cast<std::size_t>(*find_joint(model.scene, goal.joint));
+    return model.scene.bodies[static_cast<std::size_t>(model.scene.joints[joint].child)];
+  }
+
+  void take_event(const mr_hand_interaction::InteractionEvent& event) {
+    if (!at_start_) return;
+    tracking_losses_ += event.kind == event.HAND_LOST;
+    touches_ += event.kind == event.CONTACT_BEGIN;
+    put_back_ |= event.kind == event.OUT_OF_BOUNDS &&
+                 find_body(scene_.model(session_.object().name).scene, event.object).has_value();
+  }
+
+  /// Who changes the system while a session runs is not stopped, but it is written down.
+  void take_input(const mr_hand_interaction::SimulationInput& message) {
+    try {
+      for (const ParameterWatch::Difference& parameter : parameters_.take(message)) {
+        session_.note_parameter(parameter.name, parameter.value, parameter.as_begun, now());
+        ROS_WARN("%s is %s%s", parameter.name.c_str(), parameter.value.c_str(),
+                 parameter.as_begun ? " again, as the session was begun with"
+                                    : ", which is not what the session was begun with: events.csv says so");
+      }
+    } catch (const SessionError&) {
+      throw;
+    } catch (const std::exception& error) {
+      ROS_WARN("a change of the running system cannot be read: %s", error.what());
+    }
+  }
+
+  void take_contacts(const mr_hand_interaction::ContactArray& message) { contacts_ = message; }
+  void take_joints(const sensor_msgs::JointState& message) { joints_ = message; }
+  void take_hands(const mr_hand_interaction::HandFrame& message) { log_hands(message, false); }
+  void take_filtered_hands(const mr_hand_interaction::HandFrame& message) { log_hands(message, true); }
+
+  void log_hands(const mr_hand_interaction::HandFrame& message, bool filtered) {
+    using mr_hand_interaction::Phalanx;
+    for (const auto& hand : message.hands) {
+      for (const Phalanx& phalanx : hand.phalanges) {
+        if (phalanx.finger != Phalanx::INDEX || phalanx.bone != Phalanx::DISTAL) continue;
+        HandRow row;
+        row.filtered = filtered;
+        row.hand = hand.id;
+        row.side = hand.side;
+        row.start = from_message(phalanx.start);
+        row.end = from_message(phalanx.end);
+        row.radius = phalanx.radius;
+        session_.log_hand(row, on_our_clock(message.header.stamp));
+      }
+    }
+  }
+
+  /// Stamps are those of the machine that the hands come from, whose clock may be another one.
+  Nanoseconds on_our_clock(const ros::Time& stamp) {
+    const Nanoseconds apart = now() - from_ros_time(stamp);
+    if (std::abs(apart - clocks_apart_) > kClocksApart) clocks_apart_ = apart;
+    return from_ros_time(stamp) + clocks_apart_;
+  }
+
+  /// Of the object and what hangs on it; nothing while it is not there.
+  std::optional<Observation> observed(const mr_hand_interaction::ObjectStateArray& message) {
+    const ObjectModel& model = scene_.model(session_.object().name);
+    Observation seen;
+    seen.stamp = on_our_clock(message.header.stamp);
+    seen.pose = model.scene.bodies[model.body].start;  // of a fixture, which no message has
+    seen.tracking_losses = tracking_losses_;
+    seen.put_back = put_back_;
+    seen.touches = touches_;
+    seen.person = person_;
+    std::set<std::string> parts;
+    bool there = false;
+    for (const Body& body : model.scene.bodies) {
+      parts.insert(body.name);
+      const auto object = object_of(message, body.name);
+      if (!object) continue;
+      there = true;
+      seen.held |= object->held != 0;
+      if (body.name != session_.object().name) continue;
+      seen.pose = from_message(object->pose);
+      seen.twist = {from_message(object->twist.linear), from_message(object->twist.angular)};
+    }
+    if (!there) return std::nullopt;
+    for (std::size_t j = 0; j < std::min(joints_.name.size(), joints_.position.size()); ++j) {
+      if (find_joint(model.scene, joints_.name[j]))
+        seen.joints.emplace_back(joints_.name[j], joints_.position[j]);
+    }
+    feel(message.header.stamp, parts, seen);
+    return seen;
+  }
+
+  /// What hands do to it.
+  void feel(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const {
+    const Nanoseconds apart = from_ros_time(stamp) - from_ros_time(contacts_.header.stamp);
+    if (std::abs(to_seconds(apart)) > kFresh) return;
+    double pressing = 0.0;
+    for (const auto& contact : contacts_.contacts) {
+      if (parts.count(contact.object) == 0) continue;
+      seen.touched = true;
+      pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+    }
+    seen.grip_force = 0.5 * pressing;
+  }
+
+  void tick() {
+    if (!failed_.empty()) throw SessionError(failed_);
+    if (session_.phase() != SessionPhase::finished) session_.folder().check_there();
+    const ros::WallTime time = ros::WallTime::now();
+    if (session_.phase() == SessionPhase::ready && !paused_ && !next_.isZero() && time >= next_) {
+      const std::string wrong = begin_trial();
+      if (!wrong.empty()) ROS_WARN_DELAYED_THROTTLE(10.0, "the trial cannot begin yet: %s", wrong.c_str());
+      next_ = wrong.empty() ? ros::WallTime() : time + kRetry;
+    }
+    publish();
+  }
+
+  /// Empty, or what went wrong.
+  std::string begin_trial() {
+    const std::string wrong = scene_.prepare(session_.object());
+    if (!wrong.empty()) return wrong;
+    tracking_losses_ = touches_ = 0;
+    put_back_ = at_start_ = false;
+    session_.begin(now());
+    return "";
+  }
+
+  std::string pause(bool paused) {
+    const std::string wrong = scene_.pause(paused);
+    if (!wrong.empty()) return wrong;
+    paused_ = paused;
+    session_.pause(paused, now());
+    return "";
+  }
+
+  std::string skip() {
+    if (session_.phase() == SessionPhase::finished) return "all trials are done; allowed: repeat";
+    session_.skip(now());
+    note_end();
+    return "";
+  }
+
+  std::string repeat() {
+    session_.repeat(now());
+    note_end();
+    return next();
+  }
+
+  std::string next() {
+    if (paused_) return "the session is paused; allowed: pause with false, then next";
+    if (session_.phase() == SessionPhase::running) return "a trial is running; allowed: pause, skip, repeat";
+    if (session_.phase() == SessionPhase::finished) return "all trials are done; allowed: repeat";
+    next_ = ros::WallTime::now();
+    return "";
+  }
+
+  void note_end() {
+    at_start_ = false;
+    next_ = auto_next_ < 0.0 ? ros::WallTime() : ros::WallTime::now() + ros::WallDuration(auto_next_);
+    const std::optional<TrialRow>& last = session_.last();
+    if (last)
+      ROS_INFO("trial %d, %s: %s after %.1f s, grasped %d times, dropped %d times", last->trial,
+               last->object.c_str(), to_string(last->result), last->measures.completion_time,
+               last->measures.attempts, last->measures.drops);
+    if (session_.phase() == SessionPhase::finished)
+      ROS_INFO("All trials are done. The questions: rosrun mr_hand_interaction ask_ratings %s",
+               session_.folder().path().c_str());
+  }
+
+  mr_hand_interaction::TrainingStatus status() const {
+    const Task& task = session_.task();
+    const Trial& trial = session_.trial();
+    mr_hand_interaction::TrainingStatus status;
+    status.header.stamp = ros::Time::now();
+    status.header.frame_id = fixed_frame_;
+    status.phase = static_cast<std::uint8_t>(paused_ ? SessionPhase::paused : session_.phase());
+    status.stage = static_cast<std::uint8_t>(trial.stage());
+    status.participant = participant_;
+    status.task = task.name;
+    status.object = session_.object().name;
+    status.trials = static_cast<std::uint32_t>(session_.trials());
+    status.trial = std::min(static_cast<std::uint32_t>(session_.position() + 1), status.trials);
+    status.repetition =
+        static_cast<std::uint32_t>(session_.position() / task.objects.size()) + (task.practice ? 0U : 1U);
+    status.goal = static_cast<std::uint32_t>(trial.goal() + 1);
+    status.goals = static_cast<std::uint32_t>(task.goals.size());
+    status.place = static_cast<std::uint32_t>(task.place_number(trial.goal()));
+    status.places = static_cast<std::uint32_t>(task.places());
+    status.inside = trial.inside();
+    status.progress = trial.progress();
+    status.remaining = trial.remaining();
+    status.elapsed = trial.elapsed();
+    status.attempts = static_cast<std::uint32_t>(trial.measures().attempts);
+    status.drops = static_cast<std::uint32_t>(trial.measures().drops);
+    status.instruction = instruction_now(session_, paused_, !next_.isZero());
+    if (session_.last()) status.result = to_string(session_.last()->result);
+    return status;
+  }
+
+  void publish() {
+    const mr_hand_interaction::TrainingStatus message = status();
+    status_.publish(message);
+    if (markers_.getNumSubscribers() > 0)
+      markers_.publish(training_markers(session_, watched(), message, seen_));
+  }
+
+  void publish(const EventRow& row) const {
+    mr_hand_interaction::TrainingEvent event;
+    event.header.stamp = to_ros_time(row.stamp);
+    event.utc = row.utc;
+    event.time = row.time;
+    event.trial = static_cast<std::uint32_t>(row.trial);
+    event.stage = to_string(row.stage);
+    event.event = row.event;
+    event.object = row.object;
+    event.detail = row.detail;
+    event_.publish(event);
+  }
+
+  ros::Publisher event_;  ///< before the session, which has events as it begins
+  Session session_;
+  TrainingScene scene_;
+  ParameterWatch parameters_;
+  std::string participant_, fixed_frame_ = "world";
+  double auto_next_;
+  ros::WallTime next_;  ///< when the next trial begins by itself; zero: when told to
+  std::string failed_;  ///< why the session cannot go on
+  bool paused_ = false;
+  bool at_start_ = false;  ///< the running trial's object has been seen where it starts
+
+  Nanoseconds clocks_apart_ = 0;  ///< this machine's ahead of that of the hands' stamps
+  mr_hand_interaction::ContactArray contacts_;
+  sensor_msgs::JointState joints_;
+  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< what is to be looked at, if it is there
+  int tracking_losses_ = 0, touches_ = 0;
+  std::optional<OperatorMotion> person_;
+  bool put_back_ = false;
+
+  ros::Publisher status_, markers_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace mrhi
+
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    const mrhi::TrainingServer server(node, private_node, mrhi::read_training_parameters(private_node));
-    ros::spin();
-  };
-  return mrhi::run_node(argc, argv, "training_node", kUsage, body);
+  return mrhi::run_node<mrhi::TrainingServer>(argc, argv, "training_node", mrhi::kUsage);
 }

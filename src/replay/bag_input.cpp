@@ -1,7 +1,9 @@
-#include "bag_input.h"
+#include "inputs.h"
 
 #include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/SimulationInput.h>
 #include <ros/exception.h>
+#include <ros/message_traits.h>
 #include <rosbag/bag.h>
 #include <rosbag/exceptions.h>
 #include <rosbag/view.h>
@@ -11,13 +13,15 @@
 #include <deque>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <new>
 #include <set>
+#include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "../ros/tracker_reader.h"
-#include "../ros/transform_memory.h"
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
@@ -30,6 +34,55 @@ namespace {
 const char* const kLeapTopic = "/leap_motion/leap_device";
 const char* const kFirstOff = "first stamp of another clock";
 const char* const kHandFrame = "mr_hand_interaction/HandFrame";
+
+const char* const kWhole = "; allowed: a whole bag (rosbag reindex or rosbag fix may save one)";
+
+/// Reads every message, as a replay of all topics would.
+std::string read_all(const std::string& file) {
+  const rosbag::Bag bag(file, rosbag::bagmode::Read);
+  std::vector<std::uint8_t> bytes;
+  rosbag::View view(bag);
+  for (const rosbag::MessageInstance& message : view) {
+    bytes.resize(message.size());
+    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+  }
+  return "";
+}
+
+ChildLimits limits_for(const std::string& file) {
+  constexpr std::size_t kMemory = std::size_t{2} << 30, kOutput = 1 << 16;
+  constexpr std::uintmax_t kSlowest = 10u << 20;  // bytes a second, compressed
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return {30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
+}
+
+/// Reads the whole bag in a child process first: the bag library takes every length in it on trust, says no
+/// more than that it cannot open a file, and a corrupt one may end the process. Throws BagError.
+void check_readable(const std::string& file) {
+  const std::string why = why_unreadable(file);
+  if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
+  try {
+    run_in_child(limits_for(file), [&file] { return read_all(file); });
+  } catch (const std::runtime_error& error) {
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+  }
+}
+
+/// Within a handler: what the bag library has thrown, as a BagError in one line that names the file. Other
+/// exceptions go on as they are.
+[[noreturn]] void refuse_bag(const std::string& file) {
+  try {
+    throw;
+  } catch (const rosbag::BagException& error) {
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+  } catch (const ros::Exception& error) {
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+  } catch (const std::bad_alloc&) {
+    throw BagError(file + ": is corrupt: it asks for more memory than there is" + kWhole);
+  }
+}
 
 std::set<std::string> known_types() {
   std::set<std::string> types = TrackerReader::types();
@@ -152,39 +205,51 @@ class DeviceFrames {
   rosbag::View::iterator next_;
 };
 
-}  // namespace
+/// Reads a few messages ahead.
+class BagInput : public FrameSource {
+ public:
+  BagInput(const std::string& of_file, const std::optional<std::string>& wanted,
+           const std::optional<Pose>& device, const HandOptions& of_hands)
+      : file_(of_file),
+        bag_(readable(file_), rosbag::bagmode::Read),
+        topics_(chosen_topics(file_, bag_, wanted, of_hands)),
+        view_(bag_, rosbag::TopicQuery(std::vector<std::string>(topics_.begin(), topics_.end()))),
+        options_(of_hands),
+        reader_({Side::right, options_.order, options_.scale}),
+        devices_(bag_, device),
+        at_(view_.begin()) {}
 
-struct BagInput::Impl {
-  Impl(const std::string& of_file, const std::optional<std::string>& wanted,
-       const std::optional<Pose>& device, const HandOptions& of_hands)
-      : file(of_file),
-        bag(readable(file), rosbag::bagmode::Read),
-        topics(chosen_topics(file, bag, wanted, of_hands)),
-        topic(joined(topics)),
-        view(bag, rosbag::TopicQuery(std::vector<std::string>(topics.begin(), topics.end()))),
-        options(of_hands),
-        reader({Side::right, options.order, options.scale}),
-        devices(bag, device),
-        at(view.begin()) {}
+  std::optional<SourceFrame> next() override try {
+    for (look_ahead(); !ahead_.empty(); look_ahead()) {
+      SourceFrame frame = std::move(ahead_.front().second);
+      ahead_.pop_front();
+      ++read_;
+      if (!frame.waits) return frame;
+    }
+    SourceFrame last;
+    last.frame = reader_.rest();
+    if (!last.frame) return std::nullopt;
+    return last;
+  } catch (...) {
+    refuse_bag(file_);
+  }
+  std::size_t position() const override { return read_; }
+  std::size_t size() const override { return view_.size(); }
+  std::string topic() const { return joined(topics_); }
 
+ private:
   SourceFrame read_tracker(const rosbag::MessageInstance& message) {
-    TrackerReader::Message arrived{stands_for(message.getTopic()),
-                                   message.getCallerId(),
-                                   message.getDataType(),
-                                   message.getMD5Sum(),
-                                   std::vector<std::uint8_t>(message.size()),
-                                   from_ros_time(message.getTime())};
-    ros::serialization::OStream stream(arrived.bytes.data(), message.size());
-    message.write(stream);
-    return reader.read(std::move(arrived), [&](const std::string& frame_id, Nanoseconds stamp) {
-      return devices.pose(frame_id, stamp, message.getTime());
+    auto arrived = TrackerReader::message_of(stands_for(message.getTopic()), message.getCallerId(), message,
+                                             message.getTime());
+    return reader_.read(std::move(arrived), [&](const std::string& frame_id, Nanoseconds stamp) {
+      return devices_.pose(frame_id, stamp, message.getTime());
     });
   }
 
   /// The topic's name by which a live node would tell the side.
   std::string stands_for(const std::string& recorded) const {
     for (const std::string& name : {recorded, recorded.substr(1)}) {
-      if (const auto found = options.topics.find(name); found != options.topics.end()) return found->second;
+      if (const auto found = options_.topics.find(name); found != options_.topics.end()) return found->second;
     }
     return recorded;
   }
@@ -223,119 +288,143 @@ struct BagInput::Impl {
   /// first one is of another clock.
   void look_ahead() {
     constexpr std::size_t kMessages = 12;
-    while (at != view.end() && ahead.size() < kMessages) {
-      const std::string stream = at->getCallerId() + " " + at->getTopic();
-      SourceFrame frame = read(*at);
-      ++at;
+    while (at_ != view_.end() && ahead_.size() < kMessages) {
+      const std::string stream = at_->getCallerId() + " " + at_->getTopic();
+      SourceFrame frame = read(*at_);
+      ++at_;
       const auto first =
-          std::find_if(ahead.begin(), ahead.end(), [&](const auto& one) { return one.first == stream; });
-      if (frame.first_was_off && position + ahead.size() < kMessages && first != ahead.end())
+          std::find_if(ahead_.begin(), ahead_.end(), [&](const auto& one) { return one.first == stream; });
+      if (frame.first_was_off && read_ + ahead_.size() < kMessages && first != ahead_.end())
         first->second = refused(kFirstOff, "the first frame of " + stream);
-      ahead.emplace_back(stream, std::move(frame));
+      ahead_.emplace_back(stream, std::move(frame));
     }
   }
 
-  std::string file;
-  rosbag::Bag bag;
-  std::set<std::string> topics;
-  std::string topic;
-  rosbag::View view;
-  HandOptions options;
-  TrackerReader reader;
-  DeviceFrames devices;
-  rosbag::View::iterator at;
-  std::deque<std::pair<std::string, SourceFrame>> ahead;  // with their streams
-  std::size_t position = 0;
+  std::string file_;
+  rosbag::Bag bag_;
+  std::set<std::string> topics_;
+  mutable rosbag::View view_;  // whose size() is not const
+  HandOptions options_;
+  TrackerReader reader_;
+  DeviceFrames devices_;
+  rosbag::View::iterator at_;
+  std::deque<std::pair<std::string, SourceFrame>> ahead_;  // with their streams
+  std::size_t read_ = 0;
 };
 
-BagInput::BagInput(const std::string& file, const std::optional<std::string>& topic,
-                   const std::optional<Pose>& device_in_world, const HandOptions& hands) try
-    : impl_(std::make_unique<Impl>(file, topic, device_in_world, hands)) {
-} catch (...) {
-  refuse_bag(file);
+using mr_hand_interaction::SimulationInput;
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.begin(), bytes.end()};
 }
 
-BagInput::~BagInput() = default;
-
-std::optional<SourceFrame> BagInput::next() try {
-  for (impl_->look_ahead(); !impl_->ahead.empty(); impl_->look_ahead()) {
-    SourceFrame frame = std::move(impl_->ahead.front().second);
-    impl_->ahead.pop_front();
-    ++impl_->position;
-    if (!frame.waits) return frame;
+LogEntry entry_of(const SimulationInput& message) {
+  LogEntry entry;
+  if (message.kind > SimulationInput::CHANGE)
+    throw std::invalid_argument("recorded input: kind is not known");
+  entry.kind = static_cast<LogEntry::Kind>(message.kind);
+  entry.run = message.run;
+  entry.sequence = message.sequence;
+  entry.stamp = from_ros_time(message.header.stamp);
+  entry.time = message.time;
+  entry.expected = message.expected;
+  entry.text = message.text;
+  for (const auto& file : message.files) entry.files.push_back({file.name, text_of(file.bytes)});
+  entry.state = text_of(message.state);
+  entry.state_hash = message.state_hash;
+  entry.lost = message.lost_by_queue;
+  if (entry.kind != LogEntry::Kind::frame) return entry;
+  try {
+    entry.hands = from_message(message.hands);
+    entry.hands->stamp = message.time;
+  } catch (const std::invalid_argument& error) {
+    entry.text = error.what();
   }
-  SourceFrame last;
-  last.frame = impl_->reader.rest();
-  if (!last.frame) return std::nullopt;
-  return last;
-} catch (...) {
-  refuse_bag(impl_->file);
+  return entry;
 }
 
-std::size_t BagInput::position() const {
-  return impl_->position;
-}
-std::size_t BagInput::size() const {
-  return impl_->view.size();
-}
-const std::string& BagInput::topic() const {
-  return impl_->topic;
-}
+/// By run and sequence: where recorded time goes back, as a bag that loops makes it, the bag's order is
+/// another.
+class BagLog : public LogSource {
+ public:
+  BagLog(const std::string& file, const std::string& topic)
+      : file_(file), bag_(file, rosbag::bagmode::Read), view_(bag_, rosbag::TopicQuery(topic)) {
+    std::map<std::uint64_t, std::size_t> runs;
+    for (const rosbag::MessageInstance& message : view_) {
+      const auto input = message.instantiate<SimulationInput>();
+      if (!input) continue;
+      const std::size_t run = runs.emplace(input->run, runs.size()).first->second;
+      order_.emplace(std::make_tuple(run, input->sequence), message);
+    }
+    at_ = order_.begin();
+  }
 
-ReplayInput open_bag(const ReplayArguments& arguments) {
-  auto bag =
-      std::make_unique<BagInput>(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
-  const std::string topic = bag->topic();
-  return {std::move(bag), topic};
-}
+  std::optional<LogEntry> next() override try {
+    if (at_ == order_.end()) return std::nullopt;
+    const auto message = (at_++)->second.instantiate<SimulationInput>();
+    ++position_;
+    return entry_of(*message);
+  } catch (...) {
+    refuse_bag(file_);
+  }
+  std::size_t position() const override { return position_; }
+  std::size_t size() const override { return order_.size(); }
 
-namespace {
+ private:
+  std::string file_;
+  rosbag::Bag bag_;
+  mutable rosbag::View view_;  // whose size() is not const
+  std::multimap<std::tuple<std::size_t, std::uint64_t>, rosbag::MessageInstance> order_;
+  decltype(order_)::const_iterator at_;
+  std::size_t position_ = 0;
+};
 
-const char* const kWhole = "; allowed: a whole bag (rosbag reindex or rosbag fix may save one)";
+struct Found {
+  std::string topic, why_not;
+};
 
-/// Reads every message, as a replay of all topics would.
-std::string read_all(const std::string& file) {
+Found find_log(const std::string& file) {
+  using Traits = ros::message_traits::MD5Sum<SimulationInput>;
   const rosbag::Bag bag(file, rosbag::bagmode::Read);
-  std::vector<std::uint8_t> bytes;
-  rosbag::View view(bag);
-  for (const rosbag::MessageInstance& message : view) {
-    bytes.resize(message.size());
-    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    message.write(stream);
+  Found found;
+  for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
+    if (connection->datatype != "mr_hand_interaction/SimulationInput") continue;
+    if (connection->md5sum == Traits::value()) {
+      found.topic = connection->topic;
+    } else {
+      found.why_not = connection->topic + " is of another version of this package";
+    }
   }
-  return "";
-}
-
-ChildLimits limits_for(const std::string& file) {
-  constexpr std::size_t kMemory = std::size_t{2} << 30, kOutput = 1 << 16;
-  constexpr std::uintmax_t kSlowest = 10u << 20;  // bytes a second, compressed
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  return {30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
+  return found;
 }
 
 }  // namespace
 
-/// The bag library takes every length on trust, and says no more than that it cannot open a file.
-void check_readable(const std::string& file) {
-  const std::string why = why_unreadable(file);
-  if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
+ReplayInput open_bag(const std::string& file, const std::optional<std::string>& topic,
+                     const std::optional<Pose>& device_in_world, const HandOptions& hands) {
   try {
-    run_in_child(limits_for(file), [&file] { return read_all(file); });
-  } catch (const std::runtime_error& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+    auto bag = std::make_unique<BagInput>(file, topic, device_in_world, hands);
+    const std::string read = bag->topic();
+    return {std::move(bag), read};
+  } catch (...) {
+    refuse_bag(file);
   }
 }
 
-void refuse_bag(const std::string& file) {
+OpenLog open_log(const ReplayArguments& arguments) {
+  const std::string& file = arguments.input;
   try {
-    throw;
-  } catch (const rosbag::BagException& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
-  } catch (const ros::Exception& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
-  } catch (const std::bad_alloc&) {
-    throw BagError(file + ": is corrupt: it asks for more memory than there is" + kWhole);
+    check_readable(file);
+    const Found found = find_log(file);
+    OpenLog log;
+    log.why_not = found.why_not.empty() ? "it has no simulation_input" : found.why_not;
+    if (found.topic.empty()) return log;
+    log.topic = found.topic;
+    log.source = std::make_unique<BagLog>(file, found.topic);
+    if (log.source->size() == 0) log.source.reset();
+    return log;
+  } catch (...) {
+    refuse_bag(file);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "marker_bag.h"
+#include "inputs.h"
 
 #include <rosbag/bag.h>
 #include <std_msgs/UInt32.h>
@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "../ros/result_conversion.h"
-#include "../ros/scene_view.h"
+#include "../ros/result_messages.h"
 #include "../text/files.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"

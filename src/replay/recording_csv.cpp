@@ -6,8 +6,7 @@
 
 #include "../text/files.h"
 #include "../text/text.h"
-#include "csv_columns.h"
-#include "frame_source.h"
+#include "inputs.h"
 
 namespace mrhi {
 namespace {

@@ -1,9 +1,19 @@
 #include "mr_hand_interaction/replay/replay.h"
 
+#include <stdlib.h>
+
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <set>
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../record/record.h"
+#include "../simulation/state_bytes.h"
+#include "../text/files.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
@@ -11,6 +21,266 @@
 
 namespace mrhi {
 namespace {
+
+/// A temporary folder that is removed with its contents at the end.
+class ScratchFolder {
+ public:
+  /// `name`: of the program, for who finds the folder. Throws std::runtime_error if it cannot be made.
+  explicit ScratchFolder(const std::string& name)
+      : path_((std::filesystem::temp_directory_path() / (name + "_XXXXXX")).string()) {
+    if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// What is given by hand, over what was recorded.
+class Overrides {
+ public:
+  explicit Overrides(const ReplayArguments& arguments) : arguments_(arguments) {}
+
+  /// Names what differs from the recording.
+  void apply(World& world) {
+    differing_.clear();
+    other_scene_ = false;
+    if (!arguments_.scene.empty()) take_scene(world);
+    if (arguments_.parameter_file) {
+      Configuration configuration;
+      load_parameters(configuration, *arguments_.parameter_file);
+      for (const std::string& name : parameter_names()) {
+        const std::string text = parameter_text(configuration, name);
+        if (text != parameter_text(Configuration(), name)) take_parameter(name, text, world);
+      }
+    }
+    for (const auto& [name, value] : arguments_.settings) take_parameter(name, value, world);
+  }
+
+  void place(Simulation& simulation) {
+    SimulationState state = simulation.state();
+    for (const auto& [name, pose] : arguments_.object_poses) {
+      BodyState& body = body_of("--object-pose", name, simulation.scene(), state);
+      body.pose = pose;
+      differing_.push_back("--object-pose " + name);
+    }
+    for (const auto& [name, twist] : arguments_.object_twists) {
+      BodyState& body = body_of("--object-twist", name, simulation.scene(), state);
+      Body moving = simulation.scene().bodies[static_cast<std::size_t>(*find_body(simulation.scene(), name))];
+      moving.start = body.pose;
+      moving.start_twist = twist;
+      body = start_state(moving);
+      differing_.push_back("--object-twist " + name);
+    }
+    simulation.set_state(state);
+  }
+
+  bool holds(const std::string& parameter) const { return fixed_.count(parameter) > 0; }
+  bool other_scene() const { return other_scene_; }
+  const std::vector<std::string>& differing() const { return differing_; }
+
+ private:
+  void take_scene(World& world) {
+    std::string file;
+    try {
+      file = find_scene_file(arguments_.scene, scene_folders());
+    } catch (const SceneError& error) {
+      throw UsageError(std::string("--scene: ") + error.what());
+    }
+    World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
+    const auto same = [](const RecordedFile& a, const RecordedFile& b) {
+      return a.name == b.name && a.bytes == b.bytes;
+    };
+    if (given.files.size() <= world.files.size() &&
+        std::equal(given.files.begin(), given.files.end(), world.files.begin(), same))
+      return;
+    given.parameters = world.parameters;
+    given.version = world.version;
+    world = given;
+    other_scene_ = true;
+    differing_.push_back("--scene " + arguments_.scene);
+  }
+
+  void take_parameter(const std::string& name, const std::string& value, World& world) {
+    Configuration configuration;
+    try {
+      set_parameter(configuration, name, value);
+    } catch (const ParameterError& error) {
+      throw UsageError(error.what());
+    }
+    const std::string text = parameter_text(configuration, name);
+    std::string& recorded = world.parameters[name];
+    if (recorded != text) differing_.push_back(name + "=" + text + " instead of " + recorded);
+    recorded = text;
+    fixed_.insert(name);
+  }
+
+  static BodyState& body_of(const char* option, const std::string& name, const Scene& scene,
+                            SimulationState& state) {
+    const auto body = find_body(scene, name);
+    if (!body || scene.bodies[static_cast<std::size_t>(*body)].fixed)
+      throw UsageError(std::string(option) + ": no free object '" + name + "' as the recording begins");
+    return state.bodies[static_cast<std::size_t>(*body)];
+  }
+
+  const ReplayArguments& arguments_;
+  std::set<std::string> fixed_;
+  bool other_scene_ = false;
+  std::vector<std::string> differing_;
+};
+
+class LogRun {
+ public:
+  LogRun(const ReplayArguments& arguments, const std::string& topic)
+      : arguments_(arguments), overrides_(arguments), run_(arguments, topic) {
+    run_.summary.live.emplace();
+  }
+
+  void all(LogSource& log) {
+    while (const std::optional<LogEntry> entry = log.next()) {
+      run_.progress.show(log.position(), log.size());
+      take(*entry);
+    }
+    if (!simulation_) throw std::runtime_error(arguments_.input + ": the recording has no beginning");
+    run_.check_end();
+  }
+
+  /// Also of a run that ended early.
+  void end(const std::string& error) {
+    if (!simulation_) return;
+    run_.end(simulation(), error);
+    const auto line = [&](const std::string& text) { run_.progress.line("replay: " + text); };
+    if (live().parts_at) line("parts from the live run at " + text::number(*live().parts_at) + " s");
+    for (const std::string& what : live().overridden) line("not as recorded: " + what);
+    for (const std::string& what : run_.summary.not_known) line("not known: " + what);
+    if (live().missing > 0) line("the recording has lost " + std::to_string(live().missing) + " entries");
+  }
+
+ private:
+  Simulation& simulation() { return simulation_->simulation(); }
+  LiveRun& live() { return *run_.summary.live; }
+
+  void take(const LogEntry& entry) {
+    if (entry.kind == LogEntry::Kind::begin) return begin(entry);
+    if (!simulation_) return;  // of who was there before it began
+    if (entry.run != live_run_) {
+      broken_ = true;  // until it begins
+      return;
+    }
+    if (entry.sequence <= sequence_) return;
+    if (entry.sequence != sequence_ + 1) {
+      live().missing += entry.sequence - sequence_ - 1;
+      broken_ = true;
+    }
+    sequence_ = entry.sequence;
+    live().lost_by_queue = entry.lost - lost_before_;
+    ++live().entries;
+    if (entry.kind == LogEntry::Kind::frame) frame(entry);
+    if (entry.kind == LogEntry::Kind::without_hands) without_hands(entry);
+    if (entry.kind == LogEntry::Kind::change) change(entry);
+    compare(entry);
+  }
+
+  void begin(const LogEntry& entry) {
+    const bool known = simulation_ && entry.run == live_run_;
+    if (known && entry.sequence > sequence_) live().missing += entry.sequence - sequence_;
+    if (known && !broken_ && entry.sequence <= sequence_) return;
+    if (!known) lost_before_ = entry.lost;
+    live_run_ = entry.run;
+    sequence_ = entry.sequence;
+    broken_ = false;
+    World world = world_from_yaml(entry.text, entry.files);
+    overrides_.apply(world);
+    const Configuration configuration = configuration_of(world, run_.summary.not_known);
+    simulation_ =
+        std::make_unique<LiveSimulation>(scene_of(world, configuration, scratch_.path()), configuration);
+    if (!overrides_.other_scene()) take_state(entry);
+    overrides_.place(simulation());
+    tell_begin(world);
+    compare(entry);
+  }
+
+  void take_state(const LogEntry& entry) {
+    try {
+      simulation().set_state(state_from_bytes(entry.state, simulation().scene()));
+    } catch (const std::invalid_argument& error) {
+      run_.summary.not_known.push_back(std::string("where things were as the recording began: ") +
+                                       error.what());
+    }
+  }
+
+  void tell_begin(const World& world) {
+    run_.begin(simulation(), world.scene);
+    if (!hashes_)
+      hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", table_of("hashes.csv").header());
+    live().version = world.version;
+    live().overridden = overrides_.differing();
+    if (world.version != run_.summary.version)
+      run_.summary.not_known.push_back("what version " + world.version + " did otherwise than this one, " +
+                                       run_.summary.version);
+  }
+
+  void frame(const LogEntry& entry) {
+    if (!entry.hands) return run_.reject("unusable hand", entry.text);
+    run_.frame(*entry.hands, entry.expected, "entry " + std::to_string(entry.sequence), simulation());
+  }
+
+  void without_hands(const LogEntry& entry) {
+    if (simulation().advance_without_hands(entry.time)) run_.result(simulation());
+  }
+
+  void change(const LogEntry& entry) {
+    Change change = change_from_yaml(entry.text, entry.files);
+    char time[32];
+    std::snprintf(time, sizeof time, "%.3f s: ", run_.seconds());
+    live().changes.push_back(time + text::one_line(to_text(change), 200));
+    if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
+    try {
+      if (auto* spawn = std::get_if<Spawn>(&change)) {
+        SceneOptions options = scene_options(simulation().configuration());
+        options.mesh_files = written_to(scratch_.path(), entry.files);
+        spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
+      }
+      make(change, *simulation_);
+    } catch (const std::exception& error) {
+      run_.reject("change", error.what());
+    }
+    run_.follow(simulation().scene());
+  }
+
+  void drop_overridden(SetParameters& set) const {
+    set.values.erase(std::remove_if(set.values.begin(), set.values.end(),
+                                    [&](const auto& value) { return overrides_.holds(value.first); }),
+                     set.values.end());
+  }
+
+  void compare(const LogEntry& entry) {
+    const std::uint64_t here = hash(simulation().state());
+    char text[20];
+    std::snprintf(text, sizeof text, "%016" PRIx64, here);
+    *hashes_ << std::to_string(entry.sequence) << std::to_string(entry.stamp) << std::string(text);
+    hashes_->end_row();
+    if (broken_ || !overrides_.differing().empty()) return;
+    ++live().compared;
+    if (here == entry.state_hash) ++live().same;
+    if (here != entry.state_hash && !live().parts_at) live().parts_at = run_.seconds();
+  }
+
+  const ReplayArguments& arguments_;
+  Overrides overrides_;
+  ScratchFolder scratch_{"replay"};
+  ReplayRun run_;
+  std::unique_ptr<LiveSimulation> simulation_;
+  std::unique_ptr<CsvFile> hashes_;
+  std::uint64_t live_run_ = 0, sequence_ = 0, lost_before_ = 0;
+  bool broken_ = false;  ///< entries are missing, so that nothing is as it was
+};
 
 Configuration configured(const ReplayArguments& arguments) {
   Configuration configuration;
@@ -70,7 +340,7 @@ ReplayInput open_input(const ReplayArguments& arguments) {
         std::make_unique<CsvInput>(arguments.input, arguments.hand_transform.value_or(default_device_mount()),
                                    arguments.hands.scale),
         ""};
-  return open_bag(arguments);
+  return open_bag(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
 }
 
 /// The log of the live simulation; it is not read if other hands are asked for than the simulation took.
@@ -86,6 +356,17 @@ OpenLog open_log_of(const ReplayArguments& arguments) {
 }
 
 }  // namespace
+
+void replay_log(const ReplayArguments& arguments, LogSource& log, const std::string& topic) {
+  LogRun run(arguments, topic);
+  try {
+    run.all(log);
+  } catch (const std::exception& error) {
+    run.end(error.what());
+    throw;
+  }
+  run.end("");
+}
 
 Simulation prepare_simulation(const ReplayArguments& arguments) {
   const Configuration configuration = configured(arguments);

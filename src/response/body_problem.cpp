@@ -149,18 +149,18 @@ void BodyProblem::begin_body(const Body& body, const BodyState& state, const Vec
 
 // Of all springs on a body with velocity v and angular velocity w, at arms r from its centre:
 //
-//     u = u_1 - (v + w x r),     spin = n.(w_1 - w)
-//     F = sum f,                 T = sum r x f + T_n n
+//     u = u_1 - (v + w x r) - (w.t) n,     spin = n.(w_1 - w)
+//     F = sum f,                           T = sum r x f + (f.n) t + T_n n
 SpringSum respond(Triple velocity, Triple spin, bool renew_limits, std::vector<BodySpring>& springs) {
   SpringSum parts[kParts] = {};
   for (BodySpring& spring : springs) {
     const Triple& n = spring.spring.normal;
-    const Triple u = spring.drive - velocity - spin.cross(spring.arm);
+    const Triple u = spring.relative_velocity(velocity, spin);
     SpringResponse& response = spring.response;
     spring.spring.respond(u, spring.drive_spin - n.dot(spin), renew_limits, response);
     SpringSum& sum = parts[spring.part];
     sum.force = sum.force + response.force;
-    sum.torque = sum.torque + spring.arm.cross(response.force) + response.torque * n;
+    sum.torque = sum.torque + spring.torque();
     sum.push = sum.push + response.push + spring.spring.bond;
   }
   return {(parts[0].force + parts[1].force) + (parts[2].force + parts[3].force),
@@ -189,8 +189,10 @@ struct Symmetric3 {
 //     J' S J = (  S         .             )      S = s_t 1 + (s_n - s_t) n n' - slip d d' / d'd
 //              (  [r]x S    [r]x S [r]x'  )      and the twist's s_T n n' is added at the lower right
 //
-// s are the slopes of SpringResponse. A row of A [r]x' is r x that row of A, as [r]x' = -[r]x. Only the
-// lower triangle is summed, in three blocks: what is symmetric is made once.
+// and where the push acts elsewhere, by the tilt t, [r]x becomes [r]x + t n': that adds s_n t n' to [r]x S
+// and s_n (m m' - (r x n) (r x n)'), m = r x n + t, to the lower right. s are the slopes of SpringResponse. A
+// row of A [r]x' is r x that row of A, as [r]x' = -[r]x. Only the lower triangle is summed, in three blocks:
+// what is symmetric is made once.
 SpringSlope slope_of(const std::vector<BodySpring>& springs) {
   SpringSlope parts[kParts] = {};
   for (const BodySpring& spring : springs) {
@@ -202,12 +204,18 @@ SpringSlope slope_of(const std::vector<BodySpring>& springs) {
     Symmetric3 s{along, 0.0, along, 0.0, 0.0, along};
     s.add(response.normal_slope - along, n);
     if (response.slip > 0.0) s.add(-response.slip / std::max(response.drawn_squared, 1e-300), response.drawn);
-    const Triple x = r.cross({s.xx, s.xy, s.xz}), y = r.cross({s.xy, s.yy, s.yz}),
-                 z = r.cross({s.xz, s.yz, s.zz});
+    Triple x = r.cross({s.xx, s.xy, s.xz}), y = r.cross({s.xy, s.yy, s.yz}), z = r.cross({s.xz, s.yz, s.zz});
     const Triple row_x = r.cross({x.x, y.x, z.x}), row_y = r.cross({x.y, y.y, z.y}),
                  row_z = r.cross({x.z, y.z, z.z});
     Symmetric3 turn{row_x.x, row_x.y, row_y.y, row_x.z, row_y.z, row_z.z};
     turn.add(response.torque_slope, n);
+    if (spring.tilts) {
+      const Triple &t = spring.tilt, lever = r.cross(n);
+      turn.add(response.normal_slope, lever + t);
+      turn.add(-response.normal_slope, lever);
+      x = x + (response.normal_slope * n.x) * t, y = y + (response.normal_slope * n.y) * t;
+      z = z + (response.normal_slope * n.z) * t;
+    }
     const double entries[] = {s.xx, s.xy, s.yy, s.xz,    s.yz,    s.zz,  //
                               x.x,  y.x,  z.x,  turn.xx,                 //
                               x.y,  y.y,  z.y,  turn.xy, turn.yy,        //
@@ -278,7 +286,7 @@ double BodyProblem::energy() const {
   const Triple linear = triple(velocity_.head<3>()), angular = triple(velocity_.tail<3>());
   for (const BodySpring& one : springs_) {
     if (one.spring.stiffness <= 0.0) continue;
-    const Triple u = one.drive - linear - angular.cross(one.arm);
+    const Triple u = one.relative_velocity(linear, angular);
     energy += step_ * potential(one.spring, u, one.drive_spin - one.spring.normal.dot(angular));
   }
   return energy;

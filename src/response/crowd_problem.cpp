@@ -32,8 +32,9 @@ constexpr int kMaxPartings = 3;
 /// Sweeps through a patch some of whose contacts do not press.
 constexpr int kInnerSweeps = 3;
 
-bool same_shapes(const BodyContactKey& x, const BodyContactKey& y) {
-  return x.a == y.a && x.b == y.b && x.shape_a == y.shape_a && x.shape_b == y.shape_b;
+/// Of one pair of shapes, with one normal.
+bool same_patch(const BodyContact& x, const BodyContact& y) {
+  return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
 }
 
 }  // namespace
@@ -110,10 +111,10 @@ void CrowdProblem::add_grips(const ContactStep& step, const Island& island) {
 void CrowdProblem::add_links(const ContactStep& step, const Island& island) {
   const std::vector<Vector3>& carried = *carried_;
   for (const Link* link = island.links.begin(); link != island.links.end();) {
-    const BodyContactKey& key = step.body_contacts[link->index].key;
+    const BodyContact& first = step.body_contacts[link->index];
     Touch touch{link->index, link->index};
     bool bore = false;
-    for (; link != island.links.end() && same_shapes(step.body_contacts[link->index].key, key); ++link) {
+    for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link) {
       bore = bore || carried[touch.last] != Vector3::Zero();
       ++touch.last;
     }
@@ -136,7 +137,7 @@ void CrowdProblem::add_patch(const ContactStep& step, const Touch& touch) {
     const BodyContact& contact = step.body_contacts[index];
     const int a =
         step.scene.bodies[contact.key.a].fixed ? static_cast<int>(free_.size()) : number_[contact.key.a];
-    add_point(add_spring(step, contact), a, number_[contact.key.b], contact.arm_a);
+    add_point(add_spring(step, contact), a, number_[contact.key.b], contact.arm_a + contact.friction_offset);
     linked_.push_back(index);
     if (carried[index] != Vector3::Zero()) carry(carried[index], points_.back());
   }
@@ -216,7 +217,7 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact& contact, int a
   point.soft = spring.pad > 0.0 || spring.yields < kNeverYields;
   point.twists = spring.twist_stiffness > 0.0;
   point.given = {0.0, Vector3::Zero(), 0.0};
-  weigh(vector(spring.stretch), point);
+  weigh(contact, point);
   return point;
 }
 
@@ -232,23 +233,25 @@ CrowdProblem::Point& CrowdProblem::add_point(const SpringContact& contact, int a
 /// k has the step in it (N s/m). Signs differ because n points from b to a and the push on b is -p n, which
 /// parts them, while t is along the sliding, which it slows down. Put in as it stands t' = k (s + e u),
 /// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
-void CrowdProblem::weigh(const Vector3& stretch, Point& point) const {
+void CrowdProblem::weigh(const SpringContact& contact, Point& point) const {
   const Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
   const Matrix3 response = collision_matrix(a.inverse_mass, a.inverse_inertia, point.arm_a) +
                            collision_matrix(b.inverse_mass, b.inverse_inertia, point.arm_b);
-  const Vector3 by_push = response * point.normal;
-  point.normal_mobility = point.normal.dot(by_push);
-  // W n has a part across n where the arm is not along it: a push makes the surfaces slide as well.
-  point.slides = by_push - point.normal_mobility * point.normal;
+  const Vector3 &n = point.normal, tilt = vector(contact.tilt);
+  point.lever_a = point.arm_a.cross(n) + tilt, point.lever_b = point.arm_b.cross(n) + tilt;
+  point.turned_a = a.inverse_inertia * point.lever_a, point.turned_b = b.inverse_inertia * point.lever_b;
+  point.normal_mobility = (a.inverse_mass + b.inverse_mass) * n.squaredNorm() +
+                          point.lever_a.dot(point.turned_a) + point.lever_b.dot(point.turned_b);
+  // A push makes the surfaces slide as well, where its arm is not along n.
+  const Vector3 by_push = point.turned_a.cross(point.arm_a) + point.turned_b.cross(point.arm_b);
+  point.slides = by_push - n.dot(by_push) * n;
   const double tangential_mobility = max_tangential_response(response, point.normal);
   point.compliance = 1.0 / (point.stiffness * point.ahead);
   point.firm = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
   const double give = 1.0 / (1.0 + point.stiffness * point.ahead * tangential_mobility);
   point.kept = 1.0 - give;
   point.pull = give * point.stiffness * point.ahead;
-  point.pulled = (give * point.stiffness) * stretch;
-  point.lever_a = point.arm_a.cross(point.normal), point.lever_b = point.arm_b.cross(point.normal);
-  point.turned_a = a.inverse_inertia * point.lever_a, point.turned_b = b.inverse_inertia * point.lever_b;
+  point.pulled = (give * point.stiffness) * vector(contact.spring.stretch);
 }
 
 /// Pushes p of a patch change its rates by W p, and springs bear k (d - e u), k with the step in it:
@@ -279,7 +282,7 @@ void CrowdProblem::weigh(Patch& patch) const {
 void CrowdProblem::carry(const Vector3& borne, Point& point) {
   const double along = borne.dot(point.normal);
   point.given = {step_ * std::max(0.0, -along), step_ * (borne - along * point.normal), 0.0};
-  push(point, point.given.drag - point.given.push * point.normal);
+  apply(point, point.given.push, point.given.drag);
 }
 
 [[gnu::always_inline]] inline Vector3 CrowdProblem::relative_velocity(const Point& point) const {
@@ -288,13 +291,22 @@ void CrowdProblem::carry(const Vector3& borne, Point& point) {
   return point.drive + a.velocity + a.spin.cross(point.arm_a) - b.velocity - b.spin.cross(point.arm_b);
 }
 
-//     v_b += J / m_b,  w_b += I_b^-1 (b x J),      v_a and w_a by -J
-[[gnu::always_inline]] inline void CrowdProblem::push(const Point& point, const Vector3& impulse) {
+/// Rate of the gap where the push acts.
+[[gnu::always_inline]] inline double CrowdProblem::rate_of(const Point& point) const {
+  const Motion& a = bodies_[static_cast<std::size_t>(point.a)].motion;
+  const Motion& b = bodies_[static_cast<std::size_t>(point.b)].motion;
+  return point.normal.dot(point.drive + a.velocity - b.velocity) + point.lever_a.dot(a.spin) -
+         point.lever_b.dot(b.spin);
+}
+
+//     J = t - p n:    v_b += J / m_b,  w_b += I_b^-1 (b x t - p l_b),      v_a and w_a by -J
+[[gnu::always_inline]] inline void CrowdProblem::apply(const Point& point, double push, const Vector3& drag) {
   Body &a = bodies_[static_cast<std::size_t>(point.a)], &b = bodies_[static_cast<std::size_t>(point.b)];
+  const Vector3 impulse = drag - push * point.normal;
   a.motion.velocity -= a.inverse_mass * impulse;
-  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(impulse);
+  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(drag) - push * point.turned_a;
   b.motion.velocity += b.inverse_mass * impulse;
-  b.motion.spin += b.inverse_inertia * point.arm_b.cross(impulse);
+  b.motion.spin += b.inverse_inertia * point.arm_b.cross(drag) - push * point.turned_b;
 }
 
 /// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
@@ -361,18 +373,19 @@ double CrowdProblem::find_faded_push(std::size_t i, double rate, double plain) c
 /// is Coulomb's law itself.
 [[gnu::always_inline]] inline void CrowdProblem::relax(std::size_t i) {
   Point& point = points_[i];
-  const Vector3 velocity = relative_velocity(point);
-  const double rate = point.normal.dot(velocity);
+  const double rate = rate_of(point);
   const double wanted = find_push(i, rate - point.normal_mobility * point.given.push);
   const double limit = point.friction * wanted + point.bond;
   const bool open = limit == 0.0 && point.given.push == 0.0 && point.given.drag == Vector3::Zero() &&
                     point.given.twist == 0.0;
   if (open && wanted == 0.0) return;
   const double more = wanted - point.given.push;
-  Vector3 drag = wanted_drag(point, velocity - rate * point.normal + more * point.slides);
+  const Vector3 velocity = relative_velocity(point);
+  const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
+  Vector3 drag = wanted_drag(point, sliding + more * point.slides);
   const double squared = drag.squaredNorm();
   if (squared > limit * limit) drag *= limit / std::sqrt(squared);
-  push(point, drag - point.given.drag - more * point.normal);
+  apply(point, more, drag - point.given.drag);
   point.given.push = wanted;
   point.given.drag = drag;
   if (point.twists) twist(i);
@@ -445,7 +458,7 @@ bool CrowdProblem::push_together(const Patch& patch) {
   Vector3 drag = wanted_drag(point, velocity - point.normal.dot(velocity) * point.normal);
   const double squared = drag.squaredNorm();
   if (squared > limit * limit) drag *= limit / std::sqrt(squared);
-  push(point, drag - point.given.drag);
+  apply(point, 0.0, drag - point.given.drag);
   point.given.drag = drag;
 }
 
@@ -585,7 +598,7 @@ void CrowdProblem::report(std::size_t i) {
   contact.spring.slip_limit = (point.friction * point.given.push + point.bond) / step_;
 }
 
-//     p += h m g + sum +-J,     L += sum +-(r x J + T n)
+//     p += h m g + sum +-J,     L += sum +-(r x t - p l + T n)
 //
 // Momenta are summed from the impulses, not taken from the velocities: what b gets a loses to the last bit
 // but rounding of the sums, wherever turns have ended.
@@ -600,13 +613,14 @@ void CrowdProblem::finish(ContactStep& step, const Island& island) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& point = points_[i];
     const Vector3 impulse = point.given.drag - point.given.push * point.normal;
-    const auto give = [&](int body, double sign, const Vector3& arm) {
+    const auto give = [&](int body, double sign, const Vector3& arm, const Vector3& lever) {
       BodyState& state = step.bodies[island.bodies.begin()[body].body];
       state.linear_momentum += sign * impulse;
-      state.angular_momentum += sign * (arm.cross(impulse) + point.given.twist * point.normal);
+      state.angular_momentum +=
+          sign * (arm.cross(point.given.drag) - point.given.push * lever + point.given.twist * point.normal);
     };
-    give(point.b, 1.0, point.arm_b);
-    if (point.a != static_cast<int>(free_.size())) give(point.a, -1.0, point.arm_a);
+    give(point.b, 1.0, point.arm_b, point.lever_b);
+    if (point.a != static_cast<int>(free_.size())) give(point.a, -1.0, point.arm_a, point.lever_a);
     report(i);
   }
   auto contact = settle_hands(step, island, contacts_.begin());

@@ -44,11 +44,12 @@ class CrowdProblem {
   /// A contact as it is relaxed.
   struct Point {
     int a, b;
-    Vector3 normal, arm_a, arm_b, drive;
+    Vector3 normal, drive;
+    Vector3 arm_a, arm_b;  // of friction [m]
     Given given;
     double normal_mobility;      // change of the rate by an impulse along the normal [1/kg]
     Vector3 slides;              // the same across n by a push of one [1/kg]
-    Vector3 lever_a, lever_b;    // r x n: of the normal at each body [m]
+    Vector3 lever_a, lever_b;    // r x n: of the push at each body [m]
     Vector3 turned_a, turned_b;  // I^-1 (r x n): change of the spins by a push of one [1/(kg m)]
     double depth, ahead, fade;
     double compliance;  // 1 / (k e), of the pushes [1/kg]
@@ -82,11 +83,12 @@ class CrowdProblem {
   template <typename AnyContact>
   SpringContact& add_spring(const ContactStep& step, const AnyContact& contact);
   Point& add_point(const SpringContact& contact, int a, int b, const Vector3& arm_a);
-  void weigh(const Vector3& stretch, Point& point) const;
+  void weigh(const SpringContact& contact, Point& point) const;
   void carry(const Vector3& borne, Point& point);
 
   Vector3 relative_velocity(const Point& point) const;
-  void push(const Point& point, const Vector3& impulse);
+  double rate_of(const Point& point) const;
+  void apply(const Point& point, double push, const Vector3& drag);
   double push_at(std::size_t i, double rate, double& slope) const;
   double find_push(std::size_t i, double rate) const;
   double find_faded_push(std::size_t i, double rate, double plain) const;

@@ -25,24 +25,29 @@ Matrix3 slope_at_point(const IslandContact& contact) {
   return slope;
 }
 
-/// [v]x M.
-Matrix3 crossed(const Vector3& v, const Matrix3& m) {
-  Matrix3 result;
-  for (int i = 0; i < 3; ++i) result.col(i) = v.cross(m.col(i));
-  return result;
-}
+/// The torque that a contact's force has about a body's centre, X = [x]x + t n', with the arm x of friction
+/// and the tilt t.
+struct Moment {
+  Vector3 arm, tilt, normal;
 
-/// Adds J_x' S J_y, for arms x and y, by [x]x S and [y]x S; and the twist's slope. A point at the arm x moves
-/// by J_x (v, w) = v - [x]x w, so that J_x' = (1; [x]x).
+  /// X M.
+  Matrix3 of(const Matrix3& m) const {
+    Matrix3 result = tilt * (normal.transpose() * m);
+    for (int i = 0; i < 3; ++i) result.col(i) += arm.cross(m.col(i));
+    return result;
+  }
+};
+
+/// Adds J_x' S J_y, by X S and Y S; and the twist's slope. A contact moves by J_x (v, w) = v + X' w.
 ///
-///     J_x' S J_y = (  S         -S [y]x        )   =   (  S         ([y]x S)'        )      S = S'
-///                  (  [x]x S    -[x]x S [y]x   )       (  [x]x S    [x]x ([y]x S)'   )
-void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Vector3& x,
+///     J_x' S J_y = (  S      S Y'     )   =   (  S      (Y S)'     )      S = S'
+///                  (  X S    X S Y'   )       (  X S    X (Y S)'   )
+void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Moment& x,
          const Matrix3& twist, BlockSystem::Matrix6& block) {
   block.topLeftCorner<3, 3>() += sign * slope;
   block.bottomLeftCorner<3, 3>() += sign * x_slope;
   block.topRightCorner<3, 3>() += sign * y_slope.transpose();
-  block.bottomRightCorner<3, 3>() += sign * (crossed(x, y_slope.transpose()) + twist);
+  block.bottomRightCorner<3, 3>() += sign * (x.of(y_slope.transpose()) + twist);
 }
 
 }  // namespace
@@ -95,7 +100,8 @@ void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
   for (const Link& link : island.links) {
     const BodyContact& touch = step.body_contacts[link.index];
     const bool alone = step.scene.bodies[touch.key.a].fixed;
-    add(touch, alone ? IslandContact::kAlone : number(touch.key.a), number(touch.key.b)).arm_a = touch.arm_a;
+    add(touch, alone ? IslandContact::kAlone : number(touch.key.a), number(touch.key.b)).arm_a =
+        touch.arm_a + touch.friction_offset;
   }
 }
 
@@ -130,14 +136,14 @@ Effort IslandProblem::effort() {
   return effort;
 }
 
-Vector3 IslandProblem::velocity_at(int body, const Vector3& arm) const {
-  return velocity_.segment<3>(6 * body) + velocity_.segment<3>(6 * body + 3).cross(arm);
-}
-
 Vector3 IslandProblem::relative_velocity(const IslandContact& contact) const {
-  const Vector3 of_b = velocity_at(contact.b, vector(contact.arm));
-  if (contact.a == IslandContact::kAlone) return vector(contact.drive) - of_b;
-  return velocity_at(contact.a, contact.arm_a) - of_b;
+  const auto velocity = [&](int body) { return velocity_.segment<3>(6 * body); };
+  const auto spin = [&](int body) { return velocity_.segment<3>(6 * body + 3); };
+  const Vector3 u = vector(contact.relative_velocity(triple(velocity(contact.b)), triple(spin(contact.b))));
+  if (contact.a == IslandContact::kAlone) return u;
+  const Vector3 w = spin(contact.a);
+  return u + velocity(contact.a) + w.cross(contact.arm_a) +
+         w.dot(vector(contact.tilt)) * vector(contact.spring.normal);
 }
 
 double IslandProblem::relative_spin(const IslandContact& contact) const {
@@ -183,7 +189,8 @@ void IslandProblem::evaluate(bool renew_limits) {
     contact.spring.respond(u, relative_spin(contact), renew_limits, response);
     scale_ += step_ * (response.push + contact.spring.bond);
     const Vector3 force = step_ * vector(response.force);
-    const Vector3 torque = (step_ * response.torque) * vector(contact.spring.normal);
+    const Vector3 n = vector(contact.spring.normal);
+    const Vector3 torque = (step_ * response.torque) * n + force.dot(n) * vector(contact.tilt);
     const auto add_force = [&](int body, double sign, const Vector3& arm) {
       gradient_.segment<3>(6 * body) -= sign * force;
       gradient_.segment<3>(6 * body + 3) -= sign * (arm.cross(force) + torque);
@@ -226,13 +233,13 @@ void IslandProblem::multiply_hessian(const Eigen::MatrixXd& by, Eigen::MatrixXd&
 // below the diagonal: rows of the later body.
 void IslandProblem::add_slope(const IslandContact& contact) {
   const Matrix3 slope = step_ * slope_at_point(contact);
-  const Vector3 n = vector(contact.spring.normal), b = vector(contact.arm);
+  const Vector3 n = vector(contact.spring.normal), tilt = vector(contact.tilt);
+  const Moment b{vector(contact.arm), tilt, n}, a{contact.arm_a, tilt, n};
   const Matrix3 twist = (step_ * contact.response.torque_slope) * n * n.transpose();
-  const Matrix3 b_slope = crossed(b, slope);
+  const Matrix3 b_slope = b.of(slope);
   add(1.0, slope, b_slope, b_slope, b, twist, system_.diagonal(contact.b));
   if (contact.a == IslandContact::kAlone) return;
-  const Vector3& a = contact.arm_a;
-  const Matrix3 a_slope = crossed(a, slope);
+  const Matrix3 a_slope = a.of(slope);
   add(1.0, slope, a_slope, a_slope, a, twist, system_.diagonal(contact.a));
   add(-1.0, slope, b_slope, a_slope, b, twist, system_.between(contact.coupling));
 }

@@ -14,7 +14,7 @@ namespace mrhi {
 struct IslandContact : SpringContact {
   static constexpr int kAlone = -1;
   int a, b;
-  Vector3 arm_a;         // from the centre of a [m]
+  Vector3 arm_a;         // of friction, from the centre of a [m]
   std::size_t coupling;  // of a and b in the system
 };
 
@@ -69,7 +69,6 @@ class IslandProblem {
     double gyration_squared;  // [m^2]
     Matrix3 inertia;          // world axes
   };
-  Vector3 velocity_at(int body, const Vector3& arm) const;
   Vector3 relative_velocity(const IslandContact& contact) const;
   double relative_spin(const IslandContact& contact) const;
   void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);

@@ -62,9 +62,23 @@ struct Spring {
 struct SpringContact {
   Spring spring;
   SpringResponse response;  ///< of the last iterate
-  Triple arm;               ///< from the centre of 2 [m]
+  Triple arm;               ///< of friction, from the centre of 2 [m]
+  Triple tilt;              ///< d x n, with d from there to where the push acts: what its torque has more [m]
+  bool tilts;               ///< whether there is any
   Triple drive;             ///< velocity of 1 at the point [m/s]
   double drive_spin;        ///< of 1 about n [rad/s]
+
+  /// Velocity of 1 against the body 2 at the contact. Along n it is that where the push acts:
+  /// u = u_1 - (v + w x r) - (w.t) n, with the arm r and the tilt t.
+  Triple relative_velocity(const Triple& velocity, const Triple& spin) const {
+    const Triple u = drive - velocity - spin.cross(arm);
+    return tilts ? u - spin.dot(tilt) * spring.normal : u;
+  }
+  /// Torque of the response about the centre of 2 [N m].
+  Triple torque() const {
+    const Triple result = arm.cross(response.force) + response.torque * spring.normal;
+    return tilts ? result + response.force.dot(spring.normal) * tilt : result;
+  }
 };
 
 /// What a finger that gives way still gains in push with depth, of its stiffness.

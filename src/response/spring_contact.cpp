@@ -169,6 +169,7 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   spring.friction = contact.grip * friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
   result.arm = point - triple(step.bodies[contact.key.body].pose.position);
+  result.tilts = false, result.tilt = {0.0, 0.0, 0.0};
   result.drive = triple(contact.hand_velocity);
   result.drive_spin = contact.hand_spin;
 }
@@ -189,7 +190,9 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   spring.twist = spring.twist_stiffness = spring.patch_friction = 0.0;
   spring.pad = spring.half_over_pad = spring.bond = 0.0;
   spring.yields = HandStrength::kUnlimited;
-  result.arm = triple(contact.arm_b);
+  result.arm = triple(contact.arm_b + contact.friction_offset);
+  result.tilt = triple(contact.normal.cross(contact.friction_offset));
+  result.tilts = !contact.friction_offset.isZero(0.0);
   result.drive = {0.0, 0.0, 0.0};
   result.drive_spin = 0.0;
 }

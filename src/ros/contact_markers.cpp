@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../rendering/skin.h"
 #include "../simulation/contact_phase.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -161,21 +160,12 @@ void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& m
 
 namespace {
 
-using visualization_msgs::Marker;
-
 constexpr int kSides = 6;
 
 /// Half of an arrow's outline, turned round its axis.
 struct OutlinePoint {
   double along, radius;
 };
-
-std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint) {
-  const Rgb light = light_on(normal.cast<float>()).min(1.0f);
-  std_msgs::ColorRGBA colour = paint;
-  colour.r *= light[0], colour.g *= light[1], colour.b *= light[2];
-  return colour;
-}
 
 /// Axes across `along`, whichever.
 std::array<Vector3, 2> across(const Vector3& along) {

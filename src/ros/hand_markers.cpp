@@ -1,5 +1,3 @@
-#include "hand_markers.h"
-
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
@@ -157,8 +155,6 @@ void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, const Pic
 }
 
 namespace {
-
-using visualization_msgs::Marker;
 
 constexpr int kIndex = 1, kLittle = 4;
 constexpr double kPlate = 1.02;  // of the metacarpals' radius: not level with their cylinders

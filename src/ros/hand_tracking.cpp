@@ -1,7 +1,7 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
+#include <tf2_msgs/TFMessage.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
@@ -13,12 +13,9 @@
 
 #include "input_statistics.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/leap_human.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "node.h"
 #include "tracker_reader.h"
-#include "tracker_transforms.h"
-#include "update_diagnostics.h"
 
 namespace mrhi {
 namespace {
@@ -27,6 +24,51 @@ constexpr int kQueue = 10;
 
 const char* const kStampNotIncreasing = "stamp repeats or goes back";
 const char* const kNoTransform = "no transform";
+
+/// What the node is told on the parameter server.
+struct Parameters {
+  explicit Parameters(const ros::NodeHandle& node) {
+    NodeParameters known;
+    known.text("fixed_frame", fixed_frame).text("order", reader.order);
+    known.choice<Side>("side", {{"left", Side::left}, {"right", Side::right}}, reader.side);
+    known.number("scale", 1e-6, 1e6, reader.scale, ", metres per unit of the tracker").read(node);
+  }
+
+  std::string fixed_frame = "world";
+  TrackerReader::Options reader;
+};
+
+/// A TransformMemory of /tf and /tf_static, read by the callbacks' own thread.
+class TrackerTransforms : public TransformMemory {
+ public:
+  static constexpr const char* kReason = "unusable transform";
+
+  TrackerTransforms(ros::NodeHandle node, InputStatistics& statistics) : statistics_(statistics) {
+    constexpr std::uint32_t kTransformQueue = 100;
+    moving_ = node.subscribe<tf2_msgs::TFMessage>(
+        "/tf", kTransformQueue,
+        boost::function<void(const Arrival&)>([this](const Arrival& arrival) { take(arrival); }));
+    const auto take_fixed = [this](const Arrival& arrival) {
+      for (const auto& transform : arrival.getConstMessage()->transforms) set_fixed(transform);
+    };
+    fixed_ = node.subscribe<tf2_msgs::TFMessage>("/tf_static", kTransformQueue,
+                                                 boost::function<void(const Arrival&)>(take_fixed));
+  }
+
+ private:
+  using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
+  /// What this node itself gives are objects, which carry no tracker.
+  void take(const Arrival& arrival) {
+    if (arrival.getPublisherName() == ros::this_node::getName()) return;
+    for (const auto& transform : arrival.getConstMessage()->transforms) {
+      const std::string why = set(transform, from_ros_time(ros::Time::now()));
+      if (!why.empty()) statistics_.rejected(kReason, why);
+    }
+  }
+
+  InputStatistics& statistics_;
+  ros::Subscriber moving_, fixed_;
+};
 
 std::vector<std::string> known_reasons() {
   std::vector<std::string> reasons{JointsInput::kUnusable, kStampNotIncreasing, JointsInput::kNoStamp,
@@ -37,26 +79,21 @@ std::vector<std::string> known_reasons() {
   return reasons;
 }
 
-Side parse_side(const std::string& name) {
-  if (name == "left") return Side::left;
-  if (name == "right") return Side::right;
-  throw std::invalid_argument("parameter side: '" + name + "' is neither left nor right");
-}
-
-TrackerReader::Options options_from(const ros::NodeHandle& parameters) {
-  TrackerReader::Options options;
-  std::string side = "right";
-  read_parameter(parameters, "side", "a string", side);
-  options.side = parse_side(side);
-  read_parameter(parameters, "order", "a string", options.order);
-  read_parameter(parameters, "scale", "a number", options.scale);
-  return options;
-}
-
 }  // namespace
 
 struct HandTracking::Impl {
-  Impl(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
+  Impl(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const Parameters& parameters)
+      : fixed_frame_(parameters.fixed_frame),
+        reader_(parameters.reader),
+        statistics_(node, private_node, "hand tracker", "hand input", known_reasons(),
+                    {JointsInput::corrections().begin(), JointsInput::corrections().end()}),
+        node_(node),
+        transforms_(node_, statistics_) {
+    publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
+    for (const std::string& topic : TrackerReader::topics()) sources_.push_back({topic, {}});
+    for (Source& source : sources_) subscribe(source);
+    statistics_.each_second([this] { accept_other_types(); });
+  }
 
   using Event = ros::MessageEvent<const topic_tools::ShapeShifter>;
   /// A topic that may carry any tracker's message.
@@ -66,123 +103,89 @@ struct HandTracking::Impl {
     bool seen = false;  ///< a publisher, by the present subscription
   };
 
-  void subscribe(Source& source);
+  void subscribe(Source& source) {
+    source.seen = false;
+    source.subscriber = node_.subscribe<topic_tools::ShapeShifter>(
+        source.topic, kQueue,
+        boost::function<void(const Event&)>([this, &source](const Event& event) { take(source, event); }),
+        nullptr, ros::TransportHints().tcpNoDelay());
+  }
+
   /// roscpp keeps a topic to the type that it met first, so a publisher of another type or version needs a
   /// new subscription.
-  void accept_other_types();
-  void take(Source& source, const Event& event);
-  void publish(const HandFrame& frame, const ros::Time& receipt);
-  bool accept_stamp(Nanoseconds stamp);
+  void accept_other_types() {
+    for (Source& source : sources_) {
+      const bool connected = source.subscriber.getNumPublishers() > 0;
+      source.seen = source.seen || connected;
+      if (!source.seen || connected) continue;
+      source.subscriber.shutdown();
+      subscribe(source);
+    }
+  }
+
+  void take(Source& source, const Event& event) {
+    source.seen = true;
+    auto arrived = TrackerReader::message_of(source.topic, event.getPublisherName(), *event.getConstMessage(),
+                                             event.getReceiptTime());
+    std::optional<std::uint32_t> sequence;
+    SourceFrame frame;
+    try {
+      frame = reader_.read(
+          std::move(arrived),
+          [this](const std::string& frame_id, Nanoseconds stamp) {
+            return transforms_.pose(fixed_frame_, frame_id, stamp);
+          },
+          &sequence);
+    } catch (const tf2::TransformException& error) {
+      frame.reason = kNoTransform;
+      frame.detail = error.what();
+    }
+    if (sequence)
+      statistics_.lost(sequences_.missing(event.getPublisherName() + " " + source.topic, *sequence));
+    for (const auto& [kind, what] : frame.corrected) statistics_.corrected(kind, what);
+    for (const std::string& defect : frame.left_out) statistics_.rejected(JointsInput::kUnusable, defect);
+    if (!frame.reason.empty()) statistics_.rejected(frame.reason, frame.detail);
+    if (frame.frame) publish(*frame.frame, event.getReceiptTime());
+  }
+
+  void publish(const HandFrame& frame, const ros::Time& receipt) {
+    if (!accept_stamp(frame.stamp)) return;
+    const auto message =
+        boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(frame, fixed_frame_));
+    if (sink_) sink_(*message, receipt);
+    publisher_.publish(message);
+    statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
+  }
+
+  /// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not
+  /// for those who listen to hand_frame.
+  bool accept_stamp(Nanoseconds stamp) {
+    const Nanoseconds last = stamps_.last;
+    const StampVerdict verdict = stamps_.check(stamp);
+    if (verdict == StampVerdict::late) {
+      statistics_.rejected(kStampNotIncreasing, std::to_string(to_seconds(stamp)) + " s after " +
+                                                    std::to_string(to_seconds(last)) + " s");
+      return false;
+    }
+    if (verdict == StampVerdict::restart) transforms_.clear();
+    return true;
+  }
 
   Sink sink_;
   std::string fixed_frame_;
   TrackerReader reader_;
   StampCheck stamps_;
-  InputStatistics statistics_;
+  NodeDiagnostics statistics_;
   SequenceWatch sequences_;
 
   ros::NodeHandle node_;
   TrackerTransforms transforms_;
   ros::Publisher publisher_;
   std::vector<Source> sources_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer timer_;
 };
 
-HandTracking::Impl::Impl(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
-    : fixed_frame_(parameters.param<std::string>("fixed_frame", "world")),
-      reader_(options_from(parameters)),
-      statistics_(known_reasons(), {JointsInput::corrections().begin(), JointsInput::corrections().end()}),
-      node_(node),
-      transforms_(
-          node_, [this](const char* reason, const std::string& what) { statistics_.rejected(reason, what); }),
-      diagnostics_(node, parameters, ros::this_node::getName()) {
-  publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
-  for (const std::string& topic : TrackerReader::topics()) sources_.push_back({topic, {}});
-  for (Source& source : sources_) subscribe(source);
-  diagnostics_.setHardwareID("hand tracker");
-  diagnostics_.add("hand input", [this](auto& status) { statistics_.report(status); });
-  timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
-    update(diagnostics_);
-    accept_other_types();
-  });
-}
-
-void HandTracking::Impl::subscribe(Source& source) {
-  source.seen = false;
-  source.subscriber = node_.subscribe<topic_tools::ShapeShifter>(
-      source.topic, kQueue,
-      boost::function<void(const Event&)>([this, &source](const Event& event) { take(source, event); }),
-      nullptr, ros::TransportHints().tcpNoDelay());
-}
-
-void HandTracking::Impl::accept_other_types() {
-  for (Source& source : sources_) {
-    const bool connected = source.subscriber.getNumPublishers() > 0;
-    source.seen = source.seen || connected;
-    if (!source.seen || connected) continue;
-    source.subscriber.shutdown();
-    subscribe(source);
-  }
-}
-
-void HandTracking::Impl::take(Source& source, const Event& event) {
-  const topic_tools::ShapeShifter& message = *event.getConstMessage();
-  source.seen = true;
-  TrackerReader::Message arrived{source.topic,
-                                 event.getPublisherName(),
-                                 message.getDataType(),
-                                 message.getMD5Sum(),
-                                 std::vector<std::uint8_t>(message.size()),
-                                 from_ros_time(event.getReceiptTime())};
-  ros::serialization::OStream stream(arrived.bytes.data(), message.size());
-  message.write(stream);
-  std::optional<std::uint32_t> sequence;
-  SourceFrame frame;
-  try {
-    frame = reader_.read(
-        std::move(arrived),
-        [this](const std::string& frame_id, Nanoseconds stamp) {
-          return transforms_.pose(fixed_frame_, frame_id, stamp);
-        },
-        &sequence);
-  } catch (const tf2::TransformException& error) {
-    frame.reason = kNoTransform;
-    frame.detail = error.what();
-  }
-  if (sequence)
-    statistics_.lost(sequences_.missing(event.getPublisherName() + " " + source.topic, *sequence));
-  for (const auto& [kind, what] : frame.corrected) statistics_.corrected(kind, what);
-  for (const std::string& defect : frame.left_out) statistics_.rejected(JointsInput::kUnusable, defect);
-  if (!frame.reason.empty()) statistics_.rejected(frame.reason, frame.detail);
-  if (frame.frame) publish(*frame.frame, event.getReceiptTime());
-}
-
-void HandTracking::Impl::publish(const HandFrame& frame, const ros::Time& receipt) {
-  if (!accept_stamp(frame.stamp)) return;
-  const auto message =
-      boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(frame, fixed_frame_));
-  if (sink_) sink_(*message, receipt);
-  publisher_.publish(message);
-  statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
-}
-
-/// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not
-/// for those who listen to hand_frame.
-bool HandTracking::Impl::accept_stamp(Nanoseconds stamp) {
-  const Nanoseconds last = stamps_.last;
-  const StampVerdict verdict = stamps_.check(stamp);
-  if (verdict == StampVerdict::late) {
-    statistics_.rejected(kStampNotIncreasing, std::to_string(to_seconds(stamp)) + " s after " +
-                                                  std::to_string(to_seconds(last)) + " s");
-    return false;
-  }
-  if (verdict == StampVerdict::restart) transforms_.clear();
-  return true;
-}
-
-HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters)
-    : impl_(std::make_unique<Impl>(node, parameters)) {}
+HandTracking::HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : impl_(std::make_unique<Impl>(node, private_node, Parameters(private_node))) {}
 
 HandTracking::~HandTracking() = default;
 

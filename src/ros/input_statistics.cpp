@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/stamp_check.h"
+
 namespace mrhi {
 namespace {
 
@@ -73,6 +76,23 @@ void InputStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status
   period_start_ = now;
   taken_in_period_ = 0;
   latency_sum_ = latency_max_ = 0.0;
+}
+
+NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node,
+                                 const std::string& hardware, const std::string& title,
+                                 const std::vector<std::string>& reasons,
+                                 const std::vector<std::string>& corrections, const Task& more)
+    : InputStatistics(reasons, corrections), updater_(node, private_node) {
+  updater_.setHardwareID(hardware);
+  updater_.add(title, [this, more](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    report(status);
+    if (more) more(status);
+  });
+  timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    // The updater adds its period to the clock, which throws where stamps end.
+    if (from_ros_time(ros::Time::now()) <= StampCheck::kLatest) updater_.force_update();
+    if (each_second_) each_second_();
+  });
 }
 
 }  // namespace mrhi

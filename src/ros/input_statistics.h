@@ -1,9 +1,10 @@
 #pragma once
 
-#include <diagnostic_updater/DiagnosticStatusWrapper.h>
-#include <ros/time.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -48,6 +49,24 @@ class InputStatistics {
   std::uint64_t taken_in_period_ = 0;
   double latency_sum_ = 0.0, latency_max_ = 0.0;
   ros::WallTime period_start_;
+};
+
+/// These, and what else a node reports, on /diagnostics once a second.
+class NodeDiagnostics : public InputStatistics {
+ public:
+  /// `title` of the status that has the statistics; `more` adds to it.
+  using Task = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
+  NodeDiagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& hardware,
+                  const std::string& title, const std::vector<std::string>& reasons = {},
+                  const std::vector<std::string>& corrections = {}, const Task& more = {});
+
+  void add(const std::string& title, const Task& task) { updater_.add(title, task); }
+  void each_second(const std::function<void()>& task) { each_second_ = task; }
+
+ private:
+  diagnostic_updater::Updater updater_;
+  std::function<void()> each_second_;
+  ros::WallTimer timer_;
 };
 
 /// Counts messages that have not arrived (a queue was full, or the way was), by the numbers that ROS gives

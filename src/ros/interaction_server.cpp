@@ -16,22 +16,19 @@
 #include <string>
 #include <vector>
 
+#include "../math/duration_histogram.h"
 #include "../text/text.h"
 #include "../text/yaml.h"
-#include "between_frames.h"
 #include "input_log.h"
 #include "input_statistics.h"
-#include "interaction_diagnostics.h"
+#include "live_controls.h"
 #include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/save_scene.h"
-#include "placing.h"
-#include "result_conversion.h"
+#include "result_messages.h"
 #include "result_publisher.h"
-#include "stamp_clock.h"
-#include "tuning.h"
 
 namespace mrhi {
 namespace {
@@ -95,59 +92,274 @@ World world_of(const ServerParameters& parameters, const Scene& scene) {
   return world;
 }
 
-template <class Service, class Handler>
-ros::ServiceServer advertise(ros::NodeHandle& node, const char* name, Handler handler) {
-  using Request = typename Service::Request;
-  using Response = typename Service::Response;
-  return node.advertiseService<Request, Response>(name, boost::function<bool(Request&, Response&)>(handler));
-}
-
-/// Answers a service with what a change says it has done, or why it was refused.
-template <class Response, class Change>
-bool answer(Response& response, const Change& change) {
-  try {
-    response.message = change();
-    response.success = true;
-  } catch (const std::exception& error) {
-    response.message = error.what();
-    response.success = false;
-    ROS_WARN("refused: %s", error.what());
-  }
-  return true;
-}
-
 }  // namespace
 
 struct InteractionServer::Impl {
-  Impl(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters);
+  Impl(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters)
+      : fixed_frame_(parameters.fixed_frame),
+        live_(scene_of(parameters), parameters.configuration),
+        log_(node, world_of(parameters, live_.simulation().scene()), live_, clock_),
+        results_(node, fixed_frame_, parameters.haptics_rate, clock_),
+        diagnostics_(node, private_node, "scene " + live_.simulation().scene().name, "interaction", {}, {},
+                     [this](auto& status) { report(status); }),
+        placing_(private_node, fixed_frame_),
+        tuning_(private_node, parameters.place_by_mouse,
+                {[this](const Tuning::Values& values) { change_parameters(values); },
+                 [this](bool on) { placing_.turn(on, live_.simulation()); },
+                 [this]() -> const Simulation& { return live_.simulation(); }}),
+        between_frames_(node) {
+    // Apart: all values of the other status are numbers, and a hash is none.
+    diagnostics_.add("state", [this](auto& status) { report_state(status); });
+    if (parameters.standard_outputs) results_.add_standard_outputs(node);
+    results_.show(live_.simulation());
+    placing_.turn(parameters.place_by_mouse, live_.simulation());
+    advertise_services(private_node);
+    between_frames_.start();
+    idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
+  }
 
-  void subscribe(ros::NodeHandle& node);
-  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival);
-  void note_lost(std::uint64_t frames);
-  void advertise_services(ros::NodeHandle& private_node);
-  bool begin(const mr_hand_interaction::HandFrame& message);
-  bool timed_step();
-  void tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const;
-  void idle();
+  void subscribe(ros::NodeHandle& node) {
+    using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
+    const auto handler = [this](const Arrival& arrival) {
+      const auto& message = *arrival.getConstMessage();
+      note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
+      take(message, arrival.getReceiptTime());
+    };
+    hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
+                                                            boost::function<void(const Arrival&)>(handler),
+                                                            nullptr, ros::TransportHints().tcpNoDelay());
+  }
 
-  bool reset(std_srvs::Trigger::Response& response);
-  bool pause(bool paused, std_srvs::SetBool::Response& response);
-  bool spawn(const mr_hand_interaction::SpawnObject::Request& request,
-             mr_hand_interaction::SpawnObject::Response& response);
-  std::string spawn(const ObjectRequest& request);
-  bool spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
-                  mr_hand_interaction::SpawnUrdf::Response& response);
-  bool save(const std::string& file, mr_hand_interaction::SaveWorld::Response& response);
-  bool remove(const std::string& name, mr_hand_interaction::DeleteObject::Response& response);
-  bool set(const mr_hand_interaction::SetParameter::Request& request,
-           mr_hand_interaction::SetParameter::Response& response);
+  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
+    const Nanoseconds stamp = from_ros_time(message.header.stamp);
+    const StampVerdict verdict = arrivals_.check(stamp);
+    if (clock_.paused()) {
+      if (verdict == StampVerdict::follows || verdict == StampVerdict::restart)
+        clock_.take(stamp, ros::Time::now());
+      ++dropped_while_paused_;
+      return;
+    }
+    if (!begin(message)) return;
+    while (timed_step()) results_.note_step();
+    results_.publish_response(live_.simulation().report());
+    const FrameResult& result = live_.simulation().end();
+    log_.frame(message, frame_stamp_, frame_expected_);
+    place_dragged();
+    for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
+    results_.publish_picture(result);
+    if (ros::Time::isSystemTime())
+      picture_latency_.add(static_cast<Nanoseconds>(1e9 * (results_.shown().toSec() - arrival.toSec())));
+    const ros::Time now = ros::Time::now();
+    diagnostics_.waited(seconds_between(arrival, now));
+    diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
+    clock_.take(stamp, now);
+  }
+
+  void note_lost(std::uint64_t frames) {
+    diagnostics_.lost(frames);
+    log_.lost(diagnostics_.lost());
+  }
+
+  /// `work` returns what it has done, or throws why it is refused.
+  template <class Service, class Work>
+  void serve(ros::NodeHandle& node, const char* name, Work work) {
+    using Request = typename Service::Request;
+    using Response = typename Service::Response;
+    const auto handler = [work](Request& request, Response& response) {
+      try {
+        response.message = work(request);
+        response.success = true;
+      } catch (const std::exception& error) {
+        response.message = error.what();
+        response.success = false;
+        ROS_WARN("refused: %s", error.what());
+      }
+      return true;
+    };
+    services_.push_back(
+        node.advertiseService<Request, Response>(name, boost::function<bool(Request&, Response&)>(handler)));
+  }
+
+  void advertise_services(ros::NodeHandle& node) {
+    using namespace mr_hand_interaction;
+    serve<std_srvs::Trigger>(node, "reset", [this](auto&) { return reset(); });
+    serve<std_srvs::SetBool>(node, "pause", [this](auto& request) { return pause(request.data); });
+    serve<std_srvs::SetBool>(node, "restrain", [this](auto& request) {
+      make(Restrain{request.data != 0});
+      return std::string(request.data != 0 ? "restrained" : "free");
+    });
+    serve<SaveWorld>(node, "save", [this](auto& request) { return save(request.file); });
+    serve<DeleteObject>(node, "delete", [this](auto& request) { return remove(request.name); });
+    serve<SetParameter>(node, "set", [this](auto& request) { return set(request); });
+    ros::NodeHandle beside = between_frames_.node_beside(node);
+    serve<SpawnObject>(beside, "spawn", [this](auto& request) { return spawn(from_message(request)); });
+    serve<SpawnUrdf>(beside, "spawn_urdf", [this](auto& request) { return spawn(from_message(request)); });
+  }
+
+  bool begin(const mr_hand_interaction::HandFrame& message) {
+    if (without_slash(message.header.frame_id) != without_slash(fixed_frame_)) {
+      diagnostics_.rejected(
+          "wrong frame", "'" + text::one_line(message.header.frame_id, 64) + "'; allowed: " + fixed_frame_);
+      return false;
+    }
+    try {
+      HandFrame frame = from_message(message);
+      frame.stamp = clock_.to_simulation(frame.stamp);
+      frame_stamp_ = frame.stamp;
+      frame_expected_ = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+      const Rejection rejection = live_.simulation().begin(frame, frame_expected_);
+      if (rejection == Rejection::none) return true;
+      log_.frame(message, frame_stamp_, frame_expected_);
+      diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
+    } catch (const std::invalid_argument& error) {
+      diagnostics_.rejected("unusable hand", error.what());
+    }
+    return false;
+  }
+
+  bool timed_step() {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!live_.simulation().step()) return false;
+    const auto time = std::chrono::steady_clock::now() - begin;
+    step_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+    return true;
+  }
+
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+    status.add("frames dropped while paused", dropped_while_paused_);
+    status.add("steps in this period", step_times_.count());
+    status.add("step time p50 [us]", step_times_.quantile_us(0.5));
+    status.add("step time p99 [us]", step_times_.quantile_us(0.99));
+    status.add("step time max [us]", step_times_.max_us());
+    status.add("hand to markers p50 [ms]", 1e-3 * picture_latency_.quantile_us(0.5));
+    status.add("hand to markers p99 [ms]", 1e-3 * picture_latency_.quantile_us(0.99));
+    step_times_.clear();
+    picture_latency_.clear();
+  }
+
+  void report_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "as of the last input");
+    char text[20];
+    std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.simulation().state()));
+    status.add("state hash", text);
+    status.add("state stamp [ns]", clock_.to_stamp(live_.simulation().state().time));
+    status.add("simulation input", log_.sequence());
+  }
+
+  void idle() {
+    const ros::Time now = ros::Time::now();
+    if (clock_leaps_.look(from_ros_time(now))) return;
+    const Nanoseconds stamp = clock_.stamp(now);
+    const bool running = !clock_.paused() && live_.simulation().state().started;
+    const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
+    if (running && live_.simulation().advance_without_hands(until)) {
+      log_.without_hands(until);
+      place_dragged();
+      results_.publish(live_.simulation().result());
+    } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
+      place_dragged();
+      results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
+    }
+    placing_.follow(live_.simulation());
+  }
+
+  std::string reset() {
+    make(Reset{});
+    results_.show(live_.simulation());
+    FrameResult start;
+    start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+    results_.publish(start);
+    return "scene " + live_.simulation().scene().name + " is at its start";
+  }
+
+  std::string pause(bool paused) {
+    paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
+    make(Pause{paused});
+    return paused ? "paused" : "running";
+  }
+
+  /// Returns what is there then, and what was assumed of it. Runs beside the frames, which do not wait while
+  /// it reads files.
+  std::string spawn(const ObjectRequest& request) {
+    SceneOptions options;
+    between_frames_.run([&] { options = options_of(live_.simulation().configuration()); });
+    Spawn spawn{with_file_read(request, options)};
+    spawn.prepared = std::make_shared<const PreparedSpawn>(spawn.request, options);
+    const Scene& part = spawn.prepared->part;
+    require_no_frames(part, fixed_frame_);
+    if (!spawn.request.whole) spawn.request.name = part.bodies.front().name;
+    between_frames_.run([&] {
+      make(spawn);
+      show_change();
+    });
+    std::vector<std::string> names;
+    for (const Body& body : part.bodies) names.push_back("'" + body.name + "'");
+    std::string text = text::joined(names) + (names.size() > 1 ? " are there" : " is there");
+    for (const std::string& warning : part.warnings) {
+      ROS_WARN("%s", warning.c_str());
+      text += "; " + warning;
+    }
+    return text;
+  }
+
+  /// What is recorded of a replay needs no world that was saved: it is no change.
+  std::string save(const std::string& file) {
+    if (file.empty() || file.front() != '/')
+      throw std::invalid_argument("file '" + text::one_line(file, 200) +
+                                  "' is not allowed; allowed: an absolute path");
+    const SimulationState& state = live_.simulation().state();
+    Scene now = scene_as_it_is(live_.simulation().scene(), state.bodies, state.joints);
+    if (const auto& gravity = live_.simulation().configuration().gravity) now.gravity = *gravity;
+    save_scene(now, file);
+    return "'" + file + "' is written";
+  }
+
+  std::string remove(const std::string& name) {
+    results_.publish_events(live_.events_if_removed(name));
+    make(Delete{name});
+    show_change();
+    return "'" + name + "' is gone";
+  }
+
+  std::string set(const mr_hand_interaction::SetParameter::Request& request) {
+    const Tuning::Values values = values_of(request);
+    change_parameters(values);
+    tuning_.show();
+    std::vector<std::string> now;
+    for (const auto& [name, value] : values) now.push_back(name + " is " + live_.parameter(name));
+    return text::joined(now);
+  }
 
   /// Every change of the simulation goes this way, and into the log.
-  void make(const Change& change);
-  void change_parameters(const Tuning::Values& values);
+  void make(const Change& change) {
+    mrhi::make(change, live_);
+    log_.change(change);
+  }
+
+  void change_parameters(const Tuning::Values& values) {
+    make(SetParameters{values});
+    show_change();
+  }
+
   /// There is another simulation, perhaps with other bodies.
-  void show_change();
-  void place_dragged();
+  /// Changes that come faster than they could be seen are shown together, by the next frame or idle(): a
+  /// scene of many objects costs more to show than to change.
+  void show_change() {
+    results_.show(live_.simulation());
+    if (ros::WallTime::now() - results_.shown() > kIdlePeriod)
+      results_.publish_scene(live_.simulation().result(), to_ros_time(clock_.stamp(ros::Time::now())));
+    placing_.renew(live_.simulation());
+  }
+
+  void place_dragged() {
+    for (const auto& [name, pose] : placing_.dragged()) {
+      try {
+        make(PlaceObject{name, pose});
+      } catch (const std::invalid_argument&) {
+        // The mouse is out of bounds, or its object is gone: what was good stays.
+      }
+    }
+  }
 
   std::string fixed_frame_;
   LiveSimulation live_;
@@ -157,7 +369,9 @@ struct InteractionServer::Impl {
   Nanoseconds frame_stamp_ = 0, frame_expected_ = 0;  ///< of the frame that has begun
   StampCheck arrivals_;                               ///< of all frames, those too that come while paused
   ResultPublisher results_;
-  InteractionDiagnostics diagnostics_;
+  NodeDiagnostics diagnostics_;
+  DurationHistogram step_times_, picture_latency_;  ///< since the last report; from the hand's arrival
+  std::uint64_t dropped_while_paused_ = 0;
   Placing placing_;
   Tuning tuning_;
 
@@ -167,272 +381,6 @@ struct InteractionServer::Impl {
   ros::WallTimer idle_timer_;
   BetweenFrames between_frames_;  ///< last, so that nothing runs beside the end of the others
 };
-
-InteractionServer::Impl::Impl(ros::NodeHandle node, ros::NodeHandle private_node,
-                              const ServerParameters& parameters)
-    : fixed_frame_(parameters.fixed_frame),
-      live_(scene_of(parameters), parameters.configuration),
-      log_(node, world_of(parameters, live_.simulation().scene()), live_, clock_),
-      results_(node, fixed_frame_, parameters.haptics_rate, clock_),
-      diagnostics_(node, private_node, live_.simulation().scene().name),
-      placing_(private_node, fixed_frame_),
-      tuning_(private_node, parameters.place_by_mouse,
-              {[this](const Tuning::Values& values) { change_parameters(values); },
-               [this](bool on) { placing_.turn(on, live_.simulation()); },
-               [this]() -> const Simulation& { return live_.simulation(); }}),
-      between_frames_(node) {
-  diagnostics_.watch([this](auto& status) { tell_state(status); });
-  if (parameters.standard_outputs) results_.add_standard_outputs(node);
-  results_.show(live_.simulation());
-  placing_.turn(parameters.place_by_mouse, live_.simulation());
-  advertise_services(private_node);
-  between_frames_.start();
-  idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
-}
-
-void InteractionServer::Impl::subscribe(ros::NodeHandle& node) {
-  using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
-  const auto handler = [this](const Arrival& arrival) {
-    const auto& message = *arrival.getConstMessage();
-    note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
-    take(message, arrival.getReceiptTime());
-  };
-  hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
-                                                          boost::function<void(const Arrival&)>(handler),
-                                                          nullptr, ros::TransportHints().tcpNoDelay());
-}
-
-void InteractionServer::Impl::tell_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  char text[20];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.simulation().state()));
-  status.add("state hash", text);
-  status.add("state stamp [ns]", clock_.to_stamp(live_.simulation().state().time));
-  status.add("simulation input", log_.sequence());
-}
-
-void InteractionServer::Impl::advertise_services(ros::NodeHandle& private_node) {
-  using namespace mr_hand_interaction;
-  services_ = {
-      advertise<std_srvs::Trigger>(private_node, "reset",
-                                   [this](auto&, auto& response) { return reset(response); }),
-      advertise<std_srvs::SetBool>(
-          private_node, "pause",
-          [this](auto& request, auto& response) { return pause(request.data, response); }),
-      advertise<std_srvs::SetBool>(private_node, "restrain",
-                                   [this](auto& request, auto& response) {
-                                     return answer(response, [&] {
-                                       make(Restrain{request.data != 0});
-                                       return std::string(request.data != 0 ? "restrained" : "free");
-                                     });
-                                   }),
-      advertise<SaveWorld>(private_node, "save",
-                           [this](auto& request, auto& response) { return save(request.file, response); }),
-      advertise<DeleteObject>(
-          private_node, "delete",
-          [this](auto& request, auto& response) { return remove(request.name, response); }),
-      advertise<SetParameter>(private_node, "set",
-                              [this](auto& request, auto& response) { return set(request, response); })};
-  ros::NodeHandle beside = between_frames_.node_beside(private_node);
-  services_.push_back(advertise<SpawnObject>(
-      beside, "spawn", [this](auto& request, auto& response) { return spawn(request, response); }));
-  services_.push_back(advertise<SpawnUrdf>(
-      beside, "spawn_urdf", [this](auto& request, auto& response) { return spawn_urdf(request, response); }));
-}
-
-void InteractionServer::Impl::note_lost(std::uint64_t frames) {
-  diagnostics_.lost(frames);
-  log_.lost(diagnostics_.lost());
-}
-
-void InteractionServer::Impl::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
-  const Nanoseconds stamp = from_ros_time(message.header.stamp);
-  const StampVerdict verdict = arrivals_.check(stamp);
-  if (clock_.paused()) {
-    if (verdict == StampVerdict::follows || verdict == StampVerdict::restart)
-      clock_.take(stamp, ros::Time::now());
-    diagnostics_.dropped_while_paused();
-    return;
-  }
-  if (!begin(message)) return;
-  while (timed_step()) results_.note_step();
-  results_.publish_response(live_.simulation().report());
-  const FrameResult& result = live_.simulation().end();
-  log_.frame(message, frame_stamp_, frame_expected_);
-  place_dragged();
-  for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
-  results_.publish_picture(result);
-  if (ros::Time::isSystemTime()) diagnostics_.picture(results_.shown().toSec() - arrival.toSec());
-  const ros::Time now = ros::Time::now();
-  diagnostics_.waited(seconds_between(arrival, now));
-  diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
-  clock_.take(stamp, now);
-}
-
-bool InteractionServer::Impl::begin(const mr_hand_interaction::HandFrame& message) {
-  if (without_slash(message.header.frame_id) != without_slash(fixed_frame_)) {
-    diagnostics_.rejected("wrong frame",
-                          "'" + text::one_line(message.header.frame_id, 64) + "'; allowed: " + fixed_frame_);
-    return false;
-  }
-  try {
-    HandFrame frame = from_message(message);
-    frame.stamp = clock_.to_simulation(frame.stamp);
-    frame_stamp_ = frame.stamp;
-    frame_expected_ = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-    const Rejection rejection = live_.simulation().begin(frame, frame_expected_);
-    if (rejection == Rejection::none) return true;
-    log_.frame(message, frame_stamp_, frame_expected_);
-    diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
-  } catch (const std::invalid_argument& error) {
-    diagnostics_.rejected("unusable hand", error.what());
-  }
-  return false;
-}
-
-bool InteractionServer::Impl::timed_step() {
-  const auto begin = std::chrono::steady_clock::now();
-  if (!live_.simulation().step()) return false;
-  const auto time = std::chrono::steady_clock::now() - begin;
-  diagnostics_.step(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
-  return true;
-}
-
-void InteractionServer::Impl::idle() {
-  const ros::Time now = ros::Time::now();
-  if (clock_leaps_.look(from_ros_time(now))) return;
-  const Nanoseconds stamp = clock_.stamp(now);
-  const bool running = !clock_.paused() && live_.simulation().state().started;
-  const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
-  if (running && live_.simulation().advance_without_hands(until)) {
-    log_.without_hands(until);
-    place_dragged();
-    results_.publish(live_.simulation().result());
-  } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
-    place_dragged();
-    results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
-  }
-  placing_.follow(live_.simulation());
-}
-
-bool InteractionServer::Impl::reset(std_srvs::Trigger::Response& response) {
-  make(Reset{});
-  results_.show(live_.simulation());
-  FrameResult start;
-  start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-  results_.publish(start);
-  response.success = true;
-  response.message = "scene " + live_.simulation().scene().name + " is at its start";
-  return true;
-}
-
-bool InteractionServer::Impl::pause(bool paused, std_srvs::SetBool::Response& response) {
-  paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
-  make(Pause{paused});
-  response.success = true;
-  response.message = paused ? "paused" : "running";
-  return true;
-}
-
-bool InteractionServer::Impl::spawn(const mr_hand_interaction::SpawnObject::Request& request,
-                                    mr_hand_interaction::SpawnObject::Response& response) {
-  return answer(response, [&] { return spawn(from_message(request)); });
-}
-
-bool InteractionServer::Impl::spawn_urdf(const mr_hand_interaction::SpawnUrdf::Request& request,
-                                         mr_hand_interaction::SpawnUrdf::Response& response) {
-  return answer(response, [&] { return spawn(from_message(request)); });
-}
-
-/// Returns what is there then, and what was assumed of it. Runs beside the frames, which do not wait while it
-/// reads files.
-std::string InteractionServer::Impl::spawn(const ObjectRequest& request) {
-  SceneOptions options;
-  between_frames_.run([&] { options = options_of(live_.simulation().configuration()); });
-  Spawn spawn{with_file_read(request, options)};
-  spawn.prepared = std::make_shared<const PreparedSpawn>(spawn.request, options);
-  const Scene& part = spawn.prepared->part;
-  require_no_frames(part, fixed_frame_);
-  if (!spawn.request.whole) spawn.request.name = part.bodies.front().name;
-  between_frames_.run([&] {
-    make(spawn);
-    show_change();
-  });
-  std::vector<std::string> names;
-  for (const Body& body : part.bodies) names.push_back("'" + body.name + "'");
-  std::string text = text::joined(names) + (names.size() > 1 ? " are there" : " is there");
-  for (const std::string& warning : part.warnings) {
-    ROS_WARN("%s", warning.c_str());
-    text += "; " + warning;
-  }
-  return text;
-}
-
-/// What is recorded of a replay needs no world that was saved: it is no change.
-bool InteractionServer::Impl::save(const std::string& file,
-                                   mr_hand_interaction::SaveWorld::Response& response) {
-  return answer(response, [&] {
-    if (file.empty() || file.front() != '/')
-      throw std::invalid_argument("file '" + text::one_line(file, 200) +
-                                  "' is not allowed; allowed: an absolute path");
-    const SimulationState& state = live_.simulation().state();
-    Scene now = scene_as_it_is(live_.simulation().scene(), state.bodies, state.joints);
-    if (const auto& gravity = live_.simulation().configuration().gravity) now.gravity = *gravity;
-    save_scene(now, file);
-    return "'" + file + "' is written";
-  });
-}
-
-bool InteractionServer::Impl::remove(const std::string& name,
-                                     mr_hand_interaction::DeleteObject::Response& response) {
-  return answer(response, [&] {
-    results_.publish_events(live_.events_if_removed(name));
-    make(Delete{name});
-    show_change();
-    return "'" + name + "' is gone";
-  });
-}
-
-bool InteractionServer::Impl::set(const mr_hand_interaction::SetParameter::Request& request,
-                                  mr_hand_interaction::SetParameter::Response& response) {
-  return answer(response, [&] {
-    const Tuning::Values values = values_of(request);
-    change_parameters(values);
-    tuning_.show();
-    std::string message;
-    for (const auto& [name, value] : values)
-      message += (message.empty() ? "" : ", ") + name + " is " + live_.parameter(name);
-    return message;
-  });
-}
-
-void InteractionServer::Impl::make(const Change& change) {
-  mrhi::make(change, live_);
-  log_.change(change);
-}
-
-void InteractionServer::Impl::change_parameters(const Tuning::Values& values) {
-  make(SetParameters{values});
-  show_change();
-}
-
-/// Changes that come faster than they could be seen are shown together, by the next frame or idle(): a scene
-/// of many objects costs more to show than to change.
-void InteractionServer::Impl::show_change() {
-  results_.show(live_.simulation());
-  if (ros::WallTime::now() - results_.shown() > kIdlePeriod)
-    results_.publish_scene(live_.simulation().result(), to_ros_time(clock_.stamp(ros::Time::now())));
-  placing_.renew(live_.simulation());
-}
-
-void InteractionServer::Impl::place_dragged() {
-  for (const auto& [name, pose] : placing_.dragged()) {
-    try {
-      make(PlaceObject{name, pose});
-    } catch (const std::invalid_argument&) {
-      // The mouse is out of bounds, or its object is gone: what was good stays.
-    }
-  }
-}
 
 InteractionServer::InteractionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                      const ServerParameters& parameters)

@@ -11,7 +11,6 @@
 
 #include "../text/text.h"
 #include "bounded_message.h"
-#include "leap_controller.h"
 
 namespace mrhi {
 namespace {
@@ -116,13 +115,17 @@ HandJoints joints_of(const Hand& message, Side side) {
   return hand;
 }
 
+template <class Header>
+LeapFrame frame_with(const Header& header) {
+  return {{header.frame_id.begin(), header.frame_id.end()},
+          header.seq,
+          {static_cast<Nanoseconds>(header.stamp.toNSec()), {}}};
+}
+
 template <class Human>
 LeapFrame frame_of(std::vector<std::uint8_t>& bytes) {
   const auto human = deserialised<Human>("leap_motion/Human", bytes);
-  LeapFrame frame;
-  frame.frame_id.assign(human.header.frame_id.begin(), human.header.frame_id.end());
-  frame.sequence = human.header.seq;
-  frame.joints.stamp = static_cast<Nanoseconds>(human.header.stamp.toNSec());
+  LeapFrame frame = frame_with(human.header);
   for (const auto& [hand, side] :
        {std::make_pair(&human.right_hand, Side::right), {&human.left_hand, Side::left}}) {
     HandJoints joints = joints_of(*hand, side);
@@ -139,12 +142,19 @@ std::pair<const std::string, Read> version() {
   return {ros::message_traits::MD5Sum<Human>::value(), &frame_of<Human>};
 }
 
+const std::map<std::string, Read>& versions() {
+  static const std::map<std::string, Read> all{
+      version<msg::LeapHuman_<Bounded>>(), version<msg::LeapFebruary2020Human_<Bounded>>(),
+      version<msg::LeapAugust2019Human_<Bounded>>(), version<msg::LeapMelodicHuman_<Bounded>>()};
+  return all;
+}
+
 constexpr const char* kController = "leap_motion_controller";
 
 }  // namespace
 
 /// The driver sets no confidence.
-TrackedHands read_leap_controller(std::vector<std::uint8_t>& bytes) {
+LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes) {
   const auto message =
       deserialised<msg::LeapControllerHand_<Bounded>>(std::string(kController) + "/Hand", bytes);
   HandJoints hand;
@@ -153,10 +163,9 @@ TrackedHands read_leap_controller(std::vector<std::uint8_t>& bytes) {
   hand.pinch_strength = message.pinch_strength;
   hand.palm_centre = known(position(message.palm_center));
   read_fingers(message, kController, hand);
-  TrackedHands tracked;
-  tracked.header = header_of(message.header);
-  tracked.hands.push_back(std::move(hand));
-  return tracked;
+  LeapFrame frame = frame_with(message.header);
+  frame.joints.hands.push_back(std::move(hand));
+  return frame;
 }
 
 const char* DecodeError::reason() const {
@@ -172,17 +181,6 @@ const char* DecodeError::reason() const {
   }
   return "";
 }
-
-namespace {
-
-const std::map<std::string, Read>& versions() {
-  static const std::map<std::string, Read> all{
-      version<msg::LeapHuman_<Bounded>>(), version<msg::LeapFebruary2020Human_<Bounded>>(),
-      version<msg::LeapAugust2019Human_<Bounded>>(), version<msg::LeapMelodicHuman_<Bounded>>()};
-  return all;
-}
-
-}  // namespace
 
 std::vector<std::string> leap_versions() {
   std::vector<std::string> md5s;

@@ -3,10 +3,12 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "../rendering/skin.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/simulation.h"
@@ -50,14 +52,90 @@ void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& s
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, MarkerLayer& layer);
 
+/// Where bodies are drawn.
+struct BodyLayers {
+  MarkerLayer &objects, &fixtures;
+};
+
+/// Draws the bodies of a scene. One into which a tracked finger has gone lets its ghost be seen.
+class BodyMarkers {
+ public:
+  explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
+
+  /// Bodies that look other than when they were last added, or all.
+  void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all, BodyLayers layers);
+
+ private:
+  struct Look {
+    Pose pose;
+    double opacity = 1.0;
+  };
+  void add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const;
+
+  const Scene& scene_;
+  std::vector<Look> added_, now_;
+};
+
+/// Where hands are drawn.
+struct HandLayers {
+  MarkerLayer& hand;   ///< the rendered hand's skin, and apart from it the wrist's sides
+  MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
+};
+
+/// The rendered hand as the simulation has it. Ids from `first_id`, less than kIdsPerHand.
+void add_simulated(const RenderedHand& rendered, int first_id, MarkerLayer& layer);
+
+/// Farthest that the ends of two hands' phalanges are apart [m].
+double farthest_apart(const Hand& a, const Hand& b);
+/// Opacity of a ghost's vertex that is this far from the same vertex of the rendered hand [m].
+float ghost_opacity(double distance, const PictureStyle& style);
+/// Colour of a ghost's vertex with this normal, light included.
+Rgb ghost_colour(const Vector3& normal, const PictureStyle& style);
+
+/// Draws hands as triangles. One with bones missing has no skin: its capsules take the skin's place.
+class HandMarkers {
+ public:
+  explicit HandMarkers(const Skin& skin);  ///< keeps a reference
+  /// Ids from `first_id`, less than kIdsPerHand in each layer. Without `style.skins`, only capsules.
+  void add(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
+           const SimulationState& state, const PictureStyle& style, int first_id, HandLayers layers);
+  /// Takes the memory of markers that are done with, for the next ones.
+  void recycle(std::vector<visualization_msgs::Marker>& markers);
+
+ private:
+  /// What is translucent hides nothing, and is drawn from the farthest marker's place to the nearest: in one
+  /// marker the wrist's far side would stand before its near one.
+  static constexpr int kWristSides = 6;
+  using Triangles = std::vector<SkinWrist::Triangle>;
+  visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
+  void add_part(const Triangles& triangles, Side side, const Vector3& origin, int id, MarkerLayer& layer);
+  void add_skin(const RenderedHand& rendered, int first_id, MarkerLayer& layer);
+  void add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
+                 MarkerLayer& layer);
+  /// On which side of the wrist, as seen along the forearm.
+  std::size_t side_of_wrist(const SkinWrist::Triangle& triangle) const;
+
+  const Skin &skin_, &outline_;
+  const SkinPaint paint_;
+  const SkinWrist wrist_;
+  std::array<Triangles, kWristSides> sides_;
+  SkinSurface surface_, ghost_, beneath_;  // kept for their memory, as are the rest
+  std::vector<Rgb> colours_;
+  std::vector<float> alphas_;
+  std::vector<visualization_msgs::Marker> spare_;
+};
+
+/// The same colour in the light that hands are in, on a surface with this normal: rviz leaves the sides that
+/// its own light does not reach almost black.
+std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint);
+
 /// From `begin` to `tip`, in world [m].
 struct Arrow {
   Vector3 begin, tip;
   double shaft_radius, head_radius, head_length;  ///< [m]; the head at most as long as the arrow
 };
 
-/// In the light that hands are in: rviz's arrows are black on the sides that its light does not reach, and
-/// seen from behind a hand all of them are. Valid until the layer's next call.
+/// Lit as by lit(). Valid until the layer's next call.
 visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id,
                                       MarkerLayer& layer);
 

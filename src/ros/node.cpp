@@ -13,9 +13,14 @@
 #include <iostream>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "../text/yaml.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/ros/server_parameters.h"
 
 namespace mrhi {
 namespace {
@@ -49,45 +54,41 @@ void tell(Standing before, Standing now) {
 /// Asks in a thread of its own, as a master on a network that is down keeps who asks waiting.
 class MasterWatch {
  public:
-  MasterWatch();
-  ~MasterWatch();
+  MasterWatch() : thread_([this] { run(); }) {}
+
+  ~MasterWatch() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      end_ = true;
+    }
+    ended_.notify_all();
+    thread_.join();
+  }
+
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
 
  private:
-  void run();
+  void run() {
+    bool was_known = false;
+    Standing before = Standing::known;
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!ended_.wait_for(lock, kPeriod, [this] { return end_; })) {
+      lock.unlock();
+      const Standing now = standing();
+      lock.lock();
+      was_known = was_known || now == Standing::known;
+      if (end_ || !was_known || !ros::ok()) continue;
+      if (now != before) tell(before, now);
+      before = now;
+    }
+  }
 
   std::mutex mutex_;
   std::condition_variable ended_;
   bool end_ = false;
   std::thread thread_;
 };
-
-MasterWatch::MasterWatch() : thread_([this] { run(); }) {}
-
-MasterWatch::~MasterWatch() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    end_ = true;
-  }
-  ended_.notify_all();
-  thread_.join();
-}
-
-void MasterWatch::run() {
-  bool was_known = false;
-  Standing before = Standing::known;
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!ended_.wait_for(lock, kPeriod, [this] { return end_; })) {
-    lock.unlock();
-    const Standing now = standing();
-    lock.lock();
-    was_known = was_known || now == Standing::known;
-    if (end_ || !was_known || !ros::ok()) continue;
-    if (now != before) tell(before, now);
-    before = now;
-  }
-}
 
 /// What a node's arguments alone decide, before there is a master; nothing: the node is to run.
 std::optional<int> status_of_arguments(int argc, char** argv, const char* usage) {
@@ -132,23 +133,77 @@ int run_node(int argc, char** argv, const char* name, const NodeBody& body) {
   return 0;
 }
 
-void refuse_unknown(const ros::NodeHandle& parameters, const std::set<std::string>& known) {
-  std::vector<std::string> names;
-  ros::param::getParamNames(names);
-  const std::string space = parameters.getNamespace() + "/";
-  for (const std::string& name : names) {
-    if (name.compare(0, space.size(), space) != 0 || known.count(name.substr(space.size())) > 0) continue;
-    std::string list;
-    for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
-    throw std::invalid_argument("parameter " + name + " is not known: use " + list);
+NodeParameters& NodeParameters::add(const std::string& name, const std::string& allowed, const Take& take) {
+  entries_.push_back({name, allowed, take});
+  return *this;
+}
+
+NodeParameters& NodeParameters::text(const std::string& name, std::string& value) {
+  return add(name, "text", [&value](const std::string&, const std::string& text) {
+    value = text;
+    return true;
+  });
+}
+
+NodeParameters& NodeParameters::texts(const std::string& name, std::size_t min, std::size_t max,
+                                      const std::string& what, std::vector<std::string>& values) {
+  const std::string allowed = "a list of " + std::to_string(min) + " to " + std::to_string(max) + " " + what;
+  return add(name, allowed, [min, max, &values](const std::string& list, const std::string& text) {
+    values.clear();
+    for (const YAML::Node& value : load_yaml("parameter '" + list + "'", text))
+      values.push_back(mrhi::yaml_text(value));
+    return values.size() >= min && values.size() <= max;
+  });
+}
+
+NodeParameters& NodeParameters::number(const std::string& name, double min, double max, double& value,
+                                       const std::string& more) {
+  const Range range(min, max);
+  return add(name, range.describe() + more, [range, &value](const std::string&, const std::string& text) {
+    const auto number = text::to_number(text);
+    if (!number || !range.contains(*number)) return false;
+    value = *number;
+    return true;
+  });
+}
+
+NodeParameters& NodeParameters::truth(const std::string& name, bool& value) {
+  return choice<bool>(name, {{"true", true}, {"false", false}}, value);
+}
+
+void NodeParameters::read(const ros::NodeHandle& private_node) const {
+  XmlRpc::XmlRpcValue values;
+  if (private_node.getParam(private_node.getNamespace(), values) &&
+      values.getType() == XmlRpc::XmlRpcValue::TypeStruct)
+    take_all("", values);
+}
+
+void NodeParameters::take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values) const {
+  for (auto& [name, value] : values) {
+    if (value.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+      take_all(prefix + name + "/", value);
+    } else {
+      take(prefix + name, yaml_text(value));
+    }
   }
 }
 
-std::uint64_t read_seed(const ros::NodeHandle& parameters, std::uint64_t otherwise) {
-  int seed = static_cast<int>(otherwise);
-  read_parameter(parameters, "seed", "an integer", seed);
-  if (seed < 0) throw std::invalid_argument("seed is " + std::to_string(seed) + ": use 0 or more");
-  return static_cast<std::uint64_t>(seed);
+void NodeParameters::take(const std::string& name, const std::string& text) const {
+  // Read by libraries that nodes use.
+  static const std::set<std::string> others{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
+  if (others.count(name) > 0) return;
+  std::vector<std::string> names;
+  for (const Entry& entry : entries_) {
+    const bool space = entry.name.back() == '/';
+    if (name == entry.name || (space && name.compare(0, entry.name.size(), entry.name) == 0)) {
+      if (entry.take(name, text)) return;
+      throw ParameterError("parameter '" + name + "': " + (text.empty() ? "''" : text::one_line(text, 60)) +
+                           " is not allowed; allowed: " + entry.allowed);
+    }
+    if (!space) names.push_back(entry.name);
+  }
+  throw ParameterError("unknown parameter '" + text::one_line(name, 60) +
+                       "'; allowed: " + text::joined(names));
 }
 
 }  // namespace mrhi

@@ -3,9 +3,12 @@
 #include <ros/ros.h>
 
 #include <functional>
-#include <set>
-#include <stdexcept>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "../text/text.h"
 
 namespace mrhi {
 
@@ -21,17 +24,70 @@ int run_node(int argc, char** argv, const char* name, const char* usage, const N
 /// The same without a look at arguments.
 int run_node(int argc, char** argv, const char* name, const NodeBody& body);
 
-/// A private parameter of the node, if it is set. Throws std::invalid_argument if it is of another type.
-template <class T>
-void read_parameter(const ros::NodeHandle& parameters, const std::string& name, const char* type, T& value) {
-  if (!parameters.hasParam(name) || parameters.getParam(name, value)) return;
-  throw std::invalid_argument("parameter " + parameters.resolveName(name) + " must be " + type);
+/// A main() whose node is an object that is made of its handles, and works while ROS spins.
+template <class Node>
+int run_node(int argc, char** argv, const char* name, const char* usage) {
+  return run_node(argc, argv, name, usage, [](const auto& node, const auto& private_node) {
+    const Node running(node, private_node);
+    ros::spin();
+  });
 }
 
-/// Throws std::invalid_argument that lists the known ones.
-void refuse_unknown(const ros::NodeHandle& parameters, const std::set<std::string>& known);
+/// The private parameters of a node, each said once: its name, what it may be, and where its value goes.
+class NodeParameters {
+ public:
+  /// Takes the YAML text of a parameter; false if it is not allowed.
+  using Take = std::function<bool(const std::string& name, const std::string& text)>;
 
-/// Parameter seed, a whole number of at least 0.
-std::uint64_t read_seed(const ros::NodeHandle& parameters, std::uint64_t otherwise);
+  /// `allowed`: for messages. A name that ends with / stands for all parameters below it.
+  NodeParameters& add(const std::string& name, const std::string& allowed, const Take& take);
+  NodeParameters& text(const std::string& name, std::string& value);
+  /// A list of `min` to `max` texts, which are `what`.
+  NodeParameters& texts(const std::string& name, std::size_t min, std::size_t max, const std::string& what,
+                        std::vector<std::string>& values);
+  /// From `min` to `max`; `more` is said behind the limits in messages.
+  NodeParameters& number(const std::string& name, double min, double max, double& value,
+                         const std::string& more = "");
+  NodeParameters& truth(const std::string& name, bool& value);
+
+  template <class T>
+  NodeParameters& choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
+                         T& value) {
+    std::vector<std::string> words;
+    for (const auto& [word, meaning] : choices) words.push_back(word);
+    return add(name, text::joined(words), [choices, &value](const std::string&, const std::string& text) {
+      for (const auto& [word, meaning] : choices)
+        if (text == word) return value = meaning, true;
+      return false;
+    });
+  }
+
+  /// A whole number of at least `min`.
+  template <class Integer>
+  NodeParameters& whole(const std::string& name, int min, Integer& value) {
+    constexpr int kMax = std::numeric_limits<int>::max();
+    const std::string allowed = "a whole number from " + std::to_string(min) + " to " + std::to_string(kMax);
+    return add(name, allowed, [min, &value](const std::string&, const std::string& text) {
+      const auto number = text::to_number(text);
+      if (!number || !(*number >= min && *number <= kMax) || *number != static_cast<int>(*number))
+        return false;
+      value = static_cast<int>(*number);
+      return true;
+    });
+  }
+
+  /// Sets what the parameter server has. Throws ParameterError naming one that is unknown or not allowed.
+  void read(const ros::NodeHandle& private_node) const;
+
+ private:
+  struct Entry {
+    std::string name, allowed;
+    Take take;
+  };
+  void take(const std::string& name, const std::string& text) const;
+  void take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values) const;
+
+  std::vector<Entry> entries_;
+};
 
 }  // namespace mrhi

@@ -1,10 +1,13 @@
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/response/contact_model.h"
+
+#ifndef MR_HAND_INTERACTION_WITHOUT_ROS
+#include <ros/package.h>
+#endif
 
 #include <cstdlib>
 #include <filesystem>
 
-#include "package_folder.h"
+#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 namespace {
@@ -13,6 +16,21 @@ namespace fs = std::filesystem;
 
 const char* const kPackage = "mr_hand_interaction";
 const std::string kScheme = "package://";
+
+/// Where a package is on the ROS path; empty if there is none, or where this is built without ROS.
+std::string package_folder([[maybe_unused]] const std::string& name) {
+#ifdef MR_HAND_INTERACTION_WITHOUT_ROS
+  return {};
+#else
+  return ros::package::getPath(name);
+#endif
+}
+
+std::vector<std::string> folders_of(const char* kind) {
+  std::vector<std::string> folders;
+  for (const std::string& share : share_folders()) folders.push_back(share + "/config/" + kind);
+  return folders;
+}
 
 std::string installed_share() {
   std::error_code error;
@@ -37,16 +55,6 @@ std::vector<std::string> share_folders() {
   if (folders.empty() && std::getenv("ROS_PACKAGE_PATH") != nullptr) add(package_folder(kPackage));
   return folders;
 }
-
-namespace {
-
-std::vector<std::string> folders_of(const char* kind) {
-  std::vector<std::string> folders;
-  for (const std::string& share : share_folders()) folders.push_back(share + "/config/" + kind);
-  return folders;
-}
-
-}  // namespace
 
 std::vector<std::string> scene_folders() {
   return folders_of("scenes");

@@ -1,20 +1,18 @@
 #include "result_publisher.h"
 
 #include <geometry_msgs/Point.h>
-#include <mr_hand_interaction/ContactArray.h>
-#include <mr_hand_interaction/InteractionEvent.h>
-#include <mr_hand_interaction/ObjectStateArray.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
 #include <ros/message_traits.h>
-#include <sensor_msgs/JointState.h>
 #include <std_msgs/ColorRGBA.h>
+#include <std_msgs/String.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <utility>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "result_conversion.h"
-#include "scene_view.h"
 
 // In memory these are what goes over the wire: roscpp copies a vector of them in one go.
 static_assert(sizeof(geometry_msgs::Point) == 3 * sizeof(double), "a point has padding");
@@ -35,6 +33,7 @@ namespace {
 
 constexpr int kQueue = 10;
 constexpr int kEventQueue = 100;
+constexpr int kHapticsQueue = 100;  // the steps of a few frames come at once
 
 /// Shared, so that a subscriber in the same process gets it without a copy.
 template <class Message>
@@ -42,7 +41,116 @@ void publish_shared(const ros::Publisher& publisher, Message&& message) {
   publisher.publish(boost::make_shared<std::decay_t<Message>>(std::forward<Message>(message)));
 }
 
+template <typename Message>
+void publish_all(std::vector<Message>& messages, const std_msgs::Header& header, ros::Publisher& publisher) {
+  for (const Message& message : messages) {
+    message->header.frame_id = header.frame_id;
+    publisher.publish(message);
+  }
+  messages.clear();
+}
+
+std::string topic_of(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return "objects/" + name;
+}
+
 }  // namespace
+
+HapticsPublisher::HapticsPublisher(ros::NodeHandle& node, HapticsRate rate)
+    : rate_(rate),
+      publisher_(node.advertise<mr_hand_interaction::HapticsArray>("haptics", kHapticsQueue)),
+      joint_publisher_(node.advertise<sensor_msgs::JointState>("haptics/joints", kHapticsQueue)) {}
+
+void HapticsPublisher::add(const Simulation& simulation, const std::vector<Contact>& contacts,
+                           const std_msgs::Header& header) {
+  const Scene& scene = simulation.scene();
+  const SimulationState& state = simulation.state();
+  if (publisher_.getNumSubscribers() > 0)
+    steps_.push_back(boost::make_shared<mr_hand_interaction::HapticsArray>(
+        haptics_message(scene, state, contacts, header)));
+  if (!scene.joints.empty() && joint_publisher_.getNumSubscribers() > 0)
+    joint_steps_.push_back(
+        boost::make_shared<sensor_msgs::JointState>(joint_states_message(scene, state, header)));
+}
+
+void HapticsPublisher::note_step(const Simulation& simulation, Nanoseconds stamp) {
+  if (rate_ != HapticsRate::step) return;
+  std_msgs::Header header;
+  header.stamp = to_ros_time(stamp);
+  add(simulation, simulation.state().contacts, header);
+}
+
+void HapticsPublisher::publish(const Simulation& simulation, const FrameResult& result,
+                               const std_msgs::Header& header) {
+  if (steps_.empty() && joint_steps_.empty()) add(simulation, result.contacts, header);
+  publish_all(steps_, header, publisher_);
+  publish_all(joint_steps_, header, joint_publisher_);
+}
+
+StandardOutputs::StandardOutputs(const ros::NodeHandle& node)
+    : node_(node),
+      hands_{node_.advertise<geometry_msgs::PoseArray>("rendered_hands/left/pose_array", kQueue),
+             node_.advertise<geometry_msgs::PoseArray>("rendered_hands/right/pose_array", kQueue)},
+      held_(node_.advertise<std_msgs::String>("held_object", kQueue, true)) {}
+
+/// Topics of the bodies that there are.
+void StandardOutputs::follow(const Scene& scene) {
+  std::map<std::string, ObjectTopics> objects;
+  const auto each_free = [&scene](auto&& use) {
+    for (const Body& body : scene.bodies)
+      if (!body.fixed) use(body.name);
+  };
+  each_free([&](const std::string& name) {
+    if (const auto known = objects_.find(name); known != objects_.end()) objects.insert(*known);
+  });
+  each_free([&](const std::string& name) {
+    if (objects.count(name) == 0) objects.emplace(name, new_topics(name, objects));
+  });
+  objects_ = std::move(objects);
+}
+
+StandardOutputs::ObjectTopics StandardOutputs::new_topics(const std::string& body,
+                                                          const std::map<std::string, ObjectTopics>& there) {
+  std::string name = topic_of(body);
+  const auto is_taken = [&name](const auto& other) { return other.second.name == name; };
+  while (std::any_of(there.begin(), there.end(), is_taken)) name += '_';
+  return {name, node_.advertise<geometry_msgs::PoseStamped>(name + "/pose", kQueue),
+          node_.advertise<geometry_msgs::WrenchStamped>(name + "/wrench", kQueue)};
+}
+
+void StandardOutputs::publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
+                              const std_msgs::Header& header) {
+  publish_objects(scene, state, header);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].fixed) continue;
+    geometry_msgs::WrenchStamped wrench;
+    wrench.header = header;
+    wrench.wrench = wrench_message(i, result, state);
+    objects_.at(scene.bodies[i].name).wrench.publish(wrench);
+  }
+}
+
+void StandardOutputs::publish_hands(const FrameResult& result, const std_msgs::Header& header) {
+  for (const RenderedHand& rendered : result.rendered)
+    hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
+}
+
+void StandardOutputs::publish_objects(const Scene& scene, const SimulationState& state,
+                                      const std_msgs::Header& header) {
+  follow(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].fixed) continue;
+    geometry_msgs::PoseStamped pose;
+    pose.header = header;
+    pose.pose = to_message(state.bodies[i].pose);
+    objects_.at(scene.bodies[i].name).pose.publish(pose);
+  }
+  std_msgs::String held;
+  held.data = held_objects(scene, state);
+  if (last_held_ != held.data) held_.publish(held);
+  last_held_ = held.data;
+}
 
 ResultPublisher::ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
                                  const StampClock& clock)

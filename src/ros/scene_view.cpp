@@ -14,46 +14,6 @@ namespace {
 using mr_hand_interaction::SceneBody;
 using mr_hand_interaction::SceneShape;
 
-struct WriteShape {
-  SceneShape& message;
-
-  void operator()(const Sphere& s) const { set(SceneShape::SPHERE, {s.radius}); }
-  void operator()(const Box& b) const {
-    const Vector3 size = 2.0 * b.half_extents;
-    set(SceneShape::BOX, {size.x(), size.y(), size.z()});
-  }
-  void operator()(const Cylinder& c) const { set(SceneShape::CYLINDER, {c.radius, 2.0 * c.half_length}); }
-  void operator()(const Pill& p) const { set(SceneShape::CAPSULE, {p.radius, 2.0 * p.half_length}); }
-  void operator()(const Mesh& m) const {
-    set(SceneShape::MESH, {});
-    message.mesh = m.uri;
-    message.scale = vector_message(m.scale);
-    if (!m.triangles) return;
-    for (const Vector3& vertex : m.triangles->vertices) {
-      geometry_msgs::Point32 point;
-      point.x = static_cast<float>(vertex.x());
-      point.y = static_cast<float>(vertex.y());
-      point.z = static_cast<float>(vertex.z());
-      message.vertices.push_back(point);
-    }
-    for (const auto& triangle : m.triangles->triangles)
-      message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
-  }
-
- private:
-  void set(std::uint8_t type, std::vector<double> size) const {
-    message.type = type;
-    message.size = std::move(size);
-  }
-};
-
-SceneShape shape_message(const Shape& shape, const Pose& pose) {
-  SceneShape message;
-  std::visit(WriteShape{message}, shape);
-  message.pose = to_message(pose);
-  return message;
-}
-
 Shape shape_of(const SceneShape& message) {
   const std::vector<double>& size = message.size;
   constexpr std::size_t kSizes[] = {1, 3, 2, 2, 0};
@@ -102,36 +62,6 @@ Body body_of(const SceneBody& message) {
 }
 
 }  // namespace
-
-mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
-                                                    const std_msgs::Header& header) {
-  mr_hand_interaction::SceneDescription message;
-  message.header = header;
-  message.name = scene.name;
-  message.model = std::string(configuration.contact_model.name);
-  message.gravity = vector_message(configuration.gravity.value_or(scene.gravity));
-  for (const Body& body : scene.bodies) {
-    SceneBody told;
-    told.name = body.name;
-    told.fixed = body.fixed;
-    told.is_operator = body.is_operator;
-    if (body.is_operator) told.link = to_message(body.link_in_body.position);
-    told.pose = to_message(body.start);
-    told.static_friction = body.material.static_friction;
-    told.dynamic_friction = body.material.dynamic_friction;
-    for (const PlacedShape& placed : body.shapes)
-      told.shapes.push_back(shape_message(placed.shape, placed.pose));
-    for (const Visual& visual : body.visuals) {
-      told.visuals.push_back(shape_message(visual.shape, visual.pose));
-      const bool own = !visual.has_color && std::holds_alternative<Mesh>(visual.shape);
-      const auto& c = visual.rgba;
-      told.visuals.back().color.r = c[0], told.visuals.back().color.g = c[1];
-      told.visuals.back().color.b = c[2], told.visuals.back().color.a = own ? 0.0f : c[3];
-    }
-    message.bodies.push_back(std::move(told));
-  }
-  return message;
-}
 
 void SceneView::take(const mr_hand_interaction::SceneDescription& description) {
   Scene scene;

@@ -11,9 +11,6 @@
 
 namespace mrhi {
 
-mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
-                                                    const std_msgs::Header& header);
-
 /// A simulation as its messages tell of it: what Markers and skins are drawn from where no simulation is.
 /// Takes throw std::invalid_argument naming a value that is not allowed, and change nothing then.
 class SceneView {

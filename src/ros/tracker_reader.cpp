@@ -1,42 +1,116 @@
 #include "tracker_reader.h"
 
+#include <mr_hand_interaction/LeapControllerHand.h>
+
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "../text/text.h"
+#include "bounded_message.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "mr_hand_interaction/ros/leap_human.h"
-#include "tracker_messages.h"
 
 namespace mrhi {
 namespace {
 
-using Read = TrackerMessage (*)(const std::string& md5, std::vector<std::uint8_t>& bytes);
+constexpr std::size_t kMostFrames = 10'000;
 
-/// How to read a message, by its MD5, which does not depend on the type's name.
-const std::map<std::string, Read>& readers() {
-  static const std::map<std::string, Read> all = [] {
-    std::map<std::string, Read> found;
-    for_each_tracker([&found](auto tracker) {
-      for (const std::string& md5 : tracker.md5s()) found[md5] = &decltype(tracker)::read;
-    });
-    return found;
-  }();
+std::string without_slash(const std::string& frame) {
+  return frame.substr(frame.compare(0, 1, "/") == 0 ? 1 : 0);
+}
+
+std::string named(const geometry_msgs::TransformStamped& transform) {
+  return "from '" + text::one_line(transform.header.frame_id, 64) + "' to '" +
+         text::one_line(transform.child_frame_id, 64) + "'";
+}
+
+geometry_msgs::TransformStamped without_slashes(geometry_msgs::TransformStamped transform) {
+  transform.header.frame_id = without_slash(transform.header.frame_id);
+  transform.child_frame_id = without_slash(transform.child_frame_id);
+  return transform;
+}
+
+bool has_size(std::size_t joints) {
+  const auto& orders = joint_orders();
+  return std::any_of(orders.begin(), orders.end(),
+                     [=](const JointOrder& order) { return order.size == joints; });
+}
+
+const JointOrder& usual_order(std::size_t joints, const Vector3*) {
+  const auto& orders = joint_orders();
+  return *std::find_if(orders.begin(), orders.end(),
+                       [=](const JointOrder& order) { return order.size == joints; });
+}
+
+void add_hand(const TrackedPoints& tracked, std::size_t first, std::size_t joints, Side side,
+              const OrderOf& order_of, JointsFrame& frame) {
+  const Vector3* const points = tracked.points.data() + first;
+  if (std::all_of(points, points + joints, [](const Vector3& point) { return point.hasNaN(); })) return;
+  const bool has_radii = tracked.radii.size() == tracked.points.size();
+  frame.hands.push_back(hand_in_order(order_of(joints, points), points,
+                                      has_radii ? tracked.radii.data() + first : nullptr, side));
+  frame.hands.back().confidence = tracked.confidence;
+}
+
+bool ends_with(const std::string& name, const std::string& end) {
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Topics of one hand or both, of the left hand, of the right.
+std::vector<std::string> hands_topics(const std::string& end) {
+  return {"hands/" + end, "hands/left/" + end, "hands/right/" + end};
+}
+
+/// A message that trackers may give hands in.
+struct Tracker {
+  std::string type;
+  std::vector<std::string> md5s, topics;  ///< its versions, and where it is looked for
+  /// What it says: joints in an order, or hands by name of finger and bone.
+  std::function<std::variant<TrackedPoints, LeapFrame>(const std::string& md5,
+                                                       std::vector<std::uint8_t>& bytes)>
+      read;
+  bool tells_sides = false;  ///< else hands by name are one, of the side that topic or frame names
+};
+
+template <template <class> class Message>
+Tracker tracker_of_points(const std::string& type, const std::string& topics) {
+  return {type,
+          {ros::message_traits::md5sum<Message<std::allocator<void>>>()},
+          hands_topics(topics),
+          [type](const std::string&, std::vector<std::uint8_t>& bytes) {
+            return tracked_points(deserialised<Message<Bounded>>(type, bytes));
+          }};
+}
+
+const std::vector<Tracker>& trackers() {
+  static const std::vector<Tracker> all{
+      {"leap_motion_controller/Hand",
+       {ros::message_traits::md5sum<mr_hand_interaction::LeapControllerHand>()},
+       {"/leapmotion/hands/left", "/leapmotion/hands/right"},
+       [](const std::string&, std::vector<std::uint8_t>& bytes) { return read_leap_controller(bytes); }},
+      {"leap_motion/Human",
+       leap_versions(),
+       {"/leap_motion/leap_device"},
+       [](const std::string& md5, std::vector<std::uint8_t>& bytes) { return read_leap(md5, bytes); },
+       true},
+      tracker_of_points<sensor_msgs::PointCloud_>("sensor_msgs/PointCloud", "point_cloud"),
+      tracker_of_points<geometry_msgs::PoseArray_>("geometry_msgs/PoseArray", "pose_array")};
   return all;
 }
 
-std::string joined(const std::set<std::string>& names) {
-  return text::joined({names.begin(), names.end()});
-}
-
-[[noreturn]] void refuse_version(const std::string& type, const std::string& md5) {
-  std::string allowed = joined(TrackerReader::types());
-  for_each_tracker([&](auto tracker) {
-    if (type == tracker.kType) allowed = "md5 " + text::joined(tracker.md5s());
-  });
-  throw DecodeError(DecodeError::Kind::unknown_version, "unknown version of " + text::one_line(type, 100) +
-                                                            ": md5 " + md5 + "; allowed: " + allowed);
+/// By its MD5, which does not depend on the type's name. Throws DecodeError.
+const Tracker& tracker_of(const TrackerReader::Message& message) {
+  const std::set<std::string> types = TrackerReader::types();
+  std::string allowed = text::joined({types.begin(), types.end()});
+  for (const Tracker& tracker : trackers()) {
+    if (std::count(tracker.md5s.begin(), tracker.md5s.end(), message.md5) > 0) return tracker;
+    if (tracker.type == message.type) allowed = "md5 " + text::joined(tracker.md5s);
+  }
+  throw DecodeError(DecodeError::Kind::unknown_version, "unknown version of " +
+                                                            text::one_line(message.type, 100) + ": md5 " +
+                                                            message.md5 + "; allowed: " + allowed);
 }
 
 /// A bag may not know who published.
@@ -52,6 +126,85 @@ double checked_scale(double scale) {
 
 }  // namespace
 
+void TransformMemory::set_fixed(const geometry_msgs::TransformStamped& transform) {
+  buffer_.setTransform(without_slashes(transform), "fixed", true);
+}
+
+/// Out of order is no fault of a transform, which the buffer sorts in. A clock that stands or runs off tells
+/// nothing: a frame's stream has the time of its own stamps, and of what has passed since the last of them.
+std::string TransformMemory::set(const geometry_msgs::TransformStamped& transform, Nanoseconds now) {
+  if (streams_.size() >= kMostFrames && streams_.count(transform.child_frame_id) == 0)
+    return named(transform) + ": there are " + std::to_string(kMostFrames) + " frames already";
+  const Nanoseconds stamp = from_ros_time(transform.header.stamp);
+  Stream& stream = streams_[transform.child_frame_id];
+  std::optional<Nanoseconds> expected;
+  if (stream.check.started && now > stream.arrival) expected = stream.check.last + (now - stream.arrival);
+  const StampVerdict verdict = stream.check.check(stamp, stream.check.last, expected);
+  const bool believed = verdict == StampVerdict::follows || verdict == StampVerdict::restart;
+  if (verdict == StampVerdict::restart) clear();
+  if (believed) stream.arrival = now;
+  if (!believed && verdict != StampVerdict::late)
+    return named(transform) + ": stamp " + std::to_string(stamp / 1'000'000'000) +
+           " s is far from its others'";
+  buffer_.setTransform(without_slashes(transform), "moving");
+  return "";
+}
+
+bool TransformMemory::connects(const std::string& fixed, const std::string& frame) const {
+  const std::string source = without_slash(frame);
+  return source == fixed || (!source.empty() && buffer_.canTransform(fixed, source, ros::Time(0)));
+}
+
+Pose TransformMemory::pose(const std::string& fixed, const std::string& frame, Nanoseconds stamp) const {
+  const std::string source = without_slash(frame);
+  try {
+    return from_message(buffer_.lookupTransform(fixed, source, to_ros_time(stamp)).transform);
+  } catch (const tf2::ExtrapolationException&) {
+    return from_message(buffer_.lookupTransform(fixed, source, ros::Time(0)).transform);
+  }
+}
+
+bool has_both_hands(const TrackedPoints& tracked) {
+  const std::size_t joints = tracked.points.size();
+  return joints % 2 == 0 && !has_size(joints) && has_size(joints / 2);
+}
+
+std::optional<Side> side_of_topic(const std::string& name) {
+  std::string rest = "/" + name;
+  for (int part = 0; part < 2; ++part) {
+    if (ends_with(rest, "/left")) return Side::left;
+    if (ends_with(rest, "/right")) return Side::right;
+    rest.erase(rest.rfind('/') == std::string::npos ? 0 : rest.rfind('/'));
+  }
+  return std::nullopt;
+}
+
+std::optional<Side> side_of_frame(const std::string& name) {
+  if (ends_with(name, "left_hand")) return Side::left;
+  if (ends_with(name, "right_hand")) return Side::right;
+  return std::nullopt;
+}
+
+JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of) {
+  JointsFrame frame;
+  frame.stamp = from_ros_time(tracked.header.stamp);
+  const std::size_t joints = tracked.points.size();
+  const OrderOf& order = order_of ? order_of : OrderOf(usual_order);
+  if (joints == 0) return frame;
+  if (has_size(joints)) {
+    add_hand(tracked, 0, joints, side, order, frame);
+  } else if (has_both_hands(tracked)) {
+    add_hand(tracked, 0, joints / 2, Side::left, order, frame);
+    add_hand(tracked, joints / 2, joints / 2, Side::right, order, frame);
+  } else {
+    throw DecodeError(
+        DecodeError::Kind::wrong_count,
+        std::to_string(joints) +
+            " joints; 21, 24, 25 or 26 of a hand, twice as many of both, or none for a frame with no hand");
+  }
+  return frame;
+}
+
 TrackerReader::TrackerReader(const Options& options)
     : side_(options.side),
       order_(options.order.empty() ? nullptr : &joint_order(options.order)),
@@ -59,34 +212,41 @@ TrackerReader::TrackerReader(const Options& options)
 
 std::set<std::string> TrackerReader::types() {
   std::set<std::string> types;
-  for_each_tracker([&types](auto tracker) { types.insert(tracker.kType); });
+  for (const Tracker& tracker : trackers()) types.insert(tracker.type);
   return types;
 }
 
 std::vector<std::string> TrackerReader::topics() {
   std::vector<std::string> topics;
-  for_each_tracker([&topics](auto tracker) {
-    for (const std::string& topic : tracker.topics()) topics.push_back(topic);
-  });
+  for (const Tracker& tracker : trackers())
+    topics.insert(topics.end(), tracker.topics.begin(), tracker.topics.end());
   return topics;
 }
 
 SourceFrame TrackerReader::read(Message message, const Place& place, std::optional<std::uint32_t>* sequence) {
   SourceFrame result;
   try {
-    const auto reader = readers().find(message.md5);
-    if (reader == readers().end()) refuse_version(message.type, message.md5);
-    TrackerMessage tracked = reader->second(message.md5, message.bytes);
-    const std_msgs::Header header = std::visit([](const auto& t) { return t.header; }, tracked);
-    if (sequence != nullptr) *sequence = header.seq;
-    TrackerFrame frame =
-        std::visit([&](auto&& t) { return frame_of(std::move(t), message, result); }, std::move(tracked));
+    const Tracker& tracker = tracker_of(message);
+    const auto tracked = tracker.read(message.md5, message.bytes);
+    const TrackedPoints* const points = std::get_if<TrackedPoints>(&tracked);
+    const std::string frame_id = points ? points->header.frame_id : std::get<LeapFrame>(tracked).frame_id;
+    if (sequence != nullptr) *sequence = points ? points->header.seq : std::get<LeapFrame>(tracked).sequence;
+    const std::optional<Side> of_topic = side_of_topic(message.topic);
+    const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
+    TrackerFrame frame;
+    if (points) {
+      frame = frame_of(*points, side, stream_of(message), result);
+    } else {
+      frame.joints = std::get<LeapFrame>(tracked).joints;
+      if (!tracker.tells_sides) {
+        frame.side = side;
+        for (HandJoints& hand : frame.joints.hands) hand.side = side;
+      }
+    }
     frame.stream = stream_of(message);
-    frame.joints.stamp = from_ros_time(header.stamp);
     frame.receipt = message.receipt;
-    const auto device = [&](Nanoseconds stamp) { return place(header.frame_id, stamp); };
     auto recognised = std::move(result.corrected);
-    result = input_.take(std::move(frame), device);
+    result = input_.take(std::move(frame), [&](Nanoseconds stamp) { return place(frame_id, stamp); });
     result.corrected.insert(result.corrected.begin(), recognised.begin(), recognised.end());
   } catch (const DecodeError& error) {
     result.reason = error.reason();
@@ -97,10 +257,8 @@ SourceFrame TrackerReader::read(Message message, const Place& place, std::option
 }
 
 /// Reports an order that is not the usual one.
-TrackerFrame TrackerReader::frame_of(const TrackedPoints& tracked, const Message& message,
+TrackerFrame TrackerReader::frame_of(const TrackedPoints& tracked, Side side, const std::string& stream,
                                      SourceFrame& result) {
-  const Side side = side_of(tracked.header.frame_id, message.topic);
-  const std::string stream = stream_of(message);
   const auto order_of = [&](std::size_t size, const Vector3* points) -> const JointOrder& {
     if (order_ != nullptr && order_->size == size) return *order_;
     if (order_ != nullptr)
@@ -120,20 +278,6 @@ TrackerFrame TrackerReader::frame_of(const TrackedPoints& tracked, const Message
   frame.joints = joints_from_points(tracked, side, order_of);
   if (!has_both_hands(tracked)) frame.side = side;
   return frame;
-}
-
-TrackerFrame TrackerReader::frame_of(TrackedHands tracked, const Message& message, SourceFrame&) {
-  TrackerFrame frame;
-  frame.joints.hands = std::move(tracked.hands);
-  if (tracked.tells_sides) return frame;
-  frame.side = side_of(tracked.header.frame_id, message.topic);
-  for (HandJoints& hand : frame.joints.hands) hand.side = *frame.side;
-  return frame;
-}
-
-Side TrackerReader::side_of(const std::string& frame_id, const std::string& topic) const {
-  const std::optional<Side> of_topic = side_of_topic(topic);
-  return (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
 }
 
 }  // namespace mrhi

@@ -1,15 +1,117 @@
 #pragma once
 
+#include <geometry_msgs/PoseArray.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <sensor_msgs/PointCloud.h>
+#include <std_msgs/Header.h>
+#include <tf2/buffer_core.h>
+#include <tf2/exceptions.h>
+
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "../tracking/joint_orders.h"
 #include "../tracking/joints_input.h"
-#include "tracked_points.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/ros/leap_human.h"
+#include "mr_hand_interaction/stamp_check.h"
+#include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
+
+/// Where trackers stand, by the transforms of /tf and /tf_static in the order in which they came: live, and
+/// from a bag. A stamp beyond a duration's range would end the node in tf2's own listener, and one far ahead
+/// makes all that follow too old.
+class TransformMemory {
+ public:
+  /// What never moves.
+  void set_fixed(const geometry_msgs::TransformStamped& transform);
+  /// What may move, as it came at `now`. Returns why it is left out; empty: it is not.
+  std::string set(const geometry_msgs::TransformStamped& transform, Nanoseconds now);
+
+  /// Whether a chain of transforms leads from one frame to the other.
+  bool connects(const std::string& fixed, const std::string& frame) const;
+  /// Pose of a frame in another: at the stamp, else the latest. Throws tf2::TransformException.
+  Pose pose(const std::string& fixed, const std::string& frame, Nanoseconds stamp) const;
+  /// What moves is forgotten: it would be refused as older than what is here.
+  void clear() { buffer_.clear(); }
+
+ private:
+  /// When transforms of a frame came, and what was the last to be believed.
+  struct Stream {
+    StampCheck check;
+    Nanoseconds arrival = 0;
+  };
+  std::map<std::string, Stream> streams_;  // by the child frame
+  tf2::BufferCore buffer_;
+};
+
+/// What a tracker's message says: joints of one hand or both, in one of joint_orders(), in the header's
+/// frame.
+struct TrackedPoints {
+  std_msgs::Header header;
+  std::vector<Vector3> points;
+  std::vector<float> radii;  ///< of the points, from the joint to the skin; empty: not known
+  float confidence = 1.0f;   ///< 0 to 1
+};
+
+/// A header of a message with another allocator.
+template <class Header>
+std_msgs::Header header_of(const Header& other) {
+  std_msgs::Header header;
+  header.seq = other.seq;
+  header.stamp = other.stamp;
+  header.frame_id.assign(other.frame_id.begin(), other.frame_id.end());
+  return header;
+}
+
+/// Joints that a message of any allocator has. Orientations are not used.
+template <class Allocator>
+TrackedPoints tracked_points(const geometry_msgs::PoseArray_<Allocator>& message) {
+  TrackedPoints tracked{header_of(message.header), {}, {}};
+  for (const auto& pose : message.poses)
+    tracked.points.emplace_back(pose.position.x, pose.position.y, pose.position.z);
+  return tracked;
+}
+/// Channel "radius": from each joint to the skin [m]. Channel "confidence": 0 to 1 for each joint; their mean
+/// is the hand's.
+template <class Allocator>
+TrackedPoints tracked_points(const sensor_msgs::PointCloud_<Allocator>& message) {
+  TrackedPoints tracked{header_of(message.header), {}, {}};
+  for (const auto& point : message.points)
+    tracked.points.push_back(Eigen::Vector3f(point.x, point.y, point.z).template cast<double>());
+  for (const auto& channel : message.channels) {
+    if (channel.values.size() != message.points.size() || channel.values.empty()) continue;
+    if (channel.name == "radius") tracked.radii.assign(channel.values.begin(), channel.values.end());
+    if (channel.name != "confidence") continue;
+    float sum = 0.0f;
+    for (const float value : channel.values) sum += value;
+    tracked.confidence = sum / static_cast<float>(channel.values.size());
+  }
+  return tracked;
+}
+
+/// The order of a hand's joints, of so many.
+using OrderOf = std::function<const JointOrder&(std::size_t size, const Vector3* points)>;
+
+/// Hands from the joints' positions; a joint of which a coordinate is NaN is missing. Twice as many joints as
+/// an order has: a left hand, then a right one; else the hand is of the side given. A hand without any joint
+/// is not there; no points: a frame with no hand. Ids are 1 for left, 2 for right, as such trackers give
+/// none. Without `order_of` it is the usual order of that size. Throws DecodeError for any other number of
+/// joints.
+JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of = {});
+
+/// Whether it has both hands.
+bool has_both_hands(const TrackedPoints& tracked);
+/// The side that a topic names by its last part or the one before, as hands/left/pose_array does.
+std::optional<Side> side_of_topic(const std::string& name);
+/// The side that a frame names, which ends in left_hand or right_hand.
+std::optional<Side> side_of_frame(const std::string& name);
 
 /// Turns trackers' messages of every kind into hands in world: the same code for the live nodes and for bags.
 class TrackerReader {
@@ -33,6 +135,17 @@ class TrackerReader {
     std::vector<std::uint8_t> bytes;
     Nanoseconds receipt = 0;
   };
+  /// Of a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+  template <class Serialised>
+  static Message message_of(const std::string& topic, const std::string& publisher, const Serialised& message,
+                            const ros::Time& receipt) {
+    return {topic,
+            publisher,
+            message.getDataType(),
+            message.getMD5Sum(),
+            serialised_bytes(message),
+            static_cast<Nanoseconds>(receipt.toNSec())};
+  }
   /// A tracker's place in world by its frame.
   using Place = std::function<Pose(const std::string& frame_id, Nanoseconds stamp)>;
 
@@ -42,9 +155,8 @@ class TrackerReader {
   std::optional<HandFrame> rest() { return input_.rest(); }
 
  private:
-  TrackerFrame frame_of(const TrackedPoints& tracked, const Message& message, SourceFrame& result);
-  TrackerFrame frame_of(TrackedHands tracked, const Message& message, SourceFrame& result);
-  Side side_of(const std::string& frame_id, const std::string& topic) const;
+  TrackerFrame frame_of(const TrackedPoints& tracked, Side side, const std::string& stream,
+                        SourceFrame& result);
 
   Side side_;
   const JointOrder* order_ = nullptr;

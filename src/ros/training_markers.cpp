@@ -1,4 +1,4 @@
-#include "training_markers.h"
+#include "training_system.h"
 
 #include <visualization_msgs/Marker.h>
 
@@ -184,8 +184,6 @@ visualization_msgs::MarkerArray training_markers(
 }
 
 namespace {
-
-using visualization_msgs::Marker;
 
 constexpr double kRingRoom = 1.15;   // radius of the ring, of the body's bounding radius
 constexpr double kRingWidth = 0.12;  // of its radius

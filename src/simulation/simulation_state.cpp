@@ -156,9 +156,9 @@ void add_grip(const Grip& grip, Fnv1a& hash) {
 }
 
 void add_contact(const BodyContact& contact, Fnv1a& hash) {
-  const auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, stretch,
-               material, depth, share, first_touch, force, impulse] = contact;
-  leave_out(point, normal, arm_a, arm_b, stretch, material, share, first_touch, impulse);
+  const auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, friction_offset,
+               stretch, material, depth, share, first_touch, force, impulse] = contact;
+  leave_out(point, normal, arm_a, arm_b, friction_offset, stretch, material, share, first_touch, impulse);
   hash.all(key.order(), anchor_a, anchor_b, depth, friction, struck, still, force);
 }
 

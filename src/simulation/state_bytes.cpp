@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000006ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000007ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -246,12 +246,12 @@ class Parts {
     all(a, b, shape_a, shape_b, feature);
   }
   void one(BodyContact& part) {
-    auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, stretch, material,
-           depth, share, first_touch, force, impulse] = part;
+    auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, friction_offset,
+           stretch, material, depth, share, first_touch, force, impulse] = part;
     all(key, anchor_a, anchor_b);
     one_of(friction, Friction::slipping);
-    all(struck, still, point, normal, arm_a, arm_b, stretch, material, depth, share, first_touch, force,
-        impulse);
+    all(struck, still, point, normal, arm_a, arm_b, friction_offset, stretch, material, depth, share,
+        first_touch, force, impulse);
   }
   void one(PalmLag& part) {
     auto& [whole, frame] = part;

@@ -1,15 +1,15 @@
-#include "../replay/frame_source.h"
-#include "../replay/marker_bag.h"
+#include "../replay/inputs.h"
 
 namespace mrhi {
 
-ReplayInput open_bag(const ReplayArguments& arguments) {
-  throw UsageError("--input " + arguments.input +
+ReplayInput open_bag(const std::string& file, const std::optional<std::string>&, const std::optional<Pose>&,
+                     const HandOptions&) {
+  throw UsageError("--input " + file +
                    ": this replay was built without ROS and reads no bags; allowed: a recording in CSV");
 }
 
 OpenLog open_log(const ReplayArguments& arguments) {
-  open_bag(arguments);
+  open_bag(arguments.input, {}, {}, {});
   return {};
 }
 

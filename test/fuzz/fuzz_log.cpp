@@ -1,7 +1,7 @@
 // What a recording of a live run says of its world, and a change: the world's YAML, its URDF, the YAML beside
 // that, the change's YAML, a URDF that it may name. What is taken is simulated.
 #include "fuzz/target.h"
-#include "record/world.h"
+#include "record/record.h"
 #include "support/fixtures.h"
 
 namespace {

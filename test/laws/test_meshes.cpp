@@ -113,6 +113,63 @@ TEST(Meshes, a_can_of_eleven_thousand_triangles_stands) {
   expect_rest(table);
 }
 
+/// A cup along z with its floor at 0, of `sides` flat faces round.
+TriangleMesh cup(double outer, double inner, double thickness, double height, int sides) {
+  testing::MeshMaker maker;
+  const auto at = [&](int i, double r, double z) {
+    const double angle = 2.0 * M_PI * (i % sides) / sides;
+    return Vector3(r * std::cos(angle), r * std::sin(angle), z);
+  };
+  const auto centre = [](double z) { return Vector3(0, 0, z); };
+  for (int i = 0; i < sides; ++i) {
+    maker.square(at(i, outer, -thickness), at(i + 1, outer, -thickness), at(i + 1, outer, height),
+                 at(i, outer, height));
+    maker.square(at(i, inner, height), at(i + 1, inner, height), at(i + 1, inner, 0), at(i, inner, 0));
+    maker.square(at(i, outer, height), at(i + 1, outer, height), at(i + 1, inner, height),
+                 at(i, inner, height));
+    maker.triangle(centre(-thickness), at(i + 1, outer, -thickness), at(i, outer, -thickness));
+    maker.triangle(centre(0), at(i, inner, 0), at(i + 1, inner, 0));
+  }
+  return maker.take();
+}
+
+// A die that leans on floor and wall touches both. With the deeper of the two alone it climbed, kicked by one
+// and then by the other. The tolerance of the energy is what a turn stores and gives back in its springs.
+TEST(Meshes, a_die_in_a_cup_comes_to_rest_and_gains_no_energy) {
+  const Body die = box_body(Vector3::Constant(0.02), 0.01);
+  Body fixture = as_mesh(box_body(Vector3::Constant(0.1), 1.0), cup(0.035, 0.032, 0.003, 0.09, 32));
+  fixture.name = "cup";
+  fixture.fixed = true;
+  const Pose starts[] = {
+      {Vector3(0.003, 0.001, 0.053), Quaternion(0.9938, 0.0997, 0.0497, -0.005).normalized()},
+      {Vector3(0.0065, 0.0026, 0.053), Quaternion(0.854, -0.157, 0.125, -0.48).normalized()},
+      {Vector3(-0.0017, 0.0083, 0.053), Quaternion(0.65, 0.43, -0.55, -0.3).normalized()}};
+  for (const Pose& start : starts) {
+    Scene scene;
+    scene.bodies = {fixture, die};
+    scene.bodies[1].start = start;
+    scene.gravity = Vector3(0, 0, -9.81);
+    Simulation simulation(scene, testing::unfiltered(ContactModelKind::implicit));
+    const auto energy = [&] {
+      const BodyState& state = simulation.state().bodies[1];
+      const Twist twist = twist_of(die, state);
+      return 9.81 * die.mass * state.pose.position.z() +
+             0.5 * (state.linear_momentum.dot(twist.linear) + state.angular_momentum.dot(twist.angular));
+    };
+    double lowest = 1e9, risen = 0.0;
+    Vector3 settled = Vector3::Zero();
+    for (int frame = 0; frame <= 400; ++frame) {
+      simulation.advance({at(0.02 * frame), {}});
+      if (frame == 150) settled = simulation.state().bodies[1].pose.position;
+      if (frame < 50) continue;
+      lowest = std::min(lowest, energy());
+      risen = std::max(risen, energy() - lowest);
+    }
+    EXPECT_LT(risen, 1e-7);
+    EXPECT_LT((simulation.state().bodies[1].pose.position - settled).norm(), 1e-6);
+  }
+}
+
 /// Scene (a) with another shape in place of the cube: carried to and fro for 3 s.
 std::vector<Pose> held(const Shape& shape) {
   testing::PinchScene pinch;

@@ -372,5 +372,47 @@ TEST(ObjectsTouch, the_order_in_which_objects_are_listed_does_not_matter) {
         << b;
 }
 
+/// Angular deceleration of a body that spins about z on a floor at 1 g [rad/s^2].
+double braking(Body body, double height, double step) {
+  Scene scene;
+  Body floor = box_body(Vector3(2.0, 2.0, 0.1), 1.0);
+  floor.name = "floor";
+  floor.fixed = true;
+  floor.start.position = Vector3(0, 0, -0.05);
+  body.start.position = Vector3(0, 0, height);
+  scene.bodies = {floor, body};
+  scene.gravity = Vector3(0, 0, -kGravity);
+  for (Body& one : scene.bodies) one.material.dynamic_friction = one.material.static_friction = 0.5;
+  scene.bodies[1].start_twist.angular = Vector3(0, 0, 40.0);
+  Objects objects(scene, step);
+  objects.run(0.032);  // settles on its springs
+  const double before = objects.twist(1).angular.z();
+  objects.run(0.064);
+  return (before - objects.twist(1).angular.z()) / 0.064;
+}
+
+// A face that presses evenly brakes with mu m g times the mean distance of its places from the middle: of a
+// square of side a 0.3826 a, of a disc 2/3 of the radius. Corners alone brake 1.85 times as fast. Within a
+// thousandth; in steps of 8 ms the body turns by 0.3 rad in a step, which takes 0.7 % of the friction.
+TEST(ObjectsTouch, a_body_that_spins_on_a_floor_is_braked_by_its_whole_face) {
+  const double side = 0.05, radius = 0.03, mass = 0.1;
+  const double mean_of_square = side * (std::sqrt(2.0) + std::asinh(1.0)) / 6.0;
+  Body can = box_body(Vector3(2 * radius, 2 * radius, 0.05), mass);
+  can.shapes = {{Cylinder{radius, 0.025}, {}}};
+  can.inertia = mass * Vector3(radius * radius / 4 + 0.05 * 0.05 / 12, radius * radius / 4 + 0.05 * 0.05 / 12,
+                               radius * radius / 2)
+                           .asDiagonal();
+  complete(can);
+  for (const double step : {0.00025, 0.001, 0.008}) {
+    SCOPED_TRACE(step);
+    const double tolerance = step < 0.002 ? 1e-3 : 1e-2;
+    const double of_square = 0.5 * kGravity * mean_of_square / (side * side / 6.0);
+    EXPECT_NEAR(braking(box_body(Vector3::Constant(side), mass), side / 2, step), of_square,
+                tolerance * of_square);
+    const double of_disc = 0.5 * kGravity * (2.0 / 3.0 * radius) / (radius * radius / 2.0);
+    EXPECT_NEAR(braking(can, 0.025, step), of_disc, tolerance * of_disc);
+  }
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -6,7 +6,7 @@ import unittest
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[2]
 ALLOWED = {"src/ros/hand_frame_conversion.cpp",  # to_ros_time, from_ros_time, seconds_between
-           "src/ros/panel/training_panel.cpp"}  # the machine's own clock alone
+           "src/ros/rviz/training_panel.cpp"}  # the machine's own clock alone
 # A difference of times or a time and a duration; a time made of a number that may be too large; a sleep or a timer by
 # ROS's clock, which subtract themselves.
 FORBIDDEN = re.compile(r"\([^()]+-[^()]+\)\.toSec\(\)|ros::Duration\([a-z]|ros::Time\([a-z]|\.fromNSec\(|\.fromSec\(|ros::Time::sleepUntil|"

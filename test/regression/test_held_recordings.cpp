@@ -5,7 +5,7 @@
 
 #include "mr_hand_interaction/replay/replay.h"
 #include "regression/grip.h"
-#include "replay/frame_source.h"
+#include "replay/inputs.h"
 #include "replay/replay_files.h"
 #include "support/recordings.h"
 #include "text/text.h"

@@ -1,4 +1,4 @@
-#include "replay/bag_input.h"
+#include "replay/inputs.h"
 
 #include <geometry_msgs/PoseArray.h>
 #include <gtest/gtest.h>
@@ -68,7 +68,8 @@ struct TestBag {
   std::vector<SourceFrame> read(const std::optional<std::string>& topic = {},
                                 const std::optional<Pose>& device = {}) {
     bag.close();
-    BagInput input(file, topic, device);
+    const ReplayInput opened = open_bag(file, topic, device);
+    FrameSource& input = *opened.frames;
     EXPECT_EQ(input.position(), 0u);
     std::vector<SourceFrame> all;
     while (auto frame = input.next()) all.push_back(*frame);
@@ -240,7 +241,8 @@ TEST(BagInput, hands_on_topics_of_their_sides_come_together) {
     bag.add("/hands/right/pose_array", stamp + 1000, pose_array(frames()[i]));
   }
   bag.bag.close();
-  BagInput input(bag.file, {}, {});
+  const ReplayInput opened = open_bag(bag.file, {}, {});
+  FrameSource& input = *opened.frames;
   std::vector<HandFrame> read;
   while (const auto frame = input.next()) read.push_back(frame->frame.value());
   EXPECT_EQ(input.position(), input.size());
@@ -261,7 +263,8 @@ TEST(BagInput, joints_on_topics_of_other_names_are_of_the_side_that_is_told) {
     bag.bag.close();
     HandOptions hands;
     hands.topics["headset/joints"] = is_left ? "hands/left/pose_array" : "hands/right/pose_array";
-    BagInput input(bag.file, {}, {}, hands);
+    const ReplayInput opened = open_bag(bag.file, {}, {}, hands);
+    FrameSource& input = *opened.frames;
     const auto frame = input.next();
     ASSERT_TRUE(frame && frame->frame);
     EXPECT_EQ(frame->frame->hands.at(0).side, is_left ? Side::left : Side::right);
@@ -281,9 +284,9 @@ TEST(BagInput, lengths_in_another_unit_are_converted) {
   bag.bag.close();
   HandOptions hands;
   hands.scale = 0.001;
-  BagInput converted(bag.file, {}, {}, hands), as_it_is(bag.file, {}, {});
-  EXPECT_TRUE(converted.next()->frame);
-  EXPECT_NE(as_it_is.next()->detail.find("as of millimetres"), std::string::npos);
+  const ReplayInput converted = open_bag(bag.file, {}, {}, hands), as_it_is = open_bag(bag.file, {}, {});
+  EXPECT_TRUE(converted.frames->next()->frame);
+  EXPECT_NE(as_it_is.frames->next()->detail.find("as of millimetres"), std::string::npos);
 }
 
 /// With receipts 16 ms apart.
@@ -358,7 +361,8 @@ TEST(BagInput, the_topic_is_the_usual_one_or_must_be_chosen) {
 
 std::string message_of(const std::string& file) {
   try {
-    BagInput input(file, {}, {});
+    const ReplayInput opened = open_bag(file, {}, {});
+    FrameSource& input = *opened.frames;
     while (input.next()) {
     }
   } catch (const std::exception& error) {
@@ -418,7 +422,7 @@ TEST(BagInput, what_is_no_bag_is_named) {
   std::ofstream(folder / "text.bag") << "no bag";
   for (const char* name : {"text.bag", "missing.bag"}) {
     try {
-      BagInput(folder / name, {}, {});
+      open_bag(folder / name, {}, {});
       ADD_FAILURE() << "no exception";
     } catch (const BagError& error) {
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();

@@ -1,4 +1,4 @@
-#include "replay/dictionary.h"
+#include "replay/tables.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>

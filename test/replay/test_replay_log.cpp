@@ -7,7 +7,7 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "record/world.h"
+#include "record/record.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
 #include "simulation/state_bytes.h"

@@ -1,4 +1,4 @@
-#include "replay/result_writer.h"
+#include "replay/tables.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "replay/summary.h"
+#include "replay/run.h"
 
 namespace mrhi {
 namespace {

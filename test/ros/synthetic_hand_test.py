@@ -98,9 +98,9 @@ class SyntheticHandTest(unittest.TestCase):
 
     def test_an_unknown_motion_or_parameter_stops_it_with_a_line_that_says_what_is_allowed(self):
         self.assertIn("use one of grasp_cube", self.refusal("_motion:=wave"))
-        self.assertIn("parameter /refused/speed is not known: use loop, motion",
+        self.assertIn("unknown parameter 'speed'; allowed: loop, motion",
                       self.refusal_alone("_speed:=3"))
-        self.assertIn("must be a number", self.refusal_alone("_rate:=fast"))
+        self.assertIn("parameter 'rate': fast is not allowed; allowed: a number from 1 to 1000", self.refusal_alone("_rate:=fast"))
 
     def refusal_alone(self, argument):
         rospy.delete_param("/refused")

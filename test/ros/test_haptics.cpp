@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "ros/haptics_publisher.h"
-#include "ros/result_conversion.h"
+#include "ros/result_messages.h"
 #include "support/pinched_cube.h"
 
 namespace mrhi {

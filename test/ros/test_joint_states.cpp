@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "ros/result_conversion.h"
+#include "ros/result_messages.h"
 #include "support/joints.h"
 
 namespace mrhi {

@@ -3,8 +3,7 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/synthetic/random.h"
-#include "ros/result_conversion.h"
-#include "ros/standard_outputs.h"
+#include "ros/result_messages.h"
 #include "support/joints.h"
 #include "support/pinched_cube.h"
 

@@ -6,7 +6,7 @@
 
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "ros/result_conversion.h"
+#include "ros/result_messages.h"
 #include "shown_markers.h"
 
 namespace mrhi {

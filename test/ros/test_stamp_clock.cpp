@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "ros/stamp_clock.h"
+#include "ros/input_log.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "ros/tuning.h"
+#include "ros/live_controls.h"
 
 #include <gtest/gtest.h>
 

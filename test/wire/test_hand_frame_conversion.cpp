@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "mr_hand_interaction/ros/leap_human.h"
-#include "ros/standard_outputs.h"
-#include "ros/tracker_messages.h"
+#include "ros/result_messages.h"
+#include "ros/tracker_reader.h"
 #include "sample_hands.h"
 
 namespace mrhi {
@@ -194,8 +194,8 @@ TEST(TrackedPoints, EveryMessageSaysTheSame) {
     cloud.points.back().y = static_cast<float>(point.y());
     cloud.points.back().z = static_cast<float>(point.z());
   }
-  EXPECT_EQ(PoseArrayTracker::read(poses).points, sent.points);
-  const TrackedPoints read = PointCloudTracker::read(cloud);
+  EXPECT_EQ(tracked_points(poses).points, sent.points);
+  const TrackedPoints read = tracked_points(cloud);
   EXPECT_EQ(read.header.stamp, sent.header.stamp);
   ASSERT_EQ(read.points.size(), sent.points.size());
   for (std::size_t i = 0; i < read.points.size(); ++i)
@@ -219,7 +219,7 @@ TEST(TrackedPoints, AHandGivenOutIsTheHandTakenIn) {
   const geometry_msgs::PoseArray message = pose_array_message(hand, std_msgs::Header());
   ASSERT_EQ(message.poses.size(), 21u);
   const Hand again =
-      complete_hand(joints_from_points(PoseArrayTracker::read(message), Side::left).hands.at(0), Pose());
+      complete_hand(joints_from_points(tracked_points(message), Side::left).hands.at(0), Pose());
   for (int i = 0; i < kPhalanges; ++i) {
     if (bone_of(i) == 0) continue;
     const Capsule &a = hand.capsules[static_cast<std::size_t>(i)],

@@ -40,6 +40,9 @@ struct BodyContact {
   Vector3 normal = Vector3::UnitZ();  ///< n
   Vector3 arm_a = Vector3::Zero();    ///< from the centre of a to the point
   Vector3 arm_b = Vector3::Zero();    ///< from the centre of b to the point
+  /// From the point to where friction acts, along the surface: the friction of a face that spins is that of
+  /// all its places, and these are nearer to its middle than its corners [m].
+  Vector3 friction_offset = Vector3::Zero();
   Vector3 stretch = Vector3::Zero();  ///< anchor a less anchor b, across n [m]
   Material material;                  ///< of the two together
   double depth = 0.0;                 ///< > 0 overlap, < 0 gap [m]

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
@@ -12,6 +14,29 @@ namespace mrhi {
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// Columns of a CSV file by name. Errors are RecordingError.
+class CsvColumns {
+ public:
+  CsvColumns(std::string file, const std::string& header);
+
+  /// Makes this line the one that is read from.
+  void take(const std::string& line, std::size_t line_number);
+
+  /// The cell's number; nothing if it is empty or there is no such column.
+  std::optional<double> number(const std::string& column) const;
+  double required(const std::string& column) const;
+  /// Columns PREFIX_x, PREFIX_y, PREFIX_z: all three or none.
+  std::optional<Vector3> point(const std::string& prefix) const;
+
+  [[noreturn]] void fail(const std::string& column, const std::string& what) const;
+
+ private:
+  std::string file_;
+  char separator_;
+  std::vector<std::string> names_, cells_;
+  std::size_t line_number_ = 1;
 };
 
 /// Reads a recording in the CSV schema (one line per hand and device frame; hand_id -1: a frame with no hand;

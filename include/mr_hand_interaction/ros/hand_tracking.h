@@ -12,10 +12,10 @@ namespace mrhi {
 /// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2. A hand of joints alone
 /// (PoseArray, PointCloud) is of the side that its topic names, else its frame, else of ~side. Parameters:
 /// ~fixed_frame (world); ~side (right), of hands/pose_array and hands/point_cloud; ~order of joints (empty:
-/// recognised); ~scale, metres per unit of the tracker (1). Throws std::invalid_argument for a bad one.
+/// recognised); ~scale, metres per unit of the tracker (1). Throws an exception in one line for a bad one.
 class HandTracking {
  public:
-  HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& parameters);
+  HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~HandTracking();
 
   /// Who is in the same process gets each frame at once, before it is published, with when its message

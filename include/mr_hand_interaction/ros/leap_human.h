@@ -44,13 +44,23 @@ std::vector<std::string> leap_versions();
 /// DecodeError.
 LeapFrame read_leap(const std::string& md5, std::vector<std::uint8_t> bytes);
 
-/// Reads it from a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+/// Reads a serialised leap_motion_controller/Hand as casado-fdo/leap-motion-ros publishes it: one hand, whose
+/// side only the topic tells, without its wrist. Throws DecodeError.
+LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes);
+
+/// The bytes of a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+template <class Message>
+std::vector<std::uint8_t> serialised_bytes(const Message& message) {
+  std::vector<std::uint8_t> bytes(message.size());
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(message.size()));
+  message.write(stream);
+  return bytes;
+}
+
+/// Reads leap_motion/Human from such a message.
 template <class Message>
 LeapFrame read_leap(const Message& message) {
-  std::vector<std::uint8_t> bytes(message.size());
-  ros::serialization::OStream stream(bytes.data(), message.size());
-  message.write(stream);
-  return read_leap(message.getMD5Sum(), std::move(bytes));
+  return read_leap(message.getMD5Sum(), serialised_bytes(message));
 }
 
 }  // namespace mrhi

@@ -20,7 +20,7 @@ struct ServerParameters {
   std::map<std::string, Twist> object_twists;  ///< ~object_twist/NAME: [vx, vy, vz, wx, wy, wz] at the start
   HapticsRate haptics_rate = HapticsRate::frame;  ///< ~haptics/rate: frame, or step: one message each
   bool place_by_mouse = false;    ///< ~place_by_mouse: interactive markers that move the objects
-  bool standard_outputs = false;  ///< ~standard_outputs: those of standard_outputs.h too
+  bool standard_outputs = false;  ///< ~standard_outputs: standard messages too
   Configuration configuration;    ///< every name of parameters.h
 };
 

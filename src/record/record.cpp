@@ -1,0 +1,446 @@
+#include "record.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "../text/files.h"
+#include "../text/text.h"
+#include "../text/yaml.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/scene/scene.h"
+
+namespace mrhi {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kUrdf = "scene.urdf", kYaml = "scene.yaml";
+constexpr std::size_t kMaxFileBytes = 64u << 20;  // of a scene's files
+constexpr std::size_t kMaxYamlBytes = 4u << 20;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("recorded change: " + what + "; allowed: what this package has recorded");
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream out = file_to_write(file.string());
+  out << text << std::flush;
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+YAML::Node recorded_yaml(const std::string& yaml) {
+  try {
+    return load_yaml("recorded change", yaml, kMaxYamlBytes);
+  } catch (const YamlError& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+std::string text_in(const YAML::Node& node, const char* key) {
+  const YAML::Node value = node.IsMap() ? node[key] : YAML::Node(YAML::NodeType::Undefined);
+  if (!value || !value.IsScalar()) refuse(std::string("no '") + key + "'");
+  return value.Scalar();
+}
+
+const RecordedFile* find_file(const RecordedFiles& files, const std::string& name) {
+  for (const RecordedFile& file : files)
+    if (file.name == name) return &file;
+  return nullptr;
+}
+
+/// What is spawned whole may have no name: its text names it (FNV-1a).
+std::string spawned_file(const ObjectRequest& request) {
+  std::string name = request.name;
+  if (name.empty()) {
+    std::uint64_t sum = 0xcbf29ce484222325u;
+    for (const char c : request.urdf) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    name = std::to_string(sum);
+  }
+  return "spawn/" + name + ".urdf";
+}
+
+YAML::Node numbers_node(const std::vector<double>& values) {
+  YAML::Node node(YAML::NodeType::Sequence);
+  for (const double value : values) node.push_back(text::exact(value));
+  node.SetStyle(YAML::EmitterStyle::Flow);
+  return node;
+}
+
+YAML::Node pose_node(const Pose& pose) {
+  const Vector3& p = pose.position;
+  const Quaternion& q = pose.orientation;
+  return numbers_node({p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+YAML::Node twist_node(const Twist& twist) {
+  const Vector3 &v = twist.linear, &w = twist.angular;
+  return numbers_node({v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+}
+
+YAML::Node request_node(const ObjectRequest& request) {
+  YAML::Node node;
+  node["name"] = request.name;
+  if (!request.urdf.empty()) node["urdf"] = spawned_file(request);
+  if (request.urdf.empty()) {
+    node["shape"] = request.shape;
+    node["size"] = numbers_node(request.size);
+    node["mass"] = text::exact(request.mass);
+  }
+  if (request.whole) {
+    node["whole"] = "yes";
+    node["joints"] = request.joints;
+  }
+  node["pose"] = pose_node(request.pose);
+  node["twist"] = twist_node(request.twist);
+  if (!request.material.empty()) node["material"] = request.material;
+  if (request.rgba) {
+    const auto& c = *request.rgba;
+    node["rgba"] = numbers_node({double(c[0]), double(c[1]), double(c[2]), double(c[3])});
+  }
+  return node;
+}
+
+std::vector<double> numbers_in(const YAML::Node& node, std::size_t count) {
+  if (!node || !node.IsSequence() || (count > 0 && node.size() != count) || node.size() > 100)
+    refuse("not " + std::to_string(count) + " numbers");
+  std::vector<double> values;
+  for (const YAML::Node& item : node) {
+    const std::string text = item.IsScalar() ? item.Scalar() : "";
+    char* end = nullptr;
+    values.push_back(std::strtod(text.c_str(), &end));
+    if (text.empty() || *end != '\0') refuse("'" + text::one_line(text, 40) + "' is no number");
+  }
+  return values;
+}
+
+Pose pose_in(const YAML::Node& node) {
+  const std::vector<double> v = numbers_in(node, 7);
+  return {{v[0], v[1], v[2]}, Quaternion(v[6], v[3], v[4], v[5])};
+}
+
+Twist twist_in(const YAML::Node& node) {
+  const std::vector<double> v = numbers_in(node, 6);
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+
+ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
+  ObjectRequest request;
+  request.name = text_in(node, "name");
+  if (node["urdf"]) {
+    const RecordedFile* file = find_file(files, text_in(node, "urdf"));
+    if (file == nullptr) refuse("the URDF of '" + text::one_line(request.name, 60) + "' is missing");
+    request.urdf = file->bytes;
+  } else {
+    request.shape = text_in(node, "shape");
+    request.size = numbers_in(node["size"], 0);
+    request.mass = numbers_in(YAML::Node(std::vector<std::string>{text_in(node, "mass")}), 1)[0];
+  }
+  if (node["whole"]) {
+    request.whole = true;
+    request.joints = text_in(node, "joints");
+  }
+  request.pose = pose_in(node["pose"]);
+  request.twist = twist_in(node["twist"]);
+  if (node["material"]) request.material = text_in(node, "material");
+  if (node["rgba"]) {
+    const std::vector<double> c = numbers_in(node["rgba"], 4);
+    request.rgba = {{float(c[0]), float(c[1]), float(c[2]), float(c[3])}};
+  }
+  return request;
+}
+
+/// What `read` gives; where a part has another form than it needs, as a text where a map should be, that is
+/// reported in our words.
+template <class Read>
+auto in_form(const Read& read) {
+  try {
+    return read();
+  } catch (const YAML::Exception&) {
+    refuse("a part has another form than it needs");
+  }
+}
+
+struct Making {
+  LiveSimulation& simulation;
+
+  void operator()(const Spawn& spawn) const {
+    simulation.add(spawn.prepared ? spawn.prepared->part
+                                  : requested_scene(spawn.request,
+                                                    scene_options(simulation.simulation().configuration())));
+  }
+  void operator()(const Delete& remove) const { simulation.remove(remove.name); }
+  void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
+  void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
+  void operator()(const Restrain& restrain) const { simulation.restrain(restrain.on); }
+  void operator()(const Reset&) const { simulation.reset(); }
+  void operator()(const Pause&) const {}
+};
+
+struct InWords {
+  std::string operator()(const Spawn& spawn) const { return "spawn '" + spawn.request.name + "'"; }
+  std::string operator()(const Delete& remove) const { return "delete '" + remove.name + "'"; }
+  std::string operator()(const SetParameters& set) const {
+    std::string text = "set";
+    for (const auto& [name, value] : set.values) text += " " + name + "=" + value;
+    return text;
+  }
+  std::string operator()(const PlaceObject& place) const { return "place '" + place.name + "'"; }
+  std::string operator()(const Restrain& restrain) const { return restrain.on ? "restrain" : "release"; }
+  std::string operator()(const Reset&) const { return "reset"; }
+  std::string operator()(const Pause& pause) const { return pause.on ? "pause" : "go on"; }
+};
+
+struct AsNode {
+  YAML::Node node;
+
+  void operator()(const Spawn& spawn) { node["spawn"] = request_node(spawn.request); }
+  void operator()(const Delete& remove) { node["delete"] = remove.name; }
+  void operator()(const SetParameters& set) {
+    for (const auto& [name, value] : set.values) {
+      YAML::Node pair(std::vector<std::string>{name, value});
+      node["set"].push_back(pair);
+    }
+  }
+  void operator()(const PlaceObject& place) {
+    node["place"] = place.name;
+    node["pose"] = pose_node(place.pose);
+  }
+  void operator()(const Restrain& restrain) { node["restrain"] = restrain.on ? "on" : "off"; }
+  void operator()(const Reset&) { node["reset"] = "all"; }
+  void operator()(const Pause& pause) { node["pause"] = pause.on ? "on" : "off"; }
+};
+
+SetParameters values_in(const YAML::Node& node) {
+  SetParameters set;
+  for (const YAML::Node& pair : node) {
+    if (!pair.IsSequence() || pair.size() != 2 || !pair[0].IsScalar() || !pair[1].IsScalar())
+      throw std::invalid_argument("recorded change: 'set' has no names and values; allowed: [[NAME, VALUE]]");
+    set.values.emplace_back(pair[0].Scalar(), pair[1].Scalar());
+  }
+  return set;
+}
+
+std::string text_of(const fs::path& file) {
+  return file_text(file.string(), kMaxFileBytes).value_or("");
+}
+
+void add_files(const RecordedFiles& files, World& world) {
+  for (const RecordedFile& file : files) {
+    const auto known = std::find_if(world.files.begin(), world.files.end(),
+                                    [&](const RecordedFile& other) { return other.name == file.name; });
+    if (known == world.files.end()) {
+      world.files.push_back(file);
+    } else {
+      *known = file;
+    }
+  }
+}
+
+std::vector<std::string> roots_of(const Scene& part) {
+  std::vector<std::string> roots;
+  for (std::size_t body = 0; body < part.bodies.size(); ++body)
+    if (hanging_on(body, part).size() == part.bodies.size()) roots.push_back(part.bodies[body].name);
+  return roots;
+}
+
+Scene scene_of_files(const World& world, const SceneOptions& options, const std::string& folder) {
+  const RecordedFile* urdf = find_file(world.files, kUrdf);
+  if (urdf == nullptr) throw SceneError("the recording has no scene.urdf; allowed: one that has");
+  const fs::path file = fs::path(folder) / (world.scene + ".urdf");
+  write(file, urdf->bytes);
+  if (const RecordedFile* yaml = find_file(world.files, kYaml))
+    write(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes);
+  return load_scene(file.string(), options);
+}
+
+}  // namespace
+
+RecordedFiles contents_of(const std::vector<SceneFile>& files) {
+  RecordedFiles contents;
+  for (const SceneFile& file : files) {
+    const auto bytes = file_text(file.path, kMaxFileBytes + 1);
+    if (bytes && bytes->size() <= kMaxFileBytes) contents.push_back({file.name, *bytes});
+  }
+  return contents;
+}
+
+std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files) {
+  std::map<std::string, std::string> paths;
+  for (const RecordedFile& file : files) {
+    const fs::path path = fs::path(folder) /
+                          ("mesh_" + std::to_string(paths.size()) + fs::path(file.name).extension().string());
+    write(path, file.bytes);
+    paths[file.name] = path.string();
+  }
+  return paths;
+}
+
+PreparedSpawn::PreparedSpawn(const ObjectRequest& request, const SceneOptions& options)
+    : part(requested_scene(request, options)), geometry(part), files(contents_of(part.mesh_files)) {}
+
+void make(const Change& change, LiveSimulation& simulation) {
+  std::visit(Making{simulation}, change);
+}
+
+std::string to_text(const Change& change) {
+  return std::visit(InWords{}, change);
+}
+
+std::string to_yaml(const Change& change) {
+  AsNode as_node;
+  std::visit(as_node, change);
+  return YAML::Dump(as_node.node);
+}
+
+RecordedFiles files_of(const Change& change) {
+  const Spawn* spawn = std::get_if<Spawn>(&change);
+  if (spawn == nullptr || spawn->request.urdf.empty()) return {};
+  RecordedFiles files = spawn->prepared
+                            ? spawn->prepared->files
+                            : contents_of(requested_scene(spawn->request, scene_options({})).mesh_files);
+  files.push_back({spawned_file(spawn->request), spawn->request.urdf});
+  return files;
+}
+
+Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
+  const YAML::Node node = recorded_yaml(yaml);
+  if (!node.IsMap()) refuse("is no map");
+  return in_form([&]() -> Change {
+    if (node["spawn"]) return Spawn{request_in(node["spawn"], files)};
+    if (node["delete"]) return Delete{text_in(node, "delete")};
+    if (node["set"]) return values_in(node["set"]);
+    if (node["place"]) return PlaceObject{text_in(node, "place"), pose_in(node["pose"])};
+    if (node["restrain"]) return Restrain{text_in(node, "restrain") == "on"};
+    if (node["reset"]) return Reset{};
+    if (node["pause"]) return Pause{text_in(node, "pause") == "on"};
+    throw std::invalid_argument(
+        "recorded change: is not known; allowed: spawn, delete, set, place, restrain, reset, pause");
+  });
+}
+
+World world_of_file(const std::string& urdf_file, const Scene& scene, const Configuration& configuration) {
+  World world;
+  world.version = MR_HAND_INTERACTION_VERSION;
+  world.scene = fs::path(urdf_file).stem().string();
+  world.files.push_back({kUrdf, text_of(urdf_file)});
+  const fs::path yaml = fs::path(urdf_file).replace_extension(".yaml");
+  if (fs::exists(yaml)) world.files.push_back({kYaml, text_of(yaml)});
+  add_files(contents_of(scene.mesh_files), world);
+  set_parameters(configuration, world);
+  return world;
+}
+
+void set_parameters(const Configuration& configuration, World& world) {
+  for (const std::string& name : parameter_names())
+    world.parameters[name] = parameter_text(configuration, name);
+}
+
+void note(const Change& change, const LiveSimulation& simulation, World& world) {
+  const Configuration& configuration = simulation.simulation().configuration();
+  if (const auto* spawn = std::get_if<Spawn>(&change)) {
+    const auto prepared =
+        spawn->prepared ? spawn->prepared
+                        : std::make_shared<const PreparedSpawn>(spawn->request, scene_options(configuration));
+    world.added.push_back({spawn->request, roots_of(prepared->part)});
+    add_files(files_of(Spawn{spawn->request, prepared}), world);
+  } else if (const auto* remove = std::get_if<Delete>(&change)) {
+    const auto added = std::find_if(world.added.begin(), world.added.end(), [&](const Added& one) {
+      return std::find(one.roots.begin(), one.roots.end(), remove->name) != one.roots.end();
+    });
+    if (added == world.added.end()) {
+      world.removed.push_back(remove->name);
+    } else {
+      world.added.erase(added);
+    }
+    const Scene& scene = simulation.simulation().scene();
+    for (auto mode = world.grasps.begin(); mode != world.grasps.end();)
+      mode = find_body(scene, mode->first) ? std::next(mode) : world.grasps.erase(mode);
+  } else if (const auto* set = std::get_if<SetParameters>(&change)) {
+    set_parameters(configuration, world);
+    for (const auto& [name, value] : set->values)
+      if (const auto object = grasp_parameter(name)) world.grasps[*object] = value;
+  }
+}
+
+std::string to_yaml(const World& world) {
+  YAML::Node node;
+  node["version"] = world.version;
+  node["scene"] = world.scene;
+  for (const auto& [name, twist] : world.twists) node["object_twist"][name] = twist_node(twist);
+  for (const auto& [name, value] : world.parameters) node["parameters"][name] = value;
+  for (const auto& [name, mode] : world.grasps) node["grasp"][name] = mode;
+  for (const std::string& name : world.removed) node["removed"].push_back(name);
+  for (const Added& added : world.added) node["added"].push_back(request_node(added.request));
+  return YAML::Dump(node);
+}
+
+World world_from_yaml(const std::string& yaml, const RecordedFiles& files) {
+  const YAML::Node node = recorded_yaml(yaml);
+  return in_form([&] {
+    World world;
+    world.version = text_in(node, "version");
+    world.scene = fs::path(text_in(node, "scene")).filename().string();
+    world.files = files;
+    for (const auto& entry : node["object_twist"])
+      world.twists[entry.first.Scalar()] = twist_in(entry.second);
+    for (const auto& entry : node["parameters"]) {
+      if (!entry.second.IsScalar())
+        throw std::invalid_argument("recorded parameters: no text; allowed: YAML in text");
+      world.parameters[entry.first.Scalar()] = entry.second.Scalar();
+    }
+    for (const auto& entry : node["grasp"]) world.grasps[entry.first.Scalar()] = entry.second.Scalar();
+    for (const YAML::Node& name : node["removed"]) world.removed.push_back(name.Scalar());
+    for (const YAML::Node& request : node["added"]) world.added.push_back({request_in(request, files)});
+    return world;
+  });
+}
+
+Configuration configuration_of(const World& world, std::vector<std::string>& unknown) {
+  Configuration configuration;
+  for (const auto& [name, value] : world.parameters) {
+    try {
+      set_parameter(configuration, name, value);
+    } catch (const ParameterError& error) {
+      unknown.emplace_back(error.what());
+    }
+  }
+  validate(configuration);
+  return configuration;
+}
+
+Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder) {
+  SceneOptions options = scene_options(configuration);
+  options.gravity.reset();
+  options.mesh_files = written_to(folder, world.files);
+  Scene scene = scene_of_files(world, options, folder);
+  for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
+  // What is not in the scene came with others, and has gone again.
+  std::vector<std::string> gone_since;
+  for (const std::string& name : world.removed) {
+    if (const std::optional<int> body = find_body(scene, name)) {
+      remove_body(static_cast<std::size_t>(*body), scene);
+    } else {
+      gone_since.push_back(name);
+    }
+  }
+  for (const Added& added : world.added) append(requested_scene(added.request, options), scene);
+  for (const std::string& name : gone_since) {
+    if (const std::optional<int> body = find_body(scene, name))
+      remove_body(static_cast<std::size_t>(*body), scene);
+  }
+  for (const auto& [name, mode] : world.grasps) {
+    if (const std::optional<int> body = find_body(scene, name))
+      scene.bodies[static_cast<std::size_t>(*body)].grasp = grasp_mode(mode).value_or(GraspMode::parameter);
+  }
+  return scene;
+}
+
+}  // namespace mrhi

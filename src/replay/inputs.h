@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "../record/record.h"
+#include "../tracking/joints_input.h"
+#include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/replay/replay.h"
+#include "mr_hand_interaction/simulation.h"
+
+namespace mrhi {
+/// The frames of a recording in the order in which they were recorded.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// Nothing at the end. Throws std::exception with one line if the recording cannot be read any further.
+  virtual std::optional<SourceFrame> next() = 0;
+  /// Of what is recorded, so far and in all: a frame each, or the hands of a frame in messages of their own.
+  virtual std::size_t position() const = 0;
+  virtual std::size_t size() const = 0;
+};
+
+/// A recording in the CSV schema, seen by a device that is placed in world.
+class CsvInput : public FrameSource {
+ public:
+  /// Throws RecordingError.
+  CsvInput(const std::string& file, const Pose& device_in_world, double scale);
+
+  std::optional<SourceFrame> next() override;
+  std::size_t position() const override { return position_; }
+  std::size_t size() const override { return frames_.size(); }
+
+ private:
+  std::vector<JointsFrame> frames_;
+  Pose device_in_world_;
+  JointsInput input_;
+  std::size_t position_ = 0;
+};
+
+/// A recording that is open, and the topic that is read of it.
+struct ReplayInput {
+  std::unique_ptr<FrameSource> frames;
+  std::string topic;
+};
+
+/// Hands from topics of a bag: a tracker's message (ros/tracker_reader.h; of a right hand where neither topic
+/// nor frame names a side), or HandFrame in world. Without a topic: /leap_motion/leap_device, else those of
+/// joints, hands/[left/|right/]..., together, else the only one of a fitting type.
+/// Without a device pose: the bag's /tf_static and /tf at the frames' stamps, as live; the Leap's own frame
+/// has a default mount, hands in any other that nothing places are refused. Throws BagError; where this was
+/// built without ROS, UsageError.
+ReplayInput open_bag(const std::string& file, const std::optional<std::string>& topic,
+                     const std::optional<Pose>& device_in_world, const HandOptions& hands = {});
+
+/// The log of a live simulation, if the recording has one; else why not.
+struct OpenLog {
+  std::unique_ptr<LogSource> source;
+  std::string topic, why_not;
+};
+
+/// Throws BagError.
+OpenLog open_log(const ReplayArguments& arguments);
+
+/// A bag that cannot be replayed. what() is one line.
+class BagError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A bag with what viewers show. Either of chosen frames: for each its number on /frame (std_msgs/UInt32),
+/// then its markers on /markers (visualization_msgs/MarkerArray), with all that is there. Or of a whole run:
+/// /markers at a rate, as a live node sends them, and for every frame /scene (when it changes),
+/// /rendered_hands, /tracked_hands, /objects and /contacts.
+class MarkerBag {
+ public:
+  /// `frames`: their numbers, from 0. Throws UsageError where this was built without ROS.
+  MarkerBag(const std::string& file, const std::set<std::size_t>& frames);
+  MarkerBag(const std::string& file, double rate);  ///< [Hz]
+  ~MarkerBag();
+  /// After each frame; the first makes the file. Throws std::runtime_error naming it if it cannot be written.
+  void watch(const Simulation& simulation);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mrhi

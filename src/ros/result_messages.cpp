@@ -1,0 +1,359 @@
+#include "result_messages.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "../simulation/contact_phase.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
+
+namespace mrhi {
+
+static_assert(mr_hand_interaction::Contact::IMPULSE == int(ContactPhase::impulse) &&
+                  mr_hand_interaction::Contact::STICKING == int(ContactPhase::sticking) &&
+                  mr_hand_interaction::Contact::SLIPPING == int(ContactPhase::slipping),
+              "phases are numbered as in Contact.msg");
+
+namespace {
+
+/// The contacts of one phalanx with one body.
+class Feeling {
+ public:
+  void add(const Contact& contact) {
+    force_ += contact.force;
+    impulse_ += contact.impulse;
+    normals_ += contact.normal;
+    depth_ = std::max(depth_, contact.depth);
+    slips_ = slips_ || (contact.touching() && contact.friction == Friction::slipping);
+  }
+
+  void fill(mr_hand_interaction::PhalanxHaptics& phalanx) const {
+    const Vector3 normal = normals_.normalized();
+    phalanx.slip = slips_ ? phalanx.SLIPPING : phalanx.STICKING;
+    phalanx.force = vector_message(force_);
+    phalanx.impulse = vector_message(impulse_);
+    phalanx.normal = vector_message(normal);
+    phalanx.pressure = std::max(0.0, -normal.dot(force_));
+    phalanx.depth = depth_;
+  }
+
+ private:
+  Vector3 force_ = Vector3::Zero(), impulse_ = Vector3::Zero(), normals_ = Vector3::Zero();
+  double depth_ = 0.0;
+  bool slips_ = false;
+};
+
+bool is_felt(const Contact& contact) {
+  return contact.touching() || !contact.impulse.isZero(0.0) || !contact.force.isZero(0.0);
+}
+
+bool same_phalanx(const Contact& a, const Contact& b) {
+  return a.key.body == b.key.body && a.key.hand == b.key.hand && a.key.capsule == b.key.capsule;
+}
+
+mr_hand_interaction::PhalanxHaptics named(const Contact& contact, const Scene& scene) {
+  mr_hand_interaction::PhalanxHaptics phalanx;
+  phalanx.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
+  phalanx.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+  phalanx.object = scene.bodies[contact.key.body].name;
+  return phalanx;
+}
+
+/// One after the other, as contacts come body by body, each in the order of hands and phalanges.
+void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& contacts,
+                   std::vector<mr_hand_interaction::PhalanxHaptics>& phalanges) {
+  for (auto contact = contacts.begin(); contact != contacts.end();) {
+    const auto first = contact;
+    Feeling feeling;
+    bool felt = false;
+    for (; contact != contacts.end() && same_phalanx(*first, *contact); ++contact) {
+      if (first->key.hand != slot || !is_felt(*contact)) continue;
+      feeling.add(*contact);
+      felt = true;
+    }
+    if (!felt) continue;
+    phalanges.push_back(named(*first, scene));
+    feeling.fill(phalanges.back());
+  }
+}
+
+geometry_msgs::Pose joint_message(const Vector3& position, const Vector3& along) {
+  return to_message(Pose{position, Quaternion::FromTwoVectors(Vector3::UnitX(), along)});
+}
+
+geometry_msgs::Pose missing_joint() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return to_message(Pose{Vector3::Constant(nan), Quaternion::Identity()});
+}
+
+void add_finger(const Hand& hand, int finger, geometry_msgs::PoseArray& message) {
+  for (int joint = 0; joint < kBonesPerFinger; ++joint) {
+    const int bone = capsule_index(finger, std::max(joint, 1));
+    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(bone)];
+    message.poses.push_back(
+        hand.has(bone) ? joint_message(joint == 0 ? capsule.start : capsule.end, capsule.end - capsule.start)
+                       : missing_joint());
+  }
+}
+
+using mr_hand_interaction::SceneBody;
+using mr_hand_interaction::SceneShape;
+
+struct WriteShape {
+  SceneShape& message;
+
+  void operator()(const Sphere& s) const { set(SceneShape::SPHERE, {s.radius}); }
+  void operator()(const Box& b) const {
+    const Vector3 size = 2.0 * b.half_extents;
+    set(SceneShape::BOX, {size.x(), size.y(), size.z()});
+  }
+  void operator()(const Cylinder& c) const { set(SceneShape::CYLINDER, {c.radius, 2.0 * c.half_length}); }
+  void operator()(const Pill& p) const { set(SceneShape::CAPSULE, {p.radius, 2.0 * p.half_length}); }
+  void operator()(const Mesh& m) const {
+    set(SceneShape::MESH, {});
+    message.mesh = m.uri;
+    message.scale = vector_message(m.scale);
+    if (!m.triangles) return;
+    for (const Vector3& vertex : m.triangles->vertices) {
+      geometry_msgs::Point32 point;
+      point.x = static_cast<float>(vertex.x());
+      point.y = static_cast<float>(vertex.y());
+      point.z = static_cast<float>(vertex.z());
+      message.vertices.push_back(point);
+    }
+    for (const auto& triangle : m.triangles->triangles)
+      message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
+  }
+
+ private:
+  void set(std::uint8_t type, std::vector<double> size) const {
+    message.type = type;
+    message.size = std::move(size);
+  }
+};
+
+SceneShape shape_message(const Shape& shape, const Pose& pose) {
+  SceneShape message;
+  std::visit(WriteShape{message}, shape);
+  message.pose = to_message(pose);
+  return message;
+}
+
+}  // namespace
+
+mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header) {
+  mr_hand_interaction::HandFrame message;
+  message.header = header;
+  for (const Hand& hand : result.tracked) message.hands.push_back(to_message(hand));
+  return message;
+}
+
+mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header) {
+  mr_hand_interaction::HandFrame message;
+  message.header = header;
+  for (const RenderedHand& rendered : result.rendered) {
+    message.hands.push_back(to_message(rendered.hand, rendered.touching));
+  }
+  return message;
+}
+
+mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const FrameResult& result,
+                                                      const SimulationState& state,
+                                                      const std_msgs::Header& header) {
+  mr_hand_interaction::ObjectStateArray message;
+  message.header = header;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.fixed) continue;
+    const Twist twist = twist_of(body, state.bodies[i]);
+    mr_hand_interaction::ObjectState object;
+    object.name = body.name;
+    object.pose = to_message(state.bodies[i].pose);
+    object.twist.linear = vector_message(twist.linear);
+    object.twist.angular = vector_message(twist.angular);
+    object.mass = body.mass;
+    object.held = is_held(i, state);
+    object.is_operator = body.is_operator;
+    const std::optional<Vector3> assist = assist_force(i, result);
+    object.assisted = assist.has_value();
+    object.assist_force = vector_message(assist.value_or(Vector3::Zero()));
+    message.objects.push_back(object);
+  }
+  return message;
+}
+
+mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
+                                                   const SimulationState& state,
+                                                   const std_msgs::Header& header) {
+  mr_hand_interaction::ContactArray message;
+  message.header = header;
+  for (const Contact& contact : result.contacts) {
+    mr_hand_interaction::Contact touch;
+    touch.object = scene.bodies[contact.key.body].name;
+    touch.hand_id = hand_id(contact, state);
+    touch.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
+    touch.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+    touch.phase = static_cast<std::uint8_t>(phase(contact));
+    touch.position = to_message(contact.point);
+    touch.normal = vector_message(contact.normal);
+    touch.depth = contact.depth;
+    touch.impulse = vector_message(contact.impulse);
+    touch.force = vector_message(contact.force);
+    const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
+    touch.normal_force = use.normal;
+    touch.tangential_force = use.tangential;
+    touch.friction_limit = use.limit;
+    message.contacts.push_back(touch);
+  }
+  return message;
+}
+
+mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
+                                                    const Event& event, const std_msgs::Header& header) {
+  mr_hand_interaction::InteractionEvent message;
+  message.header = header;
+  message.kind = static_cast<std::uint8_t>(event.kind);
+  if (event.body >= 0) {
+    const auto body = static_cast<std::size_t>(event.body);
+    message.object = scene.bodies[body].name;
+    message.assisted = assist_force(body, result).has_value();
+  }
+  message.hand_id = event.hand_id;
+  return message;
+}
+
+std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
+                                                               const SimulationState& state,
+                                                               const std_msgs::Header& header) {
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Pose link = state.bodies[i].pose * scene.bodies[i].link_in_body;
+    geometry_msgs::TransformStamped transform;
+    transform.header = header;
+    transform.child_frame_id = scene.bodies[i].name;
+    transform.transform.translation = vector_message(link.position);
+    transform.transform.rotation = to_message(link).orientation;
+    transforms.push_back(transform);
+  }
+  return transforms;
+}
+
+sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
+                                             const std_msgs::Header& header) {
+  sensor_msgs::JointState message;
+  message.header = header;
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    message.name.push_back(scene.joints[i].name);
+    message.position.push_back(state.joints[i].position);
+    message.velocity.push_back(joint_velocity(scene, i, state.bodies));
+    message.effort.push_back(state.joints[i].effort);
+  }
+  return message;
+}
+
+mr_hand_interaction::HapticsArray haptics_message(const Scene& scene, const SimulationState& state,
+                                                  const std::vector<Contact>& contacts,
+                                                  const std_msgs::Header& header) {
+  mr_hand_interaction::HapticsArray message;
+  message.header = header;
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    const HandTrack& track = state.hands[slot];
+    if (!track.active) continue;
+    message.hands.emplace_back();
+    message.hands.back().id = track.current.id;
+    message.hands.back().side = static_cast<std::uint8_t>(track.current.side);
+    add_phalanges(static_cast<int>(slot), scene, contacts, message.hands.back().phalanges);
+  }
+  return message;
+}
+
+mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
+                                                    const std_msgs::Header& header) {
+  mr_hand_interaction::SceneDescription message;
+  message.header = header;
+  message.name = scene.name;
+  message.model = std::string(configuration.contact_model.name);
+  message.gravity = vector_message(configuration.gravity.value_or(scene.gravity));
+  for (const Body& body : scene.bodies) {
+    SceneBody told;
+    told.name = body.name;
+    told.fixed = body.fixed;
+    told.is_operator = body.is_operator;
+    if (body.is_operator) told.link = to_message(body.link_in_body.position);
+    told.pose = to_message(body.start);
+    told.static_friction = body.material.static_friction;
+    told.dynamic_friction = body.material.dynamic_friction;
+    for (const PlacedShape& placed : body.shapes)
+      told.shapes.push_back(shape_message(placed.shape, placed.pose));
+    for (const Visual& visual : body.visuals) {
+      told.visuals.push_back(shape_message(visual.shape, visual.pose));
+      const bool own = !visual.has_color && std::holds_alternative<Mesh>(visual.shape);
+      const auto& c = visual.rgba;
+      told.visuals.back().color.r = c[0], told.visuals.back().color.g = c[1];
+      told.visuals.back().color.b = c[2], told.visuals.back().color.a = own ? 0.0f : c[3];
+    }
+    message.bodies.push_back(std::move(told));
+  }
+  return message;
+}
+
+geometry_msgs::PoseArray pose_array_message(const Hand& hand, const std_msgs::Header& header) {
+  geometry_msgs::PoseArray message;
+  message.header = header;
+  message.poses.push_back(joint_message(hand.wrist, hand.palm.position - hand.wrist));
+  for (int finger = 0; finger < kFingers; ++finger) add_finger(hand, finger, message);
+  return message;
+}
+
+geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result,
+                                     const SimulationState& state) {
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+  for (const Contact& contact : result.contacts) {
+    if (contact.key.body != body) continue;
+    force += contact.force;
+    torque += (contact.point - state.bodies[body].pose.position).cross(contact.force);
+  }
+  geometry_msgs::Wrench message;
+  message.force = vector_message(force);
+  message.torque = vector_message(torque);
+  return message;
+}
+
+std::string held_objects(const Scene& scene, const SimulationState& state) {
+  std::string names;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!scene.bodies[i].fixed && is_held(i, state))
+      names += (names.empty() ? "" : ",") + scene.bodies[i].name;
+  return names;
+}
+
+ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message) {
+  ObjectRequest request;
+  request.name = message.name;
+  request.urdf = message.urdf;
+  request.shape = message.shape;
+  request.size = message.size;
+  request.mass = message.mass;
+  request.pose = from_message(message.pose);
+  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  request.twist = {from_message(message.twist.linear), from_message(message.twist.angular)};
+  request.material = message.material;
+  const auto& color = message.color;
+  // Opacity 0 is that of a request that says nothing of its colour; what is no number is not.
+  if (color.a != 0.0f) request.rgba = {{color.r, color.g, color.b, color.a}};
+  return request;
+}
+
+ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message) {
+  ObjectRequest request;
+  request.whole = true;
+  request.name = message.name;
+  request.urdf = message.urdf;
+  request.joints = message.joints;
+  request.pose = from_message(message.pose);
+  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  return request;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,384 @@
+#include <OgreCamera.h>
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+#include <ros/ros.h>
+#include <rviz/display.h>
+#include <rviz/display_context.h>
+#include <rviz/frame_manager.h>
+#include <rviz/properties/bool_property.h>
+#include <rviz/properties/color_property.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/properties/quaternion_property.h>
+#include <rviz/properties/string_property.h>
+#include <rviz/properties/vector_property.h>
+#include <rviz/selection/selection_handler.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <QColor>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../simulation/contact_phase.h"
+#include "../scene_view.h"
+#include "mr_hand_interaction/ros/markers.h"
+#include "scene_objects.h"
+
+namespace mrhi {
+namespace {
+
+using mr_hand_interaction::ContactArray;
+using Hands = mr_hand_interaction::HandFrame;
+using mr_hand_interaction::ObjectState;
+using mr_hand_interaction::ObjectStateArray;
+using mr_hand_interaction::SceneDescription;
+
+constexpr std::uint32_t kQueue = 10;
+constexpr double kPassing = 0.5;       // hands and contacts go if nothing comes for so long [s]
+constexpr double kEyeMoved = 1e-4;     // [m]
+const Rgb kSkin(0.91f, 0.73f, 0.62f);  // of which the tone is made
+
+QColor to_qt(const std_msgs::ColorRGBA& c) {
+  return QColor::fromRgbF(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
+}
+QColor to_qt(const Rgb& c) {
+  return to_qt(color(static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])));
+}
+
+Rgb to_rgb(const rviz::ColorProperty& property) {
+  const QColor colour = property.getColor();
+  return Eigen::Array3d(colour.redF(), colour.greenF(), colour.blueF()).cast<float>();
+}
+
+void set_colour(const rviz::ColorProperty& property, std_msgs::ColorRGBA& colour) {
+  const Rgb rgb = to_rgb(property);
+  colour.r = rgb[0], colour.g = rgb[1], colour.b = rgb[2];
+}
+
+}  // namespace
+
+/// Hands, objects and what acts between them, drawn in rviz from poses: `scene` once, then `rendered_hands`,
+/// `tracked_hands`, `objects` and `contacts`. What is drawn is what Markers says; skins are bent and lit
+/// here.
+class InteractionDisplay : public rviz::Display {
+ public:
+  InteractionDisplay() { add_properties(); }
+
+  ~InteractionDisplay() override { unsubscribe(); }
+
+  void update(float, float) override {
+    read_properties();
+    if (frame_.empty() || !place_in_fixed_frame()) return;
+    if (hands_came_ != ros::WallTime() && (ros::WallTime::now() - hands_came_).toSec() > kPassing) {
+      view_.take_rendered(Hands());
+      view_.take(ContactArray());
+      hands_came_ = ros::WallTime();
+      changed_ = true;
+    }
+    if ((eye() - drawn_from_).norm() > kEyeMoved) changed_ = true;
+    if (std::exchange(changed_, false)) draw();
+  }
+
+  void reset() override {
+    rviz::Display::reset();
+    if (scene_) scene_->clear();
+    markers_.reset();
+    view_ = SceneView();
+    objects_.clear();
+    skins_.clear();
+    ghosts_.clear();
+    if (!subscribers_.empty()) subscribe();  // the scene comes to who is new
+  }
+
+ protected:
+  void onInitialize() override {
+    scene_ = std::make_unique<MarkerScene>(scene_manager_, scene_node_, [this](const std::string& body) {
+      return rviz::SelectionHandlerPtr(new ObjectSelection(context_, body, *this));
+    });
+  }
+
+  void onEnable() override { subscribe(); }
+
+  void onDisable() override {
+    unsubscribe();
+    reset();
+  }
+
+ private:
+  /// What rviz's Selection panel says of an object.
+  class ObjectSelection : public rviz::SelectionHandler {
+   public:
+    ObjectSelection(rviz::DisplayContext* context, std::string name, InteractionDisplay& display)
+        : rviz::SelectionHandler(context), name_(std::move(name)), display_(display) {}
+
+    void createProperties(const rviz::Picked&, rviz::Property* parent) override {
+      auto* group = new rviz::Property("Object " + QString::fromStdString(name_), QVariant(), "", parent);
+      properties_.push_back(group);
+      held_ = new rviz::BoolProperty("Held", false, "A hand grasps it", group);
+      touched_ =
+          new rviz::StringProperty("Touched by", "", "Fingers that touch it, and with what force", group);
+      mass_ = new rviz::FloatProperty("Mass [kg]", 0.0f, "", group);
+      position_ =
+          new rviz::VectorProperty("Position [m]", Ogre::Vector3::ZERO, "Of the centre of mass", group);
+      orientation_ = new rviz::QuaternionProperty("Orientation", Ogre::Quaternion::IDENTITY, "", group);
+      velocity_ = new rviz::VectorProperty("Velocity [m/s]", Ogre::Vector3::ZERO, "", group);
+      spin_ = new rviz::VectorProperty("Angular velocity [rad/s]", Ogre::Vector3::ZERO, "", group);
+      for (int i = 0; i < group->numChildren(); ++i) group->childAt(i)->setReadOnly(true);
+      group->expand();
+      updateProperties();
+    }
+
+    void destroyProperties(const rviz::Picked& picked, rviz::Property* parent) override {
+      rviz::SelectionHandler::destroyProperties(picked, parent);
+      held_ = nullptr;
+    }
+
+    void updateProperties() override {
+      const auto found = display_.objects_.find(name_);
+      if (!held_ || found == display_.objects_.end()) return;
+      const ObjectState& object = found->second;
+      held_->setBool(object.held != 0);
+      touched_->setStdString(display_.touching(name_));
+      mass_->setFloat(static_cast<float>(object.mass));
+      position_->setVector(to_ogre(object.pose.position));
+      orientation_->setQuaternion(to_ogre(object.pose.orientation));
+      velocity_->setVector(to_ogre(object.twist.linear));
+      spin_->setVector(to_ogre(object.twist.angular));
+    }
+
+   private:
+    const std::string name_;
+    InteractionDisplay& display_;
+    rviz::BoolProperty* held_ = nullptr;
+    rviz::StringProperty* touched_ = nullptr;
+    rviz::FloatProperty* mass_ = nullptr;
+    rviz::VectorProperty *position_ = nullptr, *velocity_ = nullptr, *spin_ = nullptr;
+    rviz::QuaternionProperty* orientation_ = nullptr;
+  };
+  /// A layer's switch, and where it has them its colour and a threshold.
+  struct Layer {
+    rviz::BoolProperty* shown = nullptr;
+    rviz::ColorProperty* colour = nullptr;
+    rviz::FloatProperty* threshold = nullptr;
+  };
+  rviz::BoolProperty* add_layer(const char* name, const char* title, bool shown, const char* description) {
+    return layers_[name].shown = new rviz::BoolProperty(title, shown, description, this);
+  }
+
+  void add_properties() {
+    const PictureStyle style;
+    namespace_ = new rviz::StringProperty(
+        "Namespace", "", "In which scene, rendered_hands, tracked_hands, objects and contacts are", this);
+    unreliable_ = new rviz::BoolProperty("Unreliable", false,
+                                         "Ask for UDP: on a slow network, late poses are dropped", this);
+    const auto colour = [this](const char* layer, const char* title, const QColor& value) {
+      return layers_[layer].colour = new rviz::ColorProperty(title, value, "", layers_[layer].shown);
+    };
+    const auto threshold = [this](const char* layer, const char* title, double value,
+                                  const char* description) {
+      auto* property =
+          new rviz::FloatProperty(title, static_cast<float>(value), description, layers_[layer].shown);
+      property->setMin(0.0f);
+      layers_[layer].threshold = property;
+    };
+    auto* hand = add_layer("hand", "Hand", true, "The rendered hand: never inside an object");
+    colour("hand", "Skin", to_qt(kSkin));
+    touching_ = new rviz::ColorProperty("Touching", to_qt(tone_.touching), "Where it presses", hand);
+    auto* ghost =
+        add_layer("ghost", "Ghost", true, "The tracked hand, where it is elsewhere than the rendered one");
+    colour("ghost", "Color", to_qt(style.ghost));
+    threshold("ghost", "From [m]", style.ghost_from, "Unseen where it is nearer to the rendered hand");
+    ghost_alpha_ = new rviz::FloatProperty("Alpha", style.ghost.a, "At its most opaque", ghost);
+    ghost_alpha_->setMin(0.0f);
+    ghost_alpha_->setMax(1.0f);
+    add_layer("objects", "Objects", true, "What hands move");
+    add_layer("fixtures", "Fixtures", true, "What does not move");
+    add_layer("contacts", "Contacts", true, "A dot at each contact");
+    colour("contacts", "Color", to_qt(style.contacts));
+    auto* friction = add_layer("friction", "Friction", true, "A ring around each contact");
+    colour("friction", "Sticks", to_qt(style.sticks));
+    slips_ = new rviz::ColorProperty("Slips", to_qt(style.slips), "", friction);
+    add_layer("forces", "Forces", true, "An arrow behind each finger that presses");
+    colour("forces", "Color", to_qt(style.forces));
+    threshold("forces", "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
+    add_layer("newtons", "Newtons", false, "The forces in numbers");
+    add_layer("share", "Share", false, "How much of what friction bears is used: blue none, orange all");
+    add_layer("impacts", "Impacts", true, "A ring where a hand has struck, that fades within 0.15 s");
+    colour("impacts", "Color", to_qt(style.impacts));
+    add_layer("shadows", "Shadows", true, "Straight below hands and objects");
+    add_layer("text", "Text", true, "What is held, contact model and gravity");
+    add_layer("capsules", "Capsules", false, "The rendered hand as it is simulated");
+  }
+
+  void subscribe() {
+    unsubscribe();
+    subscribed_namespace_ = namespace_->getStdString();
+    subscribed_unreliable_ = unreliable_->getBool();
+    listen<SceneDescription>("scene", [this](const SceneDescription& message) {
+      view_.take(message);
+      scene_->clear();
+      objects_.clear();
+      markers_ = std::make_unique<Markers>(view_.scene(), caption(view_.model(), view_.scene().gravity));
+      setStatusStd(rviz::StatusProperty::Ok, "Scene", message.name);
+    });
+    listen<Hands>("rendered_hands", [this](const Hands& message) {
+      view_.take_rendered(message);
+      stamp_ = message.header.stamp;
+      hands_came_ = ros::WallTime::now();
+    });
+    listen<Hands>("tracked_hands", [this](const Hands& message) { view_.take_tracked(message); });
+    listen<ObjectStateArray>("objects", [this](const ObjectStateArray& message) {
+      view_.take(message);
+      for (const ObjectState& object : message.objects) objects_[object.name] = object;
+    });
+    listen<ContactArray>("contacts", [this](const ContactArray& message) {
+      view_.take(message);
+      if (markers_) markers_->note(view_.result(), message.header.stamp);
+    });
+  }
+
+  void unsubscribe() { subscribers_.clear(); }
+
+  template <typename Message, typename Take>
+  void listen(const std::string& topic, Take take) {
+    const std::string name = ros::names::append(subscribed_namespace_, topic);
+    const auto handler = [this, topic, take](const boost::shared_ptr<const Message>& message) {
+      try {
+        take(*message);
+        frame_ = message->header.frame_id;
+        changed_ = true;
+      } catch (const std::exception& error) {
+        setStatus(rviz::StatusProperty::Error, QString::fromStdString(topic), error.what());
+      }
+    };
+    ros::TransportHints hints;
+    if (subscribed_unreliable_) hints.unreliable();
+    hints.reliable().tcpNoDelay();
+    subscribers_.push_back(update_nh_.subscribe<Message>(
+        name, kQueue, boost::function<void(const boost::shared_ptr<const Message>&)>(handler), nullptr,
+        hints));
+  }
+
+  void read_properties() {
+    if (subscribed_namespace_ != namespace_->getStdString() ||
+        subscribed_unreliable_ != unreliable_->getBool())
+      reset();
+    for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
+    tone_ = {to_rgb(*layers_["hand"].colour) / kSkin, to_rgb(*touching_)};
+    if (!markers_) return;
+    PictureStyle& style = markers_->style();
+    style.skins = false;
+    set_colour(*layers_["ghost"].colour, style.ghost);
+    style.ghost.a = ghost_alpha_->getFloat();
+    style.ghost_full += static_cast<double>(layers_["ghost"].threshold->getFloat()) - style.ghost_from;
+    style.ghost_from = static_cast<double>(layers_["ghost"].threshold->getFloat());
+    set_colour(*layers_["contacts"].colour, style.contacts);
+    set_colour(*layers_["friction"].colour, style.sticks);
+    set_colour(*slips_, style.slips);
+    set_colour(*layers_["forces"].colour, style.forces);
+    style.least_force = static_cast<double>(layers_["forces"].threshold->getFloat());
+    set_colour(*layers_["impacts"].colour, style.impacts);
+  }
+
+  bool place_in_fixed_frame() {
+    Ogre::Vector3 position;
+    Ogre::Quaternion orientation;
+    if (!context_->getFrameManager()->getTransform(frame_, ros::Time(), position, orientation)) {
+      setStatusStd(
+          rviz::StatusProperty::Error, "Transform",
+          "no transform from '" + frame_ + "' to the fixed frame '" + fixed_frame_.toStdString() + "'");
+      return false;
+    }
+    setStatus(rviz::StatusProperty::Ok, "Transform", "OK");
+    scene_node_->setPosition(position);
+    scene_node_->setOrientation(orientation);
+    return true;
+  }
+
+  Vector3 eye() const {
+    const Ogre::Vector3 camera = scene_node_->convertWorldToLocalPosition(
+        context_->getViewManager()->getCurrent()->getCamera()->getDerivedPosition());
+    return Eigen::Vector3f(static_cast<float>(camera.x), static_cast<float>(camera.y),
+                           static_cast<float>(camera.z))
+        .cast<double>();
+  }
+
+  void draw() {
+    drawn_from_ = eye();
+    const FrameResult& result = view_.result();
+    if (markers_) {
+      std_msgs::Header header;
+      header.stamp = stamp_;
+      markers_->update(result, view_.state(), header, array_);
+      scene_->take(array_);
+      for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
+      for (const std::string& mesh : scene_->missing())
+        setStatusStd(rviz::StatusProperty::Warn, "Mesh", "'" + mesh + "' cannot be loaded on this machine");
+    }
+    draw_hands(result);
+  }
+
+  void draw_hands(const FrameResult& result) {
+    const std::size_t hands = result.rendered.size();
+    const PictureStyle style = markers_ ? markers_->style() : PictureStyle();
+    for (std::size_t i = 0; i < std::max(hands, skins_.size()); ++i) {
+      if (i == skins_.size()) {
+        skins_.push_back(std::make_unique<SkinObject>(scene_manager_, scene_node_));
+        ghosts_.push_back(std::make_unique<SkinObject>(scene_manager_, scene_node_));
+      }
+      skins_[i]->hide();
+      ghosts_[i]->hide();
+      if (i >= hands) continue;
+      const RenderedHand& rendered = result.rendered[i];
+      if (layers_["hand"].shown->getBool())
+        skins_[i]->draw(rendered, result, view_.state(), tone_, drawn_from_);
+      if (layers_["ghost"].shown->getBool())
+        ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_from_);
+    }
+  }
+
+  /// Fingers that touch an object, and with what force.
+  std::string touching(const std::string& object) {
+    char force[32];
+    std::string all;
+    for (const Contact& contact : view_.result().contacts) {
+      if (!contact.touching() || view_.scene().bodies[contact.key.body].name != object) continue;
+      std::snprintf(force, sizeof force, " %.1f N", contact.force.norm());
+      all += (all.empty() ? "" : ", ") + std::string(finger_name(contact.key.capsule)) + force;
+    }
+    return all;
+  }
+
+  std::map<std::string, Layer> layers_;
+  rviz::StringProperty* namespace_;
+  rviz::BoolProperty* unreliable_;
+  rviz::ColorProperty* touching_;
+  rviz::ColorProperty* slips_;
+  rviz::FloatProperty* ghost_alpha_;
+
+  std::string subscribed_namespace_;
+  bool subscribed_unreliable_ = false;
+  std::vector<ros::Subscriber> subscribers_;
+  std::string frame_;
+  ros::Time stamp_;           ///< of the last frame
+  ros::WallTime hands_came_;  ///< when hands last came
+  std::map<std::string, mr_hand_interaction::ObjectState> objects_;
+  SceneView view_;
+  std::unique_ptr<Markers> markers_;
+  std::unique_ptr<MarkerScene> scene_;
+  std::vector<std::unique_ptr<SkinObject>> skins_, ghosts_;
+  SkinTone tone_;
+  visualization_msgs::MarkerArray array_;
+  Vector3 drawn_from_ = Vector3::Zero();  ///< the eye
+  bool changed_ = false;
+};
+
+}  // namespace mrhi
+
+PLUGINLIB_EXPORT_CLASS(mrhi::InteractionDisplay, rviz::Display)

@@ -1,0 +1,398 @@
+#pragma once
+
+#include <OgreEntity.h>
+#include <OgreManualObject.h>
+#include <OgreMaterial.h>
+#include <OgreMaterialManager.h>
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+#include <OgreTechnique.h>
+#include <rviz/mesh_loader.h>
+#include <rviz/ogre_helpers/movable_text.h>
+#include <rviz/ogre_helpers/shape.h>
+#include <rviz/selection/selection_handler.h>
+#include <visualization_msgs/Marker.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../rendering/skin.h"
+#include "../marker_layers.h"
+#include "mr_hand_interaction/ros/markers.h"
+
+namespace mrhi {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr float kOpaque = 0.998f;
+
+inline std::string new_name(const char* kind) {
+  static int count = 0;
+  return "mr_hand_interaction/" + std::string(kind) + std::to_string(count++);
+}
+
+template <typename Vector>
+Ogre::Vector3 to_ogre(const Vector& v) {
+  return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
+inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
+  return Ogre::Quaternion(static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+                          static_cast<float>(q.z));
+}
+
+inline Ogre::ColourValue to_ogre(const std_msgs::ColorRGBA& c) {
+  return Ogre::ColourValue(c.r, c.g, c.b, c.a);
+}
+
+constexpr const char* kGroup = "General";  ///< of OGRE's resources
+
+/// Materials of vertices that bring their own light: opaque, and blended by their alpha. `both_sides`: of
+/// surfaces that have no inside.
+inline Ogre::MaterialPtr vertex_colour_material(bool blended, bool both_sides) {
+  const std::string name = std::string("mr_hand_interaction/vertex_colours") + (blended ? "_blended" : "") +
+                           (both_sides ? "_both_sides" : "");
+  Ogre::MaterialManager& manager = Ogre::MaterialManager::getSingleton();
+  if (manager.resourceExists(name)) return manager.getByName(name, kGroup);
+  Ogre::MaterialPtr material = manager.create(name, kGroup);
+  material->setReceiveShadows(false);
+  material->setLightingEnabled(false);
+  material->setCullingMode(both_sides ? Ogre::CULL_NONE : Ogre::CULL_CLOCKWISE);
+  if (blended) {
+    material->setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    material->setDepthWriteEnabled(!both_sides);
+    // Ogre draws what writes depth among the solid, where it would hide what lies behind it.
+    material->getTechnique(0)->getPass(0)->setTransparentSortingForced(true);
+  }
+  return material;
+}
+
+/// Draws the markers that Markers makes, a node for each namespace.
+class MarkerScene {
+ public:
+  /// `selection` gives the handler of a body's shapes.
+  using SelectionFactory = std::function<rviz::SelectionHandlerPtr(const std::string& body)>;
+  MarkerScene(Ogre::SceneManager* manager, Ogre::SceneNode* parent, SelectionFactory selection)
+      : manager_(manager), parent_(parent), selection_(std::move(selection)) {}
+
+  ~MarkerScene() {
+    clear();
+    for (auto& [name, node] : layers_) manager_->destroySceneNode(node);
+  }
+
+  void take(const MarkerArray& array) {
+    for (const Marker& marker : array.markers) {
+      if (marker.action == Marker::DELETEALL) items_.clear();
+      if (marker.action == Marker::DELETE) items_.erase({marker.ns, marker.id});
+      if (marker.action == Marker::ADD) add(marker);
+    }
+  }
+
+  void clear() {
+    items_.clear();
+    missing_.clear();
+  }
+
+  void show_layer(const std::string& name, bool shown) { layer(name)->setVisible(shown); }
+
+  /// Meshes that could not be loaded.
+  const std::set<std::string>& missing() const { return missing_; }
+
+ private:
+  /// A marker as it is drawn.
+  struct Item {
+    Item(int marker_type, Ogre::SceneManager* scene_manager, Ogre::SceneNode* layer)
+        : type(marker_type), manager(scene_manager), node(layer->createChildSceneNode()) {}
+    ~Item() {
+      if (triangles) manager->destroyManualObject(triangles);
+      if (mesh) manager->destroyEntity(mesh);
+      if (own_material) Ogre::MaterialManager::getSingleton().remove(material_name);
+      shapes.clear();
+      text.reset();
+      manager->destroySceneNode(node);
+    }
+
+    int type;
+    Ogre::SceneManager* manager;
+    Ogre::SceneNode* node;
+    Ogre::ManualObject* triangles = nullptr;
+    bool has_triangles = false;
+    std::vector<std::unique_ptr<rviz::Shape>> shapes;
+    std::unique_ptr<rviz::MovableText> text;
+    Ogre::Entity* mesh = nullptr;
+    std::string mesh_uri;
+    bool own_material = false;
+    std::string material_name;
+    rviz::SelectionHandlerPtr selection;
+  };
+  using Key = std::pair<std::string, int>;
+  Ogre::SceneNode* layer(const std::string& name) {
+    Ogre::SceneNode*& node = layers_[name];
+    if (!node) node = parent_->createChildSceneNode();
+    return node;
+  }
+
+  void add(const Marker& marker) {
+    std::unique_ptr<Item>& item = items_[{marker.ns, marker.id}];
+    const bool fresh = !item || item->type != marker.type || item->mesh_uri != marker.mesh_resource;
+    if (fresh) item = std::make_unique<Item>(marker.type, manager_, layer(marker.ns));
+    item->mesh_uri = marker.mesh_resource;
+    item->node->setPosition(to_ogre(marker.pose.position));
+    item->node->setOrientation(to_ogre(marker.pose.orientation));
+    switch (marker.type) {
+      case Marker::TRIANGLE_LIST:
+        draw_triangles(marker, *item);
+        break;
+      case Marker::SPHERE_LIST:
+        draw_spheres(marker, *item);
+        break;
+      case Marker::TEXT_VIEW_FACING:
+        draw_text(marker, *item);
+        break;
+      case Marker::MESH_RESOURCE:
+        draw_mesh(marker, *item);
+        break;
+      default:
+        draw_shape(marker, *item);
+        break;
+    }
+    const bool is_body = marker.ns == "objects" || marker.ns == "fixtures";
+    if (!fresh || !is_body || marker.text.empty()) return;
+    item->selection = selection_(marker.text);
+    item->selection->addTrackedObjects(item->node);
+  }
+
+  void draw_triangles(const Marker& marker, Item& item) {
+    const bool coloured = marker.colors.size() == marker.points.size();
+    const auto is_clear = [](const std_msgs::ColorRGBA& c) { return c.a < kOpaque; };
+    const bool blended = is_clear(marker.color) ||
+                         (coloured && std::any_of(marker.colors.begin(), marker.colors.end(), is_clear));
+    const std::string material = vertex_colour_material(blended, true)->getName();
+    if (!item.triangles) {
+      item.triangles = manager_->createManualObject(new_name("triangles"));
+      item.triangles->setDynamic(true);
+      item.node->attachObject(item.triangles);
+    }
+    if (marker.points.empty()) {
+      item.triangles->clear();
+      item.has_triangles = false;
+      return;
+    }
+    item.node->setScale(to_ogre(marker.scale));
+    item.triangles->estimateVertexCount(marker.points.size());
+    const bool drawn = std::exchange(item.has_triangles, true);
+    if (drawn) item.triangles->setMaterialName(0, material, kGroup);
+    drawn ? item.triangles->beginUpdate(0)
+          : item.triangles->begin(material, Ogre::RenderOperation::OT_TRIANGLE_LIST, kGroup);
+    for (std::size_t i = 0; i < marker.points.size(); ++i) {
+      item.triangles->position(to_ogre(marker.points[i]));
+      item.triangles->colour(to_ogre(coloured ? marker.colors[i] : marker.color));
+    }
+    item.triangles->end();
+  }
+
+  void draw_spheres(const Marker& marker, Item& item) {
+    item.shapes.resize(std::min(item.shapes.size(), marker.points.size()));
+    for (std::size_t i = 0; i < marker.points.size(); ++i) {
+      if (i == item.shapes.size())
+        item.shapes.push_back(std::make_unique<rviz::Shape>(rviz::Shape::Sphere, manager_, item.node));
+      item.shapes[i]->setPosition(to_ogre(marker.points[i]));
+      item.shapes[i]->setScale(to_ogre(marker.scale));
+      item.shapes[i]->setColor(to_ogre(i < marker.colors.size() ? marker.colors[i] : marker.color));
+    }
+  }
+
+  void draw_shape(const Marker& marker, Item& item) {
+    const auto type = marker.type == Marker::SPHERE     ? rviz::Shape::Sphere
+                      : marker.type == Marker::CYLINDER ? rviz::Shape::Cylinder
+                                                        : rviz::Shape::Cube;
+    if (item.shapes.empty()) {
+      item.shapes.push_back(std::make_unique<rviz::Shape>(type, manager_, item.node));
+      // rviz's cylinder is about y.
+      if (type == rviz::Shape::Cylinder)
+        item.shapes[0]->setOrientation(Ogre::Quaternion(Ogre::Degree(90), Ogre::Vector3::UNIT_X));
+    }
+    Ogre::Vector3 scale = to_ogre(marker.scale);
+    if (type == rviz::Shape::Cylinder) std::swap(scale.y, scale.z);
+    item.shapes[0]->setScale(scale);
+    item.shapes[0]->setColor(to_ogre(marker.color));
+  }
+
+  void draw_text(const Marker& marker, Item& item) {
+    if (!item.text) {
+      item.text = std::make_unique<rviz::MovableText>(marker.text.empty() ? " " : marker.text);
+      item.text->setTextAlignment(rviz::MovableText::H_CENTER, rviz::MovableText::V_CENTER);
+      item.node->attachObject(item.text.get());
+    }
+    item.text->setCaption(marker.text.empty() ? " " : marker.text);
+    item.text->setColor(to_ogre(marker.color));
+    item.text->setCharacterHeight(static_cast<float>(marker.scale.z));
+  }
+
+  void draw_mesh(const Marker& marker, Item& item) {
+    if (!item.mesh) {
+      const Ogre::MeshPtr mesh = rviz::loadMeshFromResource(marker.mesh_resource);
+      if (!mesh) {
+        missing_.insert(marker.mesh_resource);
+        return;
+      }
+      item.mesh = manager_->createEntity(new_name("mesh"), mesh->getName());
+      item.node->attachObject(item.mesh);
+      if (!marker.mesh_use_embedded_materials) {
+        item.material_name = new_name("mesh_material");
+        Ogre::MaterialManager::getSingleton().create(item.material_name, kGroup);
+        item.own_material = true;
+        item.mesh->setMaterialName(item.material_name, kGroup);
+      }
+    }
+    item.node->setScale(to_ogre(marker.scale));
+    if (!item.own_material) return;
+    const Ogre::MaterialPtr material =
+        Ogre::MaterialManager::getSingleton().getByName(item.material_name, kGroup);
+    const Ogre::ColourValue colour = to_ogre(marker.color);
+    material->setAmbient(0.5f * colour.r, 0.5f * colour.g, 0.5f * colour.b);
+    material->setDiffuse(colour);
+    const bool blended = colour.a < kOpaque;
+    material->setSceneBlending(blended ? Ogre::SBT_TRANSPARENT_ALPHA : Ogre::SBT_REPLACE);
+    material->setDepthWriteEnabled(!blended);
+  }
+
+  Ogre::SceneManager* manager_;
+  Ogre::SceneNode* parent_;
+  SelectionFactory selection_;
+  std::map<std::string, Ogre::SceneNode*> layers_;
+  std::map<Key, std::unique_ptr<Item>> items_;
+  std::set<std::string> missing_;
+};
+
+constexpr float kSheen = 0.10f, kSharpness = 14.0f;  // of the highlight (Blinn-Phong)
+constexpr float kEdge = 0.06f;                       // of the fine hairs at the outline
+
+/// What a skin reflects to the eye besides its colour.
+inline float sheen(const Eigen::Vector3f& normal, const Eigen::Vector3f& to_eye) {
+  const Eigen::Vector3f half = (main_light() + to_eye).normalized();
+  const float facing = std::clamp(normal.dot(to_eye), 0.0f, 1.0f);
+  return kSheen * std::pow(std::max(0.0f, normal.dot(half)), kSharpness) +
+         kEdge * (1.0f - facing) * (1.0f - facing) * (1.0f - facing);
+}
+
+inline void add_vertex(const Vector3& place, const Vector3& normal, const Rgb& c, float alpha,
+                       Ogre::ManualObject& object) {
+  object.position(static_cast<float>(place.x()), static_cast<float>(place.y()),
+                  static_cast<float>(place.z()));
+  object.normal(static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                static_cast<float>(normal.z()));
+  object.colour(c[0], c[1], c[2], alpha);
+}
+
+/// A hand's skin as one mesh with a normal and a colour for each vertex, light included: that of light.h, and
+/// the sheen of skin, which depends on where the eye is.
+class SkinObject {
+ public:
+  SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
+      : skin_(Skin::detailed()),
+        paint_(skin_),
+        wrist_(skin_),
+        manager_(manager),
+        node_(parent->createChildSceneNode()) {
+    static int count = 0;
+    object_ = manager_->createManualObject("mr_hand_interaction/skin" + std::to_string(count++));
+    object_->setDynamic(true);
+    node_->attachObject(object_);
+  }
+
+  ~SkinObject() {
+    manager_->destroyManualObject(object_);
+    manager_->destroySceneNode(node_);
+  }
+
+  SkinObject(const SkinObject&) = delete;
+  SkinObject& operator=(const SkinObject&) = delete;
+
+  /// `eye` in world [m]. False, and nothing is drawn, if the hand has no whole skin.
+  bool draw(const RenderedHand& rendered, const FrameResult& result, const SimulationState& state,
+            const SkinTone& tone, const Vector3& eye) {
+    object_->setVisible(skin_.pose(rendered.hand, surface_));
+    if (!object_->isVisible()) return false;
+    press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
+    paint_.paint(rendered, surface_, colours_, tone);
+    for (std::size_t v = 0; v < colours_.size(); ++v) {
+      const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();
+      colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
+    }
+    wrist_.add_lid(surface_, colours_);
+    // The wrist's far side is seen through its near side, and is drawn before it.
+    const Side side = rendered.hand.side, averted = side == Side::left ? Side::right : Side::left;
+    add_section(0, wrist_.opaque(), side);
+    add_section(1, wrist_.fading(), averted);
+    add_section(2, wrist_.fading(), side);
+    return true;
+  }
+
+  /// The tracked hand where it is elsewhere than the rendered one, strongest at its outline.
+  void draw_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, const Vector3& eye) {
+    const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
+    object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));
+    if (!object_->isVisible()) return;
+    begin(0, true);
+    for (std::size_t v = 0; v < skin_.size(); ++v) {
+      const Vector3 to_eye = (eye - surface_.vertices[v]).normalized();
+      const auto outline = static_cast<float>(1.0 - std::abs(surface_.normals[v].dot(to_eye)));
+      const float seen = ghost_opacity((surface_.vertices[v] - beneath_.vertices[v]).norm(), style);
+      add_vertex(surface_.vertices[v], surface_.normals[v], ghost_colour(surface_.normals[v], style),
+                 seen * wrist_.opacity(v) * (0.35f + 0.65f * outline), *object_);
+    }
+    const std::size_t second = tracked.side == Side::left ? 2 : 1;
+    for (const auto& t : skin_.triangles())
+      object_->triangle(static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[second]),
+                        static_cast<std::uint32_t>(t[3 - second]));
+    object_->end();
+  }
+
+  void hide() { object_->setVisible(false); }
+
+ private:
+  using Triangles = std::vector<SkinWrist::Triangle>;
+  void begin(unsigned section, bool blended) {
+    object_->estimateVertexCount(skin_.size() + 1);
+    object_->estimateIndexCount(3 * skin_.triangles().size());
+    if (section < sections_) {
+      object_->beginUpdate(section);
+    } else {
+      object_->begin(vertex_colour_material(blended, false)->getName(),
+                     Ogre::RenderOperation::OT_TRIANGLE_LIST, kGroup);
+      ++sections_;
+    }
+  }
+
+  void add_section(unsigned section, const Triangles& triangles, Side side) {
+    begin(section, section > 0);
+    for (std::size_t v = 0; v < colours_.size(); ++v)
+      add_vertex(surface_.vertices[v], surface_.normals[v], colours_[v], wrist_.opacity(v), *object_);
+    const std::size_t second = side == Side::left ? 2 : 1;
+    for (const auto& triangle : triangles)
+      object_->triangle(triangle[0], triangle[second], triangle[3 - second]);
+    object_->end();
+  }
+
+  const Skin& skin_;
+  const SkinPaint paint_;
+  const SkinWrist wrist_;
+  Ogre::SceneManager* manager_;
+  Ogre::SceneNode* node_;
+  Ogre::ManualObject* object_;
+  unsigned sections_ = 0;  // of the object
+  SkinSurface surface_, beneath_;
+  std::vector<Rgb> colours_;
+};
+
+}  // namespace mrhi

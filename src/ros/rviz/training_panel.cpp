@@ -1,0 +1,205 @@
+#include <mr_hand_interaction/ContactArray.h>
+#include <mr_hand_interaction/HandFrame.h>
+#include <mr_hand_interaction/TrainingStatus.h>
+#include <ros/ros.h>
+#include <rviz/panel.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QString>
+#include <QTimer>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <map>
+#include <string>
+#include <thread>
+
+namespace mrhi {
+namespace {
+
+using Status = mr_hand_interaction::TrainingStatus;
+
+constexpr int kRefresh = 100;  // [ms]
+constexpr double kOld = 1.0;   // what is older says nothing of now [s]
+const char* const kNode = "training_node/";
+const char* const kPauses = "pause";
+
+const char* phase_name(std::uint8_t phase) {
+  static const char* const names[] = {"ready", "running", "paused", "finished"};
+  return phase < 4 ? names[phase] : "?";
+}
+
+const char* stage_name(std::uint8_t stage) {
+  static const char* const names[] = {"manipulation", "maintenance", "release"};
+  return stage < 3 ? names[stage] : "?";
+}
+
+bool is_old(const ros::WallTime& time) {
+  return time.isZero() || (ros::WallTime::now() - time).toSec() > kOld;
+}
+
+/// Empty, or what went wrong.
+std::string ask(const std::string& service, bool pause) {
+  std_srvs::SetBool set;
+  std_srvs::Trigger trigger;
+  set.request.data = pause;
+  const bool sets = service == kPauses;
+  if (!(sets ? ros::service::call(kNode + service, set) : ros::service::call(kNode + service, trigger)))
+    return "training_node does not answer";
+  const bool good = sets ? set.response.success : trigger.response.success;
+  return good ? "" : sets ? set.response.message : trigger.response.message;
+}
+
+}  // namespace
+
+/// The experimenter's panel in rviz: who does what, and how it goes; next, pause, skip and repeat by the
+/// services of training_node. All of it runs in rviz's thread but the call of a service, which may take a
+/// while.
+class TrainingPanel : public rviz::Panel {
+ public:
+  explicit TrainingPanel(QWidget* parent = nullptr) : rviz::Panel(parent), timer_(new QTimer(this)) {
+    auto* const form = new QFormLayout;
+    auto* const row = new QHBoxLayout;
+    auto* const all = new QVBoxLayout(this);
+    all->addLayout(form);
+    all->addLayout(row);
+    for (const char* what : {"participant", "task", "trial", "phase", "instruction", "time", "grasps",
+                             "drops", "grip", "tracking", "result"})
+      form->addRow(what, add_line(what, "-"));
+    row->addWidget(add_button("next", "Next", "next"));
+    row->addWidget(add_button("pause", "Pause", kPauses));
+    row->addWidget(add_button("skip", "Skip", "skip"));
+    row->addWidget(add_button("repeat", "Repeat", "repeat"));
+    all->addWidget(add_line("answer", ""));
+    lines_["instruction"]->setWordWrap(true);
+    lines_["answer"]->setWordWrap(true);
+
+    ros::NodeHandle node;
+    subscribers_ = {node.subscribe("training/status", 10, &TrainingPanel::take, this),
+                    node.subscribe("contacts", 1, &TrainingPanel::take_contacts, this),
+                    node.subscribe("hand_frame", 10, &TrainingPanel::take_hands, this)};
+    counted_ = ros::WallTime::now();
+    connect(timer_, &QTimer::timeout, this, [this] { refresh(); });
+    timer_->start(kRefresh);
+    refresh();
+  }
+
+  ~TrainingPanel() override {
+    if (calling_.joinable()) calling_.join();
+  }
+
+ private:
+  QLabel* add_line(const char* name, const char* what) {
+    auto* const label = new QLabel(what);
+    label->setObjectName(name);
+    return lines_[name] = label;
+  }
+
+  QPushButton* add_button(const char* name, const char* text, const std::string& service) {
+    auto* const button = new QPushButton(text);
+    button->setObjectName(QString("button_") + name);
+    connect(button, &QPushButton::clicked, this, [this, service] { call(service); });
+    return buttons_[name] = button;
+  }
+
+  void take(const Status& status) {
+    status_ = status;
+    told_ = ros::WallTime::now();
+  }
+
+  void take_contacts(const mr_hand_interaction::ContactArray& message) {
+    double pressing = 0.0;
+    for (const auto& contact : message.contacts) {
+      if (contact.object != status_.object) continue;
+      const auto &n = contact.normal, &f = contact.force;
+      pressing += std::max(0.0, -(n.x * f.x + n.y * f.y + n.z * f.z));
+    }
+    grip_ = 0.5 * pressing;
+    touched_ = ros::WallTime::now();
+  }
+
+  void take_hands(const mr_hand_interaction::HandFrame& frame) {
+    ++frames_;
+    if (frame.hands.empty()) return;
+    confidence_ = 0.0;
+    for (const auto& hand : frame.hands) confidence_ = std::max<double>(confidence_, hand.confidence);
+    seen_ = ros::WallTime::now();
+  }
+
+  void refresh() {
+    const ros::WallTime now = ros::WallTime::now();
+    if (const double passed = (now - counted_).toSec(); passed > kOld) {
+      rate_ = frames_ / passed;
+      frames_ = 0;
+      counted_ = now;
+    }
+    const bool silent = is_old(told_);
+    for (const auto& button : buttons_) button.second->setEnabled(!silent && !calling_.joinable());
+    const auto show = [this](const char* name, const QString& text) { lines_[name]->setText(text); };
+    show("grip", is_old(touched_) ? "-" : QString("%1 N").arg(grip_, 0, 'f', 1));
+    show("tracking", is_old(seen_)
+                         ? "no hand"
+                         : QString("confidence %1, %2 Hz").arg(confidence_, 0, 'f', 2).arg(rate_, 0, 'f', 0));
+    if (silent) {
+      show("phase", "no training_node");
+      return;
+    }
+    show("participant", QString::fromStdString(status_.participant));
+    show("task", QString::fromStdString(status_.task));
+    show("trial", QString("%1 of %2: %3, repetition %4")
+                      .arg(status_.trial)
+                      .arg(status_.trials)
+                      .arg(QString::fromStdString(status_.object))
+                      .arg(status_.repetition));
+    show("phase", QString("%1, %2").arg(phase_name(status_.phase)).arg(stage_name(status_.stage)));
+    show("instruction", QString::fromStdString(status_.instruction));
+    show("time", QString("%1 s").arg(status_.elapsed, 0, 'f', 1));
+    show("grasps", QString::number(status_.attempts));
+    show("drops", QString::number(status_.drops));
+    show("result", QString::fromStdString(status_.result));
+    buttons_["pause"]->setText(status_.phase == Status::PAUSED ? "Go on" : "Pause");
+  }
+
+  /// One at a time: the buttons are off until it is answered.
+  void call(const std::string& service) {
+    if (calling_.joinable()) return;
+    say(QString::fromStdString(service) + " ...");
+    const bool pause = status_.phase != Status::PAUSED;
+    calling_ = std::thread([this, service, pause] {
+      const QString wrong = QString::fromStdString(ask(service, pause));
+      QMetaObject::invokeMethod(
+          this,
+          [this, service, wrong] {
+            calling_.join();
+            say(wrong.isEmpty() ? QString::fromStdString(service) + ": done" : wrong);
+            refresh();
+          },
+          Qt::QueuedConnection);
+    });
+    refresh();
+  }
+
+  void say(const QString& text) { lines_["answer"]->setText(text); }
+
+  std::map<std::string, QLabel*> lines_;
+  std::map<std::string, QPushButton*> buttons_;
+  mr_hand_interaction::TrainingStatus status_;
+  ros::WallTime told_, touched_, seen_;  ///< when the last message came
+  double grip_ = 0.0;                    ///< on the trial's object: half of what presses on it [N]
+  double confidence_ = 0.0;              ///< of the hand that is seen best
+  int frames_ = 0;                       ///< of hands since the last refresh
+  double rate_ = 0.0;                    ///< of them [Hz]
+  ros::WallTime counted_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::thread calling_;
+  QTimer* timer_;
+};
+
+}  // namespace mrhi
+
+PLUGINLIB_EXPORT_CLASS(mrhi::TrainingPanel, rviz::Panel)
