@@ -1,11 +1,15 @@
-#include "file_text.h"
+#include "files.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <locale>
+#include <stdexcept>
 
-#include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/input_error.h"
 #include "text.h"
 
 namespace mrhi {
@@ -69,14 +73,14 @@ std::ofstream file_to_write(const std::string& file, std::ios::openmode mode) {
   return std::ofstream(file, mode | std::ios::out);
 }
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
 
 std::vector<std::string> known_names(const std::string& extension,
                                      const std::vector<std::string>& directories) {
@@ -102,15 +106,67 @@ std::string find_named_file(const std::string& kind, const std::string& name, co
       "; allowed: " + std::string(extension == ".urdf" ? "a URDF" : "a YAML") + " file, or one of ";
   if (is_path) {
     if (is_file(name)) return name;
-    throw SceneError(kind + " file '" + name + "' does not exist" + allowed +
+    throw InputError(kind + " file '" + name + "' does not exist" + allowed +
                      text::joined(known_names(extension, directories)));
   }
   for (const std::string& directory : directories) {
     const fs::path file = fs::path(directory) / (name + extension);
     if (is_file(file)) return file.string();
   }
-  throw SceneError("unknown " + kind + " '" + name + "'" + allowed +
+  throw InputError("unknown " + kind + " '" + name + "'" + allowed +
                    text::joined(known_names(extension, directories)));
+}
+
+std::string csv_cell(const std::string& text) {
+  const bool formula = text.find_first_of("=+-@\t\r") == 0 && !text::to_number(text);
+  const std::string cell = formula ? '\'' + text : text;
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+CsvRows& CsvRows::operator<<(const std::string& text) {
+  next() << csv_cell(text);
+  return *this;
+}
+
+CsvRows& CsvRows::skip(std::size_t cells) {
+  for (std::size_t i = 0; i < cells; ++i) next();
+  return *this;
+}
+
+void CsvRows::end_row() {
+  out_ << '\n';
+  begun_ = false;
+}
+
+std::ostream& CsvRows::next() {
+  if (begun_) out_ << ',';
+  begun_ = true;
+  return out_;
+}
+
+CsvFile::CsvFile(const std::string& path, const std::string& header)
+    : path_(path), file_(file_to_write(path)), rows_(file_) {
+  file_.imbue(std::locale::classic());
+  file_.precision(12);
+  file_ << header << '\n';
+  check();
+}
+
+void CsvFile::end_row() {
+  rows_.end_row();
+  check();
+}
+
+void CsvFile::flush() {
+  file_.flush();
+  check();
+}
+
+void CsvFile::check() {
+  if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
 }
 
 }  // namespace mrhi
