@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "../scene/limits.h"
-#include "../scene/material_fields.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "../tracking/hand_filter.h"
 #include "mr_hand_interaction/response/contact_model.h"
 

@@ -2,10 +2,9 @@
 
 #include <set>
 
-#include "../scene/material_fields.h"
-#include "../text/safe_yaml.h"
+#include "../scene/limits.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "parameter_table.h"
 
 namespace mrhi {

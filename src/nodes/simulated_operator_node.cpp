@@ -14,7 +14,7 @@
 #include "../training/operator_trial.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
 namespace {

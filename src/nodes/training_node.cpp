@@ -22,7 +22,6 @@
 #include "../ros/training_system.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/training/session.h"
-#include "mr_hand_interaction/training/session_folder.h"
 
 namespace mrhi {
 namespace {

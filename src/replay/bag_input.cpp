@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "../ros/tracker_reader.h"
-#include "../text/file_text.h"
-#include "../text/limited_child.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/untrusted_input.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../ros/result_messages.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {

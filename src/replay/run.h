@@ -13,7 +13,7 @@
 #include "inputs.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/replay/replay.h"
-#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/body.h"
 #include "tables.h"
 
 namespace mrhi {

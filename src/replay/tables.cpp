@@ -8,8 +8,7 @@
 #include <stdexcept>
 
 #include "../simulation/contact_phase.h"
-#include "../text/csv.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 
 namespace mrhi {
 namespace {

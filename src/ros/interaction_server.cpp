@@ -17,9 +17,8 @@
 #include <vector>
 
 #include "../math/duration_histogram.h"
-#include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "input_log.h"
 #include "input_statistics.h"
 #include "live_controls.h"

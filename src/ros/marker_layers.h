@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../rendering/skin_paint.h"
+#include "../rendering/skin.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/simulation.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../rendering/light.h"
+#include "../rendering/skin.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 

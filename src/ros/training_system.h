@@ -13,11 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "../training/object_model.h"
+#include "../training/operator_trial.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/training/session.h"
-#include "mr_hand_interaction/training/session_folder.h"
 
 namespace mrhi {
 /// What the training node is told on the parameter server.

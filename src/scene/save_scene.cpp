@@ -12,10 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "limits.h"
-#include "material_fields.h"
 #include "shape_kinds.h"
 
 namespace mrhi {

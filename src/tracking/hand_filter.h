@@ -4,9 +4,9 @@
 #include <variant>
 #include <vector>
 
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/configuration.h"
-#include "mr_hand_interaction/tracking/filter_memory.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -57,5 +57,16 @@ FilterConfiguration filter_of(const Configuration& configuration);
 /// One gain for all points keeps what is linear in them: what is midway between two others stays so. Lengths
 /// of bones are not, and change while a hand turns: a mean of two directions is shorter than either.
 Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
+
+/// Two third differences of four samples each, one sample apart.
+constexpr int kNoiseSamples = 5;  ///< of the history, from which observe_noise learns
+
+/// Learns from the newest samples how much they tremble; nothing while there are fewer than kNoiseSamples.
+void observe_noise(const SampleHistory& history, SeenNoise& noise);
+
+/// What a filter is to take for the rms of a sample on an axis [m]: a good tracker's, and beyond that what
+/// has been seen.
+///     sigma^2 = kUsualNoise^2 + 4 max(0, s^2 - (1 mm)^2),   s^2 the variance that has been seen
+double filter_noise(const SeenNoise& seen);
 
 }  // namespace mrhi
