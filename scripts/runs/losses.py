@@ -140,14 +140,14 @@ def _weakness(stay, loss, slid):
 
 
 def _remedy(loss):
-    text = ('The fingers pressed with %.3g N in total and had to carry %.3g N along the surfaces; friction of %.3g carries up to '
-            '%.3g N. ' % (loss.push, loss.load, loss.friction, loss.friction * loss.push))
+    text = ('The fingers applied a normal force of %.3g N in total and had to carry %.3g N along the surfaces; friction of %.3g '
+            'carries up to %.3g N. ' % (loss.push, loss.load, loss.friction, loss.friction * loss.push))
     if loss.push_needed <= 0.0:
-        return text + ('That is enough for a straight pull: it rotated, or was pushed out (friction could carry force and torque '
-                       'together %.3g times at the least)' % loss.bearable)
+        return text + ('That is enough for a straight pull: it rotated, or was pushed out (friction could carry at least %.3g times '
+                       'the force and torque together)' % loss.bearable)
     if loss.friction_needed > MAX_FRICTION:
-        return text + 'To hold it takes %.3g N more normal force' % loss.push_needed
-    return text + 'To hold it takes friction of %.3g, or %.3g N more normal force' % (loss.friction_needed, loss.push_needed)
+        return text + 'It would be held with %.3g N more normal force' % loss.push_needed
+    return text + 'It would be held with friction of %.3g, or %.3g N more normal force' % (loss.friction_needed, loss.push_needed)
 
 
 def _story_of(loss, stay, why):
@@ -167,8 +167,8 @@ def _beside(delay):
     if abs(delay) < 0.005:
         return 'with the last touch'
     if delay < 0.0:
-        return '%.2f s before the last touch: the fingers touched it, but no longer held it' % -delay
-    return '%.2f s after the last touch: a grasp ends once it has been gone for a little' % delay
+        return '%.2f s before the last touch: the fingers still touched it, but did not hold it' % -delay
+    return '%.2f s after the last touch: a grasp ends with a short delay' % delay
 
 
 def _grasp_end(stay, story):
