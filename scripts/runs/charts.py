@@ -141,7 +141,8 @@ def grip_charts(thing, start, until, whole):
         charts += [
             Chart('depth of each finger [mm]', _of_fingers(thing, lambda touch: 1e3 * touch.depth), 1.0),
             Chart('friction margin for a straight pull [N]', of_grip(thing.margin), 0.1),
-            Chart('safety factor: how many times the load (force and torque) friction can carry (dotted: 1, slipping; 5: or more)', of_grip(thing.bearable), 2.0, MAX_BEARABLE, (1.0,)),
+            Chart('safety factor: how many times the load (force and torque) friction can carry (dotted: 1, slipping; 5: or '
+                  'more)', of_grip(thing.bearable), 2.0, MAX_BEARABLE, (1.0,)),
             Chart('torque about the line through the grip [N m]', of_grip(thing.torque), 1e-3)]
     return charts
 

@@ -59,7 +59,8 @@ class DocsTest(unittest.TestCase):
     def test_the_pages_are_few_and_short(self):
         pages = [page for page in PAGES[:-2] if page != SHELF]
         self.assertLessEqual(len(pages), MAX_PAGES)
-        self.assertLessEqual(sum(len(text_of(page).split()) for page in PAGES[:-2]), MAX_WORDS, "say a thing once, and link to it")
+        self.assertLessEqual(sum(len(text_of(page).split()) for page in PAGES[:-2]), MAX_WORDS,
+                             "say a thing once, and link to it")
 
 
 if __name__ == "__main__":
