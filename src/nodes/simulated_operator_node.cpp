@@ -147,8 +147,8 @@ class OperatorPublisher {
 
   void move() {
     const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
-    const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
-    Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+    Sight sight =
+        sight_of(task_, goal, from_message(object_.pose), from_message(object_.twist), object_.held);
     sight.grip = grip();
     const HandPlace hand = person_->move(time_, sight);
     hands_ = {

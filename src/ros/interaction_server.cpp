@@ -44,10 +44,6 @@ SceneOptions options_of(const Configuration& configuration) {
   return options;
 }
 
-std::string without_slash(const std::string& frame_id) {
-  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
-}
-
 /// One parameter; of a request without a name, all of the map that its value is.
 Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& request) {
   if (!request.name.empty()) return {{request.name, request.value}};

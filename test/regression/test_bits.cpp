@@ -6,7 +6,7 @@
 #include <map>
 
 #include "mr_hand_interaction/response/contact_model.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
 #include "text/text.h"
