@@ -46,6 +46,13 @@ RootFrame root_frame(const Hand& hand, int finger) {
   return {along, across.normalized()};
 }
 
+ThumbRest make_thumb_rest() {
+  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
+                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
+  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
+}
+
 }  // namespace
 
 ///     x' = c + R (x - c),   R_palm' = lag.frame R R_palm,   c the palm's position, R = lag.whole
@@ -220,17 +227,6 @@ FingerOffset FingerChain::compliance() const {
   if (!tied_) return FingerOffset(kLoose, kLoose, kLoose, 0.0);
   return {kBending, kSideways, kBending, kBending};
 }
-
-namespace {
-
-ThumbRest make_thumb_rest() {
-  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
-                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
-                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
-  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
-}
-
-}  // namespace
 
 JointLimits joint_limits(int finger) {
   if (finger == 0) {

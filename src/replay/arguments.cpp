@@ -5,7 +5,7 @@
 #include "../scene/limits.h"
 #include "../text/command_line.h"
 #include "../text/text.h"
-#include "../tracking/joint_orders.h"
+#include "../tracking/joints_input.h"
 
 namespace mrhi {
 namespace {

@@ -65,10 +65,6 @@ void check_motion(const ObjectRequest& request) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
   check_motion(request);
   UrdfDocument document;

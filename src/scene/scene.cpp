@@ -104,6 +104,25 @@ void find_principal_axes(Body& body) {
   body.inverse_moments = solver.eigenvalues();
 }
 
+template <typename Named>
+std::optional<int> find_named(const std::vector<Named>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  if (found == all.end()) return {};
+  return static_cast<int>(found - all.begin());
+}
+
+/// For each of the scene's bodies whether it is the one or hangs on it: joints come before those of what
+/// hangs on them.
+std::vector<char> those_that_go(std::size_t body, const Scene& scene) {
+  std::vector<char> goes(scene.bodies.size(), 0);
+  goes[body] = 1;
+  for (const Joint& joint : scene.joints) {
+    if (joint.parent != Joint::kWorld && goes[static_cast<std::size_t>(joint.parent)] != 0)
+      goes[static_cast<std::size_t>(joint.child)] = 1;
+  }
+  return goes;
+}
+
 }  // namespace
 
 std::optional<GraspMode> grasp_mode(const std::string& name) {
@@ -113,17 +132,8 @@ std::optional<GraspMode> grasp_mode(const std::string& name) {
 }
 
 std::string name_of(GraspMode mode) {
-  switch (mode) {
-    case GraspMode::free:
-      return "free";
-    case GraspMode::assist:
-      return "assist";
-    case GraspMode::never:
-      return "never";
-    case GraspMode::parameter:
-      break;
-  }
-  return "";
+  static const char* const names[] = {"", "free", "assist", "never"};
+  return names[static_cast<std::size_t>(mode)];
 }
 
 void complete(Body& body) {
@@ -146,17 +156,6 @@ void complete(Body& body) {
     body.bounding_radius = std::max(body.bounding_radius, reach);
   }
 }
-
-namespace {
-
-template <typename Named>
-std::optional<int> find_named(const std::vector<Named>& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-  if (found == all.end()) return {};
-  return static_cast<int>(found - all.begin());
-}
-
-}  // namespace
 
 std::optional<int> find_body(const Scene& scene, const std::string& name) {
   return find_named(scene.bodies, name);
@@ -222,22 +221,6 @@ void append(const Scene& part, Scene& scene) {
     scene.tethers.push_back(tether);
   }
 }
-
-namespace {
-
-/// For each of the scene's bodies whether it is the one or hangs on it: joints come before those of what
-/// hangs on them.
-std::vector<char> those_that_go(std::size_t body, const Scene& scene) {
-  std::vector<char> goes(scene.bodies.size(), 0);
-  goes[body] = 1;
-  for (const Joint& joint : scene.joints) {
-    if (joint.parent != Joint::kWorld && goes[static_cast<std::size_t>(joint.parent)] != 0)
-      goes[static_cast<std::size_t>(joint.child)] = 1;
-  }
-  return goes;
-}
-
-}  // namespace
 
 std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
   const std::vector<char> goes = those_that_go(body, scene);

@@ -101,18 +101,10 @@ class BodyReader {
   void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
     of_parts_.assign(parts.size(), {});
     flat_ = false;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const auto& collisions = parts[i].link->collision_array;
-      for (std::size_t k = 0; k < collisions.size(); ++k)
-        add_shape(parts[i], *collisions[k], "collision " + std::to_string(k + 1), of_parts_[i]);
-    }
+    add_shapes(parts, &urdf::Link::collision_array, "collision ");
     const auto has_none = [](const auto& shapes) { return shapes.empty(); };
     if (!body.fixed && std::all_of(of_parts_.begin(), of_parts_.end(), has_none)) {
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        const auto& visuals = parts[i].link->visual_array;
-        for (std::size_t k = 0; k < visuals.size(); ++k)
-          add_shape(parts[i], *visuals[k], "visual " + std::to_string(k + 1), of_parts_[i]);
-      }
+      add_shapes(parts, &urdf::Link::visual_array, "visual ");
       const bool none = std::all_of(of_parts_.begin(), of_parts_.end(), has_none);
       if (none && moves(*parts[0].link->parent_joint)) return;  // a link of a mechanism
       if (none)
@@ -124,15 +116,17 @@ class BodyReader {
     for (const auto& shapes : of_parts_) body.shapes.insert(body.shapes.end(), shapes.begin(), shapes.end());
   }
 
-  template <class Element>
-  void add_shape(const LinkPart& part, const Element& element, const std::string& which,
-                 std::vector<PlacedShape>& shapes) {
-    const std::string where = "link '" + part.link->name + "' " + which;
-    if (!element.geometry) throw SceneError(source_ + ": " + where + ": no geometry; allowed: a shape");
-    if (auto shape = shapes_.read(*element.geometry, where, true)) {
-      shapes.push_back({*shape, part.pose * to_pose(element.origin)});
-    } else {
-      flat_ = true;
+  template <class Elements>
+  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      int number = 0;
+      for (const auto& element : *parts[i].link.*elements) {
+        const std::string where = "link '" + parts[i].link->name + "' " + kind + std::to_string(++number);
+        if (!element->geometry) throw SceneError(source_ + ": " + where + ": no geometry; allowed: a shape");
+        const auto shape = shapes_.read(*element->geometry, where, true);
+        if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
+        flat_ = flat_ || !shape;
+      }
     }
   }
 
@@ -267,6 +261,38 @@ void read_bodies(const std::string& source, const std::string& folder, UrdfDocum
   scene.mesh_files = shapes.files();
 }
 
+namespace fs = std::filesystem;
+
+bool is_inside(const Bounds& bounds, const Vector3& place) {
+  return (place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all();
+}
+
+void check_starts_in_bounds(const std::string& file, const Scene& scene) {
+  for (const Body& body : scene.bodies) {
+    const Vector3& start = body.start.position;
+    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    throw SceneError(file + ": body '" + body.name + "': start " + text::vector(start) +
+                     " m is out of bounds; allowed: " + text::vector(scene.bounds.min) + " to " +
+                     text::vector(scene.bounds.max));
+  }
+}
+
+/// Bounds that no file gives hold all that moves where it starts.
+void widen_bounds(Scene& scene) {
+  constexpr double kRoom = 1.0;  // [m]
+  Bounds wide = scene.bounds;
+  for (const Body& body : scene.bodies) {
+    const Vector3 room = Vector3::Constant(kRoom + body.bounding_radius), &start = body.start.position;
+    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    wide.min = wide.min.cwiseMin(start - room), wide.max = wide.max.cwiseMax(start + room);
+  }
+  if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;
+  scene.bounds = wide;
+  scene.warnings.push_back(
+      "bodies start out of the usual bounds, which are widened: " + text::vector(wide.min) + " to " +
+      text::vector(wide.max) + " m; the YAML's 'bounds' sets others");
+}
+
 }  // namespace
 
 void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
@@ -297,43 +323,6 @@ PlacedLink only_body(const std::string& source, UrdfDocument& document) {
                      "' turns or slides; allowed: floating, fixed");
   return found.front();
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-void check_starts_in_bounds(const std::string& file, const Scene& scene) {
-  for (const Body& body : scene.bodies) {
-    const Vector3& start = body.start.position;
-    const bool inside = (start.array() >= scene.bounds.min.array()).all() &&
-                        (start.array() <= scene.bounds.max.array()).all();
-    if (body.fixed || inside) continue;
-    throw SceneError(file + ": body '" + body.name + "': start " + text::vector(start) +
-                     " m is out of bounds; allowed: " + text::vector(scene.bounds.min) + " to " +
-                     text::vector(scene.bounds.max));
-  }
-}
-
-/// Bounds that no file gives hold all that moves where it starts.
-void widen_bounds(Scene& scene) {
-  constexpr double kRoom = 1.0;  // [m]
-  Bounds wide = scene.bounds;
-  for (const Body& body : scene.bodies) {
-    if (body.fixed) continue;
-    const Vector3 room = Vector3::Constant(kRoom + body.bounding_radius), &start = body.start.position;
-    if ((start.array() >= scene.bounds.min.array()).all() &&
-        (start.array() <= scene.bounds.max.array()).all())
-      continue;
-    wide.min = wide.min.cwiseMin(start - room), wide.max = wide.max.cwiseMax(start + room);
-  }
-  if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;
-  scene.bounds = wide;
-  scene.warnings.push_back(
-      "bodies start out of the usual bounds, which are widened: " + text::vector(wide.min) + " to " +
-      text::vector(wide.max) + " m; the YAML's 'bounds' sets others");
-}
-
-}  // namespace
 
 void join_bodies(const std::string& source, Scene& scene) {
   try {

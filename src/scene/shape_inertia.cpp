@@ -57,32 +57,6 @@ class Qhull {
   qhT qh_{};
 };
 
-}  // namespace
-
-TriangleMesh convex_hull(const TriangleMesh& mesh) {
-  std::vector<Vector3> points = mesh.vertices;
-  Qhull hull;
-  if (points.size() < 4 || !hull.run(points))
-    throw NoVolume("has no volume, nor has its convex hull; allowed: corners that are not in one plane");
-  TriangleMesh result;
-  std::vector<int> name(points.size(), -1);
-  hull.each_facet([&](std::vector<int>& around) {
-    for (int& point : around) {
-      int& known = name[static_cast<std::size_t>(point)];
-      if (known < 0) {
-        known = static_cast<int>(result.vertices.size());
-        result.vertices.push_back(mesh.vertices[static_cast<std::size_t>(point)]);
-      }
-      point = known;
-    }
-    for (std::size_t i = 2; i < around.size(); ++i)
-      result.triangles.push_back({{around[0], around[i - 1], around[i]}});
-  });
-  return result;
-}
-
-namespace {
-
 void add(const SolidMoments& part, double sign, SolidMoments& sum) {
   sum.volume += sign * part.volume;
   sum.first += sign * part.first;
@@ -214,6 +188,28 @@ class Columns {
 };
 
 }  // namespace
+
+TriangleMesh convex_hull(const TriangleMesh& mesh) {
+  std::vector<Vector3> points = mesh.vertices;
+  Qhull hull;
+  if (points.size() < 4 || !hull.run(points))
+    throw NoVolume("has no volume, nor has its convex hull; allowed: corners that are not in one plane");
+  TriangleMesh result;
+  std::vector<int> name(points.size(), -1);
+  hull.each_facet([&](std::vector<int>& around) {
+    for (int& point : around) {
+      int& known = name[static_cast<std::size_t>(point)];
+      if (known < 0) {
+        known = static_cast<int>(result.vertices.size());
+        result.vertices.push_back(mesh.vertices[static_cast<std::size_t>(point)]);
+      }
+      point = known;
+    }
+    for (std::size_t i = 2; i < around.size(); ++i)
+      result.triangles.push_back({{around[0], around[i - 1], around[i]}});
+  });
+  return result;
+}
 
 /// A convex shape's hull of the places farthest along many directions (a Fibonacci lattice), or a mesh
 /// itself.

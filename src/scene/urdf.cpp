@@ -71,25 +71,6 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& xml) {
   return model;
 }
 
-}  // namespace
-
-UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
-  const std::string xml = is_utf8(given) ? given : from_latin1(given);
-  if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
-  UrdfDocument document;
-  try {
-    NormalUrdf normal = normal_urdf(xml, document.warnings);
-    document.model = parsed(normal.xml);
-    document.friction = std::move(normal.friction);
-    for (const std::string& name : normal.links) document.links.push_back(document.model->getLink(name));
-  } catch (const std::runtime_error& error) {
-    throw SceneError(source + ": " + error.what());
-  }
-  return document;
-}
-
-namespace {
-
 class Tree {
  public:
   Tree(const std::string& file, const UrdfDocument& document)
@@ -150,50 +131,6 @@ bool has_shape(const urdf::Link& link) {
   return !link.collision_array.empty() || !link.visual_array.empty();
 }
 
-}  // namespace
-
-bool has_shape(const PlacedLink& placed) {
-  return has_shape(*placed.link) || std::any_of(placed.merged.begin(), placed.merged.end(),
-                                                [](const LinkPart& part) { return has_shape(*part.link); });
-}
-
-bool moves(const urdf::Joint& joint) {
-  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
-         joint.type == urdf::Joint::PRISMATIC;
-}
-
-Pose to_pose(const urdf::Pose& pose) {
-  const urdf::Rotation& q = pose.rotation;
-  return {{pose.position.x, pose.position.y, pose.position.z}, Quaternion(q.w, q.x, q.y, q.z).normalized()};
-}
-
-std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document) {
-  const Tree tree(urdf_file, document);
-  const urdf::LinkConstSharedPtr root = document.model->getRoot();
-  std::vector<PlacedLink> placed;
-  std::map<const urdf::Link*, std::size_t> bodies;
-  for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const bool fixture = link != root && tree.held_to(link).link == root;
-    if (link == root || (tree.is_fixed(*link) && !fixture)) continue;
-    bodies[link.get()] = placed.size();
-    placed.push_back({link, fixture, tree.in_world(link), {}});
-  }
-  for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const LinkPart held = tree.held_to(link);
-    if (held.link == root || held.link == link) continue;
-    placed[bodies.at(held.link.get())].merged.push_back({link, held.pose});
-  }
-  for (PlacedLink& body : placed) {
-    if (body.fixed || moves(*body.link->parent_joint) || !is_weightless(body)) continue;
-    body.fixed = true;
-    document.warnings.add("links of mass 0 are fixtures; a mass, or no <inertial>, makes them move",
-                          "'" + body.link->name + "'");
-  }
-  return placed;
-}
-
-namespace {
-
 void read_limits(const urdf::Joint& given, Joint& joint) {
   if (given.type != urdf::Joint::CONTINUOUS && given.limits) {
     joint.lower = given.limits->lower;
@@ -244,6 +181,61 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
 }
 
 }  // namespace
+
+UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
+  const std::string xml = is_utf8(given) ? given : from_latin1(given);
+  if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
+  UrdfDocument document;
+  try {
+    NormalUrdf normal = normal_urdf(xml, document.warnings);
+    document.model = parsed(normal.xml);
+    document.friction = std::move(normal.friction);
+    for (const std::string& name : normal.links) document.links.push_back(document.model->getLink(name));
+  } catch (const std::runtime_error& error) {
+    throw SceneError(source + ": " + error.what());
+  }
+  return document;
+}
+
+bool has_shape(const PlacedLink& placed) {
+  return has_shape(*placed.link) || std::any_of(placed.merged.begin(), placed.merged.end(),
+                                                [](const LinkPart& part) { return has_shape(*part.link); });
+}
+
+bool moves(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+Pose to_pose(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  return {{pose.position.x, pose.position.y, pose.position.z}, Quaternion(q.w, q.x, q.y, q.z).normalized()};
+}
+
+std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document) {
+  const Tree tree(urdf_file, document);
+  const urdf::LinkConstSharedPtr root = document.model->getRoot();
+  std::vector<PlacedLink> placed;
+  std::map<const urdf::Link*, std::size_t> bodies;
+  for (const urdf::LinkConstSharedPtr& link : document.links) {
+    const bool fixture = link != root && tree.held_to(link).link == root;
+    if (link == root || (tree.is_fixed(*link) && !fixture)) continue;
+    bodies[link.get()] = placed.size();
+    placed.push_back({link, fixture, tree.in_world(link), {}});
+  }
+  for (const urdf::LinkConstSharedPtr& link : document.links) {
+    const LinkPart held = tree.held_to(link);
+    if (held.link == root || held.link == link) continue;
+    placed[bodies.at(held.link.get())].merged.push_back({link, held.pose});
+  }
+  for (PlacedLink& body : placed) {
+    if (body.fixed || moves(*body.link->parent_joint) || !is_weightless(body)) continue;
+    body.fixed = true;
+    document.warnings.add("links of mass 0 are fixtures; a mass, or no <inertial>, makes them move",
+                          "'" + body.link->name + "'");
+  }
+  return placed;
+}
 
 std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document,
                                const Scene& scene) {

@@ -54,6 +54,48 @@ Shape make_long(const Sizes& s) {
   return Long{s[0], 0.5 * s[1]};
 }
 
+namespace fs = std::filesystem;
+
+Vector3 to_vector(const urdf::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
+
+bool begins_with(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+void check_extent(const Vector3& extent, double part, const char* where) {
+  if (body_limits::kSize.contains(part)) return;
+  throw std::runtime_error("measures " + text::vector(extent) +
+                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
+                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
+}
+
+/// Of a thing that collides each size, as a box's; a picture may be flat.
+void check_sizes(const TriangleMesh& mesh, bool solid) {
+  Eigen::AlignedBox3d box;
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (const int vertex : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(vertex)]);
+  const Vector3 extent = box.sizes();
+  check_extent(extent, extent.maxCoeff(), "along the longest axis");
+  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
+}
+
+/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or one that has the
+/// name.
+std::string find_above(const fs::path& folder, const std::string& in_package) {
+  const std::string name = in_package.substr(0, in_package.find('/'));
+  std::error_code error;
+  fs::path above = fs::absolute(folder, error).lexically_normal();
+  for (int level = 0; level < 32 && !error; ++level, above = above.parent_path()) {
+    if (is_file(above / in_package)) return (above / in_package).string();
+    if (above.filename() == name && is_file(above.parent_path() / in_package))
+      return (above.parent_path() / in_package).string();
+    if (above == above.root_path()) break;
+  }
+  return "";
+}
+
 }  // namespace
 
 const std::vector<ShapeKind>& shape_kinds() {
@@ -120,52 +162,6 @@ std::optional<GivenShape> from_filename(const std::string& filename) {
 double bounding_radius(const Shape& shape) {
   return std::visit([](const auto& asked) { return asked.bounding_radius(); }, shape);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-Vector3 to_vector(const urdf::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
-
-bool begins_with(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
-
-void check_extent(const Vector3& extent, double part, const char* where) {
-  if (body_limits::kSize.contains(part)) return;
-  throw std::runtime_error("measures " + text::vector(extent) +
-                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
-                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
-}
-
-/// Of a thing that collides each size, as a box's; a picture may be flat.
-void check_sizes(const TriangleMesh& mesh, bool solid) {
-  Eigen::AlignedBox3d box;
-  for (const std::array<int, 3>& triangle : mesh.triangles)
-    for (const int vertex : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(vertex)]);
-  const Vector3 extent = box.sizes();
-  check_extent(extent, extent.maxCoeff(), "along the longest axis");
-  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
-}
-
-/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or one that has the
-/// name.
-std::string find_above(const fs::path& folder, const std::string& in_package) {
-  const std::string name = in_package.substr(0, in_package.find('/'));
-  std::error_code error;
-  fs::path above = fs::absolute(folder, error).lexically_normal();
-  for (int level = 0; level < 32 && !error; ++level, above = above.parent_path()) {
-    if (is_file(above / in_package)) return (above / in_package).string();
-    if (above.filename() == name && is_file(above.parent_path() / in_package))
-      return (above.parent_path() / in_package).string();
-    if (above == above.root_path()) break;
-  }
-  return "";
-}
-
-}  // namespace
 
 struct ShapeReader::Named {
   std::string uri, file;  ///< file: empty if it is not found

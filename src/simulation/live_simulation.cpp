@@ -7,7 +7,6 @@
 #include "../collision/overlap.h"
 #include "../text/text.h"
 #include "../tracking/hand_filter.h"
-#include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene.h"

@@ -38,44 +38,6 @@ OperatorSkill skill_of(double Figure::*group) {
   return skill;
 }
 
-}  // namespace
-
-OperatorSkill beginner_skill() {
-  return skill_of(&Figure::beginner);
-}
-
-OperatorSkill veteran_skill() {
-  return skill_of(&Figure::veteran);
-}
-
-OperatorSkill draw_skill(const std::string& group, std::uint64_t seed) {
-  if (group != "beginner" && group != "veteran")
-    throw std::invalid_argument("group '" + group + "' is not known: use one of beginner, veteran");
-  OperatorSkill skill = group == "beginner" ? beginner_skill() : veteran_skill();
-  Random random(seed);
-  for (const Figure& figure : kFigures)
-    if (figure.personal)
-      skill.*figure.value *= std::min(kMost, std::max(kLeast, 1.0 + kSpread * random.gaussian()));
-  return skill;
-}
-
-Tremor::Tremor(double rms, Random& random) {
-  constexpr int kWaves = 3;
-  for (int i = 0; i < kWaves; ++i) {
-    const double frequency = 8.0 + 4.0 * random.uniform(), phase = 2.0 * M_PI * random.uniform();
-    waves_.push_back({frequency, phase, random.gaussian_vector(rms * std::sqrt(2.0 / kWaves))});
-  }
-}
-
-Vector3 Tremor::at(double time) const {
-  Vector3 sum = Vector3::Zero();
-  for (const Wave& wave : waves_)
-    sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
-  return sum;
-}
-
-namespace {
-
 constexpr double kSlow = 0.05;     // what is faster is left to go [m/s]
 constexpr double kGetReady = 0.9;  // at pace 1, before a motion [s]
 constexpr double kBehind = 0.35;   // where the hand waits, behind what it works on [m]
@@ -154,6 +116,40 @@ std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place
 }
 
 }  // namespace
+
+OperatorSkill beginner_skill() {
+  return skill_of(&Figure::beginner);
+}
+
+OperatorSkill veteran_skill() {
+  return skill_of(&Figure::veteran);
+}
+
+OperatorSkill draw_skill(const std::string& group, std::uint64_t seed) {
+  if (group != "beginner" && group != "veteran")
+    throw std::invalid_argument("group '" + group + "' is not known: use one of beginner, veteran");
+  OperatorSkill skill = group == "beginner" ? beginner_skill() : veteran_skill();
+  Random random(seed);
+  for (const Figure& figure : kFigures)
+    if (figure.personal)
+      skill.*figure.value *= std::min(kMost, std::max(kLeast, 1.0 + kSpread * random.gaussian()));
+  return skill;
+}
+
+Tremor::Tremor(double rms, Random& random) {
+  constexpr int kWaves = 3;
+  for (int i = 0; i < kWaves; ++i) {
+    const double frequency = 8.0 + 4.0 * random.uniform(), phase = 2.0 * M_PI * random.uniform();
+    waves_.push_back({frequency, phase, random.gaussian_vector(rms * std::sqrt(2.0 / kWaves))});
+  }
+}
+
+Vector3 Tremor::at(double time) const {
+  Vector3 sum = Vector3::Zero();
+  for (const Wave& wave : waves_)
+    sum += std::sin(2.0 * M_PI * wave.frequency * time + wave.phase) * wave.amplitude;
+  return sum;
+}
 
 PractisedPerson::PractisedPerson(const OperatorSkill& skill, std::vector<std::optional<PractisedGoal>> goals,
                                  const Body& object, std::uint64_t seed)

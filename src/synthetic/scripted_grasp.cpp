@@ -35,49 +35,6 @@ Jacobian tip_jacobian(const FingerSkeleton& finger, const FingerAngles& angles, 
   return jacobian;
 }
 
-}  // namespace
-
-Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred) {
-  constexpr int kIterations = 200;
-  constexpr double kDamping = 2e-3;     // [m]
-  constexpr double kLongestStep = 0.2;  // [rad]
-  constexpr double kPreferenceGain = 0.2;
-  FingerAngles angles = preferred.cwiseMax(finger.lower).cwiseMin(finger.upper);
-  for (int i = 0; i < kIterations; ++i) {
-    const Vector3 error = target - tip(finger, angles);
-    const Jacobian jacobian = tip_jacobian(finger, angles, error);
-    const Matrix3 damped = jacobian * jacobian.transpose() + kDamping * kDamping * Matrix3::Identity();
-    const Eigen::Matrix<double, kFingerJoints, 3> inverse = jacobian.transpose() * damped.inverse();
-    // The wish for the preferred posture fades so that the last iterations are for the target alone.
-    const double gain = i < kIterations / 2 ? kPreferenceGain : 0.0;
-    FingerAngles change =
-        inverse * error + (JointMatrix::Identity() - inverse * jacobian) * (gain * (preferred - angles));
-    const double largest = change.cwiseAbs().maxCoeff();
-    if (largest > kLongestStep) change *= kLongestStep / largest;
-    angles = (angles + change).cwiseMax(finger.lower).cwiseMin(finger.upper);
-  }
-  return {angles, (target - tip(finger, angles)).norm()};
-}
-
-HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
-                             const std::vector<FingertipContact>& contacts, double gap,
-                             const HandPosture& preferred, double* worst_error) {
-  HandPosture posture = within_limits(skeleton, preferred);
-  double worst = 0.0;
-  for (const FingertipContact& contact : contacts) {
-    const FingerSkeleton& finger = skeleton.fingers[static_cast<std::size_t>(contact.finger)];
-    const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
-    const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
-    const Reach result = reach(finger, target, preferred.col(contact.finger));
-    posture.col(contact.finger) = result.angles;
-    worst = std::max(worst, result.error);
-  }
-  if (worst_error != nullptr) *worst_error = worst;
-  return posture;
-}
-
-namespace {
-
 constexpr double kNearly =
     0.003;  // mean gap from which the fingers close slowly, so that they touch gently [m]
 constexpr double kArrived = 0.0015;  // mean gap at which the fingers of a grip have arrived [m]
@@ -176,6 +133,45 @@ constexpr GraspEntry kGrasps[] = {
     {"cube", cube_grasp}, {"ball", ball_grasp}, {"long_cuboid", long_grasp}, {"flat_cuboid", flat_grasp}};
 
 }  // namespace
+
+Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred) {
+  constexpr int kIterations = 200;
+  constexpr double kDamping = 2e-3;     // [m]
+  constexpr double kLongestStep = 0.2;  // [rad]
+  constexpr double kPreferenceGain = 0.2;
+  FingerAngles angles = preferred.cwiseMax(finger.lower).cwiseMin(finger.upper);
+  for (int i = 0; i < kIterations; ++i) {
+    const Vector3 error = target - tip(finger, angles);
+    const Jacobian jacobian = tip_jacobian(finger, angles, error);
+    const Matrix3 damped = jacobian * jacobian.transpose() + kDamping * kDamping * Matrix3::Identity();
+    const Eigen::Matrix<double, kFingerJoints, 3> inverse = jacobian.transpose() * damped.inverse();
+    // The wish for the preferred posture fades so that the last iterations are for the target alone.
+    const double gain = i < kIterations / 2 ? kPreferenceGain : 0.0;
+    FingerAngles change =
+        inverse * error + (JointMatrix::Identity() - inverse * jacobian) * (gain * (preferred - angles));
+    const double largest = change.cwiseAbs().maxCoeff();
+    if (largest > kLongestStep) change *= kLongestStep / largest;
+    angles = (angles + change).cwiseMax(finger.lower).cwiseMin(finger.upper);
+  }
+  return {angles, (target - tip(finger, angles)).norm()};
+}
+
+HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
+                             const std::vector<FingertipContact>& contacts, double gap,
+                             const HandPosture& preferred, double* worst_error) {
+  HandPosture posture = within_limits(skeleton, preferred);
+  double worst = 0.0;
+  for (const FingertipContact& contact : contacts) {
+    const FingerSkeleton& finger = skeleton.fingers[static_cast<std::size_t>(contact.finger)];
+    const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
+    const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
+    const Reach result = reach(finger, target, preferred.col(contact.finger));
+    posture.col(contact.finger) = result.angles;
+    worst = std::max(worst, result.error);
+  }
+  if (worst_error != nullptr) *worst_error = worst;
+  return posture;
+}
 
 Grasp Grasp::turned(const Quaternion& by) const {
   Grasp grasp = *this;

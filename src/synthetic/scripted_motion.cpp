@@ -73,6 +73,31 @@ void fill_strengths(const HandPosture& posture, HandJoints& hand) {
   hand.pinch_strength = clamp_share((0.080 - aperture) / 0.055);
 }
 
+/// Parabola through the postures at the shares 0, via_share and 1 of the way.
+HandPosture posture_between(const Keyframe& from, const Keyframe& to, double share) {
+  const HandPosture straight = from.posture + share * (to.posture - from.posture);
+  if (to.via_share <= 0.0) return straight;
+  const double v = to.via_share;
+  const HandPosture bow = to.via - from.posture - v * (to.posture - from.posture);
+  return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
+}
+
+/// Both turned about the centre by the same share of the turn that the ends differ by.
+Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
+  const Quaternion turn = to.wrist.orientation * from.wrist.orientation.conjugate();
+  const Quaternion part = Quaternion::Identity().slerp(share, turn);
+  const Vector3 arm = from.wrist.position - *to.centre;
+  return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
+}
+
+/// Left hand's frame for what a right hand does, mirrored in world's x.
+Pose mirrored(const Pose& wrist) {
+  const Quaternion& q = wrist.orientation;
+  const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
+  return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
+          Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
+}
+
 }  // namespace
 
 const HandSkeleton& human_hand() {
@@ -175,35 +200,6 @@ Quaternion turn(double degrees, const Vector3& axis) {
 HandPosture posture_of_degrees(const HandPosture& degrees) {
   return (M_PI / 180.0) * degrees;
 }
-
-namespace {
-
-/// Parabola through the postures at the shares 0, via_share and 1 of the way.
-HandPosture posture_between(const Keyframe& from, const Keyframe& to, double share) {
-  const HandPosture straight = from.posture + share * (to.posture - from.posture);
-  if (to.via_share <= 0.0) return straight;
-  const double v = to.via_share;
-  const HandPosture bow = to.via - from.posture - v * (to.posture - from.posture);
-  return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
-}
-
-/// Both turned about the centre by the same share of the turn that the ends differ by.
-Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
-  const Quaternion turn = to.wrist.orientation * from.wrist.orientation.conjugate();
-  const Quaternion part = Quaternion::Identity().slerp(share, turn);
-  const Vector3 arm = from.wrist.position - *to.centre;
-  return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
-}
-
-/// Left hand's frame for what a right hand does, mirrored in world's x.
-Pose mirrored(const Pose& wrist) {
-  const Quaternion& q = wrist.orientation;
-  const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
-  return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
-          Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
-}
-
-}  // namespace
 
 HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {
   const auto after = [](double t, const Keyframe& key) { return t < key.time; };

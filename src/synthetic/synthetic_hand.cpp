@@ -22,6 +22,49 @@ const HandJoints* find(const JointsFrame& frame, std::uint32_t id) {
   return nullptr;
 }
 
+Side side_of(const std::string& name) {
+  if (name == "left") return Side::left;
+  if (name == "right") return Side::right;
+  throw std::invalid_argument("side '" + name + "' is not known: use left or right");
+}
+
+double in_range(const char* name, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return value;
+  std::ostringstream message;
+  message << name << " is " << value << ": use " << lowest << " to " << highest;
+  throw std::invalid_argument(message.str());
+}
+
+constexpr const char* kFingerNames[] = {"thumb", "index", "middle", "ring", "pinky"};
+constexpr const char* kAxes[] = {"_x", "_y", "_z"};
+
+/// Vectors and their like that a row has no value for are still columns.
+std::string header() {
+  std::string line = "time_s,frame_id,hand_id,is_left,confidence,grab_strength,pinch_strength";
+  const auto add_vector = [&line](const std::string& name) {
+    for (const char* axis : kAxes) line += "," + name + axis;
+  };
+  for (const char* name : {"palm", "palm_normal", "palm_dir", "palm_vel", "wrist", "elbow"}) add_vector(name);
+  line += ",palm_width";
+  for (const char* finger : kFingerNames) {
+    line += std::string(",") + finger + "_width";
+    for (int j = 0; j < 5; ++j) add_vector(std::string(finger) + "_j" + std::to_string(j));
+  }
+  return line;
+}
+
+void write_hand(const HandJoints& hand, CsvRows& row) {
+  constexpr std::size_t kVector = 3;
+  row << hand.id << (hand.side == Side::left) << hand.confidence << hand.grab_strength << hand.pinch_strength
+      << hand.palm_centre;
+  row.skip(3 * kVector) << hand.wrist;
+  row.skip(kVector) << hand.palm_width;
+  for (std::size_t finger = 0; finger < kFingers; ++finger) {
+    row << hand.finger_width[finger];
+    for (const auto& joint : hand.joints[finger]) row << joint;
+  }
+}
+
 }  // namespace
 
 void TrackingNoise::apply(JointsFrame& frame) {
@@ -51,23 +94,6 @@ void TrackingNoise::disturb(HandJoints& hand, const HandJoints* before, double e
   // Leap's empty thumb metacarpal stays empty.
   if (hand.joints[0][0] && hand.joints[0][1]) hand.joints[0][0] = hand.joints[0][1];
 }
-
-namespace {
-
-Side side_of(const std::string& name) {
-  if (name == "left") return Side::left;
-  if (name == "right") return Side::right;
-  throw std::invalid_argument("side '" + name + "' is not known: use left or right");
-}
-
-double in_range(const char* name, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return value;
-  std::ostringstream message;
-  message << name << " is " << value << ": use " << lowest << " to " << highest;
-  throw std::invalid_argument(message.str());
-}
-
-}  // namespace
 
 SyntheticHand::SyntheticHand(const SyntheticHandOptions& options)
     : SyntheticHand(options, make_motion(options.motion)) {}
@@ -103,40 +129,6 @@ std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, cons
   while (hand.next_run() == 0) frames.push_back(hand.next());
   return frames;
 }
-
-namespace {
-
-constexpr const char* kFingerNames[] = {"thumb", "index", "middle", "ring", "pinky"};
-constexpr const char* kAxes[] = {"_x", "_y", "_z"};
-
-/// Vectors and their like that a row has no value for are still columns.
-std::string header() {
-  std::string line = "time_s,frame_id,hand_id,is_left,confidence,grab_strength,pinch_strength";
-  const auto add_vector = [&line](const std::string& name) {
-    for (const char* axis : kAxes) line += "," + name + axis;
-  };
-  for (const char* name : {"palm", "palm_normal", "palm_dir", "palm_vel", "wrist", "elbow"}) add_vector(name);
-  line += ",palm_width";
-  for (const char* finger : kFingerNames) {
-    line += std::string(",") + finger + "_width";
-    for (int j = 0; j < 5; ++j) add_vector(std::string(finger) + "_j" + std::to_string(j));
-  }
-  return line;
-}
-
-void write_hand(const HandJoints& hand, CsvRows& row) {
-  constexpr std::size_t kVector = 3;
-  row << hand.id << (hand.side == Side::left) << hand.confidence << hand.grab_strength << hand.pinch_strength
-      << hand.palm_centre;
-  row.skip(3 * kVector) << hand.wrist;
-  row.skip(kVector) << hand.palm_width;
-  for (std::size_t finger = 0; finger < kFingers; ++finger) {
-    row << hand.finger_width[finger];
-    for (const auto& joint : hand.joints[finger]) row << joint;
-  }
-}
-
-}  // namespace
 
 void write_recording_csv(std::ostream& out, const std::vector<JointsFrame>& frames) {
   const std::string columns = header();

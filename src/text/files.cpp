@@ -17,6 +17,23 @@ namespace {
 
 constexpr std::size_t kLongestLine = 64 * 1024;
 
+namespace fs = std::filesystem;
+
+std::vector<std::string> known_names(const std::string& extension,
+                                     const std::vector<std::string>& directories) {
+  std::vector<std::string> names;
+  for (const std::string& directory : directories) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored)) {
+      if (entry.path().extension() == extension && is_file(entry.path()))
+        names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 }  // namespace
 
 std::string why_unreadable(const std::string& file) {
@@ -77,27 +94,6 @@ bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(path, ignored);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-std::vector<std::string> known_names(const std::string& extension,
-                                     const std::vector<std::string>& directories) {
-  std::vector<std::string> names;
-  for (const std::string& directory : directories) {
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored)) {
-      if (entry.path().extension() == extension && is_file(entry.path()))
-        names.push_back(entry.path().stem().string());
-    }
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
-}  // namespace
 
 std::string find_named_file(const std::string& kind, const std::string& name, const std::string& extension,
                             const std::vector<std::string>& directories) {

@@ -65,10 +65,6 @@ std::string yaml_complaint(const std::string& source, const YAML::Exception& err
   return yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg);
 }
 
-YAML::Node load_yaml(const std::string& source, const std::string& yaml) {
-  return load_yaml(source, yaml, kMostBytes);
-}
-
 YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most) {
   if (yaml.size() > most)
     throw YamlError(source + ": is longer than " + std::to_string(most) + " bytes; allowed: at most that");

@@ -22,10 +22,8 @@ class YamlError : public std::runtime_error {
 /// built. Throws YamlError.
 YAML::Node load_yaml_file(const std::string& file);
 
-/// The same from a text; `source` names it in messages.
-YAML::Node load_yaml(const std::string& source, const std::string& yaml);
-/// Or of at most that many bytes.
-YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most);
+/// The same from a text of at most that many bytes; `source` names it in messages.
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most = 256 * 1024);
 
 /// yaml-cpp's word as one line with the place.
 std::string yaml_complaint(const std::string& source, const YAML::Exception& error);

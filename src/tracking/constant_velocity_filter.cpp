@@ -104,31 +104,6 @@ double low_variance(const SeenNoise& noise) {
   return *low / kFifth;
 }
 
-}  // namespace
-
-/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Where intervals differ much the two
-/// differences hardly overlap, and the division would make noise of rounding: such a sample is passed over.
-void observe_noise(const SampleHistory& history, SeenNoise& noise) {
-  if (history.size < kNoiseSamples) return;
-  const Weights now = third_difference(history, 0), before = third_difference(history, 1);
-  const double expected = overlap(now, before);
-  if (expected < kLeastOverlap) return;
-  const std::optional<double> product = middle_product(history, now, before);
-  if (!product) return;
-  add(std::max(0.0, *product) / (kMiddleProduct * expected), noise);
-  noise.variance = low_variance(noise);
-}
-
-// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight
-// on what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
-double filter_noise(const SeenNoise& seen) {
-  constexpr double kIgnored = 0.001;  // [m]
-  const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);
-  return std::sqrt(kUsualNoise * kUsualNoise + beyond);
-}
-
-namespace {
-
 constexpr double kFirstSpeed = 0.5;  // rms of a hand that has just appeared [m/s]
 
 /// How much of the difference between sample and prediction goes into position, and into velocity [1/s].
@@ -204,6 +179,27 @@ Hand constant_velocity(double elapsed, const FilterConfiguration& filter, Filter
 }
 
 }  // namespace
+
+/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Where intervals differ much the two
+/// differences hardly overlap, and the division would make noise of rounding: such a sample is passed over.
+void observe_noise(const SampleHistory& history, SeenNoise& noise) {
+  if (history.size < kNoiseSamples) return;
+  const Weights now = third_difference(history, 0), before = third_difference(history, 1);
+  const double expected = overlap(now, before);
+  if (expected < kLeastOverlap) return;
+  const std::optional<double> product = middle_product(history, now, before);
+  if (!product) return;
+  add(std::max(0.0, *product) / (kMiddleProduct * expected), noise);
+  noise.variance = low_variance(noise);
+}
+
+// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight
+// on what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
+double filter_noise(const SeenNoise& seen) {
+  constexpr double kIgnored = 0.001;  // [m]
+  const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);
+  return std::sqrt(kUsualNoise * kUsualNoise + beyond);
+}
 
 /// Every point goes on as it went, but for accelerations unknown: a Kalman filter of position and velocity,
 /// one gain for the whole hand. The acceleration expected grows with the hand's speed.

@@ -18,6 +18,13 @@ auto& point_of(AnyHand& hand, std::size_t point) {
   return point % 2 == 0 ? capsule.start : capsule.end;
 }
 
+std::vector<FilterSetting> settings_of_all() {
+  std::vector<FilterSetting> all;
+  for (const HandFilter* filter : hand_filters())
+    for (const FilterSetting& setting : filter->settings()) all.push_back(setting);
+  return all;
+}
+
 }  // namespace
 
 /// elapsed[i] goes with samples[i]: since the sample before it, which is samples[i + 1].
@@ -65,17 +72,6 @@ void FilterMemory::restart(const Hand& sample) {
 #define MRHI_DECLARE(name) extern const HandFilter name;
 #define MRHI_ADDRESS(name) &(name),
 MRHI_ENTRIES(MRHI_DECLARE)
-
-namespace {
-
-std::vector<FilterSetting> settings_of_all() {
-  std::vector<FilterSetting> all;
-  for (const HandFilter* filter : hand_filters())
-    for (const FilterSetting& setting : filter->settings()) all.push_back(setting);
-  return all;
-}
-
-}  // namespace
 
 const std::vector<const HandFilter*>& hand_filters() {
   static const std::vector<const HandFilter*> filters =

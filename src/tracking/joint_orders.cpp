@@ -1,4 +1,4 @@
-#include "joint_orders.h"
+#include "joints_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,72 +109,6 @@ bool is_shared(const HandJoints& hand, const Vector3& point) {
   return fingers > 1;
 }
 
-}  // namespace
-
-std::optional<Proportions> proportions(const HandJoints& hand) {
-  std::vector<double> ratios;
-  for (const Measured& bone : measured(hand))
-    if (std::isfinite(bone.length)) ratios.push_back(std::log(bone.length / bone.link->adult));
-  if (ratios.size() < kBonesToJudge) return std::nullopt;
-  const double common = median(ratios);
-  double misfit = 0.0;
-  for (const double ratio : ratios) misfit += std::abs(ratio - common);
-  return Proportions{std::exp(common), misfit / static_cast<double>(ratios.size())};
-}
-
-std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {
-  std::array<bool, kHandJoints> placeholder{};
-  std::size_t dropped = 0;
-  for (std::size_t i = 0; i < kHandJoints; ++i)
-    placeholder[i] =
-        joint(hand, i) && (*joint(hand, i) == Vector3::Zero() || is_shared(hand, *joint(hand, i)));
-  if (wrist_is_origin && std::count(placeholder.begin() + 1, placeholder.end(), true) == 0)
-    placeholder[0] = false;
-  for (std::size_t i = 0; i < kHandJoints; ++i) {
-    if (!placeholder[i]) continue;
-    joint(hand, i).reset();
-    ++dropped;
-  }
-  return dropped;
-}
-
-std::size_t drop_stray_joints(HandJoints& hand) {
-  for (std::size_t i = 0; i < kHandJoints; ++i)
-    if (joint(hand, i) && !joint(hand, i)->allFinite()) return 0;  // it will be refused
-  const std::size_t most = known_joints(hand) / 3;
-  HandJoints without = hand;
-  for (std::size_t dropped = 0; dropped <= most; ++dropped) {
-    const auto worst = worst_joint(without);
-    if (!worst) {
-      if (dropped > 0) hand = without;
-      return dropped;
-    }
-    joint(without, *worst).reset();
-  }
-  return 0;
-}
-
-bool has_joints(const HandJoints& hand) {
-  return known_joints(hand) > 0;
-}
-
-void scale(HandJoints& hand, double factor) {
-  if (factor == 1.0) return;
-  for (std::size_t i = 0; i < kHandJoints; ++i)
-    if (joint(hand, i)) *joint(hand, i) *= factor;
-  if (hand.palm_centre) *hand.palm_centre *= factor;
-  const auto scale_width = [&](std::optional<float>& width) {
-    if (width) *width = static_cast<float>(*width * factor);
-  };
-  scale_width(hand.palm_width);
-  for (std::size_t f = 0; f < kFingers; ++f) {
-    scale_width(hand.finger_width[f]);
-    for (auto& width : hand.bone_width[f]) scale_width(width);
-  }
-}
-
-namespace {
-
 constexpr std::size_t kNone = JointOrder::kNotListed;
 
 /// Fingers one after the other from `first`, each with `listed` joints of a finger, of the thumb with four.
@@ -258,6 +192,68 @@ std::optional<double> misfit(HandJoints hand) {
 }
 
 }  // namespace
+
+std::optional<Proportions> proportions(const HandJoints& hand) {
+  std::vector<double> ratios;
+  for (const Measured& bone : measured(hand))
+    if (std::isfinite(bone.length)) ratios.push_back(std::log(bone.length / bone.link->adult));
+  if (ratios.size() < kBonesToJudge) return std::nullopt;
+  const double common = median(ratios);
+  double misfit = 0.0;
+  for (const double ratio : ratios) misfit += std::abs(ratio - common);
+  return Proportions{std::exp(common), misfit / static_cast<double>(ratios.size())};
+}
+
+std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {
+  std::array<bool, kHandJoints> placeholder{};
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < kHandJoints; ++i)
+    placeholder[i] =
+        joint(hand, i) && (*joint(hand, i) == Vector3::Zero() || is_shared(hand, *joint(hand, i)));
+  if (wrist_is_origin && std::count(placeholder.begin() + 1, placeholder.end(), true) == 0)
+    placeholder[0] = false;
+  for (std::size_t i = 0; i < kHandJoints; ++i) {
+    if (!placeholder[i]) continue;
+    joint(hand, i).reset();
+    ++dropped;
+  }
+  return dropped;
+}
+
+std::size_t drop_stray_joints(HandJoints& hand) {
+  for (std::size_t i = 0; i < kHandJoints; ++i)
+    if (joint(hand, i) && !joint(hand, i)->allFinite()) return 0;  // it will be refused
+  const std::size_t most = known_joints(hand) / 3;
+  HandJoints without = hand;
+  for (std::size_t dropped = 0; dropped <= most; ++dropped) {
+    const auto worst = worst_joint(without);
+    if (!worst) {
+      if (dropped > 0) hand = without;
+      return dropped;
+    }
+    joint(without, *worst).reset();
+  }
+  return 0;
+}
+
+bool has_joints(const HandJoints& hand) {
+  return known_joints(hand) > 0;
+}
+
+void scale(HandJoints& hand, double factor) {
+  if (factor == 1.0) return;
+  for (std::size_t i = 0; i < kHandJoints; ++i)
+    if (joint(hand, i)) *joint(hand, i) *= factor;
+  if (hand.palm_centre) *hand.palm_centre *= factor;
+  const auto scale_width = [&](std::optional<float>& width) {
+    if (width) *width = static_cast<float>(*width * factor);
+  };
+  scale_width(hand.palm_width);
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    scale_width(hand.finger_width[f]);
+    for (auto& width : hand.bone_width[f]) scale_width(width);
+  }
+}
 
 const std::vector<JointOrder>& joint_orders() {
   static const std::vector<JointOrder> orders = make_orders();

@@ -9,7 +9,7 @@
 #include "../math/registration.h"
 #include "../text/text.h"
 #include "hand_anatomy.h"
-#include "joint_orders.h"
+#include "joints_input.h"
 
 namespace mrhi {
 namespace {
@@ -122,39 +122,6 @@ Vector3 wrist_of(const HandJoints& joints, const PalmFit& fit) {
   return {as_float(wrist.x()), as_float(wrist.y()), as_float(wrist.z())};
 }
 
-}  // namespace
-
-/// Along the palm's x, from the wrist to the fingers: 0.4 of its width between the ends' centres and 0.3
-/// thick, so that it is 0.7 long over all.
-Capsule palm_capsule(const Pose& palm, double palm_width) {
-  const Vector3 half = 0.2 * palm_width * (palm.orientation * Vector3::UnitX());
-  return {palm.position - half, palm.position + half, 0.15 * palm_width};
-}
-
-Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
-  const std::string found = defect(joints);
-  if (!found.empty()) throw std::invalid_argument("hand " + std::to_string(joints.id) + ": " + found);
-  const PalmFit fit = *fit_palm(joints);
-  Hand hand;
-  hand.id = joints.id;
-  hand.side = joints.side;
-  hand.confidence = fraction(joints.confidence);
-  hand.grab_strength = fraction(joints.grab_strength);
-  hand.pinch_strength = fraction(joints.pinch_strength);
-  hand.palm = device_in_world * Pose{joints.palm_centre.value_or(fit.palm.position), fit.palm.orientation};
-  // The product of two unit quaternions is of length 1 but for rounding.
-  hand.palm.orientation.normalize();
-  hand.palm_width =
-      joints.palm_width ? static_cast<double>(*joints.palm_width) : as_float(fit.scale * anatomy::kPalmWidth);
-  hand.wrist = device_in_world * wrist_of(joints, fit);
-  for (std::size_t finger = 0; finger < kFingers; ++finger)
-    place_finger(joints, fit, finger, device_in_world, hand);
-  hand.capsules[kPalm] = palm_capsule(hand.palm, hand.palm_width);
-  return hand;
-}
-
-namespace {
-
 constexpr double kLongestBone = 0.3;     // [m]
 constexpr double kFarthestJoint = 10.0;  // [m]
 constexpr float kWidestPalm = 0.3f;      // [m]
@@ -233,6 +200,35 @@ bool has_bone(const HandJoints& hand) {
 }
 
 }  // namespace
+
+/// Along the palm's x, from the wrist to the fingers: 0.4 of its width between the ends' centres and 0.3
+/// thick, so that it is 0.7 long over all.
+Capsule palm_capsule(const Pose& palm, double palm_width) {
+  const Vector3 half = 0.2 * palm_width * (palm.orientation * Vector3::UnitX());
+  return {palm.position - half, palm.position + half, 0.15 * palm_width};
+}
+
+Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
+  const std::string found = defect(joints);
+  if (!found.empty()) throw std::invalid_argument("hand " + std::to_string(joints.id) + ": " + found);
+  const PalmFit fit = *fit_palm(joints);
+  Hand hand;
+  hand.id = joints.id;
+  hand.side = joints.side;
+  hand.confidence = fraction(joints.confidence);
+  hand.grab_strength = fraction(joints.grab_strength);
+  hand.pinch_strength = fraction(joints.pinch_strength);
+  hand.palm = device_in_world * Pose{joints.palm_centre.value_or(fit.palm.position), fit.palm.orientation};
+  // The product of two unit quaternions is of length 1 but for rounding.
+  hand.palm.orientation.normalize();
+  hand.palm_width =
+      joints.palm_width ? static_cast<double>(*joints.palm_width) : as_float(fit.scale * anatomy::kPalmWidth);
+  hand.wrist = device_in_world * wrist_of(joints, fit);
+  for (std::size_t finger = 0; finger < kFingers; ++finger)
+    place_finger(joints, fit, finger, device_in_world, hand);
+  hand.capsules[kPalm] = palm_capsule(hand.palm, hand.palm_width);
+  return hand;
+}
 
 /// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
 /// on what came before.

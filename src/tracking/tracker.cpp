@@ -1,4 +1,4 @@
-#include "tracker.h"
+#include "hand_filter.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,6 @@
 
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
-#include "hand_filter.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {

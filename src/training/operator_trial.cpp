@@ -77,52 +77,6 @@ void make_body(const TaskObject& object, const std::string& urdf, const Scene& s
   model.request.twist = object.twist;
 }
 
-}  // namespace
-
-ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals,
-                        const std::vector<std::string>& scene_folders, const SceneOptions& options) {
-  const std::string urdf = find_scene_file(object.file, scene_folders);
-  const Scene scene = load_scene(urdf, options);
-  ObjectModel model;
-  model.request.urdf = file_text(urdf, kMostXmlBytes).value_or("");
-  if (scene.joints.empty()) {
-    make_body(object, urdf, scene, model);
-  } else {
-    make_device(object, urdf, options, model);
-  }
-  check_goals(object, goals, model.scene);
-  return model;
-}
-
-ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
-                         const SceneOptions& options) {
-  ObjectModel model = load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders, options);
-  if (model.is_device())
-    throw SceneError(fixture.file + ": the fixture '" + fixture.name +
-                     "' is of links on joints; allowed: one link with a shape");
-  model.scene.bodies.front().fixed = true;
-  return model;
-}
-
-Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
-                        const SceneOptions& options) {
-  if (task.scene.empty()) return {};
-  const std::string urdf = find_scene_file(task.scene, scene_folders);
-  Scene scene = load_scene(urdf, options);
-  for (std::size_t b = scene.bodies.size(); b-- > 0;) {
-    if (b >= scene.bodies.size() || scene.bodies[b].fixed || scene.bodies[b].is_operator) continue;
-    remove_body(b, scene);
-  }
-  const bool asked =
-      std::any_of(task.goals.begin(), task.goals.end(), [](const Goal& goal) { return goal.of_operator; });
-  if (asked && scene.operators.empty())
-    throw SceneError(urdf + ": has no operator, whose rest a goal of task '" + task.name +
-                     "' asks for; allowed: a scene with 'operator' in its YAML file");
-  return scene;
-}
-
-namespace {
-
 constexpr double kReach = 0.35;      // of the arm, each way from where the object starts [m]
 constexpr double kFallen = 0.05;     // below the stand [m]
 constexpr double kHalfStand = 0.02;  // [m]
@@ -177,6 +131,48 @@ bool is_carried(const Goal& goal) {
 }
 
 }  // namespace
+
+ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals,
+                        const std::vector<std::string>& scene_folders, const SceneOptions& options) {
+  const std::string urdf = find_scene_file(object.file, scene_folders);
+  const Scene scene = load_scene(urdf, options);
+  ObjectModel model;
+  model.request.urdf = file_text(urdf, kMostXmlBytes).value_or("");
+  if (scene.joints.empty()) {
+    make_body(object, urdf, scene, model);
+  } else {
+    make_device(object, urdf, options, model);
+  }
+  check_goals(object, goals, model.scene);
+  return model;
+}
+
+ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
+                         const SceneOptions& options) {
+  ObjectModel model = load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders, options);
+  if (model.is_device())
+    throw SceneError(fixture.file + ": the fixture '" + fixture.name +
+                     "' is of links on joints; allowed: one link with a shape");
+  model.scene.bodies.front().fixed = true;
+  return model;
+}
+
+Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
+                        const SceneOptions& options) {
+  if (task.scene.empty()) return {};
+  const std::string urdf = find_scene_file(task.scene, scene_folders);
+  Scene scene = load_scene(urdf, options);
+  for (std::size_t b = scene.bodies.size(); b-- > 0;) {
+    if (b >= scene.bodies.size() || scene.bodies[b].fixed || scene.bodies[b].is_operator) continue;
+    remove_body(b, scene);
+  }
+  const bool asked =
+      std::any_of(task.goals.begin(), task.goals.end(), [](const Goal& goal) { return goal.of_operator; });
+  if (asked && scene.operators.empty())
+    throw SceneError(urdf + ": has no operator, whose rest a goal of task '" + task.name +
+                     "' asks for; allowed: a scene with 'operator' in its YAML file");
+  return scene;
+}
 
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
                                     std::uint64_t seed) {
