@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "synthetic/performance.h"
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi {
 namespace {

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "support/grips.h"
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi {
 namespace {

@@ -15,7 +15,7 @@
 #include "nodes/exit_status.h"
 #include "support/stability_map.h"
 #include "text/command_line.h"
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi::testing {
 namespace {

@@ -8,7 +8,7 @@ target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_L
 precompile(${PROJECT_NAME}_ros <ros/ros.h> <visualization_msgs/MarkerArray.h>)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
-set_source_files_properties(src/ros/training_system.cpp src/nodes/simulated_study.cpp src/record/record.cpp src/replay/run.cpp PROPERTIES
+set_source_files_properties(src/nodes/training_node.cpp src/nodes/simulated_study.cpp src/record/record.cpp src/replay/run.cpp PROPERTIES
   COMPILE_DEFINITIONS MR_HAND_INTERACTION_VERSION="${PROJECT_VERSION}")
 # Scenes are found from a devel space even where no environment has been sourced.
 set_source_files_properties(src/ros/package_paths.cpp PROPERTIES

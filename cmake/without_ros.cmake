@@ -3,6 +3,7 @@ file(GLOB replay_library_sources src/record/*.cpp src/replay/*.cpp src/without_r
 list(FILTER replay_library_sources EXCLUDE REGEX "/src/replay/(bag|marker)_[a-z]*.cpp$")
 list(APPEND replay_library_sources src/ros/package_paths.cpp)
 add_library(${PROJECT_NAME}_replay STATIC ${replay_library_sources})
+target_include_directories(${PROJECT_NAME}_replay PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
 target_link_libraries(${PROJECT_NAME}_replay PUBLIC ${PROJECT_NAME}_core PRIVATE yaml-cpp)
 # Scenes are found from where it was built, too.
 set_source_files_properties(src/record/record.cpp src/replay/run.cpp PROPERTIES

@@ -17,9 +17,9 @@ Counts = collections.namedtuple('Counts', 'lines branches')  # how often: by lin
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('objects', metavar='DIR', help="of the core's object files")
-    parser.add_argument('not_run', metavar='FILE', help='for the lines that nothing has run')
-    parser.add_argument('--files', type=int, default=40, help='of the table; default: 40')
+    parser.add_argument('objects', metavar='DIR', help="folder of the core's object files")
+    parser.add_argument('not_run', metavar='FILE', help='for the lines that no test ran')
+    parser.add_argument('--files', type=int, default=40, help='rows of the table; default: 40')
     arguments = parser.parse_args()
     counted = collections.defaultdict(lambda: Counts(collections.Counter(), collections.Counter()))
     for unit in units(arguments.objects):

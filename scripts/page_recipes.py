@@ -69,10 +69,8 @@ def contact():
     return {
         'refinements': benefits.strip(),
         'instructions': _range_of(costs, instructions),
-        'tiers': table(['geometry', "rms error from the palm's side", 'from the back', 'time over capsules\''], [
-            [name, *['%.2f mm' % side[0] for side in sides],
-             '%.1f' % (sides[0][3] / next(some for n, some in tiers.items() if n.startswith('capsule'))[0][3])]
-            for name, sides in tiers.items()]),
+        'tiers': ', '.join('%s %.2f mm (%.1f)' % (name, sides[0][0], sides[0][3] / next(
+            some for n, some in tiers.items() if n.startswith('capsule'))[0][3]) for name, sides in tiers.items()),
     }, {}
 
 

@@ -119,7 +119,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--folders", default=",".join(SUITES), help="of src/, with commas between")
+    parser.add_argument("--folders", default=",".join(SUITES), help="folders of src/, separated by commas")
     arguments = parser.parse_args()
     for mutant in drawn(arguments.count, arguments.seed, arguments.folders.split(",")):
         print("\t".join(mutant))

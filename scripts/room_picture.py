@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Draws a room as a camera in it would see it: a table with a grid of 5 cm on which the hand tracker stands, a floor
-and a wall. world is in the middle of the table's top. For trying mr_view.launch without a camera, and for checking it:
-with --mark the silhouette of a box is painted where the camera would see it, and each corner of the picture gets a
-square."""
+"""Draws a room as a camera would see it: a table with a grid of 5 cm on which the hand tracker stands, a floor and a wall.
+world is in the middle of the table's top. mr_view.launch uses it without a camera. For tests, --mark paints the silhouette of
+a box, and a square in each corner of the picture."""
 import argparse
 import os
 import re
@@ -141,7 +140,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--camera", required=True, help="camera_info YAML")
     parser.add_argument("--pose", required=True, type=numbers(7),
-                        help="of the camera's optical frame in world: x y z qx qy qz qw")
+                        help="pose of the camera's optical frame in world: x y z qx qy qz qw")
     parser.add_argument("--mark", type=numbers(6), help="centre and sides of a box: x y z a b c")
     parser.add_argument("--output", required=True, help="a PNG file")
     options = parser.parse_args()

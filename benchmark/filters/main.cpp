@@ -10,7 +10,7 @@
 #include "scores.h"
 #include "settings.h"
 #include "support/recordings.h"
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi::filter_benchmark {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi::filter_benchmark {

@@ -11,8 +11,7 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "text/safe_yaml.h"
-#include "text/yaml_values.h"
+#include "text/yaml.h"
 
 namespace mrhi::real_grasps {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <ostream>
 
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi::real_grasps {
 namespace {

@@ -4,7 +4,7 @@
 #include <ctime>
 #include <iostream>
 
-#include "text/csv.h"
+#include "text/files.h"
 
 namespace mrhi::benchmark {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 

@@ -126,7 +126,7 @@ def grip_charts(thing, start, until, whole):
                                                          for active in thing.assisted])))
         charts.append(Strips('free, contact, hold, slip (all fingers slide), drop', rows))
     charts.append(Chart('normal force of each finger [N]', _of_fingers(thing, lambda touch: touch.normal), 0.1))
-    charts.append(Chart('friction utilisation (dotted: 1, where it slides; more where grasp assist or an edge bears it)',
+    charts.append(Chart('friction utilisation (dotted: 1, slipping; above 1, grasp assist or an edge carries the rest)',
                         _of_fingers(thing, utilisation), 1.2, MAX_UTILISATION, (1.0,)))
     rows = [(FINGERS[finger], spans_of(thing.time, [_stick_or_slip(touches, finger) for touches in thing.touches]))
             for finger in range(PALM + 1)]
@@ -140,8 +140,8 @@ def grip_charts(thing, start, until, whole):
             return [(INK, thing.time[touched], numpy.abs(values[touched]))]
         charts += [
             Chart('depth of each finger [mm]', _of_fingers(thing, lambda touch: 1e3 * touch.depth), 1.0),
-            Chart('what friction could still bear of a straight pull [N]', of_grip(thing.margin), 0.1),
-            Chart('how many times the load, force and torque together, friction could bear (dotted: 1, where it slides; 5: or '
+            Chart('friction margin for a straight pull [N]', of_grip(thing.margin), 0.1),
+            Chart('safety factor: how many times the load (force and torque) friction can carry (dotted: 1, slipping; 5: or '
                   'more)', of_grip(thing.bearable), 2.0, MAX_BEARABLE, (1.0,)),
             Chart('torque about the line through the grip [N m]', of_grip(thing.torque), 1e-3)]
     return charts

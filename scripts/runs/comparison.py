@@ -106,15 +106,15 @@ def compare(first, second, tolerance=TOLERANCE):
 
 
 def text_of(comparison):
-    """A line for each object that parts, or differs at all, one for the others, and whether the bits are the same."""
-    lines = [_line(parting, 'parts at') for parting in comparison.partings]
-    lines += [_line(parting, 'does not part, but differs from') for parting in comparison.near_misses]
+    """A line for each object that diverges, or differs at all, one for the others, and whether the bits are equal."""
+    lines = [_line(parting, 'diverges at') for parting in comparison.partings]
+    lines += [_line(parting, 'stays within the tolerance, but differs from') for parting in comparison.near_misses]
     tolerance = comparison.tolerance
-    within = 'the same to the last digit' if max(tolerance) <= 0.0 else 'within %s in every frame' % _apart(*tolerance)
+    within = 'equal to the last digit' if max(tolerance) <= 0.0 else 'within %s in every frame' % _apart(*tolerance)
     lines.append('%d of %d objects %s' % (comparison.objects - len(comparison.partings), comparison.objects, within))
     same = not comparison.partings and not comparison.near_misses
-    end = {None: 'not told by both runs', True: 'the same bits', False: 'not the same bits'}[comparison.same_end]
-    lines.append('objects: %s; the state at the end: %s' % ('the same bits in every frame' if same else 'not the same bits', end))
+    end = {None: 'not known of both runs', True: 'equal bits', False: 'different bits'}[comparison.same_end]
+    lines.append('objects: %s; the state at the end: %s' % ('equal bits in every frame' if same else 'different bits', end))
     return '\n'.join(lines) + '\n'
 
 

@@ -36,8 +36,8 @@ def _live_fact(live):
     if live['overridden']:
         return 'Differs from the recording: %s.' % '; '.join(live['overridden'])
     if live['parts_at'] is not None:
-        return 'Parts from the live run at %.2f s.' % live['parts_at']
-    return 'Identical to the live run: %d of %d recorded states are the same.' % (live['same'], live['compared'])
+        return 'Diverges from the live run at %.2f s.' % live['parts_at']
+    return 'Identical to the live run: %d of %d recorded states are equal.' % (live['same'], live['compared'])
 
 
 def as_json(story):

@@ -15,7 +15,7 @@ MIN_SLIDE = 0.02  # s; what all fingers do for a shorter time is their leaving
 SLIPPERY = 0.4  # static friction below that of skin (docs/contact.md)
 MAX_FRICTION = 2.0  # that is worth naming
 SKIN_FRICTION = 0.8  # usual static friction of skin; what it would not have borne lacked normal force
-ASSIST_END = 0.15  # s; an assist that was active until so long before the end gave way
+ASSIST_END = 0.15  # s; an assist that was active until this long before the end counts as ended
 MIN_SPEED_GAIN = 0.02  # m/s, of a touch that is told
 MAX_BREAK = 0.06  # s; touches that are apart by less are one stay
 BEFORE_LOSS = 0.15  # s; of a picture
@@ -49,11 +49,11 @@ def add_losses(story):
 
 def _end_stay(thing, first, last, story):
     touched = last
-    while touched > first and not thing.touches[touched] and not thing.struck[touched]:
+    while touched > first and not thing.touches[touched] and not thing.impacts[touched]:
         touched -= 1
-    if not thing.touches[touched] and not thing.struck[touched]:
+    if not thing.touches[touched] and not thing.impacts[touched]:
         return
-    hand_id = thing.touches[touched][0].hand_id if thing.touches[touched] else thing.struck_by[touched]
+    hand_id = thing.touches[touched][0].hand_id if thing.touches[touched] else thing.impact_hand[touched]
     if hand_id not in story.hands:
         return
     stay = Stay(thing, story.hands[hand_id], hand_id, first, touched, last)
@@ -74,7 +74,7 @@ def _add_touch(stay, story):
         return
     fingers = []
     for i in range(stay.first, stay.touched + 1):
-        for finger in [touch.finger for touch in thing.touches[i]] + thing.struck[i]:
+        for finger in [touch.finger for touch in thing.touches[i]] + thing.impacts[i]:
             if finger not in fingers:
                 fingers.append(finger)
     story.touches.append(PassingTouch(thing.name, stay.hand_id, thing.time[stay.first], thing.time[stay.touched], fingers, gained))
@@ -104,7 +104,7 @@ def _cause_of(stay, loss, slid, story):
         return 'tracking_lost', 'the tracker lost the hand, which released it', {}
     impact = evidence.strongest_impact(stay, story)
     if impact:
-        return 'blow', "'%s' struck it at %.2f s, with a momentum that changes its speed by %.3g m/s. %s" % (
+        return 'impact', "'%s' hit it at %.2f s, with a momentum that changes its speed by %.3g m/s. %s" % (
             impact.by, impact.time, impact.speed, _remedy(loss)), {'by': impact.by}
     opening = evidence.opening_of(stay)
     if opening and opening.begun <= slid + SLIDE_MARGIN:
@@ -112,10 +112,10 @@ def _cause_of(stay, loss, slid, story):
             1e3 * opening.distance, opening.clear), {'opened': opening.clear}
     assisted = evidence.assisted_in(stay)
     if assisted and assisted[1] > end - ASSIST_END:
-        return 'help_gave_way', 'contact alone did not hold it, and the grasp assist that supported it ended', {}
+        return 'assist_ended', 'contact alone did not hold it, and the grasp assist that supported it ended', {}
     if thing.joint:
         return 'too_little_force' if slid < end else 'not_known', (
-            "it hangs on joint '%s', and the fingers carried %.3g N along the surfaces with a normal force of %.3g N"
+            "it is on joint '%s', and the fingers carried %.3g N along the surfaces with a normal force of %.3g N"
             % (thing.joint, loss.load, loss.push)), {}
     if evidence.faces_were_wrong(stay):
         return 'wrong_faces', 'no two fingers opposed each other within friction (%s), so that no force could hold it' % (
@@ -140,14 +140,14 @@ def _weakness(stay, loss, slid):
 
 
 def _remedy(loss):
-    text = ('The fingers pressed with %.3g N in total and had to carry %.3g N along the surfaces; friction of %.3g carries up to '
-            '%.3g N. ' % (loss.push, loss.load, loss.friction, loss.friction * loss.push))
+    text = ('The fingers applied a normal force of %.3g N in total and had to carry %.3g N along the surfaces; friction of %.3g '
+            'carries up to %.3g N. ' % (loss.push, loss.load, loss.friction, loss.friction * loss.push))
     if loss.push_needed <= 0.0:
-        return text + ('That is enough for a straight pull: it rotated, or was pushed out (friction could carry force and torque '
-                       'together %.3g times at the least)' % loss.bearable)
+        return text + ('That is enough for a straight pull: it rotated, or was pushed out (friction could carry at least %.3g times '
+                       'the force and torque together)' % loss.bearable)
     if loss.friction_needed > MAX_FRICTION:
-        return text + 'To hold it takes %.3g N more normal force' % loss.push_needed
-    return text + 'To hold it takes friction of %.3g, or %.3g N more normal force' % (loss.friction_needed, loss.push_needed)
+        return text + 'It would be held with %.3g N more normal force' % loss.push_needed
+    return text + 'It would be held with friction of %.3g, or %.3g N more normal force' % (loss.friction_needed, loss.push_needed)
 
 
 def _story_of(loss, stay, why):
@@ -167,8 +167,8 @@ def _beside(delay):
     if abs(delay) < 0.005:
         return 'with the last touch'
     if delay < 0.0:
-        return '%.2f s before the last touch: the fingers touched it, but no longer held it' % -delay
-    return '%.2f s after the last touch: a grasp ends once it has been gone for a little' % delay
+        return '%.2f s before the last touch: the fingers still touched it, but did not hold it' % -delay
+    return '%.2f s after the last touch: a grasp ends with a short delay' % delay
 
 
 def _grasp_end(stay, story):

@@ -42,13 +42,13 @@ class ObjectStory:
         self.touches = grip.touches_of(held, held_rows, self.orientation)
         self.torque = grip.torques(held, held_rows, len(self.time))
         self.margin, self.bearable = grip.margins(held, held_rows, self.position)
-        self.struck = [[] for _ in self.time]  # fingers that struck it and have left it again
-        self.struck_by = {}  # hand, by sample
-        struck = ~touching & vectors(contacts, ('jx', 'jy', 'jz')).any(axis=1)
-        for row, finger, hand in zip(rows[struck], contacts['finger'][struck], contacts['hand_id'][struck]):
-            if finger not in self.struck[row]:
-                self.struck[row].append(int(finger))
-            self.struck_by[row] = int(hand)
+        self.impacts = [[] for _ in self.time]  # fingers that hit it and have left it again
+        self.impact_hand = {}  # hand, by sample
+        hit = ~touching & vectors(contacts, ('jx', 'jy', 'jz')).any(axis=1)
+        for row, finger, hand in zip(rows[hit], contacts['finger'][hit], contacts['hand_id'][hit]):
+            if finger not in self.impacts[row]:
+                self.impacts[row].append(int(finger))
+            self.impact_hand[row] = int(hand)
 
     def _states(self):
         """free, contact, hold, slip (all fingers slide) or drop (free since it was held)."""
@@ -67,7 +67,7 @@ class ObjectStory:
         return states
 
     def is_with_hand(self, i):
-        return self.level[i] == GRASP or bool(self.touches[i]) or bool(self.struck[i])
+        return self.level[i] == GRASP or bool(self.touches[i]) or bool(self.impacts[i])
 
     def sample_at(self, time):
         """Index of the first sample from that time on, or None."""

@@ -6,7 +6,6 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision_object.h>
 #else
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/collision_object.h>
 #include <fcl/shape/geometric_shapes.h>
 #endif

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../scene/shape_inertia.h"
+#include "../scene/solid_mesh.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/shape.h"
 

@@ -1,15 +1,235 @@
 #include "mr_hand_interaction/parameters.h"
 
-#include <set>
+#include <yaml-cpp/yaml.h>
 
-#include "../scene/material_fields.h"
-#include "../text/safe_yaml.h"
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+#include "../scene/limits.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
-#include "parameter_table.h"
+#include "../text/yaml.h"
+#include "../tracking/hand_filter.h"
+#include "mr_hand_interaction/response/contact_model.h"
 
 namespace mrhi {
 namespace {
+
+using body_limits::kGravity;
+constexpr Range kGravitySlider{-10, 10};  // [m/s^2]
+
+/// One public parameter: all that setting, listing and refusing it needs.
+struct ParameterEntry {
+  std::string name;
+  std::string allowed;  ///< what it may be, for messages
+  /// False, and nothing changed, if the value is of a wrong type or out of range.
+  std::function<bool(Configuration&, const YAML::Node&)> assign;
+  /// What it is now, as YAML that `assign` takes.
+  std::function<std::string(const Configuration&)> text;
+  std::optional<ParameterLimits> limits;  ///< of a number, or of each of several
+};
+
+// The values that a number may be: the number, or nothing for the word that stands for its absence.
+std::optional<double> number_in(double value) {
+  return std::isinf(value) ? std::nullopt : std::make_optional(value);
+}
+std::optional<double> number_in(int value) {
+  return value;
+}
+std::optional<double> number_in(const std::optional<double>& value) {
+  return value;
+}
+void set_number(const std::optional<double>& number, double& value) {
+  value = number.value_or(HandStrength::kUnlimited);
+}
+void set_number(const std::optional<double>& number, int& value) {
+  value = static_cast<int>(*number);
+}
+void set_number(const std::optional<double>& number, std::optional<double>& value) {
+  value = number;
+}
+
+/// Gives what a parameter is set in: a member of a configuration, of a part of it, or of a part's part.
+template <class... Members>
+auto of(Members... members) {
+  return [=](auto& configuration) -> auto& {
+    return (configuration.*....*members);
+  };
+}
+
+/// What a parameter is that is not a number, and what that means.
+struct Word {
+  std::string word, meaning;
+};
+
+/// A number in `range`, both ends of which are allowed, or a word; a slider spans `slider`, which is all of
+/// it or a part. `access` gives the member of a configuration: a double, an int, or a number that may be
+/// absent.
+template <class Access>
+ParameterEntry number(const std::string& name, const std::string& unit, const Range& range,
+                      const Range& slider, Access access, const Word& otherwise = {}) {
+  constexpr bool kWhole = std::is_same_v<int&, decltype(access(std::declval<Configuration&>()))>;
+  const std::string word = otherwise.word;
+  std::string allowed = range.describe() + unit;
+  if (kWhole) allowed = "a whole number from " + text::exact(range.min) + " to " + text::exact(range.max);
+  if (!word.empty()) allowed += ", or '" + word + "'" + otherwise.meaning;
+  return {name, allowed,
+          [=](Configuration& configuration, const YAML::Node& node) {
+            const bool is_word = !word.empty() && node.IsScalar() && node.Scalar() == word;
+            const std::optional<double> value = is_word ? std::nullopt : yaml_number(node);
+            if (!is_word && (!value || !range.contains(*value) || (kWhole && !yaml_integer(node))))
+              return false;
+            set_number(value, access(configuration));
+            return true;
+          },
+          [=](const Configuration& configuration) {
+            const std::optional<double> value = number_in(access(configuration));
+            return value ? text::exact(*value) : word;
+          },
+          ParameterLimits{range.min, range.max, slider.min, slider.max}};
+}
+
+template <class T, class Access>
+ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
+                      Access access) {
+  std::vector<std::string> words;
+  for (const auto& option : choices) words.push_back(option.first);
+  return {name,
+          text::joined(words),
+          [=](Configuration& configuration, const YAML::Node& node) {
+            for (const auto& option : choices) {
+              if (!node.IsScalar() || node.Scalar() != option.first) continue;
+              access(configuration) = option.second;
+              return true;
+            }
+            return false;
+          },
+          [=](const Configuration& configuration) {
+            const T& value = access(configuration);
+            return std::find_if(choices.begin(), choices.end(),
+                                [&](const auto& option) { return option.second == value; })
+                ->first;
+          },
+          {}};
+}
+
+template <class Access>
+ParameterEntry on_or_off(const std::string& name, Access access) {
+  return choice<bool>(name, {{"true", true}, {"false", false}}, access);
+}
+
+bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
+  const bool of_the_scene = node.IsScalar() && node.Scalar() == "scene";
+  const std::optional<Vector3> value = yaml_vector(node);
+  const bool in_limits = value && value->minCoeff() >= kGravity.min && value->maxCoeff() <= kGravity.max;
+  if (!in_limits && !of_the_scene) return false;
+  configuration.gravity = value;
+  return true;
+}
+
+std::string gravity_text(const Configuration& configuration) {
+  if (!configuration.gravity) return "scene";
+  const Vector3& g = *configuration.gravity;
+  return "[" + text::exact(g.x()) + ", " + text::exact(g.y()) + ", " + text::exact(g.z()) + "]";
+}
+
+std::vector<std::pair<std::string, ContactModelKind>> contact_model_names() {
+  std::vector<std::pair<std::string, ContactModelKind>> names;
+  for (const ContactModelEntry* model : contact_models()) names.push_back({model->name, {model->name}});
+  return names;
+}
+
+std::vector<ParameterEntry> members() {
+  using C = Configuration;
+  using T = ContactConfiguration;
+  using H = HandStrength;
+  const Word unlimited{"unlimited", ""}, material{"material", " for that of the object's material"};
+  return {
+      choice<ContactModelKind>("contact_model", contact_model_names(), of(&C::contact_model)),
+      {"gravity", "three numbers [x, y, z] from -100 to 100 in m/s^2, or 'scene' for the scene's own",
+       assign_gravity, gravity_text,
+       ParameterLimits{kGravity.min, kGravity.max, kGravitySlider.min, kGravitySlider.max}},
+      number("step", " [s]", {1e-5, 0.05}, {0.0002, 0.01}, of(&C::step)),
+      number("scene/density", " [kg/m^3]", {0.1, 1e5}, {10, 10000}, of(&C::density)),
+      number("tracking/hold_time", " [s]", {0, 10}, {0, 2},
+             of(&C::tracking, &TrackingConfiguration::hold_time)),
+      number("tracking/max_speed", " [m/s]", {0.1, 1000}, {1, 50},
+             of(&C::tracking, &TrackingConfiguration::max_speed)),
+      on_or_off("seed/literal", of(&C::contact, &T::literal)),
+      number("contact/object_stiffness", " [N/m]", {1, 1e9}, {1e4, 1e8},
+             of(&C::contact, &T::object_stiffness)),
+      // Refinements of contact.
+      on_or_off("contact/anchors", of(&C::contact, &T::anchors)),
+      on_or_off("contact/damping", of(&C::contact, &T::damping)),
+      on_or_off("contact/edge_grip", of(&C::contact, &T::edge_grip)),
+      on_or_off("contact/entry_face", of(&C::contact, &T::entry_face)),
+      on_or_off("contact/grasp_assist", of(&C::contact, &T::grasp_assist)),
+      on_or_off("contact/impact_friction", of(&C::contact, &T::impact_friction)),
+      on_or_off("contact/release_fade", of(&C::contact, &T::release_fade)),
+      on_or_off("contact/sleep", of(&C::contact, &T::sleep)),
+      on_or_off("contact/sweep", of(&C::contact, &T::sweep)),
+      on_or_off("contact/swing_back", of(&C::contact, &T::swing_back)),
+      on_or_off("contact/torsion", of(&C::contact, &T::torsion)),
+      on_or_off("contact/two_points", of(&C::contact, &T::two_points)),
+      number("hand/strength", " [N]", {0.1, 1000}, {1, 100}, of(&C::contact, &T::hand, &H::finger),
+             unlimited),
+      number("hand/palm_strength", " [N]", {0.1, 1000}, {1, 200}, of(&C::contact, &T::hand, &H::palm),
+             unlimited),
+      number("hand/finger_mass", " [kg]", {0.001, 10}, {0.005, 0.5},
+             of(&C::contact, &T::hand, &H::finger_mass), unlimited),
+      number("hand/palm_mass", " [kg]", {0.001, 10}, {0.05, 2}, of(&C::contact, &T::hand, &H::palm_mass),
+             unlimited),
+      number("hand/pad", " [m]", {0, 0.01}, {0, 0.005}, of(&C::contact, &T::hand, &H::pad)),
+      number("hand/restitution", "", {0, 1}, {0, 1}, of(&C::contact, &T::hand, &H::restitution), material),
+      number("hand/radius_scale", "", {0.1, 10}, {0.5, 2}, of(&C::hand_radius_scale)),
+  };
+}
+
+std::vector<ParameterEntry> filter_parameters() {
+  std::vector<std::pair<std::string, FilterKind>> names;
+  for (const HandFilter* filter : hand_filters()) names.push_back({filter->name, {filter->name}});
+  std::vector<ParameterEntry> entries{
+      choice<FilterKind>("filter/type", names, of(&Configuration::filter, &FilterConfiguration::type))};
+  for (const FilterSetting& setting : filter_settings()) {
+    const std::string meaning = *setting.meaning ? " " + std::string(setting.meaning) : "";
+    const auto add = [&](auto member) {
+      entries.push_back(number(std::string("filter/") + setting.name, setting.unit, setting.range,
+                               setting.slider, of(&Configuration::filter, member), {setting.word, meaning}));
+    };
+    std::visit(add, setting.value);
+  }
+  return entries;
+}
+
+std::vector<ParameterEntry> material_parameters() {
+  std::vector<ParameterEntry> entries;
+  for (const MaterialField& field : material_fields()) {
+    const std::string name = std::string("material/") + field.name;
+    if (field.value == &Material::stiffness) {
+      entries.push_back(number(name, field.unit, field.range, field.slider, of(&Configuration::stiffness),
+                               {"model", " for the contact model's own"}));
+    } else {
+      entries.push_back(
+          number(name, field.unit, field.range, field.slider, of(&Configuration::material, field.value)));
+    }
+  }
+  return entries;
+}
+
+/// All parameters, sorted by name.
+const std::vector<ParameterEntry>& parameter_table() {
+  static const std::vector<ParameterEntry> table = [] {
+    std::vector<ParameterEntry> all;
+    for (auto* some : {members, filter_parameters, material_parameters})
+      for (ParameterEntry& entry : some()) all.push_back(std::move(entry));
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    return all;
+  }();
+  return table;
+}
 
 const ParameterEntry& entry_of(const std::string& name) {
   for (const ParameterEntry& entry : parameter_table()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/joint_state.h"
+#include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/joint.h"
 
 namespace mrhi {

@@ -4,7 +4,6 @@
 
 #include "linkage.h"
 #include "mr_hand_interaction/integration/body_state.h"
-#include "mr_hand_interaction/joint_state.h"
 
 namespace mrhi {
 

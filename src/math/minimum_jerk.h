@@ -6,11 +6,20 @@ namespace mrhi {
 
 /// Share 0..1 of the way done at the share `time` 0..1 of the duration, from rest to rest (Flash & Hogan
 /// 1985, Eq. 4). Greatest speed 1.875 at the middle.
-double minimum_jerk(double time);
+inline double minimum_jerk(double time) {
+  const double t = time <= 0.0 ? 0.0 : (time >= 1.0 ? 1.0 : time);
+  return t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
+}
 
 /// The same with velocities at the ends: position after the share `time` 0..1 of `duration` seconds; no
 /// acceleration at either end.
-Vector3 minimum_jerk(const Vector3& from, const Vector3& from_velocity, const Vector3& to,
-                     const Vector3& to_velocity, double duration, double time);
+inline Vector3 minimum_jerk(const Vector3& from, const Vector3& from_velocity, const Vector3& to,
+                            const Vector3& to_velocity, double duration, double time) {
+  const double t = time <= 0.0 ? 0.0 : (time >= 1.0 ? 1.0 : time);
+  const double t3 = t * t * t, rest = 1.0 - t;
+  const double leaving = t + t3 * (-6.0 + 8.0 * t - 3.0 * t * t);
+  const double arriving = -(rest + rest * rest * rest * (-6.0 + 8.0 * rest - 3.0 * rest * rest));
+  return from + minimum_jerk(t) * (to - from) + duration * (leaving * from_velocity + arriving * to_velocity);
+}
 
 }  // namespace mrhi

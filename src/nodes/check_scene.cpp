@@ -3,14 +3,14 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "../scene/shape_inertia.h"
+#include "../scene/solid_mesh.h"
 #include "../text/command_line.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "exit_status.h"
 #include "mr_hand_interaction/configuration.h"
+#include "mr_hand_interaction/input_error.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/usage_error.h"
 
 namespace mrhi {
 namespace {

@@ -14,7 +14,7 @@
 #include "../training/operator_trial.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
 namespace {
@@ -147,8 +147,8 @@ class OperatorPublisher {
 
   void move() {
     const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
-    const Twist twist{from_message(object_.twist.linear), from_message(object_.twist.angular)};
-    Sight sight = sight_of(task_, goal, from_message(object_.pose), twist, object_.held);
+    Sight sight =
+        sight_of(task_, goal, from_message(object_.pose), from_message(object_.twist), object_.held);
     sight.grip = grip();
     const HandPlace hand = person_->move(time_, sight);
     hands_ = {

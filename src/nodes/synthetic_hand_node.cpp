@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -13,9 +12,8 @@
 
 #include "../ros/leap_human_publisher.h"
 #include "../ros/node.h"
-#include "../synthetic/recording_writer.h"
 #include "../text/command_line.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "exit_status.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"

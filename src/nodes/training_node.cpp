@@ -18,11 +18,11 @@
 #include <string>
 #include <vector>
 
+#include "../ros/marker_layers.h"
 #include "../ros/node.h"
 #include "../ros/training_system.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/training/session.h"
-#include "mr_hand_interaction/training/session_folder.h"
 
 namespace mrhi {
 namespace {
@@ -83,9 +83,9 @@ class TrainingServer {
  private:
   TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters)
       : event_(node.advertise<mr_hand_interaction::TrainingEvent>("training/events", kQueue)),
-        session_(open_session(node, parameters, now(), [this](const EventRow& row) { publish(row); })),
+        session_(parameters.open_session(node, now(), [this](const EventRow& row) { publish(row); })),
         scene_(node, parameters.simulation, session_.task()),
-        parameters_(told_configuration(node, parameters, session_.task().gravity)),
+        parameters_(parameters.told_configuration(node, session_.task().gravity)),
         participant_(parameters.header.participant),
         auto_next_(parameters.auto_next) {
     for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
@@ -143,8 +143,7 @@ class TrainingServer {
     for (const auto& object : message.objects) {
       if (!object.is_operator) names.insert(object.name);
       if (object.is_operator && !person_)
-        person_ = OperatorMotion{from_message(object.pose),
-                                 {from_message(object.twist.linear), from_message(object.twist.angular)}};
+        person_ = OperatorMotion{from_message(object.pose), from_message(object.twist)};
     }
     scene_.note_objects(std::move(names), person_.has_value());
     fixed_frame_ = message.header.frame_id;
@@ -257,7 +256,7 @@ class TrainingServer {
       seen.held |= object->held != 0;
       if (body.name != session_.object().name) continue;
       seen.pose = from_message(object->pose);
-      seen.twist = {from_message(object->twist.linear), from_message(object->twist.angular)};
+      seen.twist = from_message(object->twist);
     }
     if (!there) return std::nullopt;
     for (std::size_t j = 0; j < std::min(joints_.name.size(), joints_.position.size()); ++j) {

@@ -10,12 +10,12 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "../scene/scene_edit.h"
-#include "../text/file_text.h"
-#include "../text/safe_yaml.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"
+#include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
 namespace {

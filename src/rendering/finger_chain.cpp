@@ -1,7 +1,9 @@
-#include "finger_chain.h"
+#include "renderer.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "../math/rotation.h"
 
 namespace mrhi {
 namespace {
@@ -14,10 +16,6 @@ constexpr double kLoose = 1.0;                     // of a finger that nothing t
 constexpr double kShortest = 0.001;                // reach of a joint [m]
 /// Which part of a bent thumb's own plane tells its hinges' axis, against the anatomical one.
 constexpr double kAnatomical = 0.15;
-
-Matrix3 about(const Vector3& axis, double angle) {
-  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
 
 Vector3 direction(const Capsule& bone) {
   return (bone.end - bone.start).normalized();
@@ -46,6 +44,13 @@ RootFrame root_frame(const Hand& hand, int finger) {
   const Vector3 across = palm.col(2).cross(along);
   if (across.squaredNorm() < 0.01) return {palm.col(0), palm.col(1)};
   return {along, across.normalized()};
+}
+
+ThumbRest make_thumb_rest() {
+  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
+                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
+  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
 }
 
 }  // namespace
@@ -168,8 +173,8 @@ void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const V
   const bool turned = tied_ && !(offset == 0.0).all();
   Matrix3 turn = Matrix3::Identity();
   if (turned) {
-    const Matrix3 flexed = about(root_, offset[0]);
-    turn = flexed * about(swing_, offset[1]);
+    const Matrix3 flexed = turn_about(root_, offset[0]);
+    turn = flexed * turn_about(swing_, offset[1]);
     placed_swing_ = flexed * swing_;
     placed_hinge_ = turn * hinge_;
   }
@@ -189,7 +194,7 @@ void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const V
     joint = before == nullptr ? Vector3(from.start + moved)
                               : Vector3(joint + turn * (from.start - before->start));
     if (bone > 1 && offset[static_cast<Eigen::Index>(bone)] != 0.0)
-      turn = turn * about(hinge_, offset[static_cast<Eigen::Index>(bone)]);
+      turn = turn * turn_about(hinge_, offset[static_cast<Eigen::Index>(bone)]);
     to.start = joints_[bone] = joint;
     to.end = joint + turn * (from.end - from.start);
     before = &from;
@@ -222,19 +227,6 @@ FingerOffset FingerChain::compliance() const {
   if (!tied_) return FingerOffset(kLoose, kLoose, kLoose, 0.0);
   return {kBending, kSideways, kBending, kBending};
 }
-
-namespace {
-
-constexpr double kDegree = M_PI / 180.0;
-
-ThumbRest make_thumb_rest() {
-  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
-                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
-                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
-  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
-}
-
-}  // namespace
 
 JointLimits joint_limits(int finger) {
   if (finger == 0) {

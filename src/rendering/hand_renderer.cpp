@@ -69,95 +69,91 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   note_touches(contacts, slot, rendered);
   if (track.appeared) offset = HandOffset();
   ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0, interactions};
-  const bool near = impl.begin(setting, track, offset);
-  HandOffset now = impl.keep_outside(setting, track, stamp, offset, near, rendered.hand);
+  impl.setting = &setting, impl.track = &track, impl.stamp = stamp;
+  impl.last = &offset, impl.placed = &rendered.hand;
+  impl.keep_outside(impl.begin());
   for (const bool fixtures : {false, true}) {
-    const bool stays_behind = impl.left_behind(setting, stamp, now);
+    const bool stays_behind = impl.left_behind();
     if (impl.leap <= kTolerated && !stays_behind) break;
-    if (!impl.show_in(fixtures, interactions)) continue;
-    const bool others = impl.finder.begin(setting, margin(offset));
-    now = impl.keep_outside(setting, track, stamp, offset, others, rendered.hand);
+    if (!impl.show_in(fixtures)) continue;
+    impl.keep_outside(impl.finder.begin(setting, margin(offset)));
   }
-  if (now.zero()) rendered.hand = track.current;
-  now.stamp = stamp;
-  offset = now;
-  if (!now.zero()) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
+  const bool away = !impl.offset.zero();
+  if (!away) rendered.hand = track.current;
+  impl.offset.stamp = stamp;
+  offset = impl.offset;
+  if (away) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
 }
 
 /// The hand outside of all bodies but those that it is shown in; the finder has begun with what is `near` it.
-HandOffset HandRenderer::Impl::keep_outside(ClearanceFinder::Setting& setting, const HandTrack& track,
-                                            Nanoseconds stamp, const HandOffset& offset, bool near,
-                                            Hand& placed) {
-  placed = track.current;
-  setting.shown_before = nullptr;
-  setting.moved = 0.0;
-  const bool away = !offset.zero();
-  HandOffset now;
+void HandRenderer::Impl::keep_outside(bool near) {
+  *placed = track->current;
+  setting->shown_before = nullptr;
+  setting->moved = 0.0;
+  const bool away = !last->zero();
+  offset = HandOffset();
   clearances.clear();
   if (away || near) {
-    chain.begin(track.current, lag_returning(offset, stamp));
-    now = returning(offset, stamp, chain);
-    chain.place(now, placed);
+    chain.begin(track->current, lag_returning(*last, stamp));
+    offset = returning(*last, stamp, chain);
+    chain.place(offset, *placed);
   }
-  const HandOffset reference = now;
-  const double least = near ? finder.find(placed, setting, kAhead, clearances) : 0.0;
+  const HandOffset reference = offset;
+  const double least = near ? finder.find(*placed, *setting, kAhead, clearances) : 0.0;
   pushed = least < -kClear;
   leap = 0.0;
-  if (pushed || away) look_back(track, stamp, offset, setting);
-  if (pushed) push_out(setting, offset, least, now, placed);
-  if (setting.shown_before != nullptr) keep_pace(setting, offset, reference, now, placed);
-  return now;
+  if (pushed || away) look_back();
+  if (pushed) push_out(least);
+  if (setting->shown_before != nullptr) keep_pace(reference);
 }
 
 /// Bodies and joints leave the hand no way out that is not a leap: it is shown in them until it is clear of
 /// them, as in a body that appears. True if there are such.
-bool HandRenderer::Impl::show_in(bool fixtures, Interaction* interactions) const {
+bool HandRenderer::Impl::show_in(bool fixtures) const {
   bool any = false;
   for (const Clearance& clearance : clearances) {
     const bool fixed = finder.fixed(clearance.key.body);
     if (fixed && !fixtures) continue;
-    any = any || !interactions[clearance.key.body].shown_in;
-    interactions[clearance.key.body].shown_in = true;
+    any = any || !setting->interactions[clearance.key.body].shown_in;
+    setting->interactions[clearance.key.body].shown_in = true;
   }
   return any;
 }
 
 /// Finds what is near the hand, but for what it is shown in. That ends with what the hand, as it was shown,
 /// was clear of.
-bool HandRenderer::Impl::begin(const ClearanceFinder::Setting& setting, const HandTrack& track,
-                               const HandOffset& last) {
-  const bool near = finder.begin(setting, margin(last));
+bool HandRenderer::Impl::begin() {
+  const bool near = finder.begin(*setting, margin(*last));
   if (!finder.shown_in_any()) return near;
-  const Hand& from = track.appeared ? track.current : track.previous;
+  const Hand& from = track->appeared ? track->current : track->previous;
   Hand shown = from;
-  chain_before.begin(from, last.lag);
-  chain_before.place(last, shown);
-  finder.end_shown_in(shown, setting.interactions);
-  return finder.begin(setting, margin(last));
+  chain_before.begin(from, last->lag);
+  chain_before.place(*last, shown);
+  finder.end_shown_in(shown, setting->interactions);
+  return finder.begin(*setting, margin(*last));
 }
 
 /// At the frame before.
 ///
 /// `moved` bounds what can have come into each other since: the farthest joint's way and the fastest body's,
 /// |v| + |w| R times the time.
-void HandRenderer::Impl::look_back(const HandTrack& track, Nanoseconds stamp, const HandOffset& offset,
-                                   ClearanceFinder::Setting& setting) {
-  if (offset.zero()) finder.begin(setting, kFarthestPush);
-  setting.moved = kFromNowhere;
-  if (track.appeared) return;
-  const Shown& known = kept[static_cast<std::size_t>(setting.slot)];
-  tracked_before = track.previous;
-  offset_before = offset;
+void HandRenderer::Impl::look_back() {
+  if (last->zero()) finder.begin(*setting, kFarthestPush);
+  setting->moved = kFromNowhere;
+  if (track->appeared) return;
+  const Shown& known = kept[static_cast<std::size_t>(setting->slot)];
+  tracked_before = track->previous;
+  offset_before = *last;
   chain_before_set = false;
   if (known.known && same_way(known.offset, offset_before) && same_place(known.tracked, tracked_before)) {
     before = known.hand;
   } else {
     place_before();
   }
-  setting.shown_before = &before;
-  tracked_way = farthest_joint(track.previous, track.current);
+  setting->shown_before = &before;
+  tracked_way = farthest_joint(track->previous, track->current);
   elapsed = to_seconds(stamp - offset_before.stamp);
-  setting.moved = tracked_way + finder.fastest_body(setting.bodies) * elapsed;
+  setting->moved = tracked_way + finder.fastest_body(setting->bodies) * elapsed;
 }
 
 void HandRenderer::Impl::place_before() {
@@ -175,13 +171,12 @@ FingerChain& HandRenderer::Impl::finger_before(int index) {
 
 /// True once the tracked hand has been clear of everything for a while and the rendered one has not come any
 /// nearer to it.
-bool HandRenderer::Impl::left_behind(const ClearanceFinder::Setting& setting, Nanoseconds stamp,
-                                     HandOffset& offset) {
+bool HandRenderer::Impl::left_behind() {
   const auto holds = [&](const Contact& contact) {
-    return contact.key.hand == setting.slot && contact.touching();
+    return contact.key.hand == setting->slot && contact.touching();
   };
-  const bool held = std::any_of(setting.contacts.begin(), setting.contacts.end(), holds);
-  if (!pushed || held || !finder.clear(setting.tracked)) {
+  const bool held = std::any_of(setting->contacts.begin(), setting->contacts.end(), holds);
+  if (!pushed || held || !finder.clear(setting->tracked)) {
     offset.left = 0.0;
     return false;
   }
@@ -240,8 +235,8 @@ Quaternion axes_by_bones(const Hand& hand) {
 }  // namespace
 
 /// With this lag, how far joints' limits keep phalanges from where they were shown, all fingers together [m].
-double HandRenderer::Impl::held_by_limits(const ClearanceFinder::Setting& setting, const PalmLag& lag) {
-  chain.begin(setting.tracked, lag);
+double HandRenderer::Impl::held_by_limits(const PalmLag& lag) {
+  chain.begin(setting->tracked, lag);
   double held = 0.0;
   for (int f = 0; f < kFingers; ++f) {
     const FingerChain& finger = chain.finger(f);
@@ -252,27 +247,26 @@ double HandRenderer::Impl::held_by_limits(const ClearanceFinder::Setting& settin
 }
 
 /// The palm's axes are not turned from how they were shown. frame whole R_tracked = R_before.
-Quaternion HandRenderer::Impl::frame_staying(const ClearanceFinder::Setting& setting,
-                                             const Quaternion& whole) const {
-  return (before.palm.orientation * (whole * setting.tracked.palm.orientation).conjugate()).normalized();
+Quaternion HandRenderer::Impl::frame_staying(const Quaternion& whole) const {
+  return (before.palm.orientation * (whole * setting->tracked.palm.orientation).conjugate()).normalized();
 }
 
 /// The palm's bones are not turned from how they were shown; its axes, to which joints' limits count, such
 /// that the fingers can stay too, as far as there are such. Compass search: a turn about each axis of world
 /// either way, as long as it is better, then half the turn. What limits hold has kinks, so that no derivative
 /// is asked for.
-PalmLag HandRenderer::Impl::lag_staying(const ClearanceFinder::Setting& setting) {
+PalmLag HandRenderer::Impl::lag_staying() {
   PalmLag lag;
-  lag.whole = (axes_by_bones(before) * axes_by_bones(setting.tracked).conjugate()).normalized();
-  double held = held_by_limits(setting, lag);
+  lag.whole = (axes_by_bones(before) * axes_by_bones(setting->tracked).conjugate()).normalized();
+  double held = held_by_limits(lag);
   const auto try_frame = [&](const Quaternion& frame) {
     const PalmLag other{lag.whole, frame.normalized()};
-    const double then = held_by_limits(setting, other);
+    const double then = held_by_limits(other);
     if (then >= held) return false;
     held = then, lag = other;
     return true;
   };
-  try_frame(frame_staying(setting, lag.whole));
+  try_frame(frame_staying(lag.whole));
   for (double turn = kFirstTurn; turn > kLastTurn && held > kHeld; turn *= 0.5) {
     for (int direction = 0; direction < 6; ++direction) {
       const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * Vector3::Unit(direction % 3);

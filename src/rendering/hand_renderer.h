@@ -5,7 +5,6 @@
 
 #include "../collision/contact_finder.h"
 #include "mr_hand_interaction/interaction.h"
-#include "mr_hand_interaction/rendering/hand_offset.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 

@@ -23,11 +23,10 @@ constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is 
 
 /// Deeper than kShallow the side on which the hand was shown before has a say, which the first look at the
 /// frame did not know: gaps are found anew.
-void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const HandOffset& last,
-                                  double least, HandOffset& offset, Hand& placed) {
+void HandRenderer::Impl::push_out(double least) {
   const HandOffset reference = offset;
-  if (least < -ClearanceFinder::kShallow) begin_anew(setting, reference, offset, placed);
-  keep_out(setting, reference, {last, kSwingShare * setting.moved + kSwing}, offset, placed);
+  if (least < -ClearanceFinder::kShallow) begin_anew(reference);
+  keep_out(reference, kSwingShare * setting->moved + kSwing);
 }
 
 /// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
@@ -36,62 +35,61 @@ void HandRenderer::Impl::push_out(const ClearanceFinder::Setting& setting, const
 /// In turn: from what is solved, at the pace that bodies push at; at the hand's own; then from the offset
 /// that leaves the hand as it was shown, with the palm's lag in more and more. The best so far is kept, and
 /// only what is no deeper than allowed counts.
-void HandRenderer::Impl::keep_pace(const ClearanceFinder::Setting& setting, const HandOffset& last,
-                                   const HandOffset& reference, HandOffset& offset, Hand& placed) {
-  if (farthest_joint(before, placed) <= tracked_way + kPace) return;
+void HandRenderer::Impl::keep_pace(const HandOffset& reference) {
+  if (farthest_joint(before, *placed) <= tracked_way + kPace) return;
   const Pace pace(before, tracked_way + kPace);
-  const double pushed_by = pushed_way(setting, placed);
+  const double pushed_by = pushed_way();
   const Pace hurried(before, tracked_way + pushed_by + kPace);
-  double least_beyond = pace.beyond(placed);
+  double least_beyond = pace.beyond(*placed);
   HandOffset best = offset;
   const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
-    at.keep(placed, clearances);
-    settle(setting, nearest_to, {last, swing}, offset, placed, &at, tolerated);
+    at.keep(*placed, clearances);
+    settle(nearest_to, swing, &at, tolerated);
     Pace::forget(clearances);
-    const double beyond = pace.beyond(placed);
-    if (beyond >= least_beyond || finder.find(placed, setting, kAhead, clearances) < -tolerated) return;
+    const double beyond = pace.beyond(*placed);
+    if (beyond >= least_beyond || finder.find(*placed, *setting, kAhead, clearances) < -tolerated) return;
     least_beyond = beyond;
     best = offset;
   };
-  const double swing = kSwingShare * setting.moved + kSwing;
+  const double swing = kSwingShare * setting->moved + kSwing;
   if (least_beyond > pushed_by) in_step(hurried, reference, swing, kTolerated);
   if (least_beyond > kTolerated && pushed_by > 0.0) in_step(pace, reference, swing, kTolerated);
   PalmLag lag = reference.lag;
   for (const Stays stays : {Stays::offset, Stays::palm, Stays::axes}) {
     if (least_beyond <= kTolerated + pushed_by) break;
-    if (stays == Stays::palm) lag = lag_staying(setting);
-    if (stays == Stays::axes) lag.frame = frame_staying(setting, lag.whole);
-    chain.begin(setting.tracked, lag);
-    const HandOffset stay = staying(setting, lag);
-    begin_anew(setting, stay, offset, placed);
+    if (stays == Stays::palm) lag = lag_staying();
+    if (stays == Stays::axes) lag.frame = frame_staying(lag.whole);
+    chain.begin(setting->tracked, lag);
+    const HandOffset stay = staying(lag);
+    begin_anew(stay);
     in_step(hurried, stay, kAnyway, stays == Stays::offset ? kTolerated : kDeepest);
   }
   leap = std::max(0.0, least_beyond - pushed_by);
   offset = best;
-  chain.begin(setting.tracked, offset.lag);
-  chain.place(offset, placed);
+  chain.begin(setting->tracked, offset.lag);
+  chain.place(offset, *placed);
 }
 
 /// The longest way by which a body that the hand leans on has come towards it since the frame before [m]. n.v
 /// of the body's point at the capsule's surface, n out of the body: > 0 comes at the hand.
-double HandRenderer::Impl::pushed_way(const ClearanceFinder::Setting& setting, const Hand& placed) const {
+double HandRenderer::Impl::pushed_way() const {
   double fastest = 0.0;
   for (const Clearance& clearance : clearances) {
     if (clearance.pressure <= 0.0) continue;
-    const Capsule& capsule = placed.capsules[clearance.key.capsule];
+    const Capsule& capsule = placed->capsules[clearance.key.capsule];
     const Vector3 point = capsule.axis_point(clearance.s) - capsule.radius * clearance.normal;
     fastest =
-        std::max(fastest, clearance.normal.dot(finder.velocity(clearance.key.body, point, setting.bodies)));
+        std::max(fastest, clearance.normal.dot(finder.velocity(clearance.key.body, point, setting->bodies)));
   }
   return fastest * elapsed;
 }
 
 /// The hand does not move from where it was shown. Joints as they pointed, within the limits that they have
 /// in the palm of now; the shift takes the palm's own way off.
-HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, const PalmLag& lag) {
+HandOffset HandRenderer::Impl::staying(const PalmLag& lag) {
   HandOffset stay;
   stay.lag = lag;
-  stay.shift = before.palm.position - setting.tracked.palm.position;
+  stay.shift = before.palm.position - setting->tracked.palm.position;
   for (int f = 0; f < kFingers; ++f)
     stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, finger_before(f));
   return stay;
@@ -99,18 +97,17 @@ HandOffset HandRenderer::Impl::staying(const ClearanceFinder::Setting& setting, 
 
 /// Given up in this order: the bound on a fingertip's turn; nearness to the offset of before, for where the
 /// hand was shown; bending round what is in the way, for a shift of the whole.
-void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed) {
-  if (settle(setting, reference, bounds, offset, placed) > -kTolerated) return;
-  begin_anew(setting, reference, offset, placed);
-  if (settle(setting, reference, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
-  if (setting.shown_before != nullptr) {
-    const HandOffset stay = staying(setting, offset.lag);
-    begin_anew(setting, stay, offset, placed);
-    if (settle(setting, stay, {bounds.before, kAnyway}, offset, placed) > -kTolerated) return;
+void HandRenderer::Impl::keep_out(const HandOffset& reference, double swing) {
+  if (settle(reference, swing) > -kTolerated) return;
+  begin_anew(reference);
+  if (settle(reference, kAnyway) > -kTolerated) return;
+  if (setting->shown_before != nullptr) {
+    const HandOffset stay = staying(offset.lag);
+    begin_anew(stay);
+    if (settle(stay, kAnyway) > -kTolerated) return;
   }
-  begin_anew(setting, reference, offset, placed);
-  shift_out(setting, offset, placed);
+  begin_anew(reference);
+  shift_out();
 }
 
 /// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
@@ -119,20 +116,19 @@ void HandRenderer::Impl::keep_out(const ClearanceFinder::Setting& setting, const
 /// Rows J of the gaps are n for the shift and FingerChain::gradient for joints. A plane is the surface's
 /// tangent there: on what is curved, or once joints turn, it is right for small steps only, and gaps are
 /// found anew at the place that was solved for.
-double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                                  const OffsetBounds& bounds, HandOffset& offset, Hand& placed,
-                                  const Pace* pace, double tolerated) {
+double HandRenderer::Impl::settle(const HandOffset& reference, double swing, const Pace* pace,
+                                  double tolerated) {
   const int most_in_vain = tolerated > kTolerated ? kMaxPasses : kMostInVain;
   double least = 0.0, best = std::numeric_limits<double>::lowest();
   int in_vain = 0;
   for (int pass = 0; pass < kMaxPasses && in_vain < most_in_vain; ++pass) {
-    linearise(placed);
+    linearise();
     const HandOffset from = offset;
-    const double expected = solve_offset(reference, bounds, chain, clearances, offset);
-    chain.place(offset, placed);
+    const double expected = solve_offset(reference, {*last, swing}, chain, clearances, offset);
+    chain.place(offset, *placed);
     if (expected > -kClear && way(from, offset) < kSmallStep) return expected;
-    least = finder.find(placed, setting, kAhead, clearances);
-    if (pace != nullptr) least = std::min(least, pace->keep(placed, clearances));
+    least = finder.find(*placed, *setting, kAhead, clearances);
+    if (pace != nullptr) least = std::min(least, pace->keep(*placed, clearances));
     if (least > -kClear) return least;
     in_vain = pace != nullptr && least < kBetter * best ? in_vain + 1 : 0;
     best = std::max(best, least);
@@ -140,22 +136,21 @@ double HandRenderer::Impl::settle(const ClearanceFinder::Setting& setting, const
   return least;
 }
 
-void HandRenderer::Impl::begin_anew(const ClearanceFinder::Setting& setting, const HandOffset& reference,
-                                    HandOffset& offset, Hand& placed) {
+void HandRenderer::Impl::begin_anew(const HandOffset& reference) {
   offset = reference;
-  chain.place(offset, placed);
+  chain.place(offset, *placed);
   clearances.clear();
-  finder.find(placed, setting, kAhead, clearances);
+  finder.find(*placed, *setting, kAhead, clearances);
 }
 
 ///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
-void HandRenderer::Impl::linearise(const Hand& placed) {
+void HandRenderer::Impl::linearise() {
   for (Clearance& clearance : clearances) {
     const int capsule = clearance.key.capsule;
     const int finger_index = HandChain::finger_that_moves(capsule);
     clearance.by_shift << clearance.normal.array(), 0.0;
     if (finger_index < 0) continue;
-    const Vector3 point = placed.capsules[clearance.key.capsule].axis_point(clearance.s);
+    const Vector3 point = placed->capsules[clearance.key.capsule].axis_point(clearance.s);
     clearance.by_finger = chain.finger(finger_index).gradient(bone_of(capsule), point, clearance.normal);
   }
 }
@@ -173,8 +168,7 @@ double HandRenderer::Impl::way(const HandOffset& from, const HandOffset& to) {
 /// The clearances contradict each other: the hand as it is goes as a whole to that side of the deepest body
 /// which is the nearest. For a side with the normal n and height h the hand's deepest capsule is at
 /// min n.a - r - h < 0, and the hand is out by as much along n.
-void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, HandOffset& offset,
-                                   Hand& placed) {
+void HandRenderer::Impl::shift_out() {
   constexpr int kMaxBodies = 4;
   for (int attempt = 0; attempt < kMaxBodies; ++attempt) {
     const auto deepest =
@@ -185,7 +179,7 @@ void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, Hand
     for (const Clearance& side : clearances) {
       if (side.key.body != deepest->key.body || side.key.shape != deepest->key.shape) continue;
       double reach = std::numeric_limits<double>::max();
-      for (const Capsule& capsule : placed.capsules) {
+      for (const Capsule& capsule : placed->capsules) {
         if (capsule.radius <= 0.0) continue;
         const double lowest = std::min(side.normal.dot(capsule.start), side.normal.dot(capsule.end));
         reach = std::min(reach, lowest - capsule.radius - side.height);
@@ -195,22 +189,22 @@ void HandRenderer::Impl::shift_out(const ClearanceFinder::Setting& setting, Hand
       way = -reach * side.normal;
     }
     offset.shift += way;
-    chain.place(offset, placed);
+    chain.place(offset, *placed);
     clearances.clear();
-    if (finder.find(placed, setting, kAhead, clearances) > -kTolerated) return;
+    if (finder.find(*placed, *setting, kAhead, clearances) > -kTolerated) return;
   }
-  lead_out(setting, offset, placed);
+  lead_out();
 }
 
 /// Leads the hand as it is out along that of its palm's axes on which it is out the soonest. No step is
 /// longer than what is left of the way out. Sphere tracing (Hart 1996): with a gap of -d the hand cannot be
 /// out before it has gone d, so that a step of d passes over no way out; near the surface kShortestStep gets
 /// it on.
-void HandRenderer::Impl::lead_out(const ClearanceFinder::Setting& setting, HandOffset& offset, Hand& placed) {
+void HandRenderer::Impl::lead_out() {
   constexpr double kFarthestOut = 0.5;      // [m]
   constexpr double kShortestStep = 0.0005;  // [m]
-  finder.begin(setting, offset.shift.norm() + kFarthestOut);
-  const Matrix3 palm = setting.tracked.palm.orientation.toRotationMatrix();
+  finder.begin(*setting, offset.shift.norm() + kFarthestOut);
+  const Matrix3 palm = setting->tracked.palm.orientation.toRotationMatrix();
   double nearest = kFarthestOut;
   const Vector3 from = offset.shift;
   Vector3 out = from;
@@ -218,9 +212,9 @@ void HandRenderer::Impl::lead_out(const ClearanceFinder::Setting& setting, HandO
     const Vector3 way = (direction < 3 ? 1.0 : -1.0) * palm.col(direction % 3);
     for (double gone = 0.0; gone < nearest;) {
       offset.shift = from + gone * way;
-      chain.place(offset, placed);
+      chain.place(offset, *placed);
       clearances.clear();
-      const double least = finder.find(placed, setting, kAhead, clearances);
+      const double least = finder.find(*placed, *setting, kAhead, clearances);
       if (least > -kTolerated) {
         nearest = gone;
         out = offset.shift;
@@ -229,7 +223,7 @@ void HandRenderer::Impl::lead_out(const ClearanceFinder::Setting& setting, HandO
     }
   }
   offset.shift = out;
-  chain.place(offset, placed);
+  chain.place(offset, *placed);
 }
 
 }  // namespace mrhi

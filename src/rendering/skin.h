@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,11 +8,37 @@
 #include <utility>
 #include <vector>
 
-#include "light.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "mr_hand_interaction/scene/shape.h"
+#include "mr_hand_interaction/simulation_state.h"
 #include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
+
+using Rgb = Eigen::Array3f;  ///< 0 to 1
+
+/// Towards the main light (unit).
+inline Eigen::Vector3f main_light() {
+  return {0.3505f, -0.4506f, 0.8211f};
+}
+
+/// What a white surface with this normal (world, unit) sends back: one light from above, one faint from
+/// below, light from all around, of which the share `around` arrives. Fixed in world, so that what is still
+/// keeps its colours while the view turns. A channel may exceed 1.
+///
+///     main:      (n.l + wrap) / (1 + wrap), >= 0 (wrapped diffuse light: red goes farther round than blue)
+///     all round: below + (1/2 + n_z/2) (above - below), as of a sky and a floor
+inline Rgb light_on(const Eigen::Vector3f& normal, float around = 1.0f) {
+  const Eigen::Vector3f main = main_light(), fill(-0.5514f, -0.4511f, -0.7018f);  // unit
+  const Rgb main_colour(0.40f, 0.39f, 0.37f), fill_colour(0.20f, 0.19f, 0.18f);
+  const Rgb above(0.62f, 0.63f, 0.65f), below(0.55f, 0.51f, 0.49f);
+  const Rgb wrap(0.45f, 0.30f, 0.25f);  // light that goes on in the skin past where it would end
+  const Rgb direct = (normal.dot(main) + wrap) / (1.0f + wrap);
+  const Rgb ambient = below + (0.5f + 0.5f * normal.z()) * (above - below);
+  const float from_below = 0.6f * std::max(0.0f, normal.dot(fill) + 0.4f);
+  return main_colour * direct.max(0.0f) * (0.4f + 0.6f * around) +
+         (ambient + fill_colour * from_below) * around;
+}
 
 /// The skin of one hand at one time, in world. Vertex i is the same place of every hand's skin.
 struct SkinSurface {
@@ -124,5 +151,58 @@ inline double smooth_step(double from, double to, double x) {
   const double t = std::min(1.0, std::max(0.0, (x - from) / (to - from)));
   return t * t * (3.0 - 2.0 * t);
 }
+
+struct SkinTone {
+  Rgb skin = Rgb::Ones();                   ///< times the skin's own colours
+  Rgb touching = Rgb(0.86f, 0.30f, 0.08f);  ///< where it presses
+};
+
+/// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. Less light comes from
+/// around where fingers cover each other or the palm (spheres as occluders). Immutable.
+class SkinPaint {
+ public:
+  explicit SkinPaint(const Skin& skin) : skin_(skin) {}  ///< keeps a reference
+
+  /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
+  /// presses, and the more so the harder.
+  void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours,
+             const SkinTone& tone = {}) const;
+
+ private:
+  float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
+                const std::vector<int>& touched) const;
+  const Skin& skin_;
+};
+
+/// Flattens the pads of a hand's skin against what they press: skin that is nearer to the touched plane than
+/// the pad's compression lies on it, and skin up to three times as far comes nearer. The compression grows
+/// with the force as a fingertip's does, to kDeepestPress.
+void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
+                const Skin& skin, SkinSurface& surface);
+
+constexpr double kDeepestPress = 0.0018;  ///< [m]
+
+/// A skin's triangles by how they are drawn: opaque up to a rim, and fading from there to nothing along the
+/// wrist. A lid about one more vertex, skin.size(), closes the opaque part: who looks through the wrist sees
+/// no inside. Immutable.
+class SkinWrist {
+ public:
+  explicit SkinWrist(const Skin& skin);  ///< keeps a reference
+
+  using Triangle = std::array<std::uint32_t, 3>;
+  const std::vector<Triangle>& opaque() const { return opaque_; }  ///< the lid included
+  const std::vector<Triangle>& fading() const { return fading_; }
+  /// How much of a vertex is seen: 1 everywhere but at the wrist.
+  float opacity(std::size_t vertex) const {
+    return vertex < skin_.size() ? 1.0f - skin_.model().looks[vertex].wrist : 1.0f;
+  }
+  /// Adds the lid's vertex to a surface of the skin and its colours.
+  void add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const;
+
+ private:
+  const Skin& skin_;
+  std::vector<Triangle> opaque_, fading_;
+  std::vector<std::uint32_t> rim_;
+};
 
 }  // namespace mrhi

@@ -5,7 +5,7 @@
 #include "../scene/limits.h"
 #include "../text/command_line.h"
 #include "../text/text.h"
-#include "../tracking/joint_orders.h"
+#include "../tracking/joints_input.h"
 
 namespace mrhi {
 namespace {
@@ -46,16 +46,11 @@ std::string order(const Given& given) {
   }
 }
 
-double rate(const Given& given) {
+/// `zero`: what 0 stands for where it is allowed, for messages.
+double rate(const Given& given, const std::string& zero = "") {
   const double rate = given.numbers(0, 1).front();
-  if (!(rate == 0.0 || (rate >= 1.0 && rate <= 1000.0)))
-    given.fail("is no rate from 1 to 1000 Hz, and not 0 for the recording's");
-  return rate;
-}
-
-double marker_rate(const Given& given) {
-  const double rate = given.numbers(0, 1).front();
-  if (!(rate >= 1.0 && rate <= 1000.0)) given.fail("is no rate from 1 to 1000 Hz");
+  if (!((rate == 0.0 && !zero.empty()) || (rate >= 1.0 && rate <= 1000.0)))
+    given.fail("is no rate from 1 to 1000 Hz" + (zero.empty() ? "" : ", and not 0 for " + zero));
   return rate;
 }
 
@@ -85,8 +80,8 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
   line.once("--topic", "TOPIC", [&a](const Given& given) { a.topic = given.text; });
   line.once("--params", "FILE.yaml", [&a](const Given& given) { a.parameter_file = given.text; });
   line.each("--set", "KEY=VALUE", [&a](const Given& given) { a.settings.push_back(given.setting()); });
-  line.once("--export", "HZ", [&a](const Given& given) { a.export_rate = rate(given); });
-  line.once("--markers", "RATE", [&a](const Given& given) { a.marker_rate = marker_rate(given); });
+  line.once("--export", "HZ", [&a](const Given& given) { a.export_rate = rate(given, "the recording's"); });
+  line.once("--markers", "RATE", [&a](const Given& given) { a.marker_rate = rate(given); });
   line.once("--marker-frames", "FRAME,FRAME,...",
             [&a](const Given& given) { a.marker_frames = frame_numbers(given); });
   line.once("--film", "FILE.webp|FILE.mp4", [&a](const Given& given) { a.film = film(given); });

@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "../ros/tracker_reader.h"
-#include "../text/file_text.h"
-#include "../text/limited_child.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/untrusted_input.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 
@@ -176,8 +176,7 @@ class DeviceFrames {
       each_in(*next_,
               [&](const auto& transform) { transforms_.set(transform, from_ros_time(next_->getTime())); });
     if (transforms_.connects(kWorld, frame_id)) return place(frame_id, stamp);
-    const std::string frame = frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
-    if (frame == kLeapFrame) return default_device_mount();
+    if (without_slash(frame_id) == kLeapFrame) return default_device_mount();
     throw NoTransform("frame '" + text::one_line(frame_id, 64) +
                       "' has no transform to 'world'; allowed: one that the bag's /tf_static or /tf has, or "
                       "--hand-transform");
@@ -258,9 +257,8 @@ class BagInput : public FrameSource {
     const auto hands = message.instantiate<mr_hand_interaction::HandFrame>();
     if (!hands) return refused("unknown version", "HandFrame with md5 " + message.getMD5Sum());
     const std::string& frame_id = hands->header.frame_id;
-    if (frame_id != "world" && frame_id != "/world") {
+    if (without_slash(frame_id) != kWorld)
       return refused("wrong frame", "frame_id '" + frame_id + "'; allowed: world");
-    }
     SourceFrame frame;
     frame.frame = from_message(*hands);
     return frame;

@@ -73,22 +73,20 @@ class BagError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A bag with what viewers show. Either of chosen frames: for each its number on /frame (std_msgs/UInt32),
-/// then its markers on /markers (visualization_msgs/MarkerArray), with all that is there. Or of a whole run:
-/// /markers at a rate, as a live node sends them, and for every frame /scene (when it changes),
-/// /rendered_hands, /tracked_hands, /objects and /contacts.
-class MarkerBag {
+/// Writes what viewers show.
+class Pictures {
  public:
-  /// `frames`: their numbers, from 0. Throws UsageError where this was built without ROS.
-  MarkerBag(const std::string& file, const std::set<std::size_t>& frames);
-  MarkerBag(const std::string& file, double rate);  ///< [Hz]
-  ~MarkerBag();
+  virtual ~Pictures() = default;
   /// After each frame; the first makes the file. Throws std::runtime_error naming it if it cannot be written.
-  void watch(const Simulation& simulation);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual void watch(const Simulation& simulation) = 0;
 };
+
+/// Into a bag. Either of chosen frames, by their numbers from 0: for each its number on /frame
+/// (std_msgs/UInt32), then its markers on /markers (visualization_msgs/MarkerArray), with all that is there.
+/// Or with a rate [Hz] of a whole run: /markers at that rate, as a live node sends them, and for every frame
+/// /scene (when it changes), /rendered_hands, /tracked_hands, /objects and /contacts. Throws UsageError where
+/// this was built without ROS.
+std::unique_ptr<Pictures> marker_bag(const std::string& file, const std::optional<double>& rate,
+                                     const std::set<std::size_t>& frames);
 
 }  // namespace mrhi

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../ros/result_messages.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 
@@ -50,87 +50,78 @@ void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& 
   bag.write(topic, stamp, message, connection);
 }
 
-}  // namespace
-
 /// What a change of the scene can change of a body: its name and both frictions.
 using Look = std::tuple<std::string, double, double>;
 
-struct MarkerBag::Impl {
-  void open();
-  void write_frame(const Simulation& simulation);
-  void write_run(const Simulation& simulation);
+class MarkerBag : public Pictures {
+ public:
+  MarkerBag(const std::string& of_file, const std::optional<double>& at_rate,
+            const std::set<std::size_t>& of_frames)
+      : file_(of_file), frames_(of_frames), rate_(at_rate) {}
 
-  std::string file;
-  std::set<std::size_t> frames;
-  double rate = 0.0;  ///< [Hz]; 0: the frames alone
-  std::size_t frame = 0;
-  rosbag::Bag bag;
-  std::vector<Look> drawn;  ///< the scene that was last written
-  std::unique_ptr<Markers> markers;
-  ros::Time shown;
+  void watch(const Simulation& simulation) override try {
+    if (!bag_.isOpen()) {
+      check_may_be_written(file_);
+      bag_.open(file_, rosbag::bagmode::Write);
+      bag_.setCompression(rosbag::compression::LZ4);
+    }
+    rate_ ? write_run(simulation) : write_frame(simulation);
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error("cannot write " + file_ + ": " + error.what());
+  }
+
+ private:
+  void write_frame(const Simulation& simulation) {
+    std_msgs::UInt32 number;
+    number.data = static_cast<std::uint32_t>(frame_++);
+    if (frames_.count(number.data) == 0) return;
+    const ros::Time stamp = header_of(simulation).stamp;
+    bag_.write("/frame", stamp, number);
+    bag_.write("/markers", stamp, markers_of(simulation));
+  }
+
+  void write_run(const Simulation& simulation) {
+    const std_msgs::Header header = header_of(simulation);
+    const FrameResult& result = simulation.result();
+    std::vector<Look> looks;
+    for (const Body& body : simulation.scene().bodies)
+      looks.emplace_back(body.name, body.material.static_friction, body.material.dynamic_friction);
+    if (!markers_ || looks != drawn_) {
+      drawn_ = std::move(looks);
+      markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
+      write_latched(bag_, "/scene", header.stamp,
+                    scene_message(simulation.scene(), simulation.configuration(), header));
+    }
+    bag_.write("/contacts", header.stamp,
+               contacts_message(simulation.scene(), result, simulation.state(), header));
+    bag_.write("/objects", header.stamp,
+               objects_message(simulation.scene(), result, simulation.state(), header));
+    bag_.write("/rendered_hands", header.stamp, rendered_message(result, header));
+    bag_.write("/tracked_hands", header.stamp, tracked_message(result, header));
+    markers_->note(result, header.stamp);
+    const double since = seconds_between(shown_, header.stamp);
+    if (since >= 0.0 && since < (1.0 - 1e-6) / *rate_) return;
+    shown_ = header.stamp;
+    visualization_msgs::MarkerArray array;
+    markers_->update(result, simulation.state(), header, array);
+    bag_.write("/markers", header.stamp, array);
+  }
+
+  std::string file_;
+  std::set<std::size_t> frames_;
+  std::optional<double> rate_;  ///< [Hz]; none: the frames alone
+  std::size_t frame_ = 0;
+  rosbag::Bag bag_;
+  std::vector<Look> drawn_;  ///< the scene that was last written
+  std::unique_ptr<Markers> markers_;
+  ros::Time shown_;
 };
 
-MarkerBag::MarkerBag(const std::string& file, const std::set<std::size_t>& frames)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->file = file;
-  impl_->frames = frames;
-}
+}  // namespace
 
-MarkerBag::MarkerBag(const std::string& file, double rate) : impl_(std::make_unique<Impl>()) {
-  impl_->file = file;
-  impl_->rate = rate;
-}
-
-MarkerBag::~MarkerBag() = default;
-
-void MarkerBag::watch(const Simulation& simulation) try {
-  impl_->open();
-  impl_->rate > 0.0 ? impl_->write_run(simulation) : impl_->write_frame(simulation);
-} catch (const rosbag::BagException& error) {
-  throw std::runtime_error("cannot write " + impl_->file + ": " + error.what());
-}
-
-void MarkerBag::Impl::open() {
-  if (bag.isOpen()) return;
-  check_may_be_written(file);
-  bag.open(file, rosbag::bagmode::Write);
-  bag.setCompression(rosbag::compression::LZ4);
-}
-
-void MarkerBag::Impl::write_frame(const Simulation& simulation) {
-  std_msgs::UInt32 number;
-  number.data = static_cast<std::uint32_t>(frame++);
-  if (frames.count(number.data) == 0) return;
-  const ros::Time stamp = header_of(simulation).stamp;
-  bag.write("/frame", stamp, number);
-  bag.write("/markers", stamp, markers_of(simulation));
-}
-
-void MarkerBag::Impl::write_run(const Simulation& simulation) {
-  const std_msgs::Header header = header_of(simulation);
-  const FrameResult& result = simulation.result();
-  std::vector<Look> looks;
-  for (const Body& body : simulation.scene().bodies)
-    looks.emplace_back(body.name, body.material.static_friction, body.material.dynamic_friction);
-  if (!markers || looks != drawn) {
-    drawn = std::move(looks);
-    markers = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
-    write_latched(bag, "/scene", header.stamp,
-                  scene_message(simulation.scene(), simulation.configuration(), header));
-  }
-  bag.write("/contacts", header.stamp,
-            contacts_message(simulation.scene(), result, simulation.state(), header));
-  bag.write("/objects", header.stamp,
-            objects_message(simulation.scene(), result, simulation.state(), header));
-  bag.write("/rendered_hands", header.stamp, rendered_message(result, header));
-  bag.write("/tracked_hands", header.stamp, tracked_message(result, header));
-  markers->note(result, header.stamp);
-  const double since = seconds_between(shown, header.stamp);
-  if (since >= 0.0 && since < (1.0 - 1e-6) / rate) return;
-  shown = header.stamp;
-  visualization_msgs::MarkerArray array;
-  markers->update(result, simulation.state(), header, array);
-  bag.write("/markers", header.stamp, array);
+std::unique_ptr<Pictures> marker_bag(const std::string& file, const std::optional<double>& rate,
+                                     const std::set<std::size_t>& frames) {
+  return std::make_unique<MarkerBag>(file, rate, frames);
 }
 
 }  // namespace mrhi

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "inputs.h"
 

@@ -12,7 +12,7 @@
 #include "../collision/overlap.h"
 #include "../record/record.h"
 #include "../simulation/state_bytes.h"
-#include "../text/csv.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/package_paths.h"

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/parameters.h"
 
 namespace mrhi {
@@ -112,11 +112,10 @@ ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
   constexpr double kFilmRate = 60.0;  // [Hz]
-  const std::string bag = output_ + "/markers.bag";
-  if (arguments.marker_rate || !arguments.film.empty())
-    markers_ = std::make_unique<MarkerBag>(bag, arguments.marker_rate.value_or(kFilmRate));
-  else if (!arguments.marker_frames.empty())
-    markers_ = std::make_unique<MarkerBag>(bag, arguments.marker_frames);
+  std::optional<double> rate = arguments.marker_rate;
+  if (!rate && !arguments.film.empty()) rate = kFilmRate;
+  if (rate || !arguments.marker_frames.empty())
+    markers_ = marker_bag(output_ + "/markers.bag", rate, arguments.marker_frames);
 }
 
 void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,7 +12,7 @@
 #include "inputs.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/replay/replay.h"
-#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/body.h"
 #include "tables.h"
 
 namespace mrhi {
@@ -110,7 +109,7 @@ class ReplayRun {
   std::string output_;
   std::string made_;  ///< the outermost folder that this run has made; empty: none
   std::unique_ptr<ResultWriter> writer_;
-  std::unique_ptr<MarkerBag> markers_;
+  std::unique_ptr<Pictures> markers_;
   std::optional<Nanoseconds> first_stamp_, last_stamp_;
 };
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "../text/csv.h"
+#include "../text/files.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi::json {

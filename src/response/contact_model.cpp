@@ -1,6 +1,6 @@
 #include "mr_hand_interaction/response/contact_model.h"
 
-#include "../text/registry.h"
+#include "../text/text.h"
 #include "contact_model_list.h"
 #include "contact_step.h"
 #include "implicit_model.h"

@@ -71,6 +71,13 @@ Hand from_message(const mr_hand_interaction::Hand& message) {
   return hand;
 }
 
+template <class Message>
+Message xyz_message(const Vector3& v) {
+  Message message;
+  message.x = v.x(), message.y = v.y(), message.z = v.z();
+  return message;
+}
+
 }  // namespace
 
 mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching) {
@@ -114,18 +121,17 @@ HandFrame from_message(const mr_hand_interaction::HandFrame& message) {
 }
 
 geometry_msgs::Point to_message(const Vector3& point) {
-  geometry_msgs::Point message;
-  message.x = point.x();
-  message.y = point.y();
-  message.z = point.z();
-  return message;
+  return xyz_message<geometry_msgs::Point>(point);
 }
 
 geometry_msgs::Vector3 vector_message(const Vector3& v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
+  return xyz_message<geometry_msgs::Vector3>(v);
+}
+
+geometry_msgs::Twist to_message(const Twist& twist) {
+  geometry_msgs::Twist message;
+  message.linear = vector_message(twist.linear);
+  message.angular = vector_message(twist.angular);
   return message;
 }
 
@@ -152,10 +158,18 @@ Pose from_message(const geometry_msgs::Pose& pose) {
   return {from_message(pose.position), Quaternion(q.w, q.x, q.y, q.z)};
 }
 
+Twist from_message(const geometry_msgs::Twist& twist) {
+  return {from_message(twist.linear), from_message(twist.angular)};
+}
+
 Pose from_message(const geometry_msgs::Transform& transform) {
   const auto& t = transform.translation;
   const auto& q = transform.rotation;
   return {{t.x, t.y, t.z}, Quaternion(q.w, q.x, q.y, q.z).normalized()};
+}
+
+std::string without_slash(const std::string& frame_id) {
+  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
 }
 
 ros::Time to_ros_time(Nanoseconds stamp) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "../rendering/skin_paint.h"
+#include "../rendering/skin.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 

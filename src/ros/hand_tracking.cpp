@@ -6,7 +6,6 @@
 
 #include <boost/make_shared.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

@@ -4,12 +4,16 @@
 #include <mr_hand_interaction/SimulationInput.h>
 #include <ros/ros.h>
 #include <ros/time.h>
+#include <boost/make_shared.hpp>
 
-#include <functional>
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "../record/record.h"
+#include "../simulation/state_bytes.h"
 #include "mr_hand_interaction/math.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {
 /// Time of the hand stream between and beyond its frames: the last stamp, and what has passed since it
@@ -18,13 +22,29 @@ namespace mrhi {
 class StampClock {
  public:
   /// A frame with this stamp has arrived.
-  void take(Nanoseconds stamp, const ros::Time& now);
+  void take(Nanoseconds stamp, const ros::Time& now) {
+    started_ = true;
+    last_stamp_ = stamp;
+    arrival_ = now;
+  }
+
   /// Stamp that a frame of now would have; now itself before the first frame. Does not go back if ROS time
   /// does.
-  Nanoseconds stamp(const ros::Time& now) const;
+  Nanoseconds stamp(const ros::Time& now) const {
+    if (!started_) return from_ros_time(now);
+    return last_stamp_ + std::max<Nanoseconds>(0, from_ros_time(now) - from_ros_time(arrival_));
+  }
 
-  void pause(const ros::Time& now);
-  void resume(const ros::Time& now);
+  void pause(const ros::Time& now) {
+    if (!paused_) pause_begin_ = stamp(now);
+    paused_ = true;
+  }
+
+  void resume(const ros::Time& now) {
+    if (paused_) pauses_ += std::max<Nanoseconds>(0, stamp(now) - pause_begin_);
+    paused_ = false;
+  }
+
   bool paused() const { return paused_; }
 
   Nanoseconds to_simulation(Nanoseconds stamp) const { return stamp - pauses_; }
@@ -44,9 +64,15 @@ class StampClock {
 /// when it is back.
 class ClockLeaps {
  public:
-  bool look(Nanoseconds now);
+  bool look(Nanoseconds now) {
+    const Nanoseconds before = std::exchange(looked_, now), stride = std::exchange(stride_, now - before);
+    return before != 0 && stride_ > kLeap && stride_ / 4 > stride;
+  }
 
  private:
+  static constexpr Nanoseconds kLeap =
+      1'000'000'000;  // farther than four times what passed before, too: a clock may be fast
+
   Nanoseconds looked_ = 0, stride_ = 0;  // when, and what had passed since the look before
 };
 
@@ -54,19 +80,84 @@ class ClockLeaps {
 /// begins to listen is sent first what the simulation is then. Costs next to nothing while nobody listens.
 class InputLog {
  public:
-  InputLog(ros::NodeHandle& node, World world, const LiveSimulation& simulation, const StampClock& clock);
+  InputLog(ros::NodeHandle& node, World world, const LiveSimulation& simulation, const StampClock& clock)
+      : world_(std::move(world)),
+        simulation_(simulation),
+        clock_(clock),
+        run_(ros::WallTime::now().toNSec()),
+        publisher_(node.advertise<SimulationInput>(
+            "simulation_input", kQueue,
+            [this](const ros::SingleSubscriberPublisher& subscriber) { send_begin(subscriber); })) {}
 
   /// `time`, `expected`: as Simulation::begin got them.
-  void frame(const mr_hand_interaction::HandFrame& hands, Nanoseconds time, Nanoseconds expected);
-  void without_hands(Nanoseconds time);
-  void change(const Change& change);
+  void frame(const mr_hand_interaction::HandFrame& hands, Nanoseconds time, Nanoseconds expected) {
+    ++sequence_;
+    if (!heard()) return;
+    SimulationInput input = message(SimulationInput::FRAME);
+    input.header.stamp = hands.header.stamp;
+    input.time = time;
+    input.expected = expected;
+    input.hands = hands;
+    publisher_.publish(input);
+  }
+
+  void without_hands(Nanoseconds time) {
+    ++sequence_;
+    if (!heard()) return;
+    SimulationInput input = message(SimulationInput::SILENCE);
+    input.time = time;
+    publisher_.publish(input);
+  }
+
+  void change(const Change& change) {
+    ++sequence_;
+    note(change, simulation_, world_);
+    if (!heard()) return;
+    SimulationInput input = message(SimulationInput::CHANGE);
+    input.text = to_yaml(change);
+    add(files_of(change), input);
+    publisher_.publish(input);
+  }
+
   void lost(std::uint64_t frames) { lost_ = frames; }
 
   std::uint64_t sequence() const { return sequence_; }
 
  private:
-  void send_begin(const ros::SingleSubscriberPublisher& subscriber);
-  mr_hand_interaction::SimulationInput message(std::uint8_t kind) const;
+  using SimulationInput = mr_hand_interaction::SimulationInput;
+
+  static constexpr int kQueue = 1000;
+
+  static std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+  static void add(const RecordedFiles& files, SimulationInput& message) {
+    for (const RecordedFile& file : files) {
+      message.files.emplace_back();
+      message.files.back().name = file.name;
+      message.files.back().bytes = bytes_of(file.bytes);
+    }
+  }
+
+  void send_begin(const ros::SingleSubscriberPublisher& subscriber) {
+    SimulationInput input = message(SimulationInput::BEGIN);
+    input.text = to_yaml(world_);
+    add(world_.files, input);
+    input.state = bytes_of(to_bytes(simulation_.simulation().state()));
+    subscriber.publish(input);
+  }
+
+  mr_hand_interaction::SimulationInput message(std::uint8_t kind) const {
+    const SimulationState& state = simulation_.simulation().state();
+    SimulationInput input;
+    input.kind = kind;
+    input.run = run_;
+    input.sequence = sequence_;
+    input.header.stamp = to_ros_time(clock_.to_stamp(state.time));
+    input.state_hash = hash(state);
+    input.lost_by_queue = lost_;
+    return input;
+  }
+
   bool heard() const { return publisher_.getNumSubscribers() > 0; }
 
   World world_;

@@ -17,9 +17,8 @@
 #include <vector>
 
 #include "../math/duration_histogram.h"
-#include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "input_log.h"
 #include "input_statistics.h"
 #include "live_controls.h"
@@ -43,10 +42,6 @@ SceneOptions options_of(const Configuration& configuration) {
   SceneOptions options = scene_options(configuration);
   options.gravity.reset();
   return options;
-}
-
-std::string without_slash(const std::string& frame_id) {
-  return frame_id.compare(0, 1, "/") == 0 ? frame_id.substr(1) : frame_id;
 }
 
 /// One parameter; of a request without a name, all of the map that its value is.

@@ -169,17 +169,9 @@ LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes) {
 }
 
 const char* DecodeError::reason() const {
-  switch (kind_) {
-    case Kind::unknown_version:
-      return "unknown message version";
-    case Kind::malformed:
-      return "malformed message";
-    case Kind::wrong_count:
-      return "wrong finger or bone count";
-    case Kind::unknown_order:
-      return "unknown order of joints";
-  }
-  return "";
+  static const char* const reasons[] = {"unknown message version", "malformed message",
+                                        "wrong finger or bone count", "unknown order of joints"};
+  return reasons[static_cast<std::size_t>(kind_)];
 }
 
 std::vector<std::string> leap_versions() {

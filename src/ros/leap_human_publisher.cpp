@@ -2,7 +2,6 @@
 
 #include <mr_hand_interaction/LeapHuman.h>
 
-#include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <stdexcept>
 

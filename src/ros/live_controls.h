@@ -4,19 +4,31 @@
 #include <interactive_markers/interactive_marker_server.h>
 #include <mr_hand_interaction/TuneConfig.h>
 #include <ros/callback_queue.h>
+#include <ros/callback_queue_interface.h>
 #include <ros/ros.h>
+#include <visualization_msgs/InteractiveMarker.h>
+#include <boost/make_shared.hpp>
 
+#include <algorithm>
 #include <condition_variable>
+#include <cstdlib>
+#include <exception>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "../text/text.h"
+#include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
@@ -24,19 +36,61 @@ namespace mrhi {
 /// simulation it hands to run(), which has it done between two frames by the thread that spins the node.
 class BetweenFrames {
  public:
-  explicit BetweenFrames(const ros::NodeHandle& node);
+  explicit BetweenFrames(const ros::NodeHandle& node) : node_(node) {}
+
   /// Drops what waits; who waits for it gets an exception.
-  ~BetweenFrames();
+  ~BetweenFrames() {
+    {
+      const std::lock_guard<std::mutex> lock(ending_mutex_);
+      ends_ = true;
+    }
+    node_.getCallbackQueue()->removeByID(id());
+    spinner_.stop();
+  }
+
   BetweenFrames(const BetweenFrames&) = delete;
   BetweenFrames& operator=(const BetweenFrames&) = delete;
 
   /// A node handle whose services run beside the frames, after start().
-  ros::NodeHandle node_beside(const ros::NodeHandle& node);
+  ros::NodeHandle node_beside(const ros::NodeHandle& node) {
+    ros::NodeHandle beside(node);
+    beside.setCallbackQueue(&beside_);
+    return beside;
+  }
+
   void start() { spinner_.start(); }
   /// Blocks until `task` is done. Rethrows what it throws; throws std::runtime_error if the node ends before.
-  void run(const std::function<void()>& task);
+  void run(const std::function<void()>& task) {
+    std::future<void> done;
+    {
+      const auto job = boost::make_shared<Job>(task);
+      done = job->done();
+      const std::lock_guard<std::mutex> lock(ending_mutex_);
+      if (!ends_) node_.getCallbackQueue()->addCallback(job, id());
+    }
+    try {
+      done.get();
+    } catch (const std::future_error&) {
+      throw std::runtime_error("the node ends");
+    }
+  }
 
  private:
+  /// A task in the queue of the node. One that is dropped breaks its promise.
+  class Job : public ros::CallbackInterface {
+   public:
+    explicit Job(const std::function<void()>& task) : task_(task) {}
+    CallResult call() override {
+      task_();
+      return Success;
+    }
+
+    std::future<void> done() { return task_.get_future(); }
+
+   private:
+    std::packaged_task<void()> task_;
+  };
+
   std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
 
   ros::NodeHandle node_;
@@ -50,37 +104,122 @@ class BetweenFrames {
 /// the node's own queue of callbacks; what is dragged is asked for.
 class Placing {
  public:
-  Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame);
+  Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame)
+      : topic_(private_node.resolveName("place")), fixed_frame_(fixed_frame) {}
 
-  void turn(bool on, const Simulation& simulation);
+  void turn(bool on, const Simulation& simulation) {
+    if (on == (server_ != nullptr)) return;
+    server_ = on ? std::make_unique<interactive_markers::InteractiveMarkerServer>(topic_) : nullptr;
+    if (on) renew(simulation);
+    drags_.clear();
+  }
+
   /// The bodies that there are have changed.
-  void renew(const Simulation& simulation);
+  void renew(const Simulation& simulation) {
+    if (!server_) return;
+    server_->clear();
+    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
+      const Body& body = simulation.scene().bodies[b];
+      if (body.fixed || body.is_operator) continue;
+      server_->insert(
+          marker_of(body, simulation.state().bodies[b].pose, fixed_frame_),
+          [this](const visualization_msgs::InteractiveMarkerFeedbackConstPtr& feedback) { take(*feedback); });
+    }
+    server_->applyChanges();
+  }
+
   /// Markers follow their bodies.
-  void follow(const Simulation& simulation);
+  void follow(const Simulation& simulation) {
+    if (!server_) return;
+    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
+      const Body& body = simulation.scene().bodies[b];
+      if (!body.fixed && !body.is_operator)
+        server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
+    }
+    server_->applyChanges();
+  }
+
   /// Where the mouse holds objects. One that was let go, or of which nothing has been heard for a second, is
   /// no longer in it.
-  std::map<std::string, Pose> dragged();
+  std::map<std::string, Pose> dragged() {
+    std::map<std::string, Pose> poses;
+    if (!server_) return poses;
+    const ros::WallTime now = ros::WallTime::now();
+    for (auto drag = drags_.begin(); drag != drags_.end();) {
+      if ((now - drag->second.heard).toSec() > kSilence) {
+        drag = drags_.erase(drag);
+        continue;
+      }
+      poses[drag->first] = drag->second.pose;
+      ++drag;
+    }
+    return poses;
+  }
 
  private:
+  using InteractiveMarker = visualization_msgs::InteractiveMarker;
+  using InteractiveMarkerControl = visualization_msgs::InteractiveMarkerControl;
+  using Feedback = visualization_msgs::InteractiveMarkerFeedback;
+
+  /// rviz repeats itself four times a second while the mouse is down.
+  static constexpr double kSilence = 1.0;  // [s]
+  static constexpr double kRoom = 2.6;     // size of the handles, in radii of the body
+
+  static InteractiveMarkerControl control(const char* name, const Vector3& axis, std::uint8_t mode) {
+    InteractiveMarkerControl control;
+    const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), axis);
+    control.name = name;
+    control.interaction_mode = mode;
+    control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
+    return control;
+  }
+
+  /// Arrows and rings along and about the body's axes.
+  static InteractiveMarker marker_of(const Body& body, const Pose& pose, const std::string& frame) {
+    InteractiveMarker marker;
+    marker.header.frame_id = frame;
+    marker.name = body.name;
+    marker.scale = static_cast<float>(kRoom * body.bounding_radius);
+    marker.pose = to_message(pose);
+    const struct {
+      const char *move, *turn;
+      Vector3 axis;
+    } axes[] = {{"move x", "turn x", Vector3::UnitX()},
+                {"move y", "turn y", Vector3::UnitY()},
+                {"move z", "turn z", Vector3::UnitZ()}};
+    for (const auto& a : axes) {
+      marker.controls.push_back(control(a.move, a.axis, InteractiveMarkerControl::MOVE_AXIS));
+      marker.controls.push_back(control(a.turn, a.axis, InteractiveMarkerControl::ROTATE_AXIS));
+    }
+    return marker;
+  }
+
   struct Drag {
     Pose pose;
     ros::WallTime heard;
   };
-  void take(const visualization_msgs::InteractiveMarkerFeedback& feedback);
+  void take(const Feedback& feedback) {
+    const auto drag = drags_.find(feedback.marker_name);
+    if (feedback.event_type == Feedback::MOUSE_UP && drag != drags_.end()) drags_.erase(drag);
+    if (feedback.event_type == Feedback::KEEP_ALIVE && drag != drags_.end())
+      drag->second.heard = ros::WallTime::now();
+    Pose pose = from_message(feedback.pose);
+    pose.orientation.normalize();
+    const bool usable = pose.position.allFinite() && pose.orientation.coeffs().allFinite();
+    if (feedback.event_type == Feedback::POSE_UPDATE && usable)
+      drags_[feedback.marker_name] = {pose, ros::WallTime::now()};
+  }
 
   std::string topic_, fixed_frame_;
   std::unique_ptr<interactive_markers::InteractiveMarkerServer> server_;
   std::map<std::string, Drag> drags_;
 };
 
-/// Ends of the sliders of all numbers, from the parameters' table. A value beyond them, but within the
-/// parameter's limits, may be set all the same.
-void slider_ends(mr_hand_interaction::TuneConfig& least, mr_hand_interaction::TuneConfig& most);
-
 /// dynamic_reconfigure at ~tune: what one tunes by eye. It leaves checking to the node, so that a bad value
 /// is refused instead of moved to the nearest one allowed.
 class Tuning {
  public:
+  using Config = mr_hand_interaction::TuneConfig;
   using Values = std::vector<std::pair<std::string, std::string>>;  ///< names and YAML, as of parameters.h
   struct Actions {
     std::function<void(const Values&)> set;         ///< all or none; throws std::exception
@@ -88,19 +227,185 @@ class Tuning {
     std::function<const Simulation&()> simulation;  ///< that of now
   };
 
-  Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions);
-  ~Tuning();
+  Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions)
+      : actions_(std::move(actions)),
+        place_by_mouse_(place_by_mouse),
+        server_(mutex_, ros::NodeHandle(private_node, "tune")) {
+    Config least = current(), most = least;
+    slider_ends(least, most);
+    server_.setConfigMin(least);
+    server_.setConfigMax(most);
+    shown_ = current();
+    server_.updateConfig(shown_);
+    server_.setCallback([this](Config& wanted, std::uint32_t) { take(wanted); });
+    teller_ = std::thread([this] { tell(); });
+  }
+
+  /// Ends of the sliders of all numbers, from the parameters' table. A value beyond them, but within the
+  /// parameter's limits, may be set all the same.
+  static void slider_ends(Config& least, Config& most) {
+    dynamic_reconfigure::Config low = message_of(least), high = message_of(most);
+    set_ends(low.ints, high.ints);
+    set_ends(low.doubles, high.doubles);
+    least.__fromMessage__(low);
+    most.__fromMessage__(high);
+  }
+
+  ~Tuning() {
+    {
+      const std::lock_guard<std::mutex> lock(asking_);
+      ends_ = true;
+    }
+    asked_.notify_one();
+    teller_.join();
+  }
 
   /// Tells those who look what holds now, soon: each number is a call to the master, and frames do not wait
   /// for them.
-  void show();
+  void show() {
+    shown_ = current();
+    const std::lock_guard<std::mutex> lock(asking_);
+    to_tell_ = shown_;
+    asked_.notify_one();
+  }
 
  private:
-  using Config = mr_hand_interaction::TuneConfig;
-  void take(Config& wanted);
-  Config current() const;
-  Values changes(const Config& wanted) const;
-  void tell();
+  static constexpr const char *kStiffness = "material/stiffness", *kNoise = "filter/noise";
+
+  static dynamic_reconfigure::Config message_of(const Config& config) {
+    dynamic_reconfigure::Config message;
+    config.__toMessage__(message);
+    return message;
+  }
+
+  static std::string field_of(std::string parameter) {
+    std::replace(parameter.begin(), parameter.end(), '/', '_');
+    return parameter;
+  }
+
+  /// By the name of the parameter, of those that have one.
+  static std::map<std::string, std::string> parameter_texts(const Config& config) {
+    std::map<std::string, std::string> fields;
+    const dynamic_reconfigure::Config message = message_of(config);
+    for (const auto& field : message.ints) fields[field.name] = std::to_string(field.value);
+    for (const auto& field : message.doubles) fields[field.name] = text::exact(field.value);
+    for (const auto& field : message.strs) fields[field.name] = field.value;
+    std::map<std::string, std::string> texts;
+    for (const std::string& name : parameter_names()) {
+      const auto field = fields.find(field_of(name));
+      if (field != fields.end()) texts[name] = field->second;
+    }
+    return texts;
+  }
+
+  /// A parameter that is a number, or the word that a box stands for. Who moves the number means it, also
+  /// where it was the word until then.
+  struct NumberOrWord {
+    std::string name, word, number;
+    bool moved, word_wanted, word_before;
+
+    void add_to(Values& values) const {
+      if (moved || word_wanted != word_before)
+        values.emplace_back(name, word_wanted && !(moved && word_before) ? word : number);
+    }
+  };
+
+  /// The parameter that a number of the dialog belongs to: gravity has one for each axis.
+  static std::string parameter_of(const std::string& field) {
+    for (const std::string& name : parameter_names()) {
+      if (field_of(name) == field) return name;
+    }
+    return field.substr(0, field.rfind('_'));
+  }
+
+  template <class Field>
+  static void set_ends(std::vector<Field>& least, std::vector<Field>& most) {
+    for (std::size_t i = 0; i < least.size(); ++i) {
+      const ParameterLimits limits = parameter_limits(parameter_of(least[i].name)).value();
+      least[i].value = static_cast<decltype(least[i].value)>(limits.slider_min);
+      most[i].value = static_cast<decltype(most[i].value)>(limits.slider_max);
+    }
+  }
+
+  void take(Config& wanted) {
+    try {
+      const Values values = changes(wanted);
+      if (!values.empty()) actions_.set(values);
+      if (wanted.place_by_mouse != place_by_mouse_) actions_.place_by_mouse(wanted.place_by_mouse);
+      place_by_mouse_ = wanted.place_by_mouse;
+    } catch (const std::exception& error) {
+      ROS_WARN("not changed: %s", error.what());
+    }
+    wanted = shown_ = current();
+    const std::lock_guard<std::mutex> lock(asking_);
+    to_tell_.reset();
+  }
+
+  Config current() const {
+    const Simulation& simulation = actions_.simulation();
+    const Configuration& configuration = simulation.configuration();
+    dynamic_reconfigure::Config message = message_of(Config::__getDefault__());
+    for (const std::string& name : parameter_names()) {
+      const std::string field = field_of(name);
+      const std::string text = parameter_text(configuration, name);
+      for (auto& entry : message.ints)
+        if (entry.name == field) entry.value = std::atoi(text.c_str());
+      for (auto& entry : message.doubles)
+        if (entry.name == field) entry.value = std::strtod(text.c_str(), nullptr);
+      for (auto& entry : message.strs)
+        if (entry.name == field) entry.value = text;
+    }
+    Config config;
+    config.__fromMessage__(message);
+    const Vector3 gravity = configuration.gravity.value_or(simulation.scene().gravity);
+    config.gravity_of_scene = !configuration.gravity;
+    config.gravity_x = gravity.x(), config.gravity_y = gravity.y(), config.gravity_z = gravity.z();
+    config.filter_noise_estimated = !configuration.filter.noise;
+    config.filter_noise = configuration.filter.noise.value_or(kUsualNoise);
+    config.stiffness_of_model = !configuration.stiffness;
+    config.material_stiffness = default_material(configuration).stiffness;
+    config.place_by_mouse = place_by_mouse_;
+    return config;
+  }
+
+  Values changes(const Config& wanted) const {
+    Values values;
+    const auto before = parameter_texts(shown_);
+    for (const auto& [name, text] : parameter_texts(wanted)) {
+      if (name != kStiffness && name != kNoise && text != before.at(name)) values.emplace_back(name, text);
+    }
+    const Vector3 gravity(wanted.gravity_x, wanted.gravity_y, wanted.gravity_z);
+    const bool pulls_elsewhere = gravity != Vector3(shown_.gravity_x, shown_.gravity_y, shown_.gravity_z);
+    const std::vector<NumberOrWord> others{
+        {"gravity", "scene",
+         "[" + text::exact(gravity.x()) + ", " + text::exact(gravity.y()) + ", " + text::exact(gravity.z()) +
+             "]",
+         pulls_elsewhere, wanted.gravity_of_scene, shown_.gravity_of_scene},
+        {kStiffness, "model", text::exact(wanted.material_stiffness),
+         wanted.material_stiffness != shown_.material_stiffness, wanted.stiffness_of_model,
+         shown_.stiffness_of_model},
+        {kNoise, "estimated", text::exact(wanted.filter_noise), wanted.filter_noise != shown_.filter_noise,
+         wanted.filter_noise_estimated, shown_.filter_noise_estimated}};
+    for (const NumberOrWord& other : others) other.add_to(values);
+    return values;
+  }
+
+  /// The server's mutex comes first: what its callback has changed meanwhile is newer than what was to be
+  /// told.
+  void tell() {
+    while (true) {
+      {
+        std::unique_lock<std::mutex> lock(asking_);
+        asked_.wait(lock, [this] { return to_tell_ || ends_; });
+        if (ends_) return;
+      }
+      const boost::recursive_mutex::scoped_lock server(mutex_);
+      std::unique_lock<std::mutex> lock(asking_);
+      const std::optional<Config> config = std::exchange(to_tell_, std::nullopt);
+      lock.unlock();
+      if (config) server_.updateConfig(*config);
+    }
+  }
 
   Actions actions_;
   bool place_by_mouse_;

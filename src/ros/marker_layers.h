@@ -1,17 +1,21 @@
 #pragma once
 
+#include <mr_hand_interaction/ObjectState.h>
+#include <mr_hand_interaction/TrainingStatus.h>
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "../rendering/skin_paint.h"
+#include "../rendering/skin.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/simulation.h"
+#include "mr_hand_interaction/training/session.h"
 
 namespace mrhi {
 
@@ -51,30 +55,6 @@ void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& s
 /// A shape as a marker, a box in the light that hands are in; valid until the layer's next call.
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, MarkerLayer& layer);
-
-/// Where bodies are drawn.
-struct BodyLayers {
-  MarkerLayer &objects, &fixtures;
-};
-
-/// Draws the bodies of a scene. One into which a tracked finger has gone lets its ghost be seen.
-class BodyMarkers {
- public:
-  explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
-
-  /// Bodies that look other than when they were last added, or all.
-  void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all, BodyLayers layers);
-
- private:
-  struct Look {
-    Pose pose;
-    double opacity = 1.0;
-  };
-  void add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const;
-
-  const Scene& scene_;
-  std::vector<Look> added_, now_;
-};
 
 /// Where hands are drawn.
 struct HandLayers {
@@ -220,5 +200,17 @@ class ShadowMarkers {
   const double ground_;
   std::map<int, Cast> casts_;
 };
+
+/// What the participant is to do now, in a line.
+std::string instruction_now(const Session& session, bool paused, bool begins_by_itself);
+
+/// What rviz shows of a session, in the status's frame, a namespace for each layer: `target` (where the
+/// object is to be; its ring fills with the time held), `places` (the others, fainter, with their numbers),
+/// `path`, `object` (highlighted until it is held; `seen`: nothing if it is not there), `instructions`,
+/// `timer` and `result`. They go if they are not shown again. What is to be read is nearer to the eye of
+/// rviz/training.rviz than what hands do.
+visualization_msgs::MarkerArray training_markers(const Session& session, const Body& body,
+                                                 const mr_hand_interaction::TrainingStatus& status,
+                                                 const std::optional<mr_hand_interaction::ObjectState>& seen);
 
 }  // namespace mrhi

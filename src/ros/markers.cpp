@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../rendering/light.h"
+#include "../rendering/skin.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -116,10 +116,12 @@ struct AddShape {
   Marker& operator()(const Cylinder& c) const {
     return add(Marker::CYLINDER, {2.0 * c.radius, 2.0 * c.radius, 2.0 * c.half_length});
   }
+
   template <typename Other>
   Marker& operator()(const Other& round) const {
     return add_round(round, pose, paint, id, layer);
   }
+
   Marker& operator()(const Mesh& m) const {
     Marker& marker = add(Marker::MESH_RESOURCE, m.scale);
     marker.mesh_resource = m.uri;
@@ -188,43 +190,62 @@ Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGB
   return std::visit(AddShape{pose, paint, id, layer}, shape);
 }
 
-void BodyMarkers::add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
-                      BodyLayers layers) {
-  now_.resize(scene_.bodies.size());
-  for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
-  for (const Contact& contact : contacts) {
-    double& opacity = now_[contact.key.body].opacity;
-    opacity = std::min(opacity, opacity_around(contact.depth));
-  }
-  all = all || added_.size() != now_.size();
-  int object_id = 0, fixture_id = 0;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    const Body& body = scene_.bodies[i];
-    int& id = body.fixed ? fixture_id : object_id;
-    const bool changed = all || !same(now_[i].pose, added_[i].pose) || now_[i].opacity != added_[i].opacity;
-    if (changed) add_body(body, now_[i], id, body.fixed ? layers.fixtures : layers.objects);
-    id += static_cast<int>(body.visuals.empty() ? body.shapes.size() : body.visuals.size());
-  }
-  added_.swap(now_);
-}
+/// Where bodies are drawn.
+struct BodyLayers {
+  MarkerLayer &objects, &fixtures;
+};
 
-void BodyMarkers::add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const {
-  int id = first_id;
-  for (const Visual& visual : body.visuals) {
-    const auto& c = visual.rgba;
-    Marker& marker = add_shape(visual.shape, look.pose * visual.pose,
-                               color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
-    marker.text = body.name;
-    if (!visual.has_color && has_materials(marker.mesh_resource)) {
-      marker.mesh_use_embedded_materials = true;
-      marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
+/// Draws the bodies of a scene. One into which a tracked finger has gone lets its ghost be seen.
+class BodyMarkers {
+ public:
+  explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
+
+  /// Bodies that look other than when they were last added, or all.
+  void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all, BodyLayers layers) {
+    now_.resize(scene_.bodies.size());
+    for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
+    for (const Contact& contact : contacts) {
+      double& opacity = now_[contact.key.body].opacity;
+      opacity = std::min(opacity, opacity_around(contact.depth));
     }
+    all = all || added_.size() != now_.size();
+    int object_id = 0, fixture_id = 0;
+    for (std::size_t i = 0; i < now_.size(); ++i) {
+      const Body& body = scene_.bodies[i];
+      int& id = body.fixed ? fixture_id : object_id;
+      const bool changed = all || !same(now_[i].pose, added_[i].pose) || now_[i].opacity != added_[i].opacity;
+      if (changed) add_body(body, now_[i], id, body.fixed ? layers.fixtures : layers.objects);
+      id += static_cast<int>(body.visuals.empty() ? body.shapes.size() : body.visuals.size());
+    }
+    added_.swap(now_);
   }
-  if (!body.visuals.empty()) return;
-  for (const PlacedShape& placed : body.shapes)
-    add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer).text =
-        body.name;
-}
+
+ private:
+  struct Look {
+    Pose pose;
+    double opacity = 1.0;
+  };
+  void add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const {
+    int id = first_id;
+    for (const Visual& visual : body.visuals) {
+      const auto& c = visual.rgba;
+      Marker& marker = add_shape(visual.shape, look.pose * visual.pose,
+                                 color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
+      marker.text = body.name;
+      if (!visual.has_color && has_materials(marker.mesh_resource)) {
+        marker.mesh_use_embedded_materials = true;
+        marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
+      }
+    }
+    if (!body.visuals.empty()) return;
+    for (const PlacedShape& placed : body.shapes)
+      add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer).text =
+          body.name;
+  }
+
+  const Scene& scene_;
+  std::vector<Look> added_, now_;
+};
 
 Markers::Markers(const Scene& scene, std::string caption, PictureStyle style)
     : scene_(scene),

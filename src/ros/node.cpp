@@ -18,8 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "../text/safe_yaml.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 

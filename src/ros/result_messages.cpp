@@ -166,12 +166,10 @@ mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const 
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.fixed) continue;
-    const Twist twist = twist_of(body, state.bodies[i]);
     mr_hand_interaction::ObjectState object;
     object.name = body.name;
     object.pose = to_message(state.bodies[i].pose);
-    object.twist.linear = vector_message(twist.linear);
-    object.twist.angular = vector_message(twist.angular);
+    object.twist = to_message(twist_of(body, state.bodies[i]));
     object.mass = body.mass;
     object.held = is_held(i, state);
     object.is_operator = body.is_operator;
@@ -337,7 +335,7 @@ ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& mess
   request.mass = message.mass;
   request.pose = from_message(message.pose);
   if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
-  request.twist = {from_message(message.twist.linear), from_message(message.twist.angular)};
+  request.twist = from_message(message.twist);
   request.material = message.material;
   const auto& color = message.color;
   // Opacity 0 is that of a request that says nothing of its colour; what is no number is not.

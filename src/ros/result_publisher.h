@@ -1,38 +1,95 @@
 #pragma once
 
+#include <geometry_msgs/Point.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/message_traits.h>
 #include <ros/ros.h>
+#include <std_msgs/ColorRGBA.h>
+#include <std_msgs/String.h>
 #include <tf2_ros/transform_broadcaster.h>
+#include <visualization_msgs/MarkerArray.h>
+#include <boost/make_shared.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "input_log.h"
+#include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 #include "mr_hand_interaction/simulation.h"
 #include "result_messages.h"
 
-namespace mrhi {
+// In memory these are what goes over the wire: roscpp copies a vector of them in one go.
+static_assert(sizeof(geometry_msgs::Point) == 3 * sizeof(double), "a point has padding");
+static_assert(sizeof(std_msgs::ColorRGBA) == 4 * sizeof(float), "a colour has padding");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "messages are little-endian");
 
+namespace ros {
+namespace message_traits {
+template <>
+struct IsSimple<geometry_msgs::Point> : TrueType {};
+template <>
+struct IsSimple<std_msgs::ColorRGBA> : TrueType {};
+}  // namespace message_traits
+}  // namespace ros
+
+namespace mrhi {
 /// Publishes `haptics`, and `haptics/joints` (what each joint of the scene does by itself, as effort) where
 /// there are any, a message for each frame or each step, while somebody listens.
 class HapticsPublisher {
  public:
-  HapticsPublisher(ros::NodeHandle& node, HapticsRate rate);
+  HapticsPublisher(ros::NodeHandle& node, HapticsRate rate)
+      : rate_(rate),
+        publisher_(node.advertise<mr_hand_interaction::HapticsArray>("haptics", kQueue)),
+        joint_publisher_(node.advertise<sensor_msgs::JointState>("haptics/joints", kQueue)) {}
 
   /// After each step: keeps what is felt, under the stamp of the step's end, until the frame is published.
-  void note_step(const Simulation& simulation, Nanoseconds stamp);
+  void note_step(const Simulation& simulation, Nanoseconds stamp) {
+    if (rate_ != HapticsRate::step) return;
+    std_msgs::Header header;
+    header.stamp = to_ros_time(stamp);
+    add(simulation, simulation.state().contacts, header);
+  }
+
   /// What the steps brought, or without any the frame itself, under its header.
-  void publish(const Simulation& simulation, const FrameResult& result, const std_msgs::Header& header);
+  void publish(const Simulation& simulation, const FrameResult& result, const std_msgs::Header& header) {
+    if (steps_.empty() && joint_steps_.empty()) add(simulation, result.contacts, header);
+    publish_all(steps_, header, publisher_);
+    publish_all(joint_steps_, header, joint_publisher_);
+  }
 
  private:
+  static constexpr int kQueue = 100;  // the steps of a few frames come at once
+
+  template <typename Message>
+  static void publish_all(std::vector<Message>& messages, const std_msgs::Header& header,
+                          ros::Publisher& publisher) {
+    for (const Message& message : messages) {
+      message->header.frame_id = header.frame_id;
+      publisher.publish(message);
+    }
+    messages.clear();
+  }
+
   void add(const Simulation& simulation, const std::vector<Contact>& contacts,
-           const std_msgs::Header& header);
+           const std_msgs::Header& header) {
+    const Scene& scene = simulation.scene();
+    const SimulationState& state = simulation.state();
+    if (publisher_.getNumSubscribers() > 0)
+      steps_.push_back(boost::make_shared<mr_hand_interaction::HapticsArray>(
+          haptics_message(scene, state, contacts, header)));
+    if (!scene.joints.empty() && joint_publisher_.getNumSubscribers() > 0)
+      joint_steps_.push_back(
+          boost::make_shared<sensor_msgs::JointState>(joint_states_message(scene, state, header)));
+  }
 
   HapticsRate rate_;
   ros::Publisher publisher_, joint_publisher_;
@@ -48,22 +105,81 @@ class HapticsPublisher {
 ///   rendered_hands/left/pose_array and rendered_hands/right/pose_array (PoseArray).
 class StandardOutputs {
  public:
-  explicit StandardOutputs(const ros::NodeHandle& node);
+  explicit StandardOutputs(const ros::NodeHandle& node)
+      : node_(node),
+        hands_{node_.advertise<geometry_msgs::PoseArray>("rendered_hands/left/pose_array", kQueue),
+               node_.advertise<geometry_msgs::PoseArray>("rendered_hands/right/pose_array", kQueue)},
+        held_(node_.advertise<std_msgs::String>("held_object", kQueue, true)) {}
 
   /// Of objects.
   void publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
-               const std_msgs::Header& header);
-  void publish_hands(const FrameResult& result, const std_msgs::Header& header);
+               const std_msgs::Header& header) {
+    publish_objects(scene, state, header);
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      if (scene.bodies[i].fixed) continue;
+      geometry_msgs::WrenchStamped wrench;
+      wrench.header = header;
+      wrench.wrench = wrench_message(i, result, state);
+      objects_.at(scene.bodies[i].name).wrench.publish(wrench);
+    }
+  }
+
+  void publish_hands(const FrameResult& result, const std_msgs::Header& header) {
+    for (const RenderedHand& rendered : result.rendered)
+      hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
+  }
+
   /// Poses and what is held, as publish does.
-  void publish_objects(const Scene& scene, const SimulationState& state, const std_msgs::Header& header);
+  void publish_objects(const Scene& scene, const SimulationState& state, const std_msgs::Header& header) {
+    follow(scene);
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      if (scene.bodies[i].fixed) continue;
+      geometry_msgs::PoseStamped pose;
+      pose.header = header;
+      pose.pose = to_message(state.bodies[i].pose);
+      objects_.at(scene.bodies[i].name).pose.publish(pose);
+    }
+    std_msgs::String held;
+    held.data = held_objects(scene, state);
+    if (last_held_ != held.data) held_.publish(held);
+    last_held_ = held.data;
+  }
 
  private:
+  static constexpr int kQueue = 10;
+
+  static std::string topic_of(std::string name) {
+    std::replace(name.begin(), name.end(), '-', '_');
+    return "objects/" + name;
+  }
+
   struct ObjectTopics {
     std::string name;  // without /pose and /wrench
     ros::Publisher pose, wrench;
   };
-  ObjectTopics new_topics(const std::string& body, const std::map<std::string, ObjectTopics>& there);
-  void follow(const Scene& scene);
+  ObjectTopics new_topics(const std::string& body, const std::map<std::string, ObjectTopics>& there) {
+    std::string name = topic_of(body);
+    const auto is_taken = [&name](const auto& other) { return other.second.name == name; };
+    while (std::any_of(there.begin(), there.end(), is_taken)) name += '_';
+    return {name, node_.advertise<geometry_msgs::PoseStamped>(name + "/pose", kQueue),
+            node_.advertise<geometry_msgs::WrenchStamped>(name + "/wrench", kQueue)};
+  }
+
+  /// Topics of the bodies that there are.
+  void follow(const Scene& scene) {
+    std::map<std::string, ObjectTopics> objects;
+    const auto each_free = [&scene](auto&& use) {
+      for (const Body& body : scene.bodies)
+        if (!body.fixed) use(body.name);
+    };
+    each_free([&](const std::string& name) {
+      if (const auto known = objects_.find(name); known != objects_.end()) objects.insert(*known);
+    });
+    each_free([&](const std::string& name) {
+      if (objects.count(name) == 0) objects.emplace(name, new_topics(name, objects));
+    });
+    objects_ = std::move(objects);
+  }
 
   ros::NodeHandle node_;
   std::map<std::string, ObjectTopics> objects_;
@@ -76,38 +192,162 @@ class StandardOutputs {
 class ResultPublisher {
  public:
   ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
-                  const StampClock& clock);
+                  const StampClock& clock)
+      : fixed_frame_(fixed_frame),
+        clock_(clock),
+        haptics_(node, haptics),
+        rendered_hands_(node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue)),
+        tracked_hands_(node.advertise<mr_hand_interaction::HandFrame>("tracked_hands", kQueue)),
+        objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
+        joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", kQueue)),
+        contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
+        events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
+        marker_publisher_(
+            node.advertise<visualization_msgs::MarkerArray>("markers", kQueue,
+                                                            [this](const ros::SingleSubscriberPublisher&) {
+                                                              if (markers_) markers_->send_all();
+                                                            })),
+        scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
+        picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
+
   /// From now on the standard messages of StandardOutputs too.
-  void add_standard_outputs(const ros::NodeHandle& node);
+  void add_standard_outputs(const ros::NodeHandle& node) { standard_.emplace(node); }
 
   /// From now on this one. rviz begins with an empty picture, so that what is no longer there goes.
-  void show(const Simulation& simulation);
+  void show(const Simulation& simulation) {
+    simulation_ = &simulation;
+    markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
+    markers_shown_ = ros::WallTime();
+    scene_changed_ = true;
+  }
+
   /// After each step of a frame.
-  void note_step();
+  void note_step() { haptics_.note_step(*simulation_, clock_.to_stamp(simulation_->time())); }
+
   /// What robots and gloves wait for, under the result's own stamp: haptics, contacts, objects. Its rendered
   /// hands are not looked at.
-  void publish_response(const FrameResult& result);
+  void publish_response(const FrameResult& result) {
+    const std_msgs::Header when = header(result);
+    publish_scene_description();
+    haptics_.publish(*simulation_, result, when);
+    publish_contacts(result, when);
+    publish_objects(when);
+    if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
+  }
+
   /// What eyes wait for: hands, then transforms, events and, at most kMarkerRate times a second, markers.
-  void publish_picture(const FrameResult& result);
+  void publish_picture(const FrameResult& result) {
+    const std_msgs::Header when = header(result);
+    publish_hands(result, when);
+    publish_transforms(when);
+    if (standard_) standard_->publish_hands(result, when);
+    publish_events(result.events);
+    publish_markers(result, when);
+  }
+
   /// Both.
-  void publish(const FrameResult& result);
+  void publish(const FrameResult& result) {
+    publish_response(result);
+    publish_picture(result);
+  }
+
   /// What may be shown again at any time: hands and contacts as they were, markers, objects, transforms.
-  void publish_scene(const FrameResult& result, const ros::Time& stamp);
-  void publish_events(const std::vector<Event>& events);
+  void publish_scene(const FrameResult& result, const ros::Time& stamp) {
+    publish_scene_description();
+    if (!result.rendered.empty()) {
+      publish_contacts(result, header(result));
+      publish_hands(result, header(result));
+    }
+    publish_objects(header(stamp));
+    publish_transforms(header(stamp));
+    if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
+    publish_markers(result, header(stamp));
+    shown_ = ros::WallTime::now();
+  }
+
+  void publish_events(const std::vector<Event>& events) {
+    for (const Event& event : events) {
+      const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(event.stamp)));
+      publish_shared(events_,
+                     [&] { return event_message(simulation_->scene(), simulation_->result(), event, when); });
+    }
+  }
 
   /// When something was last shown.
   ros::WallTime shown() const { return shown_; }
   static constexpr double kMarkerRate = 60.0;  ///< [Hz]
 
  private:
-  std_msgs::Header header(const ros::Time& stamp) const;
-  std_msgs::Header header(const FrameResult& result) const;
-  void publish_scene_description();
-  void publish_hands(const FrameResult& result, const std_msgs::Header& header);
-  void publish_markers(const FrameResult& result, const std_msgs::Header& header);
-  void publish_contacts(const FrameResult& result, const std_msgs::Header& header);
-  void publish_objects(const std_msgs::Header& header);
-  void publish_transforms(const std_msgs::Header& header);
+  static constexpr int kQueue = 10, kEventQueue = 100;
+
+  /// Makes a message, shared, so that a subscriber in the same process gets it without a copy.
+  template <class Make>
+  static void publish_shared(const ros::Publisher& publisher, const Make& make) {
+    publisher.publish(boost::make_shared<decltype(make())>(make()));
+  }
+  /// Only where somebody listens.
+  template <class Make>
+  static void publish_to_listeners(const ros::Publisher& publisher, const Make& make) {
+    if (publisher.getNumSubscribers() > 0) publish_shared(publisher, make);
+  }
+
+  std_msgs::Header header(const ros::Time& stamp) const {
+    std_msgs::Header header;
+    header.stamp = stamp;
+    header.frame_id = fixed_frame_;
+    return header;
+  }
+
+  std_msgs::Header header(const FrameResult& result) const {
+    return header(to_ros_time(clock_.to_stamp(result.stamp)));
+  }
+
+  /// Before all that is of the scene.
+  void publish_scene_description() {
+    if (!std::exchange(scene_changed_, false)) return;
+    const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(simulation_->time())));
+    publish_shared(scene_publisher_,
+                   [&] { return scene_message(simulation_->scene(), simulation_->configuration(), when); });
+  }
+
+  void publish_hands(const FrameResult& result, const std_msgs::Header& header) {
+    publish_to_listeners(rendered_hands_, [&] { return rendered_message(result, header); });
+    publish_to_listeners(tracked_hands_, [&] { return tracked_message(result, header); });
+    shown_ = ros::WallTime::now();
+  }
+
+  void publish_markers(const FrameResult& result, const std_msgs::Header& header) {
+    if (marker_publisher_.getNumSubscribers() == 0) return;
+    markers_->note(result, header.stamp);
+    const ros::WallTime now = ros::WallTime::now();
+    if (ros::WallDuration(now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
+    markers_shown_ = now;
+    // Nobody in this process still has the one before: its memory serves again.
+    if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
+    markers_->update(result, simulation_->state(), header, *picture_);
+    marker_publisher_.publish(picture_);
+  }
+
+  void publish_contacts(const FrameResult& result, const std_msgs::Header& header) {
+    publish_to_listeners(contacts_, [&] {
+      return contacts_message(simulation_->scene(), result, simulation_->state(), header);
+    });
+  }
+
+  void publish_objects(const std_msgs::Header& header) {
+    const Scene& scene = simulation_->scene();
+    const SimulationState& state = simulation_->state();
+    publish_to_listeners(objects_,
+                         [&] { return objects_message(scene, simulation_->result(), state, header); });
+    if (!scene.joints.empty())
+      publish_to_listeners(joint_states_, [&] { return joint_states_message(scene, state, header); });
+  }
+
+  void publish_transforms(const std_msgs::Header& header) {
+    if (header.stamp == transforms_stamp_) return;  // tf2 warns of a stamp that it has
+    transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
+    transforms_stamp_ = header.stamp;
+  }
 
   std::string fixed_frame_;
   const StampClock& clock_;

@@ -2,9 +2,8 @@
 
 #include <array>
 
-#include "../text/safe_yaml.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "node.h"
 

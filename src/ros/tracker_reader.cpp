@@ -17,10 +17,6 @@ namespace {
 
 constexpr std::size_t kMostFrames = 10'000;
 
-std::string without_slash(const std::string& frame) {
-  return frame.substr(frame.compare(0, 1, "/") == 0 ? 1 : 0);
-}
-
 std::string named(const geometry_msgs::TransformStamped& transform) {
   return "from '" + text::one_line(transform.header.frame_id, 64) + "' to '" +
          text::one_line(transform.child_frame_id, 64) + "'";

@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "../tracking/joint_orders.h"
 #include "../tracking/joints_input.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/ros/leap_human.h"

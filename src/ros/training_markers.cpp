@@ -1,5 +1,3 @@
-#include "training_system.h"
-
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>

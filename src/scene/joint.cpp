@@ -171,22 +171,12 @@ void arrange_joints(Scene& scene) {
 }
 
 std::optional<int> floating_root(const Scene& scene, int body) {
-  for (;;) {
-    const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
-                                    [body](const Joint& one) { return one.child == body; });
-    if (joint == scene.joints.end()) break;
+  while (const Joint* joint = joint_of(scene, body)) {
     if (joint->parent == Joint::kWorld) return {};
     body = joint->parent;
   }
   if (scene.bodies[static_cast<std::size_t>(body)].fixed) return {};
   return body;
-}
-
-std::optional<int> find_joint(const Scene& scene, const std::string& name) {
-  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
-    if (scene.joints[i].name == name) return static_cast<int>(i);
-  }
-  return {};
 }
 
 }  // namespace mrhi

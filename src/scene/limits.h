@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
+#include <string>
 
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
+#include "mr_hand_interaction/scene/body.h"
 
 /// What the numbers of a body may be: far beyond what hands meet, and so near that squares and quotients of
 /// them are numbers still.
@@ -34,3 +38,22 @@ constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis as it is given
 constexpr Range kReach{1e-5, 10.0};
 
 }  // namespace mrhi::joint_ranges
+
+namespace mrhi {
+
+/// One number of a material: its name in files, what it may be, and what a slider spans of that.
+struct MaterialField {
+  const char* name;
+  const char* unit;
+  double Material::*value;
+  bool OwnMaterial::*own;
+  Range range, slider;
+};
+
+/// All of them; both the scene's YAML and the parameters are read by this table.
+const std::array<MaterialField, 4>& material_fields();
+
+/// What is wrong with the numbers taken together, or nothing.
+std::optional<std::string> material_conflict(const Material& material);
+
+}  // namespace mrhi

@@ -1,4 +1,4 @@
-#include "mesh_loader.h"
+#include "solid_mesh.h"
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -15,9 +15,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "../text/file_text.h"
-#include "../text/limited_child.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/untrusted_input.h"
 
 namespace mrhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "normal_urdf.h"
+#include "urdf.h"
 
 #include <tinyxml2.h>
 

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "../collision/overlap.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
-#include "../text/xml_danger.h"
+#include "../text/untrusted_input.h"
 #include "scene_yaml.h"
 #include "shape_kinds.h"
 #include "urdf.h"
@@ -66,10 +65,6 @@ void check_motion(const ObjectRequest& request) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
   check_motion(request);
   UrdfDocument document;
@@ -128,7 +123,7 @@ Scene requested_scene(const ObjectRequest& given, const SceneOptions& options) {
   Scene scene;
   if (!request.whole) return scene_of_body(request, options);
   check_motion(request);
-  read_urdf_text(kSource, request.folder, request.urdf, options, scene);
+  read_urdf(kSource, request.folder, request.urdf, options, scene);
   if (!request.joints.empty()) apply_joints_yaml(kSource + ": joints", request.joints, scene);
   Pose root = request.pose;
   root.orientation.normalize();
@@ -137,15 +132,8 @@ Scene requested_scene(const ObjectRequest& given, const SceneOptions& options) {
     if (joint.parent == Joint::kWorld) joint.in_parent = root * joint.in_parent;
   }
   put_before(request.name, scene);
-  try {
-    arrange_joints(scene);
-  } catch (const std::invalid_argument& error) {
-    throw SceneError(kSource + ": " + text::one_line(error.what()));
-  }
-  const std::string overlaps = overlaps_at_start(scene);
-  if (!overlaps.empty())
-    throw SceneError(kSource + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +
-                     text::number(kOverlap) + " m");
+  join_bodies(kSource, scene);
+  check_overlaps(kSource, scene);
   return scene;
 }
 

@@ -12,10 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
 #include "limits.h"
-#include "material_fields.h"
 #include "shape_kinds.h"
 
 namespace mrhi {
@@ -43,17 +42,8 @@ std::string origin(const Pose& pose) {
 /// What is in quotes in XML.
 std::string quoted(const std::string& text) {
   std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '"') {
-      result += "&quot;";
-    } else {
-      result += c;
-    }
-  }
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
   return result;
 }
 

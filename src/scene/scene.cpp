@@ -1,14 +1,168 @@
 #include "mr_hand_interaction/scene/scene.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+
+#include "../text/text.h"
+#include "limits.h"
+#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 
-std::optional<int> find_body(const Scene& scene, const std::string& name) {
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (scene.bodies[i].name == name) return static_cast<int>(i);
+const std::array<MaterialField, 4>& material_fields() {
+  static const std::array<MaterialField, 4> fields{{
+      {"restitution", "", &Material::restitution, &OwnMaterial::restitution, {0, 1}, {0, 1}},
+      {"static_friction", "", &Material::static_friction, &OwnMaterial::static_friction, {0, 10}, {0, 2}},
+      {"dynamic_friction", "", &Material::dynamic_friction, &OwnMaterial::dynamic_friction, {0, 10}, {0, 2}},
+      {"stiffness", " [N/m]", &Material::stiffness, &OwnMaterial::stiffness, {1, 1e7}, {10, 10000}},
+  }};
+  return fields;
+}
+
+std::optional<std::string> material_conflict(const Material& material) {
+  if (material.dynamic_friction <= material.static_friction) return {};
+  return "dynamic_friction " + text::number(material.dynamic_friction) + " is above static_friction " +
+         text::number(material.static_friction) +
+         "; allowed: at most static_friction, both set at once if need be";
+}
+
+namespace {
+
+using namespace body_limits;
+
+constexpr double kThinnest = 1e-12;  // smallest principal moment, of the largest
+
+[[noreturn]] void refuse(const Body& body, const std::string& what, const Range& allowed,
+                         const std::string& unit) {
+  throw std::invalid_argument("body '" + text::one_line(body.name, 60) + "': " + what +
+                              " is not allowed; allowed: " + allowed.describe() + unit);
+}
+
+void check_mass(const Body& body) {
+  if (!kMass.contains(body.mass)) refuse(body, "mass " + text::number(body.mass) + " kg", kMass, " kg");
+}
+
+void check_start(const Body& body) {
+  const Vector3& place = body.start.position;
+  if (!kPlace.contains(place.minCoeff()) || !kPlace.contains(place.maxCoeff()) || !place.allFinite())
+    refuse(body, "place " + text::vector(place) + " m", kPlace, " m");
+  const Twist& twist = body.start_twist;
+  if (!kSpeed.contains(twist.linear.norm()))
+    refuse(body, "velocity " + text::vector(twist.linear) + " m/s", kSpeed, " m/s");
+  if (!kSpin.contains(twist.angular.norm()))
+    refuse(body, "spin " + text::vector(twist.angular) + " rad/s", kSpin, " rad/s");
+}
+
+void check_inertia(const Body& body) {
+  const Matrix3& inertia = body.inertia;
+  const std::string what = "body '" + body.name + "': inertia ";
+  if (!inertia.allFinite()) throw std::invalid_argument(what + "is not finite; allowed: finite numbers");
+  if ((inertia - inertia.transpose()).norm() > 1e-9 * inertia.norm()) {
+    throw std::invalid_argument(what + "is not symmetric; allowed: a symmetric matrix");
   }
+  const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia).eigenvalues();
+  if (principal[0] > kThinnest * principal[2]) {
+    if (!kInertia.contains(principal[0]) || !kInertia.contains(principal[2]))
+      refuse(body, "inertia with the principal moments " + text::vector(principal) + " kg m^2", kInertia,
+             " kg m^2");
+    return;
+  }
+  throw std::invalid_argument(what + "with the principal moments " + text::vector(principal) +
+                              " kg m^2 is not allowed; allowed: all three above 0, and the smallest more "
+                              "than " +
+                              text::number(kThinnest) + " of the largest");
+}
+
+bool is_diagonal(const Matrix3& matrix) {
+  return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
+}
+
+/// Which axis has the intermediate moment: it is the second of the addition theorem (free_rotation() in
+/// integration/free_flight.cpp), for which A and B are then not negative, and the functions real.
+int intermediate(const Vector3& moments) {
+  for (int i = 0; i < 2; ++i) {
+    if ((moments[(i + 1) % 3] - moments[i]) * (moments[i] - moments[(i + 2) % 3]) >= 0.0) return i;
+  }
+  return 2;
+}
+
+/// Of a body that has its inertia along its own axes, these: to the bit.
+void find_principal_axes(Body& body) {
+  const Vector3 diagonal = body.inverse_inertia.diagonal();
+  const int second = intermediate(diagonal);
+  for (int i = 0; i < 3; ++i) {
+    const int axis = (second + 2 + i) % 3;
+    body.principal_axes.col(i) = Vector3::Unit(axis);
+    body.inverse_moments[i] = diagonal[axis];
+  }
+  if (body.fixed || is_diagonal(body.inverse_inertia)) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(body.inverse_inertia);
+  body.principal_axes = solver.eigenvectors();
+  if (body.principal_axes.determinant() < 0.0) body.principal_axes.col(2) *= -1.0;
+  body.inverse_moments = solver.eigenvalues();
+}
+
+template <typename Named>
+std::optional<int> find_named(const std::vector<Named>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  if (found == all.end()) return {};
+  return static_cast<int>(found - all.begin());
+}
+
+/// For each of the scene's bodies whether it is the one or hangs on it: joints come before those of what
+/// hangs on them.
+std::vector<char> those_that_go(std::size_t body, const Scene& scene) {
+  std::vector<char> goes(scene.bodies.size(), 0);
+  goes[body] = 1;
+  for (const Joint& joint : scene.joints) {
+    if (joint.parent != Joint::kWorld && goes[static_cast<std::size_t>(joint.parent)] != 0)
+      goes[static_cast<std::size_t>(joint.child)] = 1;
+  }
+  return goes;
+}
+
+}  // namespace
+
+std::optional<GraspMode> grasp_mode(const std::string& name) {
+  for (const GraspMode mode : {GraspMode::free, GraspMode::assist, GraspMode::never})
+    if (name_of(mode) == name) return mode;
   return {};
+}
+
+std::string name_of(GraspMode mode) {
+  static const char* const names[] = {"", "free", "assist", "never"};
+  return names[static_cast<std::size_t>(mode)];
+}
+
+void complete(Body& body) {
+  body.flies = !body.fixed;
+  body.inverse_inertia = Matrix3::Zero();
+  if (!body.fixed) {
+    check_mass(body);
+    check_inertia(body);
+    const Matrix3 inverse = body.inertia.inverse();
+    body.inverse_inertia = 0.5 * (inverse + inverse.transpose());
+  }
+  find_principal_axes(body);
+  check_start(body);
+  const Range allowed{0, kPlace.max};
+  body.bounding_radius = 0;
+  for (const PlacedShape& placed : body.shapes) {
+    const double reach = placed.pose.position.norm() + bounding_radius(placed.shape);
+    if (!allowed.contains(reach))
+      refuse(body, "a shape that reaches " + text::number(reach) + " m", allowed, " m");
+    body.bounding_radius = std::max(body.bounding_radius, reach);
+  }
+}
+
+std::optional<int> find_body(const Scene& scene, const std::string& name) {
+  return find_named(scene.bodies, name);
+}
+
+std::optional<int> find_joint(const Scene& scene, const std::string& name) {
+  return find_named(scene.joints, name);
 }
 
 std::vector<std::string> graspable_bodies(const Scene& scene) {
@@ -34,6 +188,84 @@ Body& free_body(Scene& scene, const std::string& name) {
   }
   throw std::invalid_argument("scene '" + scene.name + "' has no free object '" + name +
                               "'; allowed: " + (names.empty() ? "none" : names));
+}
+
+void append(const Scene& part, Scene& scene) {
+  std::vector<std::string> names;
+  for (const Body& body : scene.bodies) names.push_back(body.name);
+  for (const Body& body : part.bodies) {
+    if (find_body(scene, body.name))
+      throw std::invalid_argument("object '" + body.name + "' is there already; allowed: a name other than " +
+                                  text::joined(names));
+  }
+  for (const Joint& joint : part.joints) {
+    if (find_joint(scene, joint.name))
+      throw std::invalid_argument("joint '" + joint.name +
+                                  "' is there already; allowed: a name that is not taken");
+  }
+  const auto first = static_cast<int>(scene.bodies.size());
+  scene.bodies.insert(scene.bodies.end(), part.bodies.begin(), part.bodies.end());
+  for (Joint joint : part.joints) {
+    joint.child += first;
+    if (joint.parent != Joint::kWorld) joint.parent += first;
+    scene.joints.push_back(joint);
+  }
+  for (Operator op : part.operators) {
+    op.body += first;
+    if (op.restraint) *op.restraint += first;
+    scene.operators.push_back(op);
+  }
+  for (Tether tether : part.tethers) {
+    tether.body += first;
+    tether.fixture += first;
+    scene.tethers.push_back(tether);
+  }
+}
+
+std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
+  const std::vector<char> goes = those_that_go(body, scene);
+  std::vector<std::size_t> bodies;
+  for (std::size_t b = 0; b < goes.size(); ++b) {
+    if (goes[b] != 0) bodies.push_back(b);
+  }
+  return bodies;
+}
+
+void remove_body(std::size_t body, Scene& scene) {
+  const std::vector<char> goes = those_that_go(body, scene);
+  std::vector<int> place;  // of each body among those that stay
+  std::vector<Body> bodies;
+  for (std::size_t b = 0; b < goes.size(); ++b) {
+    place.push_back(static_cast<int>(bodies.size()));
+    if (goes[b] == 0) bodies.push_back(std::move(scene.bodies[b]));
+  }
+  scene.bodies = std::move(bodies);
+  std::vector<Joint> joints;
+  for (Joint& joint : scene.joints) {
+    if (goes[static_cast<std::size_t>(joint.child)] != 0) continue;
+    if (joint.parent != Joint::kWorld) joint.parent = place[static_cast<std::size_t>(joint.parent)];
+    joint.child = place[static_cast<std::size_t>(joint.child)];
+    joints.push_back(std::move(joint));
+  }
+  scene.joints = std::move(joints);
+  const auto stays = [&](int b) { return goes[static_cast<std::size_t>(b)] == 0; };
+  std::vector<Operator> operators;
+  for (Operator op : scene.operators) {
+    if (!stays(op.body)) continue;
+    op.body = place[static_cast<std::size_t>(op.body)];
+    if (op.restraint && !stays(*op.restraint)) op.restraint.reset();
+    if (op.restraint) op.restraint = place[static_cast<std::size_t>(*op.restraint)];
+    operators.push_back(op);
+  }
+  scene.operators = std::move(operators);
+  std::vector<Tether> tethers;
+  for (Tether tether : scene.tethers) {
+    if (!stays(tether.body) || !stays(tether.fixture)) continue;
+    tether.body = place[static_cast<std::size_t>(tether.body)];
+    tether.fixture = place[static_cast<std::size_t>(tether.fixture)];
+    tethers.push_back(tether);
+  }
+  scene.tethers = std::move(tethers);
 }
 
 }  // namespace mrhi

@@ -1,24 +1,276 @@
 #include "mr_hand_interaction/scene/scene_loader.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <filesystem>
 
 #include "../collision/overlap.h"
-#include "../text/file_text.h"
+#include "../text/files.h"
 #include "../text/text.h"
+#include "../text/untrusted_input.h"
+#include "limits.h"
 #include "scene_yaml.h"
+#include "solid_mesh.h"
 #include "urdf.h"
 
 namespace mrhi {
+
+void check_color(const std::string& element, const std::array<float, 4>& rgba) {
+  const Range& range = body_limits::kColor;
+  if (std::all_of(rgba.begin(), rgba.end(), [&](float part) { return range.contains(double(part)); })) return;
+  std::string shown;
+  for (const float part : rgba) shown += (shown.empty() ? "" : ", ") + text::number(double(part));
+  throw SceneError(element + ": color [" + shown +
+                   "] is not allowed; allowed: red, green, blue and opacity, each " + range.describe());
+}
+
 namespace {
 
+constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the shape
+
+/// A rigid body's principal moments obey a + b >= c. Files round them: a thin plate just meets it.
+constexpr double kTriangleSlack = 0.01;
+/// A body whose moments are this many times what its mass can have within its shapes has another unit.
+constexpr double kImplausible = 3.0;
+/// Objects that hands meet are no longer than this [m].
+constexpr double kLargeObject = 10.0;
+
+/// Has the inertia of a link that has neither one nor a shape.
+const Sphere kUnseen{0.01};
+
+/// Mass, centre and inertia about it, in the frame of a body's first link.
+struct Weight {
+  double mass = 0.0;
+  Vector3 centre = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+};
+
+Matrix3 symmetric(const Matrix3& matrix) {
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+/// Parallel axes: I = sum of I_i + m_i (d^2 1 - d d^T), with d from the common centre to the part's.
+Weight sum_of(const std::vector<Weight>& parts) {
+  if (parts.size() == 1) return parts.front();
+  Weight all;
+  for (const Weight& part : parts) all.mass += part.mass, all.centre += part.mass * part.centre;
+  all.centre /= all.mass;
+  for (const Weight& part : parts) {
+    const Vector3 d = part.centre - all.centre;
+    all.inertia += part.inertia + part.mass * (d.squaredNorm() * Matrix3::Identity() - d * d.transpose());
+  }
+  return all;
+}
+
+std::vector<PlacedShape> moved(std::vector<PlacedShape> shapes, const Pose& pose) {
+  for (PlacedShape& shape : shapes) shape.pose = pose * shape.pose;
+  return shapes;
+}
+
+class BodyReader {
+ public:
+  BodyReader(const std::string& source, const SceneOptions& options, ShapeReader& shapes,
+             UrdfDocument& document)
+      : source_(source), options_(options), shapes_(shapes), document_(document) {}
+
+  Body read(const PlacedLink& placed) {
+    const urdf::Link& link = *placed.link;
+    if (!is_name(link.name)) fail(link, std::string("this name is not allowed; allowed: ") + kNameIs);
+    Body body;
+    body.name = link.name;
+    body.fixed = placed.fixed;
+    body.material = options_.default_material;
+    std::vector<LinkPart> parts{{placed.link, Pose{}}};
+    parts.insert(parts.end(), placed.merged.begin(), placed.merged.end());
+    read_collisions(parts, body);
+    for (const LinkPart& part : parts) read_friction(part.link->name, body);
+    if (!body.fixed) weigh(parts, body);
+    body.start = placed.in_world * body.link_in_body.inverse();
+    for (const LinkPart& part : parts) read_visuals(part, body);
+    if (body.visuals.empty())
+      for (const PlacedShape& shape : body.shapes) body.visuals.push_back({shape.shape, shape.pose});
+    body.shapes = with_meshes_joined(body.shapes);
+    if (body.shapes.size() > kMostShapes)
+      fail(link, std::to_string(body.shapes.size()) + " collisions; allowed: at most 255");
+    finish(body);
+    return body;
+  }
+
+ private:
+  /// In the first link's frame; those of each part too, for its inertia.
+  void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
+    of_parts_.assign(parts.size(), {});
+    flat_ = false;
+    add_shapes(parts, &urdf::Link::collision_array, "collision ");
+    const auto has_none = [](const auto& shapes) { return shapes.empty(); };
+    if (!body.fixed && std::all_of(of_parts_.begin(), of_parts_.end(), has_none)) {
+      add_shapes(parts, &urdf::Link::visual_array, "visual ");
+      const bool none = std::all_of(of_parts_.begin(), of_parts_.end(), has_none);
+      if (none && moves(*parts[0].link->parent_joint)) return;  // a link of a mechanism
+      if (none)
+        fail(*parts[0].link, "a body that moves has no collision with a volume" +
+                                 std::string(flat_ ? ", its meshes are flat sheets" : "") +
+                                 "; allowed: 1 to 255 shapes");
+      document_.warnings.add("links without a collision touch with their visuals", "'" + body.name + "'");
+    }
+    for (const auto& shapes : of_parts_) body.shapes.insert(body.shapes.end(), shapes.begin(), shapes.end());
+  }
+
+  template <class Elements>
+  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      int number = 0;
+      for (const auto& element : *parts[i].link.*elements) {
+        const std::string where = "link '" + parts[i].link->name + "' " + kind + std::to_string(++number);
+        if (!element->geometry) throw SceneError(source_ + ": " + where + ": no geometry; allowed: a shape");
+        const auto shape = shapes_.read(*element->geometry, where, true);
+        if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
+        flat_ = flat_ || !shape;
+      }
+    }
+  }
+
+  /// One coefficient stands for both of ours, as it does in the simulators that have it.
+  void read_friction(const std::string& link, Body& body) const {
+    const auto given = document_.friction.find(link);
+    if (given == document_.friction.end()) return;
+    const Range& range = material_fields()[1].range;
+    const double friction = std::min(std::max(given->second, range.min), range.max);
+    if (friction != given->second)
+      document_.warnings.add("friction is held to " + range.describe(),
+                             "'" + link + "' " + text::number(given->second));
+    body.material.static_friction = body.material.dynamic_friction = friction;
+    body.own_material.static_friction = body.own_material.dynamic_friction = true;
+  }
+
+  /// A link without a mass adds none, unless no link of the body has one: then the shapes' volume does.
+  void weigh(const std::vector<LinkPart>& parts, Body& body) {
+    std::vector<Weight> weights;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].link->inertial && parts[i].link->inertial->mass != 0.0)
+        weights.push_back(weight_of(parts[i], of_parts_[i]));
+    const Weight all = weights.empty() ? weight_of_volume(body) : sum_of(weights);
+    body.mass = all.mass;
+    body.inertia = all.inertia;
+    body.link_in_body.position = -all.centre;
+    body.shapes = moved(std::move(body.shapes), body.link_in_body);
+  }
+
+  static Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) {
+    const urdf::Inertial& given = *part.link->inertial;
+    const Pose origin = part.pose * to_pose(given.origin);
+    const Matrix3 to_link = origin.orientation.toRotationMatrix();
+    Matrix3 inertia;
+    inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
+        given.izz;
+    Weight weight{given.mass, origin.position, symmetric(to_link * inertia * to_link.transpose())};
+    if (weight.inertia.isZero(0.0))
+      weight.inertia =
+          shapes.empty() ? inertia_of({{kUnseen, Pose{}}}, given.mass)
+                         : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}), given.mass);
+    return weight;
+  }
+
+  Weight weight_of_volume(const Body& body) const {
+    if (body.shapes.empty()) {
+      document_.warnings.add("links without mass and shape weigh 1 g", "'" + body.name + "'");
+      return {0.001, Vector3::Zero(), inertia_of({{kUnseen, Pose{}}}, 0.001)};
+    }
+    const SolidMoments moments = moments_of(body.shapes);
+    Weight weight;
+    weight.mass = options_.density * moments.volume;
+    weight.centre = moments.first / moments.volume;
+    const Matrix3 second = moments.second - moments.volume * weight.centre * weight.centre.transpose();
+    weight.inertia = options_.density * (second.trace() * Matrix3::Identity() - second);
+    document_.warnings.add("masses are volumes times scene/density, " + text::number(options_.density) +
+                               " kg/m^3, as the file gives none",
+                           "'" + body.name + "' " + text::number(weight.mass) + " kg");
+    return weight;
+  }
+
+  void read_visuals(const LinkPart& part, Body& body) {
+    for (std::size_t i = 0; i < part.link->visual_array.size(); ++i) {
+      const urdf::Visual& given = *part.link->visual_array[i];
+      const std::string element = "link '" + part.link->name + "' visual " + std::to_string(i + 1);
+      if (!given.geometry) throw SceneError(source_ + ": " + element + ": no geometry; allowed: a shape");
+      const std::optional<Shape> shape = shapes_.read(*given.geometry, element, false);
+      if (!shape) continue;
+      Visual visual{*shape, body.link_in_body * (part.pose * to_pose(given.origin))};
+      if (given.material && given.material->texture_filename.empty()) {
+        const urdf::Color& color = given.material->color;
+        visual.rgba = {{color.r, color.g, color.b, color.a}};
+        check_color(source_ + ": " + element, visual.rgba);
+        visual.has_color = true;
+      }
+      body.visuals.push_back(visual);
+    }
+  }
+
+  void finish(Body& body) const {
+    try {
+      complete(body);
+    } catch (const std::invalid_argument& error) {
+      throw SceneError(source_ + ": " + error.what());
+    }
+    if (body.fixed) return;
+    const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia).eigenvalues();
+    if (moments[0] + moments[1] < (1 - kTriangleSlack) * moments[2])
+      throw SceneError(
+          source_ + ": body '" + body.name + "': no rigid body has the principal moments of inertia " +
+          text::vector(moments) +
+          " kg m^2; allowed: the largest at most the sum of the others, or no <inertia> for that "
+          "of the shapes");
+    const double most = body.mass * body.bounding_radius * body.bounding_radius;
+    if (!body.shapes.empty() && moments[2] > kImplausible * most)
+      document_.warnings.add(
+          "inertias are too large for their masses and sizes; is the unit kg m^2? Without <inertia> that of "
+          "the shapes is taken",
+          "'" + body.name + "' " + text::number(moments[2]) + " kg m^2, at most " + text::number(most) +
+              " is possible");
+    if (2.0 * body.bounding_radius > kLargeObject)
+      document_.warnings.add(
+          "very large objects; are they in millimetres? <mesh scale=\"0.001 0.001 0.001\"> "
+          "makes metres of them",
+          "'" + body.name + "' reaches " + text::number(body.bounding_radius) + " m");
+  }
+
+  [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {
+    throw SceneError(source_ + ": link '" + text::one_line(link.name, 60) + "': " + what);
+  }
+
+  const std::string& source_;
+  const SceneOptions& options_;
+  ShapeReader& shapes_;
+  UrdfDocument& document_;
+  bool flat_ = false;                               // a shape of the body being read is a sheet
+  std::vector<std::vector<PlacedShape>> of_parts_;  // of the body being read, in its first link's frame
+};
+
+void read_bodies(const std::string& source, const std::string& folder, UrdfDocument& document,
+                 const std::vector<PlacedLink>& placed, const SceneOptions& options, Scene& scene) {
+  ShapeReader shapes(source, folder, options, document.warnings);
+  BodyReader reader(source, options, shapes, document);
+  std::vector<urdf::LinkConstSharedPtr> links;
+  for (const PlacedLink& body : placed) {
+    links.push_back(body.link);
+    for (const LinkPart& part : body.merged) links.push_back(part.link);
+  }
+  shapes.prepare(links);
+  for (const PlacedLink& body : placed)
+    if (!body.fixed || has_shape(body)) scene.bodies.push_back(reader.read(body));
+  scene.mesh_files = shapes.files();
+}
+
 namespace fs = std::filesystem;
+
+bool is_inside(const Bounds& bounds, const Vector3& place) {
+  return (place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all();
+}
 
 void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const Vector3& start = body.start.position;
-    const bool inside = (start.array() >= scene.bounds.min.array()).all() &&
-                        (start.array() <= scene.bounds.max.array()).all();
-    if (body.fixed || inside) continue;
+    if (body.fixed || is_inside(scene.bounds, start)) continue;
     throw SceneError(file + ": body '" + body.name + "': start " + text::vector(start) +
                      " m is out of bounds; allowed: " + text::vector(scene.bounds.min) + " to " +
                      text::vector(scene.bounds.max));
@@ -30,11 +282,8 @@ void widen_bounds(Scene& scene) {
   constexpr double kRoom = 1.0;  // [m]
   Bounds wide = scene.bounds;
   for (const Body& body : scene.bodies) {
-    if (body.fixed) continue;
     const Vector3 room = Vector3::Constant(kRoom + body.bounding_radius), &start = body.start.position;
-    if ((start.array() >= scene.bounds.min.array()).all() &&
-        (start.array() <= scene.bounds.max.array()).all())
-      continue;
+    if (body.fixed || is_inside(scene.bounds, start)) continue;
     wide.min = wide.min.cwiseMin(start - room), wide.max = wide.max.cwiseMax(start + room);
   }
   if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;
@@ -42,6 +291,45 @@ void widen_bounds(Scene& scene) {
   scene.warnings.push_back(
       "bodies start out of the usual bounds, which are widened: " + text::vector(wide.min) + " to " +
       text::vector(wide.max) + " m; the YAML's 'bounds' sets others");
+}
+
+}  // namespace
+
+void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
+               const SceneOptions& options, Scene& scene) {
+  UrdfDocument document = parse_urdf(source, xml);
+  read_bodies(source, folder, document, place_links(source, document), options, scene);
+  if (scene.bodies.empty()) throw SceneError(source + ": no bodies; allowed: at least one link with a shape");
+  scene.joints = read_joints(source, document, scene);
+  scene.warnings = document.warnings.lines();
+}
+
+void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
+               const PlacedLink& placed, const SceneOptions& options, Scene& scene) {
+  read_bodies(source, folder, document, {placed}, options, scene);
+  scene.warnings = document.warnings.lines();
+}
+
+PlacedLink only_body(const std::string& source, UrdfDocument& document) {
+  std::vector<PlacedLink> found;
+  for (const PlacedLink& placed : place_links(source, document))
+    if (has_shape(placed)) found.push_back(placed);
+  if (found.size() != 1)
+    throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +
+                     " with a shape; allowed: one");
+  const urdf::Joint& joint = *found.front().link->parent_joint;
+  if (moves(joint))
+    throw SceneError(source + ": joint '" + text::one_line(joint.name, 60) +
+                     "' turns or slides; allowed: floating, fixed");
+  return found.front();
+}
+
+void join_bodies(const std::string& source, Scene& scene) {
+  try {
+    arrange_joints(scene);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(source + ": " + text::one_line(error.what()));
+  }
 }
 
 /// Bodies that begin inside each other push each other out with all they have, and many of them at once cost
@@ -53,10 +341,6 @@ void check_overlaps(const std::string& file, const Scene& scene) {
                    text::number(kOverlap) + " m");
 }
 
-}  // namespace
-
-SceneError::SceneError(const std::string& message) : std::runtime_error(text::one_line(message, 4000)) {}
-
 std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories) {
   return find_named_file("scene", scene, ".urdf", directories);
 }
@@ -64,16 +348,14 @@ std::string find_scene_file(const std::string& scene, const std::vector<std::str
 Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
-  read_urdf(urdf_file, options, scene);
+  const std::optional<std::string> xml = file_text(urdf_file, kMostXmlBytes + 1);
+  if (!xml || xml->empty()) throw SceneError(urdf_file + ": cannot be read; allowed: a readable URDF file");
+  read_urdf(urdf_file, fs::path(urdf_file).parent_path().string(), *xml, options, scene);
   const Bounds usual = scene.bounds;
   const fs::path settings = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(settings)) apply_scene_yaml(settings.string(), scene);
   if (options.gravity) scene.gravity = *options.gravity;
-  try {
-    arrange_joints(scene);
-  } catch (const std::invalid_argument& error) {
-    throw SceneError(urdf_file + ": " + text::one_line(error.what()));
-  }
+  join_bodies(urdf_file, scene);
   if (usual.min == scene.bounds.min && usual.max == scene.bounds.max) widen_bounds(scene);
   check_starts_in_bounds(urdf_file, scene);
   check_overlaps(urdf_file, scene);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -17,15 +17,5 @@ void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene
 /// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws
 /// SceneError.
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body);
-
-/// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is
-/// arrange_joints()'s to say. Throws YamlError.
-void read_joint_settings(const YamlElement& element, Scene& scene);
-
-/// Adds the bodies of operators to a scene whose other bodies are known: one named `operator`, or several by
-/// their names; then tethers of all bodies. Throw YamlError.
-void read_operator(const YamlElement& element, Scene& scene);
-void read_operators(const YamlElement& element, Scene& scene);
-void read_tethers(const YamlElement& element, Scene& scene);
 
 }  // namespace mrhi

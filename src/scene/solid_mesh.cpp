@@ -5,8 +5,6 @@
 #include <map>
 #include <numeric>
 
-#include "shape_inertia.h"
-
 namespace mrhi {
 namespace {
 
@@ -341,10 +339,8 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
   mesh = best;
   std::vector<std::string> warnings = put_with_hull(parts_of(mesh.triangles), mesh);
   const auto has_area = [&](const Triangle& t) {
-    const auto corner = [&](std::size_t i) -> const Vector3& {
-      return mesh.vertices[static_cast<std::size_t>(t[i])];
-    };
-    return (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 0.0;
+    const Vector3 a = corner(mesh, t, 0);
+    return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).norm() > 0.0;
   };
   if (std::none_of(mesh.triangles.begin(), mesh.triangles.end(), has_area)) throw NoVolume(kNoVolume);
   return warnings;

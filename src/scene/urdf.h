@@ -3,21 +3,61 @@
 #include <urdf_model/link.h>
 #include <urdf_model/model.h>
 #include <urdf_world/types.h>
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "mesh_loader.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "warnings.h"
+#include "solid_mesh.h"
 
 namespace mrhi {
+
+/// What a loader assumed: one line for each kind of assumption, with the things that it concerns.
+class Warnings {
+ public:
+  /// `what` is the line's beginning, `item` a thing and its value.
+  void add(const std::string& what, const std::string& item) {
+    auto line = std::find_if(lines_.begin(), lines_.end(), [&](const auto& l) { return l.first == what; });
+    if (line == lines_.end()) line = lines_.insert(line, {what, {}});
+    if (std::find(line->second.begin(), line->second.end(), item) == line->second.end())
+      line->second.push_back(item);
+  }
+
+  std::vector<std::string> lines() const {
+    constexpr std::size_t kNamed = 4;
+    std::vector<std::string> all;
+    for (const auto& [what, items] : lines_) {
+      std::vector<std::string> named(items.begin(), items.begin() + long(std::min(kNamed, items.size())));
+      if (items.size() > kNamed) named.push_back("and " + std::to_string(items.size() - kNamed) + " more");
+      all.push_back(text::one_line(what + ": " + text::joined(named), 600));
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> lines_;
+};
+
+/// A URDF in the form that urdfdom reads.
+struct NormalUrdf {
+  std::string xml;
+  std::vector<std::string> links;          ///< names, in the order of the file
+  std::map<std::string, double> friction;  ///< Coulomb's coefficient, by link: <lateral_friction>, <mu1>
+};
+
+/// Rewrites a URDF as people write it: names that topics and frames can have, complete limits and inertias, a
+/// world above a root that has a shape, no tags of other programs. What is changed in meaning is a warning.
+/// Throws std::runtime_error, whose text goes on from the file's name.
+NormalUrdf normal_urdf(const std::string& xml, Warnings& warnings);
 
 /// A URDF as urdfdom reads it once it is normal_urdf(). A root link with a shape hangs on one without.
 struct UrdfDocument {
@@ -27,10 +67,8 @@ struct UrdfDocument {
   Warnings warnings;
 };
 
-/// Throws SceneError with urdfdom's complaints on one line; urdfdom itself prints nothing.
-UrdfDocument parse_urdf_file(const std::string& file);
-
-/// The same from the XML itself; `source` names it in messages.
+/// `source` names the XML in messages. Throws SceneError with urdfdom's complaints on one line; urdfdom
+/// itself prints nothing.
 UrdfDocument parse_urdf(const std::string& source, const std::string& xml);
 
 Pose to_pose(const urdf::Pose& pose);
@@ -104,12 +142,9 @@ class ShapeReader {
 
 /// The bodies of a URDF in its order, complete but for their materials, which are the default, its joints,
 /// and what was assumed. Links without any geometry on fixed joints only place others and are left out.
-/// Throws SceneError.
-void read_urdf(const std::string& urdf_file, const SceneOptions& options, Scene& scene);
-
-/// The same of a URDF's text, which `source` names in messages; paths of meshes start at `folder`.
-void read_urdf_text(const std::string& source, const std::string& folder, const std::string& xml,
-                    const SceneOptions& options, Scene& scene);
+/// Throws SceneError. `source` names the text in messages; paths of meshes start at `folder`.
+void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
+               const SceneOptions& options, Scene& scene);
 
 /// Adds one of them.
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
@@ -117,5 +152,10 @@ void read_body(const std::string& source, const std::string& folder, UrdfDocumen
 
 /// The one body with a shape of a URDF, where that has it. Throws SceneError for none and several.
 PlacedLink only_body(const std::string& source, UrdfDocument& document);
+
+/// arrange_joints(), which throws SceneError here.
+void join_bodies(const std::string& source, Scene& scene);
+/// Throws SceneError for bodies that begin inside each other.
+void check_overlaps(const std::string& source, const Scene& scene);
 
 }  // namespace mrhi

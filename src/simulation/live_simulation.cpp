@@ -5,12 +5,11 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
-#include "../scene/scene_edit.h"
 #include "../text/text.h"
 #include "../tracking/hand_filter.h"
-#include "../tracking/tracker.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "scene_change.h"
 
 namespace mrhi {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "../joints/joint_law.h"
-#include "../scene/material_fields.h"
+#include "../scene/limits.h"
 
 namespace mrhi {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "../joints/joint_law.h"
 #include "../text/text.h"
-#include "../tracking/tracker.h"
+#include "../tracking/hand_filter.h"
 #include "frame_report.h"
 #include "scene_change.h"
 #include "simulation_impl.h"

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "../tracking/tracker.h"
+#include "../tracking/hand_filter.h"
 #include "frame_report.h"
 #include "simulation_impl.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fingertip_reach.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "scripted_grasp.h"
 
 namespace mrhi {
 
@@ -22,21 +22,49 @@ Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPo
 /// Angles in degrees, a row per joint.
 HandPosture posture_of_degrees(const HandPosture& degrees);
 
-ScriptedMotion grasp_cube();
-ScriptedMotion grasp_ball();
-ScriptedMotion catch_ball();
-ScriptedMotion pinch_long();
-ScriptedMotion lift_flat();
-ScriptedMotion nudge();
-ScriptedMotion tap();
-ScriptedMotion slap();
-ScriptedMotion press_button();
-ScriptedMotion flip_switch();
-ScriptedMotion turn_valve();
-ScriptedMotion pull_lever();
-ScriptedMotion open_drawer();
-ScriptedMotion open_door();
-ScriptedMotion open_hatch();
-ScriptedMotion squeeze_tongs();
+/// Builds a motion keyframe by keyframe.
+class Script {
+ public:
+  explicit Script(const char* scene) { motion_.scene = scene; }
+
+  Script& then(double duration, const Pose& wrist, const HandPosture& posture,
+               const Vector3& velocity = Vector3::Zero()) {
+    const double start = motion_.keyframes.empty() ? 0.0 : motion_.keyframes.back().time;
+    Keyframe key;
+    key.time = start + duration;
+    key.wrist = wrist;
+    key.posture = posture;
+    key.velocity = velocity;
+    motion_.keyframes.push_back(key);
+    return *this;
+  }
+  Script& hold(double duration) {
+    const Keyframe last = motion_.keyframes.back();
+    return then(duration, last.wrist, last.posture);
+  }
+  /// The last keyframe's posture is reached by way of another.
+  Script& by_way_of(const HandPosture& posture, double share) {
+    motion_.keyframes.back().via = posture;
+    motion_.keyframes.back().via_share = share;
+    return *this;
+  }
+  /// The last keyframe is reached along an arc about a point, with which the hand turns.
+  Script& round(const Vector3& centre) {
+    motion_.keyframes.back().centre = centre;
+    return *this;
+  }
+  Script& object_twist(const Twist& twist) {
+    motion_.object_twist = twist;
+    return *this;
+  }
+  ScriptedMotion motion() const { return motion_; }
+
+ private:
+  ScriptedMotion motion_;
+};
+
+inline Pose shifted(const Pose& pose, const Vector3& by) {
+  return {pose.position + by, pose.orientation};
+}
 
 }  // namespace mrhi

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "../math/minimum_jerk.h"
-#include "box_symmetries.h"
-#include "script.h"
+#include "../math/rotation.h"
+#include "motions.h"
+#include "scripted_grasp.h"
 
 namespace mrhi {
 namespace {
@@ -34,16 +35,10 @@ constexpr double kSwing = 1.0;          // [Hz]
 
 const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, from where it begins to approach [m]
 
-Quaternion rotation(const Vector3& vector) {
-  const double angle = vector.norm();
-  if (angle == 0.0) return Quaternion::Identity();
-  return Quaternion(Eigen::AngleAxisd(angle, vector / angle));
-}
-
 /// Where the object will be, if it goes on as it does.
 Pose expected(const Sight& sight, double ahead) {
   return {sight.object.position + ahead * sight.twist.linear,
-          (rotation(ahead * sight.twist.angular) * sight.object.orientation).normalized()};
+          (rotation_by(ahead * sight.twist.angular) * sight.object.orientation).normalized()};
 }
 
 }  // namespace
@@ -267,7 +262,7 @@ void SimulatedOperator::prepare_grasp() {
   grasp.opening = skill_.opening;
   postures_.emplace(grasp, skill_.grip_depth);
   misplaced_.position = random_.gaussian_vector(skill_.placing_error);
-  misplaced_.orientation = rotation(random_.gaussian_vector(skill_.turning_error));
+  misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
 }
 
 /// Of the grasps that the object's symmetry allows the one with the wrist turned least.

@@ -1,5 +1,7 @@
 #include "scripted_grasp.h"
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -8,8 +10,35 @@
 namespace mrhi {
 namespace {
 
+using Jacobian = Eigen::Matrix<double, 3, kFingerJoints>;
+using JointMatrix = Eigen::Matrix<double, kFingerJoints, kFingerJoints>;
+
+Vector3 tip(const FingerSkeleton& finger, const FingerAngles& angles) {
+  return finger_joints(finger, angles)[4];
+}
+
+/// Central differences; a joint that cannot move (no range, or pressed against its limit) has no column.
+Jacobian tip_jacobian(const FingerSkeleton& finger, const FingerAngles& angles, const Vector3& error) {
+  constexpr double kStep = 1e-5;
+  Jacobian jacobian = Jacobian::Zero();
+  for (int joint = 0; joint < kFingerJoints; ++joint) {
+    if (finger.lower[joint] == finger.upper[joint]) continue;
+    FingerAngles ahead = angles, behind = angles;
+    ahead[joint] += kStep;
+    behind[joint] -= kStep;
+    const Vector3 column = (tip(finger, ahead) - tip(finger, behind)) / (2.0 * kStep);
+    const double wish = column.dot(error);
+    const bool stuck = (angles[joint] >= finger.upper[joint] && wish > 0.0) ||
+                       (angles[joint] <= finger.lower[joint] && wish < 0.0);
+    if (!stuck) jacobian.col(joint) = column;
+  }
+  return jacobian;
+}
+
 constexpr double kNearly =
-    0.003;  // [m] mean gap from which the fingers close slowly, so that they touch gently
+    0.003;  // mean gap from which the fingers close slowly, so that they touch gently [m]
+constexpr double kArrived = 0.0015;  // mean gap at which the fingers of a grip have arrived [m]
+constexpr int kSteps = 5;            // of a grip's depth
 
 /// All tips at `share` of their depths; below 0 they are off the surface.
 HandPosture pressed(Grasp grasp, double share) {
@@ -105,6 +134,48 @@ constexpr GraspEntry kGrasps[] = {
 
 }  // namespace
 
+Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred) {
+  constexpr int kIterations = 200;
+  constexpr double kDamping = 2e-3;     // [m]
+  constexpr double kLongestStep = 0.2;  // [rad]
+  constexpr double kPreferenceGain = 0.2;
+  FingerAngles angles = preferred.cwiseMax(finger.lower).cwiseMin(finger.upper);
+  for (int i = 0; i < kIterations; ++i) {
+    const Vector3 error = target - tip(finger, angles);
+    const Jacobian jacobian = tip_jacobian(finger, angles, error);
+    const Matrix3 damped = jacobian * jacobian.transpose() + kDamping * kDamping * Matrix3::Identity();
+    const Eigen::Matrix<double, kFingerJoints, 3> inverse = jacobian.transpose() * damped.inverse();
+    // The wish for the preferred posture fades so that the last iterations are for the target alone.
+    const double gain = i < kIterations / 2 ? kPreferenceGain : 0.0;
+    FingerAngles change =
+        inverse * error + (JointMatrix::Identity() - inverse * jacobian) * (gain * (preferred - angles));
+    const double largest = change.cwiseAbs().maxCoeff();
+    if (largest > kLongestStep) change *= kLongestStep / largest;
+    const FingerAngles next = (angles + change).cwiseMax(finger.lower).cwiseMin(finger.upper);
+    // An iteration depends on the angles and the gain alone: what has converged to the bit stays so.
+    if (next == angles) i = i < kIterations / 2 ? kIterations / 2 - 1 : kIterations;
+    angles = next;
+  }
+  return {angles, (target - tip(finger, angles)).norm()};
+}
+
+HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
+                             const std::vector<FingertipContact>& contacts, double gap,
+                             const HandPosture& preferred, double* worst_error) {
+  HandPosture posture = within_limits(skeleton, preferred);
+  double worst = 0.0;
+  for (const FingertipContact& contact : contacts) {
+    const FingerSkeleton& finger = skeleton.fingers[static_cast<std::size_t>(contact.finger)];
+    const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
+    const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
+    const Reach result = reach(finger, target, preferred.col(contact.finger));
+    posture.col(contact.finger) = result.angles;
+    worst = std::max(worst, result.error);
+  }
+  if (worst_error != nullptr) *worst_error = worst;
+  return posture;
+}
+
 Grasp Grasp::turned(const Quaternion& by) const {
   Grasp grasp = *this;
   grasp.wrist = Pose{Vector3::Zero(), by} * wrist;
@@ -140,6 +211,26 @@ Grasp shipped_grasp(const std::string& object) {
     known += std::string(known.empty() ? "" : ", ") + entry.object;
   }
   throw std::invalid_argument("no grasp of '" + object + "' is known: use one of " + known);
+}
+
+GripPostures::GripPostures(const Grasp& grasp, double deepest) : deepest_(deepest) {
+  double mean_share = 0.0;
+  for (const FingertipContact& contact : grasp.contacts)
+    mean_share += contact.depth / static_cast<double>(grasp.contacts.size());
+  near_depth = -kArrived / mean_share;
+  open = place_fingertips(human_hand(), grasp.wrist, grasp.contacts, grasp.opening, grasp.preferred);
+  near = pressed(grasp, near_depth);
+  for (int i = 0; i < kSteps; ++i) pressed_.push_back(pressed(grasp, deepest * i / (kSteps - 1)));
+}
+
+HandPosture GripPostures::at(double depth) const {
+  if (depth < 0.0) {
+    const double share = std::min(1.0, depth / near_depth);
+    return pressed_.front() + share * (near - pressed_.front());
+  }
+  const double place = std::min(1.0, depth / deepest_) * (kSteps - 1);
+  const auto below = static_cast<std::size_t>(std::min(kSteps - 2.0, place));
+  return pressed_[below] + (place - static_cast<double>(below)) * (pressed_[below + 1] - pressed_[below]);
 }
 
 }  // namespace mrhi

@@ -1,11 +1,26 @@
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+
+#include "../text/files.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {
+
+constexpr double kStill = 0.0002, kFast = 0.0012, kCommon = 0.0002;  // [m] rms
+constexpr double kFastSpeed = 1.0;                                   // [m/s]
+
+const HandJoints* find(const JointsFrame& frame, std::uint32_t id) {
+  for (const HandJoints& hand : frame.hands) {
+    if (hand.id == id) return &hand;
+  }
+  return nullptr;
+}
 
 Side side_of(const std::string& name) {
   if (name == "left") return Side::left;
@@ -20,7 +35,65 @@ double in_range(const char* name, double value, double lowest, double highest) {
   throw std::invalid_argument(message.str());
 }
 
+constexpr const char* kFingerNames[] = {"thumb", "index", "middle", "ring", "pinky"};
+constexpr const char* kAxes[] = {"_x", "_y", "_z"};
+
+/// Vectors and their like that a row has no value for are still columns.
+std::string header() {
+  std::string line = "time_s,frame_id,hand_id,is_left,confidence,grab_strength,pinch_strength";
+  const auto add_vector = [&line](const std::string& name) {
+    for (const char* axis : kAxes) line += "," + name + axis;
+  };
+  for (const char* name : {"palm", "palm_normal", "palm_dir", "palm_vel", "wrist", "elbow"}) add_vector(name);
+  line += ",palm_width";
+  for (const char* finger : kFingerNames) {
+    line += std::string(",") + finger + "_width";
+    for (int j = 0; j < 5; ++j) add_vector(std::string(finger) + "_j" + std::to_string(j));
+  }
+  return line;
+}
+
+void write_hand(const HandJoints& hand, CsvRows& row) {
+  constexpr std::size_t kVector = 3;
+  row << hand.id << (hand.side == Side::left) << hand.confidence << hand.grab_strength << hand.pinch_strength
+      << hand.palm_centre;
+  row.skip(3 * kVector) << hand.wrist;
+  row.skip(kVector) << hand.palm_width;
+  for (std::size_t finger = 0; finger < kFingers; ++finger) {
+    row << hand.finger_width[finger];
+    for (const auto& joint : hand.joints[finger]) row << joint;
+  }
+}
+
 }  // namespace
+
+void TrackingNoise::apply(JointsFrame& frame) {
+  if (amplitude_ == 0.0) return;
+  const JointsFrame clean = frame;
+  const double elapsed = to_seconds(frame.stamp - previous_.stamp);
+  for (HandJoints& hand : frame.hands) disturb(hand, find(previous_, hand.id), elapsed);
+  previous_ = clean;
+}
+
+void TrackingNoise::disturb(HandJoints& hand, const HandJoints* before, double elapsed) {
+  const Vector3 common = random_.gaussian_vector(amplitude_ * kCommon);
+  if (hand.palm_centre) *hand.palm_centre += common;
+  if (hand.wrist) *hand.wrist += common;
+  for (std::size_t finger = 0; finger < kFingers; ++finger) {
+    for (std::size_t j = 0; j < hand.joints[finger].size(); ++j) {
+      auto& joint = hand.joints[finger][j];
+      if (!joint) continue;
+      double speed = 0.0;
+      if (before != nullptr && elapsed > 0.0 && before->joints[finger][j]) {
+        speed = (*joint - *before->joints[finger][j]).norm() / elapsed;
+      }
+      const double deviation = kStill + (kFast - kStill) * std::min(1.0, speed / kFastSpeed);
+      *joint += common + random_.gaussian_vector(amplitude_ * deviation);
+    }
+  }
+  // Leap's empty thumb metacarpal stays empty.
+  if (hand.joints[0][0] && hand.joints[0][1]) hand.joints[0][0] = hand.joints[0][1];
+}
 
 SyntheticHand::SyntheticHand(const SyntheticHandOptions& options)
     : SyntheticHand(options, make_motion(options.motion)) {}
@@ -55,6 +128,29 @@ std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, cons
   std::vector<JointsFrame> frames;
   while (hand.next_run() == 0) frames.push_back(hand.next());
   return frames;
+}
+
+void write_recording_csv(std::ostream& out, const std::vector<JointsFrame>& frames) {
+  const std::string columns = header();
+  const std::size_t of_hand = text::split(columns).size() - 2;
+  out << columns << '\n';
+  const auto flags = out.setf(std::ios::fixed, std::ios::floatfield);
+  const auto digits = out.precision(6);
+  CsvRows row(out);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double time = to_seconds(frames[i].stamp - frames.front().stamp);
+    if (frames[i].hands.empty()) {
+      row << time << i << -1;
+      row.skip(of_hand - 1).end_row();
+    }
+    for (const HandJoints& hand : frames[i].hands) {
+      row << time << i;
+      write_hand(hand, row);
+      row.end_row();
+    }
+  }
+  out.flags(flags);
+  out.precision(digits);
 }
 
 }  // namespace mrhi

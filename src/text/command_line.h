@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "mr_hand_interaction/usage_error.h"
+#include "mr_hand_interaction/input_error.h"
 
 namespace mrhi {
 

@@ -7,6 +7,8 @@
 #include <locale>
 #include <sstream>
 
+#include "mr_hand_interaction/input_error.h"
+
 namespace mrhi::text {
 
 namespace {
@@ -80,6 +82,8 @@ std::string with_spaces(std::string name) {
 }  // namespace mrhi::text
 
 namespace mrhi {
+
+InputError::InputError(const std::string& message) : std::runtime_error(text::one_line(message, 4000)) {}
 
 const char* const kNameIs = "1 to 64 letters, digits, '_' and '-', not first '-'";
 

@@ -1,11 +1,108 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
+#include "../math/rotation.h"
 #include "hand_filter.h"
-#include "noise_estimate.h"
+#include "mr_hand_interaction/configuration.h"
 
 namespace mrhi {
+
+// The third difference of a joint's path is what no parabola explains. Where a hand moves, one is like the
+// next; where samples tremble, each by itself, one is the other way round than the next. So the product of
+// two that follow each other is positive for motion and negative for noise, and of noise it is known how
+// much.
+
 namespace {
+
+constexpr std::size_t kPoints = 4;  // of a third difference
+using Weights = std::array<double, kPoints>;
+
+constexpr double kLeastOverlap = 0.3;  // of two differences, for a sample to tell; 0.75 if evenly spaced
+// Of white noise: the middle one of many joints' products is 1/1.28 of their mean. 12 of 16 variances that
+// follow each other are above a quarter, and the fifth from below is 0.825 of their mean.
+constexpr double kMiddleProduct = 2.34, kFifth = 0.825;
+constexpr int kFewestVariances = 5;
+
+/// Of third differences in which samples at uneven intervals count as one would at even ones: divided, and of
+/// unit length. The first is the newest sample's.
+///
+///     w_i = 1 / prod_{j != i} (t_i - t_j),   sum w_i x(t_i) = 0 for every parabola x
+/// is Newton's divided difference. At even intervals that is (1, -3, 3, -1) / sqrt(20). Of unit length, so
+/// that white noise has the variance sigma^2 in it whatever the intervals are.
+Weights third_difference(const SampleHistory& history, std::size_t newest) {
+  std::array<double, kPoints> times{};
+  for (std::size_t i = 1; i < kPoints; ++i) times[i] = times[i - 1] - history.elapsed[newest + i - 1];
+  Weights weights{};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    weights[i] = 1.0;
+    for (std::size_t j = 0; j < kPoints; ++j)
+      if (j != i) weights[i] /= times[i] - times[j];
+    squares += weights[i] * weights[i];
+  }
+  for (double& weight : weights) weight /= std::sqrt(squares);
+  return weights;
+}
+
+/// At the bone's end: joints that are starts are other bones' ends, but for the roots.
+Vector3 difference_of(const SampleHistory& history, std::size_t newest, std::size_t capsule,
+                      const Weights& weights) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < kPoints; ++i)
+    sum += weights[i] * history.samples[newest + i].capsules[capsule].end;
+  return sum;
+}
+
+bool is_in_all(const SampleHistory& history, std::size_t capsule) {
+  return std::all_of(history.samples.begin(), history.samples.begin() + kNoiseSamples,
+                     [capsule](const Hand& hand) { return hand.capsules[capsule].radius > 0.0; });
+}
+
+/// The middle one of the joints' products of the last two differences, as noise has it: above 0. Nothing
+/// without joints. Over three axes the mean of d_now.d_before is -3 overlap sigma^2; the sign is turned. The
+/// middle one, as a joint that leaps would rule a mean.
+std::optional<double> middle_product(const SampleHistory& history, const Weights& now,
+                                     const Weights& before) {
+  std::array<double, kPhalanges> products{};
+  std::ptrdiff_t count = 0;
+  for (std::size_t c = 0; c < kPhalanges; ++c) {
+    if (!is_in_all(history, c)) continue;
+    products[static_cast<std::size_t>(count++)] =
+        -difference_of(history, 0, c, now).dot(difference_of(history, 1, c, before));
+  }
+  if (count == 0) return std::nullopt;
+  const auto middle = products.begin() + count / 2;
+  std::nth_element(products.begin(), middle, products.begin() + count);
+  return *middle;
+}
+
+/// The same for noise of variance 1 on an axis. The two share three samples: -sum w_now(i) w_before(i), 15 /
+/// 20 at even intervals.
+double overlap(const Weights& now, const Weights& before) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < kPoints; ++i) sum -= now[i] * before[i - 1];
+  return sum;
+}
+
+/// Negative products, which motion makes, count as no noise: were they left out, only what looks like noise
+/// would count.
+void add(double variance, SeenNoise& noise) {
+  noise.size = std::min(noise.size + 1, kNoiseWindow);
+  std::copy_backward(noise.variances.begin(), noise.variances.begin() + noise.size - 1,
+                     noise.variances.begin() + noise.size);
+  noise.variances[0] = variance;
+}
+
+/// A jerk or a jump is large in a few samples, noise in all: a quarter must be below what counts.
+double low_variance(const SeenNoise& noise) {
+  if (noise.size < kFewestVariances) return 0.0;
+  std::array<double, kNoiseWindow> sorted = noise.variances;
+  const auto low = sorted.begin() + noise.size / 4;
+  std::nth_element(sorted.begin(), low, sorted.begin() + noise.size);
+  return *low / kFifth;
+}
 
 constexpr double kFirstSpeed = 0.5;  // rms of a hand that has just appeared [m/s]
 
@@ -47,22 +144,14 @@ double true_speed(const FilterMemory& memory, double noise) {
   return std::sqrt(std::max(0.0, speed * speed - 3.0 * beyond * memory.variance.speed));
 }
 
-/// exp([turned]x): by |turned| about its direction, in world.
-Quaternion rotation(const Vector3& turned) {
-  const double angle = turned.norm();
-  if (angle == 0.0) return Quaternion::Identity();
-  return Quaternion(Eigen::AngleAxisd(angle, turned / angle));
-}
-
 /// The same filter for a rotation: predicted = exp(T w) q, innovation = log(q_sample predicted^-1), which is
 /// small, so that turns about it add like vectors; all in world, from the left. AngleAxis takes the shorter
 /// way round, whichever sign the quaternions have.
 void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Quaternion& orientation,
                  Vector3& turn) {
-  const Quaternion predicted = rotation(elapsed * turn) * before;
-  const Eigen::AngleAxisd off(orientation * predicted.conjugate());
-  const Vector3 innovation = off.angle() * off.axis();
-  orientation = (rotation(gain.position * innovation) * predicted).normalized();
+  const Quaternion predicted = rotation_by(elapsed * turn) * before;
+  const Vector3 innovation = rotation_vector(orientation * predicted.conjugate());
+  orientation = (rotation_by(gain.position * innovation) * predicted).normalized();
   turn += gain.velocity * innovation;
 }
 
@@ -90,6 +179,27 @@ Hand constant_velocity(double elapsed, const FilterConfiguration& filter, Filter
 }
 
 }  // namespace
+
+/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Where intervals differ much the two
+/// differences hardly overlap, and the division would make noise of rounding: such a sample is passed over.
+void observe_noise(const SampleHistory& history, SeenNoise& noise) {
+  if (history.size < kNoiseSamples) return;
+  const Weights now = third_difference(history, 0), before = third_difference(history, 1);
+  const double expected = overlap(now, before);
+  if (expected < kLeastOverlap) return;
+  const std::optional<double> product = middle_product(history, now, before);
+  if (!product) return;
+  add(std::max(0.0, *product) / (kMiddleProduct * expected), noise);
+  noise.variance = low_variance(noise);
+}
+
+// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight
+// on what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
+double filter_noise(const SeenNoise& seen) {
+  constexpr double kIgnored = 0.001;  // [m]
+  const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);
+  return std::sqrt(kUsualNoise * kUsualNoise + beyond);
+}
 
 /// Every point goes on as it went, but for accelerations unknown: a Kalman filter of position and velocity,
 /// one gain for the whole hand. The acceleration expected grows with the hand's speed.

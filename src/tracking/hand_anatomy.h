@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "mr_hand_interaction/tracking/joints.h"
 
@@ -32,20 +31,5 @@ constexpr std::array<double, kFingers> kFingerRadii{{0.0094, 0.0090, 0.0088, 0.0
 
 /// A hand's size as a factor on the adult's. Beyond these it is in a wrong unit, or of wrong joints.
 constexpr double kSmallestHand = 0.3, kLargestHand = 2.5;
-
-/// Where the anatomical palm lies in the device's frame.
-struct PalmFit {
-  Pose palm;
-  double scale = 1.0;  ///< of this hand to the adult's
-  Side side = Side::right;
-
-  /// A point of the anatomical palm in the device's frame.
-  Vector3 place(const Vector3& anatomical) const;
-};
-
-/// The rotation, scale and translation that bring the anatomical palm closest to the joints given (least
-/// squares, Umeyama 1991). Nothing if they do not fix it: fewer than three, in one line, or of no hand's
-/// size.
-std::optional<PalmFit> fit_palm(const HandJoints& hand);
 
 }  // namespace mrhi

@@ -4,9 +4,10 @@
 #include <variant>
 #include <vector>
 
-#include "../text/yaml_values.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/configuration.h"
-#include "mr_hand_interaction/tracking/filter_memory.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -57,5 +58,32 @@ FilterConfiguration filter_of(const Configuration& configuration);
 /// One gain for all points keeps what is linear in them: what is midway between two others stays so. Lengths
 /// of bones are not, and change while a hand turns: a mean of two directions is shorter than either.
 Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
+
+/// Two third differences of four samples each, one sample apart.
+constexpr int kNoiseSamples = 5;  ///< of the history, from which observe_noise learns
+
+/// Learns from the newest samples how much they tremble; nothing while there are fewer than kNoiseSamples.
+void observe_noise(const SampleHistory& history, SeenNoise& noise);
+
+/// What a filter is to take for the rms of a sample on an axis [m]: a good tracker's, and beyond that what
+/// has been seen.
+///     sigma^2 = kUsualNoise^2 + 4 max(0, s^2 - (1 mm)^2),   s^2 the variance that has been seen
+double filter_noise(const SeenNoise& seen);
+
+/// Assigns the frame's hands to tracks (by id; a new id on the same side, near a hand that is held, continues
+/// it), filters them, holds those that are missing, and reports hand_found. Call lose_unseen_hands first.
+/// `hands` has kMaxHands slots; further hands are left out.
+void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
+                 std::vector<Event>& events);
+
+/// Throws std::invalid_argument for a filter that is not known.
+void check_filter(FilterKind kind);
+
+/// From `now` on the hands are filtered otherwise: continuous in position and velocity, within 0.2 s.
+void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);
+
+/// Ends every track that was last seen more than hold_time before `now`, with hand_lost.
+void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
+                       std::vector<Event>& events);
 
 }  // namespace mrhi

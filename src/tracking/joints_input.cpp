@@ -1,13 +1,111 @@
 #include "joints_input.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
 #include <utility>
 
+#include "../math/minimum_jerk.h"
+#include "../math/registration.h"
 #include "../text/text.h"
-#include "joint_check.h"
 #include "mr_hand_interaction/stamp_check.h"
+#include "mr_hand_interaction/tracking/hand_merger.h"
+#include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
+#include "mr_hand_interaction/tracking/joint_gaps.h"
 
 namespace mrhi {
+namespace {
+
+/// Receipts of two frames may be late by so much, one against the other. What comes all at once is no
+/// witness.
+constexpr Nanoseconds kJitter = 20'000'000;
+
+bool goes_evenly(Nanoseconds by_stamp, Nanoseconds by_receipt) {
+  return by_stamp > 0 && 4 * by_receipt > by_stamp && by_receipt - by_stamp < kJitter + by_stamp;
+}
+
+/// Of a slow stream, frames may be so many times as far apart as the last two were.
+constexpr Nanoseconds kIntervals = 4;
+
+}  // namespace
+
+/// Receipts that go back are those of a recording that begins anew: so does all here.
+StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt) {
+  if (!receipt || std::abs(stamp) > StampCheck::kLatest || std::abs(*receipt) > StampCheck::kLatest)
+    return {stamp + correction_};
+  const Frame frame{stamp, *receipt};
+  if (last_ && frame.receipt - last_->receipt < -StampCheck::kBack) *this = StampSteps();
+  if (!last_) return accept(frame);
+  const Nanoseconds since = frame.stamp - last_->stamp;
+  const Nanoseconds passed = std::max<Nanoseconds>(0, frame.receipt - last_->receipt);
+  const Nanoseconds longest =
+      std::max({StampCheck::kAhead, kIntervals * interval_, passed + StampCheck::kAhead});
+  if (since > 0 && since <= longest) return accept(frame);
+  const std::optional<Frame> before = off_;
+  off_ = frame;
+  if (!before || !goes_evenly(frame.stamp - before->stamp, frame.receipt - before->receipt))
+    return {stamp + correction_};
+  Verdict verdict{stamp};
+  if (accepted_ == 1) {
+    verdict.first_was_off = true;
+  } else {
+    verdict.is_step = true;
+    correction_ += last_->stamp + passed - frame.stamp;
+  }
+  verdict.stamp = accept(frame).stamp;
+  return verdict;
+}
+
+StampSteps::Verdict StampSteps::accept(const Frame& frame) {
+  interval_ = last_ && !off_ ? std::min(frame.stamp - last_->stamp, StampCheck::kBack) : 0;
+  last_ = frame;
+  off_.reset();
+  ++accepted_;
+  return {frame.stamp + correction_};
+}
+
+/// All of them, as those that are in both have. x' = to + R (x - from) with the rotation R between the joints
+/// that are in both (least squares, without their scale). Without one what was known is forgotten.
+void JointGaps::Memory::move_on(const Points& now) {
+  std::array<Vector3, kJoints> from, to;
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    if (!points[i] || !now[i]) continue;
+    from[size] = *points[i];
+    to[size++] = *now[i];
+  }
+  const auto motion = registered(from.data(), to.data(), size);
+  for (auto& point : points) {
+    if (!motion) point.reset();
+    if (point) *point = motion->to + motion->rotation * (*point - motion->from);
+  }
+}
+
+/// A joint is put in from its last place, moved on frame by frame, up to kLongest after it was seen itself:
+/// what has been put in counts as known for the next frame, but not as seen.
+void JointGaps::Memory::take(HandJoints& hand, Nanoseconds at) {
+  for (std::size_t i = 0; i < kJoints; ++i)
+    if (joint(hand, i) && !joint(hand, i)->allFinite()) return;  // it will be refused
+  if (at <= stamp || at - stamp > kLongest) points = Points();
+  Points now;
+  bool gaps = false;
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    now[i] = joint(hand, i);
+    if (now[i]) seen[i] = at;
+    gaps = gaps || (points[i] && !now[i]);
+  }
+  if (gaps) move_on(now);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    if (now[i] || at - seen[i] > kLongest) points[i] = now[i];
+    joint(hand, i) = points[i];
+  }
+  stamp = at;
+}
+
+void JointGaps::fill(JointsFrame& frame) {
+  for (HandJoints& hand : frame.hands) sides_[static_cast<std::size_t>(hand.side)].take(hand, frame.stamp);
+}
 
 const std::vector<const char*>& JointsInput::corrections() {
   static const std::vector<const char*> all{kJointsLeftOut, kNoHand, kStep, kOrder};
@@ -73,6 +171,224 @@ SourceFrame JointsInput::completed(const JointsFrame& joints, const Device& devi
   result.detail = result.left_out.front();
   result.left_out.clear();
   return result;
+}
+
+namespace {
+
+constexpr Nanoseconds kLongestWait = 100'000'000;
+constexpr std::size_t kMaxWaiting =
+    64;                             // frames of the leader; of a stream that is twice as fast, 32 of another
+constexpr double kChange = 0.2;     // in which a stream takes over from another [s]
+constexpr double kSameHand = 0.15;  // farther apart, two streams see different things [m]
+constexpr double kLeastConfidence = 0.01;  // so that hands without any are fused, too
+
+std::size_t index(Side side) {
+  return static_cast<std::size_t>(side);
+}
+
+const Hand* hand_of(const std::vector<Hand>& hands, Side side) {
+  const Hand* found = nullptr;
+  for (const Hand& hand : hands)
+    if (hand.side == side && (found == nullptr || hand.confidence > found->confidence)) found = &hand;
+  return found;
+}
+
+}  // namespace
+
+HandMerger::HandMerger(std::size_t streams, Mode mode) : mode_(mode), streams_(streams) {
+  if (streams == 0) throw std::invalid_argument("no stream of hands to merge; allowed: at least one");
+  for (FusedSide& side : sides_) {
+    side.weights.assign(streams, 0.0);
+    side.seen.assign(streams, std::nullopt);
+  }
+}
+
+bool HandMerger::Stream::goes_on(Nanoseconds now) const {
+  if (frames.empty()) return false;
+  const Nanoseconds longest = interval > 0 ? std::min(2 * interval, kLongestWait) : kLongestWait;
+  return now - frames.back().stamp <= longest;
+}
+
+std::vector<Hand> HandMerger::Stream::at(Nanoseconds stamp) const {
+  const auto after = std::find_if(frames.begin(), frames.end(),
+                                  [stamp](const HandFrame& frame) { return frame.stamp >= stamp; });
+  if (after == frames.end()) return {};
+  if (after->stamp == stamp) return after->hands;
+  if (after == frames.begin() || after->stamp - (after - 1)->stamp > kLongestWait) return {};
+  const HandFrame& before = *(after - 1);
+  const double fraction = to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp);
+  std::vector<Hand> hands;
+  for (const Hand& to : after->hands)
+    for (const Hand& from : before.hands)
+      if (from.id == to.id && from.side == to.side) hands.push_back(blend(from, to, fraction));
+  return hands;
+}
+
+std::vector<HandFrame> HandMerger::take(std::size_t number, const HandFrame& frame) {
+  Stream& stream = streams_.at(number);
+  if (!stream.frames.empty() && frame.stamp <= stream.frames.back().stamp) {
+    stream = Stream();
+    newest_ = frame.stamp;
+    if (leader_ == number) waiting_.clear(), merged_.reset();
+  }
+  if (!stream.frames.empty()) stream.interval = frame.stamp - stream.frames.back().stamp;
+  stream.frames.push_back(frame);
+  if (stream.frames.size() > kMaxWaiting) stream.frames.pop_front();
+  newest_ = std::max(newest_, frame.stamp);
+  if (!leader_) leader_ = number;
+  if (leader_ == number) waiting_.push_back(frame);
+  std::vector<HandFrame> complete;
+  take_complete(complete);
+  if (leader_ != number && waiting_.empty() && !streams_[*leader_].goes_on(newest_)) {
+    leader_ = number;
+    waiting_.push_back(frame);
+    take_complete(complete);
+  }
+  return complete;
+}
+
+void HandMerger::take_complete(std::vector<HandFrame>& complete) {
+  for (; !waiting_.empty() && (waiting_.size() > kMaxWaiting || is_complete(waiting_.front()));
+       waiting_.pop_front()) {
+    if (merged_ && waiting_.front().stamp <= *merged_) continue;
+    complete.push_back(merged(waiting_.front()));
+    merged_ = complete.back().stamp;
+  }
+}
+
+/// The other streams have come as far, or have ended.
+bool HandMerger::is_complete(const HandFrame& leading) const {
+  return std::all_of(streams_.begin(), streams_.end(), [&](const Stream& stream) {
+    return stream.frames.empty() || stream.frames.back().stamp >= leading.stamp || !stream.goes_on(newest_);
+  });
+}
+
+HandFrame HandMerger::merged(const HandFrame& leading) {
+  HandFrame frame;
+  frame.stamp = leading.stamp;
+  std::vector<std::vector<Hand>> hands;
+  for (std::size_t s = 0; s < streams_.size(); ++s)
+    hands.push_back(s == *leader_ ? leading.hands : streams_[s].at(leading.stamp));
+  if (mode_ == Mode::people) {
+    for (std::size_t s = 0; s < hands.size(); ++s) {
+      for (Hand& hand : hands[s]) {
+        hand.id = static_cast<std::uint32_t>(hand.id * hands.size() + s);
+        frame.hands.push_back(hand);
+      }
+    }
+    return frame;
+  }
+  for (const Side side : {Side::left, Side::right}) {
+    std::vector<std::optional<Hand>> seen(hands.size());
+    for (std::size_t s = 0; s < hands.size(); ++s)
+      if (const Hand* hand = hand_of(hands[s], side)) seen[s] = *hand;
+    if (const auto hand = fuse(sides_[index(side)], leading.stamp, seen)) frame.hands.push_back(*hand);
+  }
+  return frame;
+}
+
+/// The mean of the streams' hands by weights that follow their confidence within kChange. Where the streams
+/// that see the hand become others, the trackers' errors of calibration would make it jump: it goes on from
+/// where it was, with the motion of a stream that stays, and the difference fades (minimum jerk).
+std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
+                                     const std::vector<std::optional<Hand>>& seen) {
+  const double passed = side.output ? to_seconds(stamp - side.stamp) : kChange;
+  const bool goes_on = side.output && passed > 0.0 && passed <= kChange;
+  std::optional<std::size_t> surest;
+  for (std::size_t s = 0; s < seen.size(); ++s)
+    if (seen[s] && (!surest || seen[s]->confidence > seen[*surest]->confidence)) surest = s;
+  if (!surest) {
+    side.seen = seen;
+    return std::nullopt;
+  }
+  std::optional<Hand> mean;
+  double total = 0.0;
+  bool changed = false;
+  std::optional<std::size_t> staying;
+  for (std::size_t s = 0; s < seen.size(); ++s) {
+    const bool agrees = seen[s] && (seen[s]->palm.position - seen[*surest]->palm.position).norm() < kSameHand;
+    const double confidence = agrees ? std::max(seen[s]->confidence, kLeastConfidence) : 0.0;
+    changed = changed || agrees != (side.weights[s] > 0.0);
+    if (agrees && side.weights[s] > 0.0 && side.seen[s]) staying = s;
+    const double share = goes_on && side.weights[s] > 0.0 ? std::min(passed / kChange, 1.0) : 1.0;
+    side.weights[s] = agrees ? side.weights[s] + share * (confidence - side.weights[s]) : 0.0;
+    if (!agrees) continue;
+    total += side.weights[s];
+    mean = mean ? blend(*mean, *seen[s], side.weights[s] / total) : *seen[s];
+  }
+  Hand hand = *mean;
+  hand.id = 1 + static_cast<std::uint32_t>(index(hand.side));
+  hand.confidence = seen[*surest]->confidence;
+  if (changed || !goes_on) {
+    side.jump = HandVelocity();
+    side.jumped = stamp;
+    for (std::size_t p = 0; goes_on && staying && p < kHandPoints; ++p) {
+      const Hand &before = *side.seen[*staying], &now = *seen[*staying];
+      if (!has_point(hand, p) || !has_point(*side.output, p) || !has_point(before, p) || !has_point(now, p))
+        continue;
+      side.jump.points[p] =
+          hand_point(*side.output, p) + hand_point(now, p) - hand_point(before, p) - hand_point(hand, p);
+    }
+  }
+  const double left = 1.0 - minimum_jerk(std::min(to_seconds(stamp - side.jumped) / kChange, 1.0));
+  for (std::size_t p = 0; p < kHandPoints; ++p)
+    if (has_point(hand, p)) hand_point(hand, p) += left * side.jump.points[p];
+  side.seen = seen;
+  side.output = hand;
+  side.stamp = stamp;
+  return hand;
+}
+
+namespace {
+
+constexpr Nanoseconds kLongest = 100'000'000;
+
+HandFrame joined(HandFrame first, const HandFrame& second) {
+  first.stamp = std::max(first.stamp, second.stamp);
+  first.hands.insert(first.hands.end(), second.hands.begin(), second.hands.end());
+  return first;
+}
+
+}  // namespace
+
+/// An interval that is longer, or goes back, is a break: the next frame tells a new one.
+void HandPairs::Stream::note(Nanoseconds stamp) {
+  const Nanoseconds since = stamp - last;
+  interval = since > 0 && since <= kLongest ? since : 0;
+  last = stamp;
+}
+
+bool HandPairs::Stream::goes_on(Nanoseconds stamp) const {
+  return interval > 0 && std::abs(stamp - last) <= std::min(2 * interval, kLongest);
+}
+
+/// With the faster stream's interval T, |difference| <= T / 2: no frame of that stream is nearer, so that it
+/// is the right one; doubled on the left, as stamps are whole.
+bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
+  if (!waiting_ || waiting_side_ == side) return false;
+  Nanoseconds interval = kLongest;
+  for (const Stream& stream : streams_)
+    if (stream.interval > 0) interval = std::min(interval, stream.interval);
+  return 2 * std::abs(stamp - waiting_->stamp) <= interval;
+}
+
+/// A frame waits for one of the other side only while that goes on. What waited and found no partner is
+/// dropped, not shown late: time does not go back.
+std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
+  streams_[index(side)].note(frame.stamp);
+  if (is_partner(side, frame.stamp)) {
+    const HandFrame other = *std::exchange(waiting_, std::nullopt);
+    return side == Side::left ? joined(frame, other) : joined(other, frame);
+  }
+  waiting_.reset();
+  if (!streams_[1 - index(side)].goes_on(frame.stamp)) return frame;
+  waiting_ = frame;
+  waiting_side_ = side;
+  return std::nullopt;
+}
+
+std::optional<HandFrame> HandPairs::rest() {
+  return std::exchange(waiting_, std::nullopt);
 }
 
 }  // namespace mrhi

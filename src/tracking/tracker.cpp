@@ -1,13 +1,185 @@
-#include "tracker.h"
+#include "hand_filter.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "../math/minimum_jerk.h"
-#include "hand_filter.h"
+#include "../math/rotation.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
+
+// With s(u) the share of the way at the share u of the duration T, the hand is at s (way + speed u T) beyond
+// where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + way/T^2 max|s''|.
+Nanoseconds rejoin_duration(double way, double away) {
+  // What an object endures that is held half as firmly again as its weight needs.
+  constexpr double kAcceleration = 5.0;               // [m/s^2]
+  constexpr double kShortest = 0.05, kLongest = 0.4;  // [s]
+  constexpr double kOfSpeed = 4.63, kOfWay = 5.78;    // the two maxima of minimum jerk
+  // With s = 10 u^3 - 15 u^4 + 6 u^5: max |120 u^2 - 300 u^3 + 180 u^4| at u = 0.386, and max |s''| = 10 /
+  // sqrt(3) at u = (3 - sqrt(3)) / 6. Then a T^2 = b T + kOfWay way, of which T is the positive root.
+  const double b = kOfSpeed * way / away;
+  const double duration = (b + std::sqrt(b * b + 4.0 * kAcceleration * kOfWay * way)) / (2.0 * kAcceleration);
+  return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kShortest, kLongest));
+}
+
+///     x = from + s(u) (tracked - from),   u = (t - begin) / duration,   s' = s'' = 0 at both ends
+/// It begins at rest, as the held hand was, and ends with the tracked hand's velocity. The duration is fixed
+/// at the start, for a hand that goes on as fast.
+Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
+  const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
+  return blend(rejoin.from, tracked, minimum_jerk(u));
+}
+
+/// Squares are compared, and one root is taken: the same bits, as a root keeps the order.
+double farthest_joint(const Hand& from, const Hand& to) {
+  double distance_squared = 0.0;
+  for (std::size_t c = 0; c < kCapsules; ++c) {
+    const Capsule &a = from.capsules[c], &b = to.capsules[c];
+    if (a.radius <= 0.0 || b.radius <= 0.0) continue;
+    distance_squared =
+        std::max({distance_squared, (a.start - b.start).squaredNorm(), (a.end - b.end).squaredNorm()});
+  }
+  return std::sqrt(distance_squared);
+}
+
+/// Quaternions by the shorter arc at one rate (slerp: Shoemake 1985), points on lines. At 1 it is `to` to the
+/// last bit: a hand that has caught up owes nothing to where it was. A capsule that only one of them has is
+/// as in `to`.
+Hand blend(const Hand& from, const Hand& to, double fraction) {
+  if (fraction >= 1.0) return to;
+  Hand hand = to;
+  for (std::size_t p = 0; p < kHandPoints; ++p) {
+    if (!has_point(from, p)) continue;
+    const Vector3 &a = hand_point(from, p), &b = hand_point(to, p);
+    hand_point(hand, p) = a + fraction * (b - a);
+  }
+  hand.palm.orientation = from.palm.orientation.slerp(fraction, to.palm.orientation).normalized();
+  return hand;
+}
+
+PathWeights PathWeights::between(double from, double to, double seconds) {
+  if (seconds <= 0.0) return {0.0, 0.0, 0.0};
+  const double rate = 1.0 / seconds, f = from;
+  if (to <= from) return {rate, rate * (1.0 - f) * (1.0 - 3.0 * f), -rate * f * (2.0 - 3.0 * f)};
+  const PathWeights a = at(from), b = at(to);
+  const double over = rate / (to - from);
+  return {rate, over * (b.start_bend - a.start_bend), over * (b.end_bend - a.end_bend)};
+}
+
+namespace {
+
+/// Past a stop from one frame to the next a path swings on by this distance at most [m].
+constexpr double kMaxOvershoot = 1e-4;
+/// Energy of white noise in the extrapolated part of the velocity over that in its last term: 21 to 70 / 16
+/// variances of a sample, at even intervals.
+constexpr double kNoiseRatio = 21.0 / (70.0 / 16.0);
+/// Both energies are means over the last frames, of which each has this weight.
+constexpr double kRenewed = 1.0 / 16.0;
+
+/// The extrapolated part grows from frame to frame by this factor at most, and begins with this over the
+/// frame's time: an acceleration that appears from nothing is a stop or a start, which does not go on [m].
+constexpr double kGrowth = 4.0, kOnset = 4.0 * kMaxOvershoot;
+
+/// And by this fraction of the extrapolated velocity's displacement: what goes on accelerating bends as much.
+constexpr double kOfTheBend = 0.125;
+
+/// All numbers of a HandVelocity side by side: its points and, last, its turn.
+constexpr std::size_t kNumbers = 3 * (kHandPoints + 1);
+static_assert(sizeof(HandVelocity) == kNumbers * sizeof(double), "points and turn lie side by side");
+
+double* numbers(HandVelocity& velocity) {
+  return velocity.points[0].data();
+}
+
+double longest_point(const HandVelocity& of) {
+  double squared = 0.0;
+  for (const Vector3& point : of.points) squared = std::max(squared, point.squaredNorm());
+  return std::sqrt(squared);
+}
+
+double energy_of_points(const HandVelocity& velocity) {
+  using Points = Eigen::Map<const Eigen::Matrix<double, 3 * static_cast<int>(kHandPoints), 1>>;
+  return Points(velocity.points[0].data()).squaredNorm();
+}
+
+/// Mean velocities of a frame; zero of points that the hand lacks.
+HandVelocity mean_velocity(const Hand& from, const Hand& to, double elapsed) {
+  const double rate = 1.0 / elapsed;
+  HandVelocity mean;
+  for (std::size_t p = 0; p < kHandPoints; ++p)
+    if (has_point(to, p)) mean.points[p] = rate * (hand_point(to, p) - hand_point(from, p));
+  mean.turn = rate * rotation_vector(to.palm.orientation * from.palm.orientation.conjugate());
+  return mean;
+}
+
+bool same_points(const Hand& a, const Hand& b) {
+  for (int c = 0; c < kCapsules; ++c)
+    if (a.has(c) != b.has(c)) return false;
+  return true;
+}
+
+}  // namespace
+
+// Newton's form of the interpolating polynomial, with T1 the newest interval and D_k the backward divided
+// differences: p'(t) = D_1 + T1 D_2 + T1 (T1 + T2) D_3 + T1 (T1 + T2) (T1 + T2 + T3) D_4.
+void extend_path(double elapsed, HandTrack& track) {
+  HandPath& path = track.path;
+  if (!same_points(track.previous, track.current)) path = HandPath();
+  HandVelocity chord = mean_velocity(track.previous, track.current, elapsed);
+
+  // What the polynomial's velocity has beyond the chord's, and the last term of it.
+  const double two = elapsed + path.intervals[0], three = two + path.intervals[1],
+               four = three + path.intervals[2];
+  const double over_two = 1.0 / two, over_three = 1.0 / three, of_last = elapsed * two * three / four;
+  HandVelocity &beyond = path.end_bend, &last = path.start_bend;
+  double* __restrict mean = numbers(chord);
+  double* __restrict extrapolated = numbers(beyond);
+  double* __restrict fourth = numbers(last);
+  double* __restrict d1 = numbers(path.differences[0]);
+  double* __restrict d2 = numbers(path.differences[1]);
+  double* __restrict d3 = numbers(path.differences[2]);
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    const double second = over_two * (mean[i] - d1[i]), third = over_three * (second - d2[i]);
+    fourth[i] = of_last * (third - d3[i]);
+    extrapolated[i] = elapsed * (second + two * third) + fourth[i];
+    d1[i] = mean[i], d2[i] = second, d3[i] = third;
+  }
+  path.intervals = {elapsed, path.intervals[0], path.intervals[1]};
+  if (path.order > 2) {
+    path.noise += kRenewed * (energy_of_points(last) - path.noise);
+    path.energy += kRenewed * (energy_of_points(beyond) - path.energy);
+  }
+  double kept = path.energy > 0.0 ? std::max(0.0, 1.0 - kNoiseRatio * path.noise / path.energy) : 0.0;
+  const double limit = kGrowth * path.extrapolated + kOnset / elapsed, fastest = longest_point(beyond);
+  if (kept * fastest > limit) kept = limit / fastest;
+  path.extrapolated = kept * fastest;
+
+  // The path arrived with another velocity than a smooth one would start with: of the difference so much is
+  // kept that the detour, 4/27 of T times it, stays small.
+  double* __restrict start = numbers(path.start_bend);
+  double* __restrict arrived = numbers(path.velocity);
+  const double goes_on = path.order > 0 ? 1.0 : 0.0;
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    extrapolated[i] *= kept;
+    start[i] = goes_on * (arrived[i] - mean[i] + extrapolated[i]);
+    arrived[i] = mean[i] + extrapolated[i];
+  }
+  const double detour = 4.0 / 27.0 * elapsed * longest_point(path.start_bend);
+  const double allowed = kMaxOvershoot + kOfTheBend * elapsed * path.extrapolated;
+  const double part = detour > allowed ? allowed / detour : 1.0;
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    start[i] = elapsed * (part * start[i] - extrapolated[i]);
+    extrapolated[i] *= elapsed;
+  }
+  const double renewed = 1.0 - std::exp(-elapsed / kMeanVelocity);
+  double* __restrict mean_velocity = numbers(track.mean_velocity);
+  for (std::size_t i = 0; i < kNumbers; ++i) mean_velocity[i] += renewed * (mean[i] - mean_velocity[i]);
+  path.longest_bend = 27.0 / 4.0 * std::min(detour, allowed) + elapsed * path.extrapolated;
+  path.order = std::min(path.order + 1, 3);
+}
+
 namespace {
 
 /// A hand with a new id continues a held one if it is no farther from it than this [m].

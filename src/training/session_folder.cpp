@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/training/session_folder.h"
+#include "mr_hand_interaction/training/session.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,13 +14,9 @@
 #include <sstream>
 #include <utility>
 
-#include "../text/csv.h"
-#include "../text/file_text.h"
-#include "../text/safe_yaml.h"
+#include "../text/files.h"
 #include "../text/text.h"
-#include "../text/yaml_values.h"
-#include "folder_lock.h"
-#include "session_header.h"
+#include "../text/yaml.h"
 
 namespace mrhi {
 namespace {
@@ -132,7 +128,142 @@ TrialResult result_named(const std::string& name) {
   return TrialResult::none;
 }
 
+constexpr int kVersion = 1;
+
+using Field = std::pair<const char*, std::string>;
+
+/// What makes a session the one that it is, beside its gravity.
+std::vector<Field> identity(const SessionHeader& header) {
+  return {{"participant", header.participant},
+          {"group", header.group},
+          {"handedness", header.handedness},
+          {"condition", header.condition},
+          {"seed", std::to_string(header.seed)},
+          {"task", header.task},
+          {"session", std::to_string(header.session)},
+          {"simulated", header.simulated ? "true" : "false"},
+          {"order", "[" + text::joined(header.order) + "]"}};
+}
+
+std::string field_text(const YAML::Node& node) {
+  if (!node.IsSequence()) return node ? yaml_text(node) : "nothing";
+  std::vector<std::string> items;
+  for (const auto& item : node) items.push_back(yaml_text(item));
+  return "[" + text::joined(items) + "]";
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::string& key, const std::string& there,
+                         const std::string& here) {
+  throw SessionError(file + ": " + key + ": the session in this folder has " + there + ", this one " + here +
+                     "; allowed: the same, or another folder");
+}
+
+void check_word(const char* key, const std::string& value) {
+  if (!is_name(value))
+    throw SessionError(std::string(key) + " '" + text::one_line(value, 60) +
+                       "' is not allowed; allowed: a name of " + kNameIs);
+}
+
+/// Throws SessionError for what must not be in session.yaml.
+void check_header(const SessionHeader& header) {
+  check_word("participant", header.participant);
+  check_word("condition", header.condition);
+  check_word("group", header.group);
+  if (header.handedness != "right" && header.handedness != "left")
+    throw SessionError("handedness '" + header.handedness + "' is not allowed; allowed: right or left");
+}
+
+/// The text of session.yaml.
+std::string header_text(const SessionHeader& header) {
+  YAML::Emitter out;
+  out << YAML::BeginMap << YAML::Key << "version" << YAML::Value << kVersion;
+  const auto quoted = [&out](const char* key, const std::string& value) {
+    out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
+  };
+  quoted("participant", header.participant);
+  quoted("group", header.group);
+  out << YAML::Key << "handedness" << YAML::Value << header.handedness;
+  quoted("condition", header.condition);
+  out << YAML::Key << "gravity" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (const double g : {header.gravity.x(), header.gravity.y(), header.gravity.z()}) out << g;
+  out << YAML::EndSeq << YAML::Key << "seed" << YAML::Value << header.seed;
+  quoted("task", header.task);
+  out << YAML::Key << "session" << YAML::Value << header.session;
+  out << YAML::Key << "simulated" << YAML::Value << header.simulated;
+  quoted("started", header.started);
+  out << YAML::Key << "order" << YAML::Value << YAML::Flow << header.order;
+  quoted("software", header.software);
+  out << YAML::EndMap;
+  return std::string(out.c_str()) + "\n";
+}
+
+/// Throws SessionError if the file is not that of the same session; `started` and `software` may differ.
+void check_same_session(const std::string& file, const SessionHeader& header) {
+  read_yaml<SessionError>(file, [&] {
+    const YAML::Node there = load_yaml_file(file);
+    if (!there.IsMap())
+      throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
+    for (const auto& [key, here] : identity(header)) {
+      const bool first = std::string(key) == "session" && !there[key];  // before there were several
+      const std::string said = first ? "1" : field_text(there[key]);
+      if (said != here) refuse(file, key, "'" + said + "'", "'" + here + "'");
+    }
+    const std::optional<Vector3> gravity = yaml_vector(there["gravity"]);
+    if (!gravity || *gravity != header.gravity)
+      refuse(file, "gravity", field_text(there["gravity"]), text::vector(header.gravity));
+  });
+}
+
+const char* const kLockFile = "/session.lock";
+
+/// For who finds the folder locked; nothing hangs on it.
+void write_holder(int file) {
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const std::string text = "process " + std::to_string(getpid()) + " on " + host + "\n";
+  if (ftruncate(file, 0) != 0 || write(file, text.data(), text.size()) < 0) return;
+}
+
+std::string holder(const std::string& file) {
+  const std::string text = text::one_line(file_text(file, 300).value_or(""), 300);
+  return text.empty() ? "another process" : text;
+}
+
 }  // namespace
+
+/// Keeps a folder to one program at a time, as long as it lives; however a program ends, its lock ends with
+/// it.
+class FolderLock {
+ public:
+  /// Throws SessionError that names the process and machine that has it, or says that it cannot be written.
+  explicit FolderLock(const std::string& folder);
+  ~FolderLock() { close(file_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+FolderLock::FolderLock(const std::string& folder) {
+  const std::string file = folder + kLockFile;
+  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
+  struct stat opened {};
+  if (file_ >= 0 && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
+    close(file_);
+    throw SessionError(file + ": is no file; allowed: a file, or none yet");
+  }
+  if (file_ < 0)
+    throw SessionError(file + ": cannot be written: " + std::strerror(errno) +
+                       "; allowed: a folder to write to with space left");
+  if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
+    write_holder(file_);
+    return;
+  }
+  const std::string has_it = holder(file);
+  close(file_);
+  throw SessionError(folder + ": is in use by " + has_it + "; allowed: another folder, or end that first");
+}
 
 SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& header,
                              const SessionSetup& setup)
@@ -263,136 +394,6 @@ void SessionFolder::log(const HandRow& row) {
   Table& table = row.filtered ? hands_ : hands_raw_;
   if (!table.out.is_open()) open_table(row.filtered ? kHands : kHandsRaw, kHandColumns, table);
   table.write(line.text());
-}
-
-namespace {
-
-constexpr int kVersion = 1;
-
-using Field = std::pair<const char*, std::string>;
-
-/// What makes a session the one that it is, beside its gravity.
-std::vector<Field> identity(const SessionHeader& header) {
-  return {{"participant", header.participant},
-          {"group", header.group},
-          {"handedness", header.handedness},
-          {"condition", header.condition},
-          {"seed", std::to_string(header.seed)},
-          {"task", header.task},
-          {"session", std::to_string(header.session)},
-          {"simulated", header.simulated ? "true" : "false"},
-          {"order", "[" + text::joined(header.order) + "]"}};
-}
-
-std::string field_text(const YAML::Node& node) {
-  if (!node.IsSequence()) return node ? yaml_text(node) : "nothing";
-  std::vector<std::string> items;
-  for (const auto& item : node) items.push_back(yaml_text(item));
-  return "[" + text::joined(items) + "]";
-}
-
-[[noreturn]] void refuse(const std::string& file, const std::string& key, const std::string& there,
-                         const std::string& here) {
-  throw SessionError(file + ": " + key + ": the session in this folder has " + there + ", this one " + here +
-                     "; allowed: the same, or another folder");
-}
-
-void check_word(const char* key, const std::string& value) {
-  if (!is_name(value))
-    throw SessionError(std::string(key) + " '" + text::one_line(value, 60) +
-                       "' is not allowed; allowed: a name of " + kNameIs);
-}
-
-}  // namespace
-
-void check_header(const SessionHeader& header) {
-  check_word("participant", header.participant);
-  check_word("condition", header.condition);
-  check_word("group", header.group);
-  if (header.handedness != "right" && header.handedness != "left")
-    throw SessionError("handedness '" + header.handedness + "' is not allowed; allowed: right or left");
-}
-
-std::string header_text(const SessionHeader& header) {
-  YAML::Emitter out;
-  out << YAML::BeginMap << YAML::Key << "version" << YAML::Value << kVersion;
-  const auto quoted = [&out](const char* key, const std::string& value) {
-    out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
-  };
-  quoted("participant", header.participant);
-  quoted("group", header.group);
-  out << YAML::Key << "handedness" << YAML::Value << header.handedness;
-  quoted("condition", header.condition);
-  out << YAML::Key << "gravity" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-  for (const double g : {header.gravity.x(), header.gravity.y(), header.gravity.z()}) out << g;
-  out << YAML::EndSeq << YAML::Key << "seed" << YAML::Value << header.seed;
-  quoted("task", header.task);
-  out << YAML::Key << "session" << YAML::Value << header.session;
-  out << YAML::Key << "simulated" << YAML::Value << header.simulated;
-  quoted("started", header.started);
-  out << YAML::Key << "order" << YAML::Value << YAML::Flow << header.order;
-  quoted("software", header.software);
-  out << YAML::EndMap;
-  return std::string(out.c_str()) + "\n";
-}
-
-void check_same_session(const std::string& file, const SessionHeader& header) {
-  read_yaml<SessionError>(file, [&] {
-    const YAML::Node there = load_yaml_file(file);
-    if (!there.IsMap())
-      throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
-    for (const auto& [key, here] : identity(header)) {
-      const bool first = std::string(key) == "session" && !there[key];  // before there were several
-      const std::string said = first ? "1" : field_text(there[key]);
-      if (said != here) refuse(file, key, "'" + said + "'", "'" + here + "'");
-    }
-    const std::optional<Vector3> gravity = yaml_vector(there["gravity"]);
-    if (!gravity || *gravity != header.gravity)
-      refuse(file, "gravity", field_text(there["gravity"]), text::vector(header.gravity));
-  });
-}
-
-namespace {
-
-const char* const kFile = "/session.lock";
-
-/// For who finds the folder locked; nothing hangs on it.
-void write_holder(int file) {
-  char host[256] = "";
-  gethostname(host, sizeof host - 1);
-  const std::string text = "process " + std::to_string(getpid()) + " on " + host + "\n";
-  if (ftruncate(file, 0) != 0 || write(file, text.data(), text.size()) < 0) return;
-}
-
-std::string holder(const std::string& file) {
-  const std::string text = text::one_line(file_text(file, 300).value_or(""), 300);
-  return text.empty() ? "another process" : text;
-}
-
-}  // namespace
-
-FolderLock::FolderLock(const std::string& folder) {
-  const std::string file = folder + kFile;
-  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
-  struct stat opened {};
-  if (file_ >= 0 && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
-    close(file_);
-    throw SessionError(file + ": is no file; allowed: a file, or none yet");
-  }
-  if (file_ < 0)
-    throw SessionError(file + ": cannot be written: " + std::strerror(errno) +
-                       "; allowed: a folder to write to with space left");
-  if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
-    write_holder(file_);
-    return;
-  }
-  const std::string has_it = holder(file);
-  close(file_);
-  throw SessionError(folder + ": is in use by " + has_it + "; allowed: another folder, or end that first");
-}
-
-FolderLock::~FolderLock() {
-  close(file_);
 }
 
 }  // namespace mrhi

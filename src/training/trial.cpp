@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../scene/scene_edit.h"
-#include "goal.h"
+#include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
 namespace {
@@ -14,6 +13,72 @@ constexpr Nanoseconds kDropped = 100'000'000;    // not held this long
 
 Nanoseconds nanoseconds(double seconds) {
   return static_cast<Nanoseconds>(std::llround(1e9 * seconds));
+}
+
+/// Angle between the orientation and the goal's, of its axis alone if it has one [rad].
+double misalignment(const Goal& goal, const Quaternion& orientation) {
+  if (!goal.axis) return orientation.angularDistance(goal.orientation);
+  const double cosine = (orientation * *goal.axis).dot(goal.orientation * *goal.axis);
+  return std::acos(std::min(1.0, std::abs(cosine)));
+}
+
+bool lies_as_asked(const Goal& goal, const Quaternion& orientation) {
+  return !goal.angle_tolerance || misalignment(goal, orientation) <= *goal.angle_tolerance;
+}
+
+/// The body that a goal `rest` is about; nothing: there is no operator.
+std::optional<OperatorMotion> resting_body(const Goal& goal, const Observation& seen) {
+  return goal.of_operator ? seen.person : OperatorMotion{seen.pose, seen.twist};
+}
+
+bool is_at_rest(const Goal& goal, const Observation& seen) {
+  const std::optional<OperatorMotion> body = resting_body(goal, seen);
+  return body && (body->pose.position - goal.position).norm() <= goal.tolerance &&
+         lies_as_asked(goal, body->pose.orientation) && body->twist.linear.norm() <= goal.max_speed &&
+         body->twist.angular.norm() <= goal.max_spin;
+}
+
+bool in_box(const Goal& goal, const Vector3& position) {
+  return ((position - goal.position).array().abs() <= 0.5 * goal.size.array()).all();
+}
+
+/// Whether the goal asks for a hand that holds the object.
+bool asks_to_hold(GoalKind kind) {
+  return kind == GoalKind::pick || kind == GoalKind::place || kind == GoalKind::insert ||
+         kind == GoalKind::catch_it;
+}
+
+/// Whether it asks for a touch without a grasp.
+bool asks_to_touch(GoalKind kind) {
+  return kind == GoalKind::nudge_into || kind == GoalKind::strike;
+}
+
+/// Whether the goal's condition holds now; `start`: where the object was as the trial began. For kinds with a
+/// condition that lasts: pick, place, insert, catch_it, nudge_into, joint, rest.
+bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
+  const Vector3& position = seen.pose.position;
+  switch (goal.kind) {
+    case GoalKind::pick:
+      return seen.held && (position - start).norm() >= goal.distance;
+    case GoalKind::place:
+    case GoalKind::insert:
+      return seen.held && (position - goal.position).norm() <= goal.tolerance &&
+             lies_as_asked(goal, seen.pose.orientation);
+    case GoalKind::catch_it:
+      return seen.held;
+    case GoalKind::nudge_into:
+      return !seen.held && in_box(goal, position) && seen.twist.linear.norm() <= goal.max_speed;
+    case GoalKind::joint:
+      return std::any_of(seen.joints.begin(), seen.joints.end(), [&goal](const auto& joint) {
+        return joint.first == goal.joint && joint.second >= goal.above && joint.second <= goal.below;
+      });
+    case GoalKind::rest:
+      return is_at_rest(goal, seen);
+    case GoalKind::strike:
+    case GoalKind::release:
+      break;
+  }
+  return false;
 }
 
 }  // namespace
@@ -257,72 +322,6 @@ Observation observe(const Simulation& simulation, std::size_t body) {
       seen.joints.emplace_back(joints[j].name, simulation.state().joints[j].position);
   }
   return seen;
-}
-
-namespace {
-
-/// Angle between the orientation and the goal's, of its axis alone if it has one [rad].
-double misalignment(const Goal& goal, const Quaternion& orientation) {
-  if (!goal.axis) return orientation.angularDistance(goal.orientation);
-  const double cosine = (orientation * *goal.axis).dot(goal.orientation * *goal.axis);
-  return std::acos(std::min(1.0, std::abs(cosine)));
-}
-
-bool lies_as_asked(const Goal& goal, const Quaternion& orientation) {
-  return !goal.angle_tolerance || misalignment(goal, orientation) <= *goal.angle_tolerance;
-}
-
-/// The body that a goal `rest` is about; nothing: there is no operator.
-std::optional<OperatorMotion> resting_body(const Goal& goal, const Observation& seen) {
-  return goal.of_operator ? seen.person : OperatorMotion{seen.pose, seen.twist};
-}
-
-bool is_at_rest(const Goal& goal, const Observation& seen) {
-  const std::optional<OperatorMotion> body = resting_body(goal, seen);
-  return body && (body->pose.position - goal.position).norm() <= goal.tolerance &&
-         lies_as_asked(goal, body->pose.orientation) && body->twist.linear.norm() <= goal.max_speed &&
-         body->twist.angular.norm() <= goal.max_spin;
-}
-
-bool in_box(const Goal& goal, const Vector3& position) {
-  return ((position - goal.position).array().abs() <= 0.5 * goal.size.array()).all();
-}
-
-}  // namespace
-
-bool asks_to_hold(GoalKind kind) {
-  return kind == GoalKind::pick || kind == GoalKind::place || kind == GoalKind::insert ||
-         kind == GoalKind::catch_it;
-}
-
-bool asks_to_touch(GoalKind kind) {
-  return kind == GoalKind::nudge_into || kind == GoalKind::strike;
-}
-
-bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
-  const Vector3& position = seen.pose.position;
-  switch (goal.kind) {
-    case GoalKind::pick:
-      return seen.held && (position - start).norm() >= goal.distance;
-    case GoalKind::place:
-    case GoalKind::insert:
-      return seen.held && (position - goal.position).norm() <= goal.tolerance &&
-             lies_as_asked(goal, seen.pose.orientation);
-    case GoalKind::catch_it:
-      return seen.held;
-    case GoalKind::nudge_into:
-      return !seen.held && in_box(goal, position) && seen.twist.linear.norm() <= goal.max_speed;
-    case GoalKind::joint:
-      return std::any_of(seen.joints.begin(), seen.joints.end(), [&goal](const auto& joint) {
-        return joint.first == goal.joint && joint.second >= goal.above && joint.second <= goal.below;
-      });
-    case GoalKind::rest:
-      return is_at_rest(goal, seen);
-    case GoalKind::strike:
-    case GoalKind::release:
-      break;
-  }
-  return false;
 }
 
 void Trial::note_rest(const Observation& seen, bool achieved) {

@@ -13,13 +13,9 @@ OpenLog open_log(const ReplayArguments& arguments) {
   return {};
 }
 
-struct MarkerBag::Impl {};
-
-MarkerBag::MarkerBag(const std::string&, const std::set<std::size_t>&) : MarkerBag("", 0.0) {}
-MarkerBag::MarkerBag(const std::string&, double) {
+std::unique_ptr<Pictures> marker_bag(const std::string&, const std::optional<double>&,
+                                     const std::set<std::size_t>&) {
   throw UsageError("--markers: this replay was built without ROS and writes no bags");
 }
-MarkerBag::~MarkerBag() = default;
-void MarkerBag::watch(const Simulation&) {}
 
 }  // namespace mrhi

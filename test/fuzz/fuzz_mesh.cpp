@@ -1,7 +1,6 @@
 // A mesh, and a finger that goes through it. First byte 0 to 2: the rest is a file of one of the kinds;
 // others: its triangles, three bytes for a vertex and three for the triangle on the vertices so far.
 #include "fuzz/target.h"
-#include "scene/mesh_loader.h"
 #include "scene/solid_mesh.h"
 #include "support/fixtures.h"
 

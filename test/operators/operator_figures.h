@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/synthetic/random.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "operators_at_work.h"
 
 namespace mrhi::testing {

@@ -1,5 +1,5 @@
 #include "operators_at_work.h"
-#include "synthetic/person.h"
+#include "synthetic/operator.h"
 
 namespace mrhi {
 namespace {

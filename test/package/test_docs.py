@@ -9,7 +9,8 @@ PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 PAGES = sorted(glob.glob(os.path.join(PACKAGE, "docs", "*.md"))) + [os.path.join(PACKAGE, name)
                                                                     for name in ("README.md", "CONTRIBUTING.md")]
 SHELF = os.path.join(PACKAGE, "docs", "README.md")
-MOST_WORDS = 1500  # of README.md: more is not read before the first try
+MAX_README_WORDS = 1500  # more is not read before the first try
+MAX_PAGES, MAX_WORDS = 16, 25000  # of docs/, without its index: more is not found, and not read
 
 
 def text_of(page):
@@ -53,7 +54,13 @@ class DocsTest(unittest.TestCase):
         self.assertEqual(sorted(shelved), sorted(os.path.basename(page) for page in PAGES[:-2] if page != SHELF))
 
     def test_the_readme_is_short(self):
-        self.assertLessEqual(len(text_of(PAGES[-2]).split()), MOST_WORDS)
+        self.assertLessEqual(len(text_of(PAGES[-2]).split()), MAX_README_WORDS)
+
+    def test_the_pages_are_few_and_short(self):
+        pages = [page for page in PAGES[:-2] if page != SHELF]
+        self.assertLessEqual(len(pages), MAX_PAGES)
+        self.assertLessEqual(sum(len(text_of(page).split()) for page in PAGES[:-2]), MAX_WORDS,
+                             "say a thing once, and link to it")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "rendering/finger_chain.h"
+#include "rendering/renderer.h"
 #include "support/finger_angles.h"
 #include "support/posed_hand.h"
 

@@ -1,4 +1,4 @@
-#include "rendering/light.h"
+#include "rendering/skin.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include "modelling/skin_parts.h"
 #include "rendering/skin.h"
-#include "rendering/skin_paint.h"
 #include "support/postures.h"
 
 namespace mrhi {

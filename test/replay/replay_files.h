@@ -11,7 +11,7 @@
 
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "synthetic/recording_writer.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi::test {
 

@@ -40,7 +40,7 @@ class ComparisonTest(unittest.TestCase):
         self.assertEqual((comparison.objects, comparison.partings, comparison.near_misses, comparison.same_end),
                          (1, [], [], None))
         self.assertEqual(text_of(comparison), '1 of 1 objects within 1e-09 m and 1e-09 rad in every frame\n'
-                         'objects: the same bits in every frame; the state at the end: not told by both runs\n')
+                         'objects: equal bits in every frame; the state at the end: not known of both runs\n')
 
     def test_objects_part_at_their_first_frame_that_differs(self):
         start = row(0.0, 'ball', 0.0) + row(0.0, 'cube', 1.0)
@@ -61,8 +61,8 @@ class ComparisonTest(unittest.TestCase):
         (miss,) = near.near_misses
         self.assertEqual((miss.time, miss.max_distance), (0.1, 7e-21))
         self.assertAlmostEqual(miss.max_angle, 2e-12, 18)
-        self.assertIn('cube: does not part, but differs from 0.1 s', text_of(near))
-        self.assertIn('objects: not the same bits; the state at the end: not told', text_of(near))
+        self.assertIn('cube: stays within the tolerance, but differs from 0.1 s', text_of(near))
+        self.assertIn('objects: different bits; the state at the end: not known', text_of(near))
         later = self.compare(start + row(0.1, 'cube', 0.0) + row(0.2, 'cube', 0.5), start + tiny + row(0.2, 'cube', 0.7))
         self.assertEqual((len(later.partings), later.near_misses, later.partings[0].time), (1, [], 0.2))
         self.assertAlmostEqual(later.partings[0].distance, 0.2, 12)
@@ -82,7 +82,7 @@ class ComparisonTest(unittest.TestCase):
                 json.dump({'state_hash': state_hash}, file)
         comparison = compare(self.a, self.b)
         self.assertEqual((comparison.partings, comparison.same_end), ([], False))
-        self.assertIn('the same bits in every frame; the state at the end: not the same bits', text_of(comparison))
+        self.assertIn('equal bits in every frame; the state at the end: different bits', text_of(comparison))
 
     def test_a_place_that_is_no_number_parts_from_one_that_is(self):
         lost = '0,cube,nan,0,0,0,0,0,1,0,0,0,0,0,0\n'

@@ -73,11 +73,11 @@ class ExplainTest(Folders):
     def test_each_attempt_fails_for_its_own_reason(self):
         for cause, changes in (('too_little_friction', SLIPPERY), ('too_little_force', WEAK),
                                ('wrong_faces', {'adjacent': True, 'rise': 0.0}), ('tracking_lost', {'vanishes_at': 0.8}),
-                               ('hand_opened', OPENING), ('blow', {'overlap': 0.0005, 'rise': 0.0, 'ball_speed': 2.0})):
+                               ('hand_opened', OPENING), ('impact', {'overlap': 0.0005, 'rise': 0.0, 'ball_speed': 2.0})):
             with self.subTest(cause=cause):
                 loss = self.loss(**changes)
                 self.assertEqual(loss.cause, cause, loss.text)
-                self.assertEqual(loss.by, 'ball' if cause == 'blow' else '')
+                self.assertEqual(loss.by, 'ball' if cause == 'impact' else '')
 
     def test_the_friction_that_would_have_held_holds(self):
         loss = self.loss(**SLIPPERY)
@@ -96,7 +96,7 @@ class ExplainTest(Folders):
                 thing.assisted = thing.time < until - before
             return self.told_again(change, **WEAK)
         late, early = assisted_until(0.10), assisted_until(0.20)
-        self.assertEqual(late.cause, 'help_gave_way', late.text)
+        self.assertEqual(late.cause, 'assist_ended', late.text)
         self.assertEqual(early.cause, 'too_little_force', early.text)
         for loss in (late, early):
             self.assertIn('(contact/grasp_assist)', loss.text)

@@ -11,7 +11,7 @@
 #include "replay/replay_files.h"
 #include "replay/run.h"
 #include "simulation/state_bytes.h"
-#include "text/file_text.h"
+#include "text/files.h"
 #include "text/text.h"
 
 namespace mrhi {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
-#include "ros/training_system.h"
+#include "ros/marker_layers.h"
 #include "support/fixtures.h"
 #include "training/trials.h"
 

@@ -44,7 +44,7 @@ void expect_ends_of_the_table(const Fields& least, const Fields& most) {
 
 TEST(Tuning, sliders_end_where_the_parameters_table_says) {
   Config least = Config::__getDefault__(), most = least;
-  slider_ends(least, most);
+  Tuning::slider_ends(least, most);
   const dynamic_reconfigure::Config low = message_of(least), high = message_of(most);
   EXPECT_GE(low.doubles.size(), 12u);
   expect_ends_of_the_table(low.doubles, high.doubles);

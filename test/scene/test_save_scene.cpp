@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../src/scene/scene_edit.h"
 #include "../../src/scene/shape_kinds.h"
 #include "mr_hand_interaction/scene/object_request.h"
+#include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/simulation.h"
 #include "support/fixtures.h"

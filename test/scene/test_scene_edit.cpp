@@ -1,4 +1,4 @@
-#include "scene/scene_edit.h"
+#include "mr_hand_interaction/scene/scene.h"
 
 #include <gtest/gtest.h>
 

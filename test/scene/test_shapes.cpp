@@ -3,7 +3,6 @@
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/shape.h"
 #include "mr_hand_interaction/synthetic/random.h"
-#include "scene/shape_inertia.h"
 #include "scene/solid_mesh.h"
 #include "support/tessellated.h"
 

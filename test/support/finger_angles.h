@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/rendering/hand_offset.h"
-#include "rendering/finger_chain.h"
+#include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "rendering/renderer.h"
 
 namespace mrhi::testing {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "synthetic/fingertip_reach.h"
+#include "synthetic/scripted_grasp.h"
 
 namespace mrhi {
 namespace {

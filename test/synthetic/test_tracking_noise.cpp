@@ -1,4 +1,4 @@
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "text/csv.h"
+#include "text/files.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "replay/replay_files.h"
-#include "text/file_text.h"
 #include "text/text.h"
 
 namespace mrhi {

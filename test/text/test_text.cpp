@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "mr_hand_interaction/synthetic/random.h"
-#include "text/registry.h"
 
 namespace mrhi {
 namespace {

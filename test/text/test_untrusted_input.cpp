@@ -7,9 +7,8 @@
 
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "scene/scene_files.h"
-#include "text/file_text.h"
-#include "text/limited_child.h"
-#include "text/xml_danger.h"
+#include "text/files.h"
+#include "text/untrusted_input.h"
 
 namespace mrhi {
 namespace {

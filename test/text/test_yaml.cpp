@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "mr_hand_interaction/scene/scene_loader.h"
-#include "text/safe_yaml.h"
-#include "text/yaml_values.h"
+#include "text/yaml.h"
 
 namespace mrhi {
 namespace {

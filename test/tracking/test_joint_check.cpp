@@ -1,12 +1,10 @@
-#include "tracking/joint_check.h"
+#include "tracking/joints_input.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "adult_hand.h"
-#include "tracking/joint_orders.h"
-#include "tracking/joints_input.h"
 
 namespace mrhi {
 namespace {

@@ -10,8 +10,6 @@
 #include "support/fixtures.h"
 #include "support/white_noise.h"
 #include "tracking/hand_filter.h"
-#include "tracking/noise_estimate.h"
-#include "tracking/tracker.h"
 
 namespace mrhi {
 namespace {

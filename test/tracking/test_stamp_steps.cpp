@@ -1,4 +1,4 @@
-#include "tracking/stamp_steps.h"
+#include "tracking/joints_input.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/fixtures.h"
-#include "tracking/tracker.h"
+#include "tracking/hand_filter.h"
 
 namespace mrhi {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "training/latin_square.h"
+#include "mr_hand_interaction/training/session.h"
 
 namespace mrhi {
 namespace {

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "scene/scene_files.h"
-#include "training/object_model.h"
+#include "training/operator_trial.h"
 #include "training/trials.h"
 
 namespace mrhi {

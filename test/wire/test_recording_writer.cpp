@@ -1,4 +1,4 @@
-#include "synthetic/recording_writer.h"
+#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "mr_hand_interaction/replay/recording_csv.h"
-#include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
 namespace {

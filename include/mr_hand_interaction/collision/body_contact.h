@@ -4,7 +4,7 @@
 
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/scene/material.h"
+#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 

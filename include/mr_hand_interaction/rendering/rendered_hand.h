@@ -1,10 +1,39 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 
 #include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
+
+/// By how much a finger's joints are turned away from where they were tracked: flexion (towards the palm) and
+/// abduction (towards the thumb of a right hand) of its root, flexion of its middle and end joint [rad]. Of a
+/// finger without a proximal phalanx, which nothing ties to the palm: its shift in world [m], and 0.
+using FingerOffset = Eigen::Array4d;
+
+/// Where tracking turns the palm faster than the hand may follow: by how much the palm shown is turned from
+/// the tracked one. Joints keep their angles in the palm.
+struct PalmLag {
+  Quaternion whole = Quaternion::Identity();  ///< of all the hand, about the palm's position
+  Quaternion frame = Quaternion::Identity();  ///< then of the palm's axes alone, metacarpals staying
+  bool zero() const { return whole.vec() == Vector3::Zero() && frame.vec() == Vector3::Zero(); }
+};
+
+/// How a rendered hand differs from the tracked one. Lasts from frame to frame.
+struct HandOffset {
+  Vector3 shift = Vector3::Zero();  ///< of the whole hand in world [m]
+  std::array<FingerOffset, kFingers> fingers;
+  PalmLag lag;
+  Nanoseconds stamp = 0;  ///< of the frame that it was found for
+
+  // While a body holds the hand back though the tracked hand is clear of all:
+  double left = 0.0;           ///< the shortest way to the tracked hand so far [m]; 0: it is not held back
+  Nanoseconds left_since = 0;  ///< when that was
+
+  HandOffset() { fingers.fill(FingerOffset::Zero()); }
+  bool zero() const;
+};
 
 /// What a phalanx or the palm presses with, all its contacts together.
 struct Pressed {

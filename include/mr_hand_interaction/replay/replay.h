@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "mr_hand_interaction/input_error.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/simulation.h"
-#include "mr_hand_interaction/usage_error.h"
 
 namespace mrhi {
 

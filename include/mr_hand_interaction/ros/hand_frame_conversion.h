@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Transform.h>
+#include <geometry_msgs/Twist.h>
 #include <geometry_msgs/Vector3.h>
 #include <mr_hand_interaction/HandFrame.h>
 #include <ros/time.h>
@@ -27,11 +28,16 @@ HandFrame from_message(const mr_hand_interaction::HandFrame& message);
 geometry_msgs::Point to_message(const Vector3& point);
 geometry_msgs::Vector3 vector_message(const Vector3& v);
 geometry_msgs::Pose to_message(const Pose& pose);
+geometry_msgs::Twist to_message(const Twist& twist);
 Vector3 from_message(const geometry_msgs::Point& point);
 Vector3 from_message(const geometry_msgs::Vector3& vector);
 Pose from_message(const geometry_msgs::Pose& pose);
+Twist from_message(const geometry_msgs::Twist& twist);
 /// With the quaternion brought to unit length.
 Pose from_message(const geometry_msgs::Transform& transform);
+
+/// A frame's name without the slash that it may begin with.
+std::string without_slash(const std::string& frame_id);
 
 /// What no header can hold becomes the nearest that one can.
 ros::Time to_ros_time(Nanoseconds stamp);

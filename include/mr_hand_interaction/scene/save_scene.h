@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "mr_hand_interaction/integration/body_state.h"
-#include "mr_hand_interaction/joint_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {

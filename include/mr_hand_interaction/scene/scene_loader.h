@@ -3,20 +3,16 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/input_error.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
 
-/// A scene that cannot be loaded. what() is one line, whatever the file's name holds: the file, the thing in
-/// it, and what is allowed.
-class SceneError : public std::runtime_error {
- public:
-  explicit SceneError(const std::string& message);
-};
+/// A scene that cannot be loaded.
+using SceneError = InputError;
 
 /// What a loader needs beside the files themselves.
 struct SceneOptions {

@@ -1,13 +1,33 @@
 #pragma once
 
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "mr_hand_interaction/synthetic/tracking_noise.h"
+#include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
+
+/// Noise like that of a Leap Motion: white on every joint, 0.2 mm rms when still and 1.2 mm from 1 m/s on,
+/// and 0.2 mm rms common to the whole hand, all times `amplitude`. The same seed and frames give the same
+/// bits.
+class TrackingNoise {
+ public:
+  TrackingNoise(double amplitude, std::uint64_t seed) : amplitude_(amplitude), random_(seed) {}
+
+  /// Disturbs a frame; frames in the order of their stamps.
+  void apply(JointsFrame& frame);
+
+ private:
+  void disturb(HandJoints& hand, const HandJoints* before, double elapsed);
+
+  double amplitude_;
+  Random random_;
+  JointsFrame previous_;
+};
 
 struct SyntheticHandOptions {
   std::string motion = "grasp_cube";
@@ -44,5 +64,9 @@ class SyntheticHand {
 /// One run of the motion and the pause after it.
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options);
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, const ScriptedMotion& motion);
+
+/// Writes frames in the CSV schema of recordings: a line per hand and frame, hand_id -1 for a frame without
+/// hands, time from the first stamp, micrometres. What a frame does not have is left empty.
+void write_recording_csv(std::ostream& out, const std::vector<JointsFrame>& frames);
 
 }  // namespace mrhi

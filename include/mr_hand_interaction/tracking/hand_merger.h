@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "mr_hand_interaction/tracking/filter_memory.h"
 #include "mr_hand_interaction/tracking/hand.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 

@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../rendering/skin_paint.h"
+#include "../../rendering/skin.h"
 #include "../marker_layers.h"
 #include "mr_hand_interaction/ros/markers.h"
 

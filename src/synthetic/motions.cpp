@@ -1,0 +1,450 @@
+#include "motions.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "scripted_grasp.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
+constexpr double kAside = 0.16;     // [m] further away, where the hand comes from
+
+/// A hand that takes hold of something, moves it and lets go.
+class Grip {
+ public:
+  Grip(Script& script, const Grasp& grasp, const Vector3& place)
+      : script_(script),
+        postures_(grasp),
+        retreat_(grasp.retreat),
+        at_(Pose{place, Quaternion::Identity()} * grasp.wrist) {}
+
+  /// Reaches for it from `aside` of where it is straight before it, at `distance` [m] and `speed` [m/s].
+  Grip& take(const Vector3& aside, double distance = 0.08, double speed = 0.1) {
+    const Pose before = shifted(at_, distance * retreat_);
+    if (script_.motion().keyframes.empty()) script_.then(0.0, shifted(before, aside), relaxed_posture());
+    script_.then(0.9, before, postures_.open, -speed * retreat_).then(0.8, at_, postures_.open);
+    script_.then(0.6, at_, postures_.near).then(0.7, at_, postures_.pressing);
+    script_.by_way_of(postures_.touching, postures_.touching_share);
+    return *this;
+  }
+  Grip& hold(double duration) {
+    script_.hold(duration);
+    return *this;
+  }
+  Grip& slide(double duration, const Vector3& by) {
+    at_ = shifted(at_, by);
+    script_.then(duration, at_, postures_.pressing);
+    return *this;
+  }
+  Grip& turn_about(double duration, const Vector3& centre, const Quaternion& by) {
+    at_ = {centre + by * (at_.position - centre), by * at_.orientation};
+    retreat_ = by * retreat_;
+    script_.then(duration, at_, postures_.pressing).round(centre);
+    return *this;
+  }
+  Grip& let_go(const Vector3& aside) {
+    script_.hold(0.4).then(0.7, at_, postures_.near);
+    script_.by_way_of(postures_.touching, 1.0 - postures_.touching_share);
+    const Pose off = shifted(at_, 0.07 * retreat_);
+    script_.then(0.5, at_, postures_.open).then(0.7, off, postures_.open, 0.1 * retreat_);
+    script_.then(0.8, shifted(off, aside), relaxed_posture());
+    return *this;
+  }
+
+  const GraspPostures& postures() const { return postures_; }
+
+ private:
+  Script& script_;
+  GraspPostures postures_;
+  Vector3 retreat_;
+  Pose at_;
+};
+
+/// Carries the object, held with its centre at `centre`, to another pose, holds it, lets go and withdraws.
+void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& postures,
+                       const Vector3& centre, const Pose& carried, const Vector3& aside) {
+  const Pose target = Pose{centre, Quaternion::Identity()} * carried;
+  const Pose wrist = target * grasp.wrist;
+  const Vector3 retreat = carried.orientation * grasp.retreat;
+  script.then(1.4, wrist, postures.pressing).hold(0.6);
+  script.then(0.7, wrist, postures.near).by_way_of(postures.touching, 1.0 - postures.touching_share);
+  script.then(0.5, wrist, postures.open);
+  script.then(0.7, shifted(wrist, kApproach * retreat), postures.open, 0.1 * retreat);
+  script.then(0.8, shifted(wrist, kApproach * retreat + aside), relaxed_posture());
+}
+
+ScriptedMotion reach_and_carry(const char* object, const Vector3& aside) {
+  return reach_and_carry(object, shipped_grasp(object), scene_object(), aside);
+}
+
+}  // namespace
+
+ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
+                               const Vector3& aside) {
+  Script script(scene);
+  Grip grip(script, grasp, object);
+  grip.take(aside, kApproach, 0.15).hold(0.4);
+  carry_and_release(script, grasp, grip.postures(), object, {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())},
+                    aside);
+  return script.motion();
+}
+
+static ScriptedMotion grasp_cube() {
+  return reach_and_carry("cube", {0.05, -kAside, 0.02});
+}
+
+static ScriptedMotion grasp_ball() {
+  return reach_and_carry("ball", {0.05, -kAside, 0.02});
+}
+
+static ScriptedMotion catch_ball() {
+  constexpr double kMeet = 0.7, kClose = 0.3, kPress = 0.4, kStop = 0.5, kStart = 0.4;  // [s]
+  const Vector3 velocity(0.0, -0.3, 0.0);
+  const Grasp grasp = shipped_grasp("ball").turned(turn(90.0, Vector3::UnitX()));
+  const GraspPostures postures(grasp);
+  const auto wrist_round = [&](const Vector3& ball) {
+    return Pose{ball, Quaternion::Identity()} * grasp.wrist;
+  };
+  const Vector3 met = scene_object() + kMeet * velocity;
+  const Vector3 near = met + kClose * velocity, closed = near + kPress * velocity;
+  const Vector3 stopped = closed + 0.5 * kStop * velocity;
+  Script script("ball");
+  script.object_twist({velocity, Vector3::Zero()});
+  script.then(0.0, wrist_round(met - 0.5 * kStart * velocity), postures.open).hold(kMeet - kStart);
+  script.then(kStart, wrist_round(met), postures.open, velocity);
+  script.then(kClose, wrist_round(near), postures.near, velocity);
+  script.then(kPress, wrist_round(closed), postures.pressing, velocity);
+  script.by_way_of(postures.touching, postures.touching_share);
+  script.then(kStop, wrist_round(stopped), postures.pressing).hold(0.3);
+  const Pose carried{{0.0, 0.08, 0.06}, turn(20.0, Vector3::UnitX())};
+  carry_and_release(script, grasp, postures, stopped, carried, {0.08, 0.0, -0.05});
+  return script.motion();
+}
+
+static ScriptedMotion pinch_long() {
+  return reach_and_carry("long_cuboid", {0.04, -kAside, 0.0});
+}
+
+static ScriptedMotion lift_flat() {
+  return reach_and_carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04});
+}
+
+namespace {
+
+constexpr double kHalfCube = 0.025;
+constexpr double kPeakSpeed = 1.875;  // of minimum jerk, in lengths per duration
+
+/// Index tip's centre where its skin touches the cube on the side that `normal` points out of.
+Vector3 touching_tip(const Vector3& normal) {
+  return scene_object() + (kHalfCube + human_hand().fingers[1].radius) * normal;
+}
+
+Keyframe key(double time, const Pose& wrist, const HandPosture& posture) {
+  Keyframe frame;
+  frame.time = time;
+  frame.wrist = wrist;
+  frame.posture = posture;
+  return frame;
+}
+
+}  // namespace
+
+static ScriptedMotion nudge() {
+  constexpr double kSpeed = 0.1, kWay = 0.09;
+  const HandPosture posture = pointing_posture();
+  const Vector3 forward = Vector3::UnitY();
+  const Pose contact = wrist_for_index_tip(
+      touching_tip(-forward), hand_pose(Vector3::Zero(), {0.0, 1.0, -0.1}, {0.0, 0.1, 1.0}), posture);
+  const Pose ready = shifted(contact, -0.5 * kWay * forward);
+  const Pose pushed = shifted(contact, 0.5 * kWay * forward);
+  const Pose away = shifted(ready, {0.06, -0.10, 0.04});
+  const double stroke = kPeakSpeed * kWay / kSpeed;
+  ScriptedMotion motion;
+  motion.scene = "cube";
+  motion.keyframes = {key(0.0, away, relaxed_posture()),  key(0.9, ready, posture),
+                      key(1.1, ready, posture),           key(1.1 + stroke, pushed, posture),
+                      key(1.6 + stroke, pushed, posture), key(2.8 + stroke, away, relaxed_posture())};
+  return motion;
+}
+
+static ScriptedMotion tap() {
+  constexpr double kSpeed = 0.5, kSwing = 40.0 * M_PI / 180.0;
+  HandPosture touching = pointing_posture();
+  touching.col(1) << 0.0, 0.1, 0.35, 0.2, 0.0;
+  HandPosture raised = touching, struck = touching;
+  raised(kBaseFlexion, 1) -= 0.5 * kSwing;
+  struck(kBaseFlexion, 1) += 0.5 * kSwing;
+  const auto finger = finger_joints(human_hand().fingers[1], touching.col(1));
+  const double stroke = kPeakSpeed * kSwing * (finger[4] - finger[1]).norm() / kSpeed;
+  // Pitched so that the tip passes the level of its knuckle where it meets the cube: it strikes straight
+  // down.
+  const Vector3 chord = finger[4] - finger[1];
+  const double pitch = std::atan2(-chord.z(), chord.x());
+  const Vector3 fingers(0.0, std::cos(pitch), std::sin(pitch)),
+      dorsal(0.0, -std::sin(pitch), std::cos(pitch));
+  const Pose at = wrist_for_index_tip(touching_tip(Vector3::UnitZ()),
+                                      hand_pose(Vector3::Zero(), fingers, dorsal), touching);
+  const Pose away = shifted(at, {0.06, -0.16, 0.06});
+  ScriptedMotion motion;
+  motion.scene = "cube";
+  motion.keyframes = {key(0.0, away, relaxed_posture()),
+                      key(1.0, at, raised),
+                      key(1.3, at, raised),
+                      key(1.3 + stroke, at, struck),
+                      key(1.7 + stroke, at, raised),
+                      key(2.1 + stroke, at, raised),
+                      key(3.1 + stroke, away, relaxed_posture())};
+  return motion;
+}
+
+static ScriptedMotion slap() {
+  constexpr double kSpeed = 1.5, kBefore = 0.26, kAfter = 0.26;
+  const HandPosture posture = flat_posture();
+  const Vector3 swing(-1.0, 0.0, 0.0);
+  // The cube's centre ahead of the middle finger's knuckle, the hand upright with the thumb up.
+  const auto middle = finger_joints(human_hand().fingers[2], posture.col(2));
+  const Pose direction = hand_pose(Vector3::Zero(), Vector3::UnitY(), -swing);
+  const Vector3 meeting(middle[1].x() + 0.010, middle[1].y(), middle[1].z() - human_hand().fingers[2].radius);
+  const Pose contact{scene_object() - kHalfCube * swing - direction.orientation * meeting,
+                     direction.orientation};
+  const Pose drawn = shifted(contact, -kBefore * swing), through = shifted(contact, kAfter * swing);
+  const double stroke = kPeakSpeed * (kBefore + kAfter) / kSpeed;
+  ScriptedMotion motion;
+  motion.scene = "cube";
+  motion.keyframes = {key(0.0, shifted(drawn, {0.02, -0.10, 0.0}), relaxed_posture()),
+                      key(0.8, drawn, posture),
+                      key(1.0, drawn, posture),
+                      key(1.0 + stroke, through, posture),
+                      key(1.4 + stroke, through, posture),
+                      key(2.3 + stroke, shifted(through, {0.0, -0.12, -0.02}), relaxed_posture())};
+  return motion;
+}
+
+namespace {
+
+constexpr double kThumbDepth = 0.006, kFingerDepth = 0.003;  // that the tips press beyond the surface [m]
+
+/// The wrist of one who points away from the body, palm down.
+Pose pointing_forward() {
+  return hand_pose(Vector3::Zero(), {0.0, 1.0, -0.25}, {0.0, 0.25, 1.0});
+}
+
+/// Where the index finger's tip is, touching a surface at `point` with the skin.
+Pose touching(const Vector3& point, const Vector3& normal) {
+  const Vector3 tip = point + human_hand().fingers[1].radius * normal;
+  return wrist_for_index_tip(tip, pointing_forward(), pointing_posture());
+}
+
+/// Thumb and two fingers on either side of an upright bar, palm to the panel, fingers to the right. Its frame
+/// is world's at the bar's middle.
+Grasp bar_grasp(double width) {
+  HandPosture preferred;
+  preferred << 25, 0, 0, 0, -4,  //
+      5, 50, 50, 80, 80,         //
+      15, 38, 38, 95, 95,        //
+      30, 25, 25, 60, 60,        //
+      35, 0, 0, 0, 0;
+  const double x = 0.5 * width;
+  const Vector3 right = Vector3::UnitX();
+  return {hand_pose({-0.0443, -0.1067, -0.0186}, {0.878, 0.377, 0.296}, {0.311, -0.918, 0.246}),
+          {{0, {-x, 0.0, 0.0}, -right, kThumbDepth},
+           {1, {x, 0.0, 0.009}, right, kFingerDepth},
+           {2, {x, 0.0, -0.009}, right, kFingerDepth}},
+          posture_of_degrees(preferred),
+          0.014,
+          -Vector3::UnitY()};
+}
+
+/// Fingers under a level bar and the thumb on it, palm up.
+Grasp rail_grasp(double width) {
+  const double z = 0.5 * width;
+  const Vector3 up = Vector3::UnitZ();
+  return {hand_pose({0.001, -0.0759, -0.0371}, {0.278, 0.774, -0.568}, {0.399, -0.631, -0.665}),
+          {{0, {0.0, 0.0, z}, up, kThumbDepth},
+           {1, {0.018, 0.0, -z}, -up, 0.002},
+           {2, {0.0, 0.0, -z}, -up, 0.002},
+           {3, {-0.018, 0.0, -z}, -up, 0.002}},
+          shipped_grasp("flat_cuboid").preferred,
+          0.015,
+          -Vector3::UnitY()};
+}
+
+const Vector3 kBeside(0.03, -0.08, 0.03);  // where the hand comes from, and goes to [m]
+
+/// A fingertip that touches at `place`, moves on by `way` in that time, and comes back.
+ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
+  const Vector3 ready = 0.03 * normal;
+  const Pose at = touching(place, normal), off = shifted(at, ready);
+  const HandPosture posture = pointing_posture();
+  Script script("panel");
+  script.then(0.0, shifted(off, kBeside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
+  script.then(duration, shifted(at, way), posture).hold(0.4).then(0.8 * duration, off, posture);
+  script.then(0.9, shifted(off, kBeside), relaxed_posture());
+  return script.motion();
+}
+
+}  // namespace
+
+static ScriptedMotion press_button() {
+  return push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0);
+}
+
+/// Down on its end, which stands up at 20 degrees.
+static ScriptedMotion flip_switch() {
+  return push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2);
+}
+
+static ScriptedMotion pull_lever() {
+  return push({0.16, 0.085, 0.368}, Vector3::UnitZ(), {0.0, 0.0, -0.03}, 1.2);
+}
+
+/// A quarter of a turn by its upper arm.
+static ScriptedMotion turn_valve() {
+  const Vector3 axle(0.01, 0.12, 0.34);
+  Script script("panel");
+  Grip grip(script, bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
+  grip.take(kBeside).hold(0.3).turn_about(1.6, axle, turn(60.0, Vector3::UnitY())).let_go(kBeside);
+  return script.motion();
+}
+
+static ScriptedMotion open_drawer() {
+  Script script("panel");
+  Grip grip(script, rail_grasp(0.012), {-0.13, 0.10, 0.15});
+  grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
+  return script.motion();
+}
+
+static ScriptedMotion open_door() {
+  const Vector3 hinge(0.2, 0.14, 0.17);
+  Script script("panel");
+  Grip grip(script, bar_grasp(0.012), {0.075, 0.10, 0.17});
+  grip.take(kBeside).hold(0.3).turn_about(2.0, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
+  return script.motion();
+}
+
+namespace {
+
+constexpr double kHatchFace = 0.115;  // where a fingertip is that turns a latch: before the hatch [m]
+
+/// The fingertip takes a latch at 45 mm from its axle, `up` or down, by a quarter of a turn. It is on the arc
+/// by its places and velocities at every 30 degrees.
+void turn_latch(Script& script, const Vector3& axle, double up) {
+  constexpr double kArm = 0.04, kUnder = 0.006, kParts = 3.0, kAngle = M_PI / 2.0, kTime = 2.0;
+  const double radius = human_hand().fingers[1].radius;
+  const HandPosture posture = pointing_posture();
+  const auto tip = [&](double angle, double under) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return Vector3(axle.x() + kArm * c + under * s, kHatchFace, axle.z() + up * (kArm * s - under * c));
+  };
+  const auto wrist = [&](double angle, double under) {
+    return wrist_for_index_tip(tip(angle, under), pointing_forward(), posture);
+  };
+  const double touching = kUnder + radius, off = touching + 0.015;
+  const Vector3 back(0.0, -0.04, 0.0);
+  script.then(0.9, shifted(wrist(0.0, off), back), posture).then(0.5, wrist(0.0, off), posture);
+  script.then(0.5, wrist(0.0, touching), posture, Vector3::Zero());
+  for (double part = 1.0; part <= kParts; part += 1.0) {
+    const double angle = kAngle * part / kParts, rate = part < kParts ? 1.2 * kAngle / kTime : 0.0;
+    const Vector3 along = (tip(angle + 1e-4, touching) - tip(angle - 1e-4, touching)) / 2e-4;
+    script.then(kTime / kParts, wrist(angle, touching), posture, rate * along);
+  }
+  script.hold(0.2).then(0.4, wrist(kAngle, off), posture);
+  script.then(0.5, shifted(wrist(kAngle, off), back), posture);
+}
+
+/// Fingers on an arm of tongs are as much farther apart than on a cube.
+constexpr double kApart = 1.3;
+
+/// Tips on the arms of tongs at half their length, each arm at `angle` from the middle; in the scene's
+/// object's frame.
+Grasp tongs_grasp(double angle) {
+  Grasp grasp = shipped_grasp("cube");
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (FingertipContact& contact : grasp.contacts) {
+    contact.depth *= 1.7;  // arms give way, and the grip with them
+    const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + kApart * contact.point.x();
+    contact.normal = {-s, side * c, 0.0};
+    contact.point = Vector3(-0.07 + along * c, side * along * s, 0.0) + 0.004 * contact.normal;
+  }
+  return grasp;
+}
+
+}  // namespace
+
+/// Both latches, then the hatch by its handle.
+static ScriptedMotion open_hatch() {
+  const Vector3 hinge(0.12, 0.14, 0.25);
+  Script script("hatch");
+  script.then(0.0, shifted(touching({-0.09, 0.02, 0.30}, -Vector3::UnitY()), kBeside), relaxed_posture());
+  turn_latch(script, {-0.13, 0.123, 0.33}, 1.0);
+  turn_latch(script, {-0.13, 0.123, 0.17}, -1.0);
+  Grip grip(script, bar_grasp(0.012), {-0.07, 0.10, 0.25});
+  grip.take(kBeside).hold(0.3).turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
+  return script.motion();
+}
+
+static ScriptedMotion squeeze_tongs() {
+  const Grasp open_grasp = tongs_grasp(0.29);
+  const GraspPostures half(tongs_grasp(0.2)), closed(tongs_grasp(0.1));
+  const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
+  const Pose before = shifted(at, kApproach * open_grasp.retreat);
+  const Vector3 aside(0.05, -kAside, 0.02);
+  Script script("tongs");
+  Grip grip(script, open_grasp, scene_object());
+  const GraspPostures& open = grip.take(aside, kApproach, 0.15).postures();
+  for (int squeeze = 0; squeeze < 2; ++squeeze)
+    script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, half.pressing).hold(0.2);
+  script.then(0.5, at, open.pressing);
+  script.then(0.7, at, open.near).by_way_of(open.touching, 1.0 - open.touching_share);
+  script.then(0.5, at, open.open).then(0.7, before, open.open, 0.1 * open_grasp.retreat);
+  script.then(0.8, shifted(before, aside), relaxed_posture());
+  return script.motion();
+}
+
+namespace {
+
+struct MotionEntry {
+  const char* name;
+  ScriptedMotion (*make)();
+};
+constexpr MotionEntry kMotions[] = {{"grasp_cube", grasp_cube},
+                                    {"grasp_ball", grasp_ball},
+                                    {"catch_ball", catch_ball},
+                                    {"pinch_long", pinch_long},
+                                    {"lift_flat", lift_flat},
+                                    {"nudge", nudge},
+                                    {"tap", tap},
+                                    {"slap", slap},
+                                    {"press_button", press_button},
+                                    {"flip_switch", flip_switch},
+                                    {"turn_valve", turn_valve},
+                                    {"pull_lever", pull_lever},
+                                    {"open_drawer", open_drawer},
+                                    {"open_door", open_door},
+                                    {"open_hatch", open_hatch},
+                                    {"squeeze_tongs", squeeze_tongs}};
+
+}  // namespace
+
+std::vector<std::string> motion_names() {
+  std::vector<std::string> names;
+  for (const MotionEntry& entry : kMotions) names.emplace_back(entry.name);
+  return names;
+}
+
+ScriptedMotion make_motion(const std::string& name) {
+  std::string known;
+  for (const MotionEntry& entry : kMotions) {
+    if (name == entry.name) {
+      ScriptedMotion motion = entry.make();
+      motion.name = name;
+      return motion;
+    }
+    known += std::string(known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("motion '" + name + "' is not known: use one of " + known);
+}
+
+}  // namespace mrhi

@@ -1,0 +1,255 @@
+#include "untrusted_input.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <exception>
+#include <fstream>
+#include <new>
+#include <stdexcept>
+
+namespace mrhi {
+namespace {
+
+constexpr int kDeepest = 32;
+constexpr std::size_t kMostElements = 100'000;
+constexpr std::size_t kMostAttributes = 64;  // of an element: libraries look each up among those before it
+
+/// Bytes of the UTF-8 character that begins with `lead`; 0: none does.
+std::size_t length_of(unsigned char lead) {
+  if (lead < 0x80) return 1;
+  if (lead < 0xC2) return 0;
+  if (lead < 0xE0) return 2;
+  if (lead < 0xF0) return 3;
+  return lead < 0xF5 ? 4 : 0;
+}
+
+bool has_control_characters(const std::string& xml) {
+  return std::any_of(xml.begin(), xml.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+  });
+}
+
+/// Follows tags without building anything.
+class Tags {
+ public:
+  explicit Tags(const std::string& xml) : xml_(xml) {}
+
+  void follow() {
+    while ((at_ = xml_.find('<', at_)) != std::string::npos) {
+      if (begins("<!--")) {
+        skip_to("-->", 4);
+      } else if (begins("<![CDATA[")) {
+        skip_to("]]>", 9);
+      } else if (begins("<?xml")) {
+        instruction();
+      } else if (begins("<!")) {
+        declares_ = true;
+        skip_to(">", 2);
+      } else if (at_ + 1 < xml_.size() && begins_name(xml_[at_ + 1])) {
+        tag();
+      } else {
+        strange_ = true;
+        ++at_;
+      }
+    }
+  }
+
+  int deepest() const { return deepest_; }
+  std::size_t elements() const { return elements_; }
+  std::size_t attributes() const { return attributes_; }
+  bool declares() const { return declares_; }
+  bool strange() const { return strange_; }
+
+ private:
+  bool begins(const char* text) const { return xml_.compare(at_, std::string(text).size(), text) == 0; }
+
+  /// Of an element's tag, or of one that closes it.
+  static bool begins_name(char c) {
+    return c == '/' || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           static_cast<unsigned char>(c) >= 0x80;
+  }
+
+  /// The end is looked for behind the opening: "<!-->" does not close itself.
+  void skip_to(const char* end, std::size_t opening) {
+    const std::size_t found = xml_.find(end, at_ + opening);
+    at_ = found == std::string::npos ? xml_.size() : found + 1;
+  }
+
+  /// TinyXML ends one at its first '>', other libraries at the first "?>": allowed is what both end there.
+  void instruction() {
+    skip_to(">", 5);
+    if (at_ < 2 || xml_[at_ - 2] != '?') strange_ = true;
+  }
+
+  /// A '>' in quotes does not end a tag.
+  void tag() {
+    const bool closes = begins("</");
+    char quote = 0;
+    std::size_t attributes = 0;
+    for (++at_; at_ < xml_.size() && (quote || xml_[at_] != '>'); ++at_) {
+      if (!quote && xml_[at_] == '=') ++attributes;
+      if (quote ? xml_[at_] == quote : xml_[at_] == '"' || xml_[at_] == '\'') quote = quote ? 0 : xml_[at_];
+    }
+    attributes_ = std::max(attributes_, attributes);
+    if (closes) {
+      depth_ = std::max(0, depth_ - 1);
+      return;
+    }
+    ++elements_;
+    deepest_ = std::max(deepest_, depth_ + 1);
+    if (xml_[at_ - 1] != '/') ++depth_;
+  }
+
+  const std::string& xml_;
+  std::size_t at_ = 0, elements_ = 0, attributes_ = 0;
+  int depth_ = 0, deepest_ = 0;
+  bool declares_ = false, strange_ = false;
+};
+
+}  // namespace
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
+    if (length == 0 || at + length > text.size()) return false;
+    for (std::size_t i = 1; i < length; ++i)
+      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
+    at += length;
+  }
+  return true;
+}
+
+std::optional<std::string> xml_danger(const std::string& xml) {
+  if (xml.size() > kMostXmlBytes)
+    return "is longer than " + std::to_string(kMostXmlBytes) + " bytes; allowed: at most that";
+  if (has_control_characters(xml) || !is_utf8(xml))
+    return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
+  Tags tags(xml);
+  tags.follow();
+  if (tags.declares()) return "has a document type; allowed: none";
+  if (tags.strange())
+    return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
+  if (tags.deepest() > kDeepest)
+    return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
+  if (tags.elements() > kMostElements)
+    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMostElements);
+  if (tags.attributes() > kMostAttributes)
+    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
+           std::to_string(kMostAttributes);
+  return {};
+}
+
+namespace {
+
+constexpr char kDone = 'd', kFailed = 'f';
+
+// Sanitizers keep terabytes of addresses for themselves.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kMemoryIsLimited = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kMemoryIsLimited = false;
+#else
+constexpr bool kMemoryIsLimited = true;
+#endif
+#else
+constexpr bool kMemoryIsLimited = true;
+#endif
+
+/// Addresses that this process has in use.
+rlim_t size_of_this() {
+  std::ifstream pages("/proc/self/statm");
+  rlim_t size = 0;
+  pages >> size;
+  return size * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+template <class Resource>
+void limit(Resource resource, rlim_t most) {
+  const rlimit both{most, most};
+  setrlimit(resource, &both);
+}
+
+/// What a library has to say as it dies is of no use to anybody.
+void be_silent() {
+  const int nowhere = open("/dev/null", O_WRONLY);
+  if (nowhere < 0) return;
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+}
+
+void write_all(int to, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t written = write(to, text.data() + at, text.size() - at);
+    if (written < 0 && errno != EINTR) return;
+    if (written > 0) at += static_cast<std::size_t>(written);
+  }
+}
+
+[[noreturn]] void be_child(int to, rlim_t memory, const ChildLimits& limits,
+                           const std::function<std::string()>& work) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT}) std::signal(signal, SIG_DFL);
+  be_silent();
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
+  if (kMemoryIsLimited) limit(RLIMIT_AS, memory);
+  try {
+    write_all(to, kDone + work());
+  } catch (const std::bad_alloc&) {
+    write_all(to, std::string(1, kFailed) + "takes more memory than is allowed");
+  } catch (const std::exception& error) {
+    write_all(to, kFailed + std::string(error.what()));
+  }
+  _exit(0);
+}
+
+/// All that comes until the other end is closed; less if it is too much or takes too long.
+std::string read_all(int from, const ChildLimits& limits) {
+  constexpr int kMilliseconds = 1000, kPatience = 4;
+  std::string text;
+  char part[1 << 16];
+  while (text.size() <= limits.output) {
+    pollfd ready{from, POLLIN, 0};
+    const int told = poll(&ready, 1, kPatience * kMilliseconds * limits.seconds);
+    if (told < 0 && errno == EINTR) continue;
+    if (told <= 0) return "";
+    const ssize_t got = read(from, part, sizeof part);
+    if (got == 0) break;
+    if (got > 0) text.append(part, static_cast<std::size_t>(got));
+    if (got < 0 && errno != EINTR) return "";
+  }
+  return text.size() <= limits.output ? text : "";
+}
+
+}  // namespace
+
+std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("cannot be read: no pipe to be had");
+  const rlim_t memory = size_of_this() + limits.memory;
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    be_child(ends[1], memory, limits, work);
+  }
+  close(ends[1]);
+  const std::string answer = child < 0 ? "" : read_all(ends[0], limits);
+  close(ends[0]);
+  if (child > 0) {
+    kill(child, SIGKILL);  // done already, or to be ended
+    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  if (answer.empty())
+    throw std::runtime_error("takes more time or memory than is allowed, or cannot be read");
+  if (answer[0] == kDone) return answer.substr(1);
+  throw std::runtime_error(answer.substr(1));
+}
+
+}  // namespace mrhi

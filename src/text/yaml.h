@@ -1,0 +1,89 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mr_hand_interaction/math.h"
+
+namespace mrhi {
+
+/// YAML that is not taken. what() is one line that begins with the source and says what is allowed.
+class YamlError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// YAML from who knows where: at most 256 KiB, 32 levels deep, without aliases, so that neither a few bytes
+/// that stand for millions nor a value that holds itself gets in. All of it is checked before anything is
+/// built. Throws YamlError.
+YAML::Node load_yaml_file(const std::string& file);
+
+/// The same from a text of at most that many bytes; `source` names it in messages.
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most = 256 * 1024);
+
+/// yaml-cpp's word as one line with the place.
+std::string yaml_complaint(const std::string& source, const YAML::Exception& error);
+
+/// What `read` gives; what it throws of YAML is an Error.
+template <typename Error, typename Read>
+auto read_yaml(const std::string& source, const Read& read) {
+  try {
+    return read();
+  } catch (const YamlError& error) {
+    throw Error(error.what());
+  } catch (const YAML::Exception& error) {
+    throw Error(yaml_complaint(source, error));
+  }
+}
+
+/// The numbers a setting may take: two finite ends always; max is one of them.
+struct Range {
+  constexpr Range(double least, double most, bool least_allowed = true)
+      : min(least), max(most), min_allowed(least_allowed) {}
+
+  double min, max;
+  bool min_allowed;
+
+  bool contains(double value) const;
+  std::string describe() const;  ///< "a number from 0 to 1"
+};
+
+/// Typed readers: nothing if the node is of another type or not finite.
+std::optional<double> yaml_number(const YAML::Node& node);
+std::optional<int> yaml_integer(const YAML::Node& node);
+std::optional<Vector3> yaml_vector(const YAML::Node& node);
+/// A sequence of so many numbers.
+std::optional<std::vector<double>> yaml_numbers(const YAML::Node& node, std::size_t size);
+
+/// The node as one line of YAML, for messages.
+std::string yaml_text(const YAML::Node& node);
+
+/// "FILE:LINE" of a node.
+std::string yaml_place(const std::string& file, const YAML::Mark& mark);
+
+/// A node and its path in the file ("materials/cube"), for messages. What refuses throws InputError.
+struct YamlElement {
+  const std::string& file;
+  std::string path;
+  YAML::Node node;
+
+  YamlElement at(const std::string& key) const;
+  YamlElement at(std::size_t index) const;  ///< of a sequence; its path counts from 1
+  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void refuse(const std::string& allowed) const;
+};
+
+/// The keys of a map, each known and given once.
+std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<std::string>& known);
+
+/// A number in the range; `unit` ends the message: " [s]".
+double read_number(const YamlElement& element, const Range& range, const char* unit);
+
+/// Three numbers, each in the range: places in m by default.
+Vector3 read_vector(const YamlElement& element, const Range& range = {-1000, 1000});
+
+}  // namespace mrhi
