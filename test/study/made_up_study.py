@@ -1,6 +1,8 @@
 """Session folders with made-up numbers, for tests and pictures of the analysis. They say nothing about any system."""
 
+import contextlib
 import os
+from unittest import mock
 
 import numpy as np
 
@@ -22,6 +24,16 @@ started: 2024-05-06T10:00:00Z
 order: [cube, flat_cuboid, long_cuboid]
 software: "0.1.0"
 '''
+
+
+@contextlib.contextmanager
+def undrawn():
+    """Figures are made, but neither laid out nor drawn, which takes most of an analysis' time: their files are empty. For tests
+    that look at none."""
+    def save(_, path, **__):
+        open(path, 'wb').close()
+    with mock.patch('matplotlib.figure.Figure.savefig', save), mock.patch('matplotlib.figure.Figure.tight_layout'):
+        yield
 
 
 def write_session(folder, participant='P01', group='beginner', condition='implicit', gravity=(0, 0, 0),

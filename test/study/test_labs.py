@@ -5,7 +5,6 @@ import csv
 import os
 import tempfile
 import unittest
-from unittest import mock
 
 import numpy as np
 import pandas
@@ -13,7 +12,7 @@ import pandas
 import paths
 import forked
 import made_up_study
-from study import demographics, plan, questions, run, session_folder, study_data
+from study import demographics, plan, questions, session_folder, study_data
 
 EARTH = (0, 0, -9.80665)
 
@@ -28,9 +27,8 @@ class Labs(unittest.TestCase):
         return forked.run(paths.script(name), *arguments, typed=typed)
 
     def analyse(self, folder, drawn=False):
-        """Half of the time goes to figures, which few of these tests look at; test_analyse_study has them all."""
         output = os.path.join(self.root, 'results')
-        with contextlib.nullcontext() if drawn else mock.patch.object(run, '_draw_part'):
+        with contextlib.nullcontext() if drawn else made_up_study.undrawn():
             done = self.run_script('analyse_study', folder, '--output', output)
         self.assertEqual(done.returncode, 0, done.stderr)
         return output
