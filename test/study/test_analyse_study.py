@@ -91,7 +91,8 @@ class Program(unittest.TestCase):
     def test_with_r_its_models_of_counts_are_there(self):
         """Or what is lost without R is said."""
         made_up_study.write_study(os.path.join(self.root, 'a'), 6, conditions=('implicit', 'seed'), measures=SOME)
-        done = self.run_program(os.path.join(self.root, 'a'), '--r')
+        with made_up_study.undrawn():
+            done = self.run_program(os.path.join(self.root, 'a'), '--r')
         self.assertEqual(done.returncode, 0, done.stderr)
         if with_r.missing():
             self.assertIn('no Poisson or negative binomial mixed models of counts', self.read('left_out.txt'))
@@ -105,7 +106,7 @@ class Program(unittest.TestCase):
 
     def test_without_r_it_is_said_what_is_lost_and_all_else_is_there(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 4, measures=SOME)
-        with mock.patch.dict(os.environ, PATH=self.root):
+        with mock.patch.dict(os.environ, PATH=self.root), made_up_study.undrawn():
             notes = run([os.path.join(self.root, 'a')], self.output, [], ask_r=True)
         self.assertTrue(any('Rscript (r-base-core) not installed: no Poisson or negative binomial' in note for note in notes))
         self.assertFalse(os.path.exists(os.path.join(self.output, 'r_models.csv')))
@@ -114,7 +115,8 @@ class Program(unittest.TestCase):
     def test_the_report_begins_with_findings_their_effect_and_interval_and_who_took_part(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 6, conditions=('implicit', 'soft_pad'),
                                   condition_effect=3, measures=SOME)
-        self.assertEqual(self.run_program(self.root).returncode, 0)
+        with made_up_study.undrawn():
+            self.assertEqual(self.run_program(self.root).returncode, 0)
         report, pairs = self.read('report.html'), pandas.read_csv(os.path.join(self.output, 'post_hoc.csv'))
         pair = pairs[(pairs['measure'] == 'completion_time') & (pairs['at'] == 'conditions')].iloc[0]
         sentence = 'Completion time of implicit is %.3g times that of soft pad (95 %% interval %.3g to %.3g, p' % (
