@@ -107,8 +107,10 @@ class RenderedCheck {
 
   void see_way(const Before& before, const Hand& tracked, const Hand& shown,
                const std::vector<BodyState>& bodies, Nanoseconds stamp) {
-    const double beyond = farthest_joint(before.shown, shown) - farthest_joint(before.tracked, tracked) -
-                          std::max(fastest_body(before.shown, bodies), fastest_body(shown, bodies));
+    const double elapsed = to_seconds(stamp - before.stamp);
+    const double beyond =
+        farthest_joint(before.shown, shown) - farthest_joint(before.tracked, tracked) -
+        std::max(fastest_body(before.shown, bodies, elapsed), fastest_body(shown, bodies, elapsed));
     if (beyond > kJump) {
       all_jumps.emplace_back();
       all_jumps.back().note(beyond, stamp);
@@ -117,16 +119,19 @@ class RenderedCheck {
     jumps += beyond > kJump;
   }
 
-  /// Longest way of a surface of the bodies near the hand since the frame before.
-  double fastest_body(const Hand& hand, const std::vector<BodyState>& bodies) const {
+  /// Longest way of a surface of the bodies near the hand since the frame before, or at their speed of now: a
+  /// body that was hit within the frame has moved less, and the renderer knows velocities alone.
+  double fastest_body(const Hand& hand, const std::vector<BodyState>& bodies, double elapsed) const {
     double fastest = 0.0;
     for (const int body : near_bodies(hand, scene_, bodies, 0.02)) {
       const auto b = static_cast<std::size_t>(body);
       const Pose &from = bodies_before_[b].pose, &to = bodies[b].pose;
       if ((to.position - from.position).norm() > kPutBack) continue;
+      const double radius = scene_.bodies[b].bounding_radius;
+      const Twist twist = twist_of(scene_.bodies[b], bodies[b]);
       fastest = std::max(
-          fastest, (to.position - from.position).norm() +
-                       scene_.bodies[b].bounding_radius * to.orientation.angularDistance(from.orientation));
+          {fastest, elapsed * (twist.linear.norm() + radius * twist.angular.norm()),
+           (to.position - from.position).norm() + radius * to.orientation.angularDistance(from.orientation)});
     }
     return fastest;
   }
