@@ -16,8 +16,8 @@ PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
 CORE = ['src/collision', 'src/response', 'src/simulation', 'src/integration', 'src/tracking', 'config/default.yaml']
 
 FILTER_SOURCES = ['src/tracking/%s' % name for name in (
-    'constant_velocity_filter.cpp', 'filter_memory.cpp', 'hand_filter.cpp', 'hand_filter.h', 'hand_track.cpp', 'noise_estimate.cpp',
-    'noise_estimate.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp', 'window_filter.cpp')]
+    'constant_velocity_filter.cpp', 'hand_filter.cpp', 'hand_filter.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp',
+    'window_filter.cpp')]
 
 
 class MeasurementError(Exception):
