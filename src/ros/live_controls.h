@@ -144,9 +144,9 @@ class Placing {
   std::map<std::string, Pose> dragged() {
     std::map<std::string, Pose> poses;
     if (!server_) return poses;
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::WallTime silent_since = ros::WallTime::now() - ros::WallDuration(kSilence);
     for (auto drag = drags_.begin(); drag != drags_.end();) {
-      if ((now - drag->second.heard).toSec() > kSilence) {
+      if (drag->second.heard < silent_since) {
         drag = drags_.erase(drag);
         continue;
       }

@@ -10,7 +10,7 @@ import mr_hand_interaction.msg as messages
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LAYOUTS = os.path.join(PACKAGE, "config", "layouts")
-PUBLISHER = os.path.join(PACKAGE, "src", "ros", "result_publisher.cpp")
+PUBLISHER = os.path.join(PACKAGE, "src", "ros", "result_publisher.h")
 NUMBERS = re.compile(r"(u?int(8|16|32|64)|float(32|64)|bool)$")
 
 
