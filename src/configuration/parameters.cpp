@@ -96,6 +96,7 @@ template <class T, class Access>
 ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
                       Access access) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& option : choices) words.push_back(option.first);
   return {name,
           text::joined(words),
