@@ -318,20 +318,22 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
       sort_points(touch->manifold);
       const Common common = common_of(pair, *touch);
       const std::size_t first = found_.size();
-      std::array<std::array<BodyContact*, 4>, Manifold::kMaxRegions> regions{};
-      std::array<int, Manifold::kMaxRegions> counts{};
-      found_.reserve(first + static_cast<std::size_t>(touch->manifold.count));  // its places stay
+      std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
       for (int p = 0; p < touch->manifold.count; ++p) {
         const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
         if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
         found_.push_back(make_contact(key, pair, *touch, common, point, memory_of(key, before)));
-        const auto region = static_cast<std::size_t>(point.region);
-        regions[region][static_cast<std::size_t>(counts[region]++)] = &found_.back();
+        regions[found_.size() - 1 - first] = point.region;
       }
-      for (std::size_t region = 0; region < counts.size(); ++region)
-        place_friction(pair, regions[region], counts[region]);
+      for (int region = 0; region < Manifold::kMaxRegions; ++region) {
+        std::array<BodyContact*, 4> together{};
+        int count = 0;
+        for (std::size_t k = first; k < found_.size(); ++k)
+          if (regions[k - first] == region) together[static_cast<std::size_t>(count++)] = &found_[k];
+        place_friction(pair, together, count);
+      }
       for (std::size_t k = first; k < found_.size(); ++k) anchor(a, b, found_[k]);
     }
   }
