@@ -277,7 +277,7 @@ using Names = std::array<bool, 256>;
 
 /// Adds the region of the deepest touch, seen along the normal, in the plane of u and v. While they are
 /// sorted, `feature` counts the points; in the end it is a name again. Two with the same name, which numbers
-/// modulo 100 and 28 may give, are told apart by the next free one.
+/// modulo 100 and 28 may give, get the next free one.
 void add_region(const Touches& touches, const Touch& deepest, int number, Names& named, Manifold& manifold) {
   const Spread spread(touches, deepest);
   const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);

@@ -7,7 +7,7 @@
 
 namespace mrhi {
 
-/// By how much a finger's joints are turned away from where they were tracked: flexion (towards the palm) and
+/// Rotation of a finger's joints from where they were tracked: flexion (towards the palm) and
 /// abduction (towards the thumb of a right hand) of its root, flexion of its middle and end joint [rad]. Of a
 /// finger without a proximal phalanx, which nothing ties to the palm: its shift in world [m], and 0.
 using FingerOffset = Eigen::Array4d;
