@@ -76,10 +76,8 @@ class DoctorTest(unittest.TestCase):
         rospy.delete_param(name)
 
     def test_nothing_is_wrong_where_a_hand_comes_through(self):
-        with Sender(self.hand):
-            status, wrong, lines = ask()
-        self.assertEqual((status, wrong), (0, {}))
-        self.assertEqual(lines, 9)
+        with Sender(self.hand):  # which a busy machine keeps from its rate for a while
+            wait_until(lambda: ask() == (0, {}, 9), "an answer of nine lines with nothing wrong")
 
     def test_ports_that_listen_on_every_interface_are_named(self):
         """roscpp's XML-RPC port does whatever ROS_IP says; were it bound some day, there is nothing to tell."""
