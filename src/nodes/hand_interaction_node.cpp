@@ -1,6 +1,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "../ros/node.h"
@@ -25,9 +26,9 @@ int main(int argc, char** argv) {
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
     mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
     std::uint64_t lost = 0;  // that the server has been told of
-    tracking.pass_to([&](const mr_hand_interaction::HandFrame& frame, const ros::Time& arrival) {
+    tracking.pass_to([&](mrhi::HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
       server.note_lost(tracking.lost() - std::exchange(lost, tracking.lost()));
-      server.take(frame, arrival);
+      server.take(std::move(frame), frame_id, arrival);
     });
     ros::spin();
   };

@@ -1,5 +1,6 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
+#include <mr_hand_interaction/HandFrame.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
 #include <topic_tools/shape_shifter.h>
@@ -149,10 +150,10 @@ struct HandTracking::Impl {
 
   void publish(const HandFrame& frame, const ros::Time& receipt) {
     if (!accept_stamp(frame.stamp)) return;
-    const auto message =
-        boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(frame, fixed_frame_));
-    if (sink_) sink_(*message, receipt);
-    publisher_.publish(message);
+    if (sink_) sink_(frame, fixed_frame_, receipt);
+    if (publisher_.getNumSubscribers() > 0)
+      publisher_.publish(
+          boost::make_shared<const mr_hand_interaction::HandFrame>(to_message(frame, fixed_frame_)));
     statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
   }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/SimulationInput.h>
 #include <ros/ros.h>
 #include <ros/time.h>
@@ -14,6 +13,7 @@
 #include "../simulation/state_bytes.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/stamp_check.h"
 
 namespace mrhi {
 /// Time of the hand stream between and beyond its frames: the last stamp, and what has passed since it
@@ -46,6 +46,13 @@ class StampClock {
   }
 
   bool paused() const { return paused_; }
+  /// Of frames that go on from the last one that was taken.
+  StampCheck check() const {
+    StampCheck check;
+    check.started = started_;
+    check.last = last_stamp_;
+    return check;
+  }
 
   Nanoseconds to_simulation(Nanoseconds stamp) const { return stamp - pauses_; }
   Nanoseconds to_stamp(Nanoseconds simulation_time) const { return simulation_time + pauses_; }
@@ -89,15 +96,16 @@ class InputLog {
             "simulation_input", kQueue,
             [this](const ros::SingleSubscriberPublisher& subscriber) { send_begin(subscriber); })) {}
 
-  /// `time`, `expected`: as Simulation::begin got them.
-  void frame(const mr_hand_interaction::HandFrame& hands, Nanoseconds time, Nanoseconds expected) {
+  /// `hands`, `expected`: as Simulation::begin got them. `frame_id`: of what the hands are placed in.
+  void frame(HandFrame hands, const std::string& frame_id, Nanoseconds expected) {
     ++sequence_;
     if (!heard()) return;
     SimulationInput input = message(SimulationInput::FRAME);
-    input.header.stamp = hands.header.stamp;
-    input.time = time;
+    input.time = hands.stamp;
     input.expected = expected;
-    input.hands = hands;
+    hands.stamp = clock_.to_stamp(hands.stamp);
+    input.hands = to_message(hands, frame_id);
+    input.header.stamp = input.hands.header.stamp;
     publisher_.publish(input);
   }
 

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../math/duration_histogram.h"
@@ -119,27 +120,40 @@ struct InteractionServer::Impl {
     const auto handler = [this](const Arrival& arrival) {
       const auto& message = *arrival.getConstMessage();
       note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
-      take(message, arrival.getReceiptTime());
+      try {
+        take(from_message(message), message.header.frame_id, arrival.getReceiptTime());
+      } catch (const std::invalid_argument& error) {
+        diagnostics_.rejected("unusable hand", error.what());
+      }
     };
     hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
                                                             boost::function<void(const Arrival&)>(handler),
                                                             nullptr, ros::TransportHints().tcpNoDelay());
   }
 
-  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
-    const Nanoseconds stamp = from_ros_time(message.header.stamp);
-    const StampVerdict verdict = arrivals_.check(stamp);
+  void take(HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
+    const Nanoseconds stamp = frame.stamp;
     if (clock_.paused()) {
+      const StampVerdict verdict = while_paused_.check(stamp);
       if (verdict == StampVerdict::follows || verdict == StampVerdict::restart)
         clock_.take(stamp, ros::Time::now());
       ++dropped_while_paused_;
       return;
     }
-    if (!begin(message)) return;
+    if (without_slash(frame_id) != without_slash(fixed_frame_))
+      return diagnostics_.rejected("wrong frame",
+                                   "'" + text::one_line(frame_id, 64) + "'; allowed: " + fixed_frame_);
+    frame.stamp = clock_.to_simulation(stamp);
+    const Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+    const Rejection rejection = live_.simulation().begin(frame, expected);
+    if (rejection != Rejection::none) {
+      log_.frame(std::move(frame), frame_id, expected);
+      return diagnostics_.rejected(to_string(rejection), std::to_string(to_seconds(stamp)) + " s");
+    }
     while (timed_step()) results_.note_step();
     results_.publish_response(live_.simulation().report());
     const FrameResult& result = live_.simulation().end();
-    log_.frame(message, frame_stamp_, frame_expected_);
+    log_.frame(std::move(frame), frame_id, expected);
     place_dragged();
     for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
     results_.publish_picture(result);
@@ -190,27 +204,6 @@ struct InteractionServer::Impl {
     ros::NodeHandle beside = between_frames_.node_beside(node);
     serve<SpawnObject>(beside, "spawn", [this](auto& request) { return spawn(from_message(request)); });
     serve<SpawnUrdf>(beside, "spawn_urdf", [this](auto& request) { return spawn(from_message(request)); });
-  }
-
-  bool begin(const mr_hand_interaction::HandFrame& message) {
-    if (without_slash(message.header.frame_id) != without_slash(fixed_frame_)) {
-      diagnostics_.rejected(
-          "wrong frame", "'" + text::one_line(message.header.frame_id, 64) + "'; allowed: " + fixed_frame_);
-      return false;
-    }
-    try {
-      HandFrame frame = from_message(message);
-      frame.stamp = clock_.to_simulation(frame.stamp);
-      frame_stamp_ = frame.stamp;
-      frame_expected_ = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-      const Rejection rejection = live_.simulation().begin(frame, frame_expected_);
-      if (rejection == Rejection::none) return true;
-      log_.frame(message, frame_stamp_, frame_expected_);
-      diagnostics_.rejected(to_string(rejection), std::to_string(message.header.stamp.toSec()) + " s");
-    } catch (const std::invalid_argument& error) {
-      diagnostics_.rejected("unusable hand", error.what());
-    }
-    return false;
   }
 
   bool timed_step() {
@@ -269,6 +262,7 @@ struct InteractionServer::Impl {
   }
 
   std::string pause(bool paused) {
+    if (!clock_.paused()) while_paused_ = clock_.check();
     paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
     make(Pause{paused});
     return paused ? "paused" : "running";
@@ -362,8 +356,7 @@ struct InteractionServer::Impl {
   StampClock clock_;
   ClockLeaps clock_leaps_;
   InputLog log_;
-  Nanoseconds frame_stamp_ = 0, frame_expected_ = 0;  ///< of the frame that has begun
-  StampCheck arrivals_;                               ///< of all frames, those too that come while paused
+  StampCheck while_paused_;  ///< of the frames that come meanwhile; of all others the simulation checks
   ResultPublisher results_;
   NodeDiagnostics diagnostics_;
   DurationHistogram step_times_, picture_latency_;  ///< since the last report; from the hand's arrival
@@ -388,8 +381,8 @@ void InteractionServer::subscribe(ros::NodeHandle& node) {
   impl_->subscribe(node);
 }
 
-void InteractionServer::take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival) {
-  impl_->take(message, arrival);
+void InteractionServer::take(HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
+  impl_->take(std::move(frame), frame_id, arrival);
 }
 
 void InteractionServer::note_lost(std::uint64_t frames) {

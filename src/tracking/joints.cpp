@@ -123,9 +123,12 @@ Vector3 wrist_of(const HandJoints& joints, const PalmFit& fit) {
 }
 
 constexpr double kLongestBone = 0.3;     // [m]
-constexpr double kFarthestJoint = 10.0;  // [m]
-constexpr float kWidestPalm = 0.3f;      // [m]
-constexpr float kWidestFinger = 0.1f;    // [m]
+constexpr double kFarthestJoint = 10.0;  // from the tracker [m]
+constexpr double kFarthestHand =
+    980.0;                           // in world, on each axis [m]; HandFrame.msg has room for its joints too
+constexpr float kWidestPalm = 0.3f;  // [m]
+constexpr float kWidestFinger = 0.1f;  // [m]
+constexpr float kWidestBone = 0.2f;    // [m]
 
 const char* const kFingerNames[kFingers] = {"thumb", "index", "middle", "ring", "little"};
 const char* const kJointNames[5] = {"metacarpal base", "metacarpal end", "proximal end", "intermediate end",
@@ -154,10 +157,12 @@ std::string finger_defect(const HandJoints& hand, std::size_t finger) {
     if (!found.empty()) return found;
   }
   for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
+    const std::string bone = name + " " + kBoneNames[b];
+    const std::string wide = width_defect(bone + " width", hand.bone_width[finger][b], kWidestBone);
+    if (!wide.empty()) return wide;
     if (!joints[b] || !joints[b + 1]) continue;
     const double length = (*joints[b + 1] - *joints[b]).norm();
-    if (length > kLongestBone)
-      return name + " " + kBoneNames[b] + " is " + std::to_string(length) + " m long; at most 0.3 m";
+    if (length > kLongestBone) return bone + " is " + std::to_string(length) + " m long; at most 0.3 m";
   }
   return width_defect(name + " width", hand.finger_width[finger], kWidestFinger);
 }
@@ -199,19 +204,32 @@ bool has_bone(const HandJoints& hand) {
   return false;
 }
 
-}  // namespace
-
-/// Along the palm's x, from the wrist to the fingers: 0.4 of its width between the ends' centres and 0.3
-/// thick, so that it is 0.7 long over all.
-Capsule palm_capsule(const Pose& palm, double palm_width) {
-  const Vector3 half = 0.2 * palm_width * (palm.orientation * Vector3::UnitX());
-  return {palm.position - half, palm.position + half, 0.15 * palm_width};
+/// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
+/// on what came before. Without one, `fit` is the hand's.
+std::string defect(const HandJoints& hand, std::optional<PalmFit>& fit) {
+  const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
+                                                     {"grab strength", hand.grab_strength},
+                                                     {"pinch strength", hand.pinch_strength}};
+  for (const auto& [name, value] : strengths)
+    if (!std::isfinite(value)) return std::string(name) + " is not finite";
+  if (std::string found = size_defect(hand); !found.empty()) return found;
+  for (std::string found : {point_defect("palm centre", hand.palm_centre), point_defect("wrist", hand.wrist),
+                            width_defect("palm width", hand.palm_width, kWidestPalm)})
+    if (!found.empty()) return found;
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    const std::string found = finger_defect(hand, f);
+    if (!found.empty()) return found;
+  }
+  if (!has_bone(hand)) return "it has no finger";
+  fit = fit_palm(hand);
+  if (!fit)
+    return "its palm cannot be placed: needs three points of a hand's size, not in one line, out of palm "
+           "centre, "
+           "wrist, metacarpal bases and ends";
+  return "";
 }
 
-Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
-  const std::string found = defect(joints);
-  if (!found.empty()) throw std::invalid_argument("hand " + std::to_string(joints.id) + ": " + found);
-  const PalmFit fit = *fit_palm(joints);
+Hand completed(const HandJoints& joints, const PalmFit& fit, const Pose& device_in_world) {
   Hand hand;
   hand.id = joints.id;
   hand.side = joints.side;
@@ -230,28 +248,25 @@ Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
   return hand;
 }
 
-/// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
-/// on what came before.
+}  // namespace
+
+/// Along the palm's x, from the wrist to the fingers: 0.4 of its width between the ends' centres and 0.3
+/// thick, so that it is 0.7 long over all.
+Capsule palm_capsule(const Pose& palm, double palm_width) {
+  const Vector3 half = 0.2 * palm_width * (palm.orientation * Vector3::UnitX());
+  return {palm.position - half, palm.position + half, 0.15 * palm_width};
+}
+
 std::string defect(const HandJoints& hand) {
-  const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
-                                                     {"grab strength", hand.grab_strength},
-                                                     {"pinch strength", hand.pinch_strength}};
-  for (const auto& [name, value] : strengths)
-    if (!std::isfinite(value)) return std::string(name) + " is not finite";
-  if (std::string found = size_defect(hand); !found.empty()) return found;
-  for (std::string found : {point_defect("palm centre", hand.palm_centre), point_defect("wrist", hand.wrist),
-                            width_defect("palm width", hand.palm_width, kWidestPalm)})
-    if (!found.empty()) return found;
-  for (std::size_t f = 0; f < kFingers; ++f) {
-    const std::string found = finger_defect(hand, f);
-    if (!found.empty()) return found;
-  }
-  if (!has_bone(hand)) return "it has no finger";
-  if (!fit_palm(hand))
-    return "its palm cannot be placed: needs three points of a hand's size, not in one line, out of palm "
-           "centre, "
-           "wrist, metacarpal bases and ends";
-  return "";
+  std::optional<PalmFit> fit;
+  return defect(hand, fit);
+}
+
+Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
+  std::optional<PalmFit> fit;
+  const std::string found = defect(joints, fit);
+  if (!found.empty()) throw std::invalid_argument("hand " + std::to_string(joints.id) + ": " + found);
+  return completed(joints, *fit, device_in_world);
 }
 
 /// A frame that has hands, but none that is right, is nothing: taken as empty, the hands that there are would
@@ -261,13 +276,18 @@ std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& d
   HandFrame frame;
   frame.stamp = joints.stamp;
   for (const HandJoints& hand : joints.hands) {
-    std::string found = defect(hand);
+    std::optional<PalmFit> fit;
+    std::string found = defect(hand, fit);
     for (const Hand& other : frame.hands)
       if (found.empty() && other.id == hand.id) found = "its id is that of another hand in the frame";
-    if (found.empty())
-      frame.hands.push_back(complete_hand(hand, device_in_world));
-    else
-      defects.push_back("hand " + std::to_string(hand.id) + ": " + found);
+    if (found.empty()) {
+      frame.hands.push_back(completed(hand, *fit, device_in_world));
+      const Vector3& palm = frame.hands.back().palm.position;
+      if (palm.allFinite() && palm.cwiseAbs().maxCoeff() < kFarthestHand) continue;
+      frame.hands.pop_back();
+      found = "palm is farther than " + text::number(kFarthestHand) + " m";
+    }
+    defects.push_back("hand " + std::to_string(hand.id) + ": " + found);
   }
   if (frame.hands.empty() && !joints.hands.empty()) return std::nullopt;
   return frame;

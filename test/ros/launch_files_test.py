@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+import roslaunch.arg_dump
 import roslaunch.config
 import roslaunch.xmlloader
 import roslib.packages
@@ -55,6 +56,18 @@ def with_environment(**values):
 class LaunchFilesTest(unittest.TestCase):
     def test_there_are_launch_files(self):
         self.assertGreater(len(FILES), 7)
+
+    def test_arguments_are_listed_where_none_is_given(self):
+        for name in FILES:
+            listed = roslaunch.arg_dump.get_args([os.path.join(FOLDER, name)])
+            for argument in NEEDED.get(name, []):
+                self.assertIn(argument.split(":=")[0], listed)
+        for argument, folder in (("session:=1", "/s/P01_implicit_hatch"), ("session:=2", "/s/P01_implicit_hatch_2"),
+                                 ("folder:=/f", "/f")):
+            config = config_of("training.launch", "sessions:=/s", "task:=/t/hatch.yaml", argument)
+            self.assertEqual(config.params["/training_node/folder"].value, folder)
+            bag = [node for node in config.nodes if node.package == "rosbag"][0]
+            self.assertEqual(dict(bag.env_args)["RUN_WHEN_FILE"], folder + "/hands")
 
     def test_nodes_are_for_this_machine_alone_unless_asked(self):
         for name in FILES:

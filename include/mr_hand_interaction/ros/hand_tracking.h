@@ -1,11 +1,13 @@
 #pragma once
 
-#include <mr_hand_interaction/HandFrame.h>
 #include <ros/node_handle.h>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
+
+#include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
 
@@ -18,9 +20,9 @@ class HandTracking {
   HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~HandTracking();
 
-  /// Who is in the same process gets each frame at once, before it is published, with when its message
-  /// arrived.
-  using Sink = std::function<void(const mr_hand_interaction::HandFrame&, const ros::Time& arrival)>;
+  /// Who is in the same process gets each frame at once, before it is published, with the frame that it is
+  /// placed in and when its message arrived. Its numbers are those of the message.
+  using Sink = std::function<void(HandFrame, const std::string& frame_id, const ros::Time& arrival)>;
   void pass_to(Sink sink);
   /// Frames of trackers that were sent and have not arrived, so far.
   std::uint64_t lost() const;

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <mr_hand_interaction/HandFrame.h>
 #include <ros/node_handle.h>
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "mr_hand_interaction/ros/server_parameters.h"
+#include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
 
@@ -22,7 +23,7 @@ class InteractionServer {
   /// Frames come from the topic hand_frame,
   void subscribe(ros::NodeHandle& node);
   /// or from the same process. `arrival`: of the message that they were in.
-  void take(const mr_hand_interaction::HandFrame& message, const ros::Time& arrival);
+  void take(HandFrame frame, const std::string& frame_id, const ros::Time& arrival);
   /// Frames that have not arrived, where who hands them on knows.
   void note_lost(std::uint64_t frames);
 

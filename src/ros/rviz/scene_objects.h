@@ -1,5 +1,6 @@
 #pragma once
 
+#include <OgreCamera.h>
 #include <OgreEntity.h>
 #include <OgreManualObject.h>
 #include <OgreMaterial.h>
@@ -34,6 +35,8 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr float kOpaque = 0.998f;
+constexpr const char* kStatus = "text";  ///< the layer of what is held
+constexpr float kStatusHeight = 0.05f;   ///< of its letters, of half the window's
 
 inline std::string new_name(const char* kind) {
   static int count = 0;
@@ -103,6 +106,17 @@ class MarkerScene {
   }
 
   void show_layer(const std::string& name, bool shown) { layer(name)->setVisible(shown); }
+
+  /// Keeps the status text in the lower left corner of the window.
+  void pin_status(const Ogre::Camera& camera) {
+    const Ogre::Matrix4 to_world = (camera.getProjectionMatrix() * camera.getViewMatrix()).inverse();
+    const float near_plane = -0.9f;
+    const Ogre::Vector3 corner = to_world * Ogre::Vector3(-0.98f, -0.96f, near_plane);
+    const Ogre::Vector3 above = to_world * Ogre::Vector3(-0.98f, -0.96f + kStatusHeight, near_plane);
+    layer(kStatus)->_setDerivedPosition(corner);
+    for (auto& [key, item] : items_)
+      if (key.first == kStatus) item->text->setCharacterHeight((above - corner).length());
+  }
 
   /// Meshes that could not be loaded.
   const std::set<std::string>& missing() const { return missing_; }
@@ -235,7 +249,13 @@ class MarkerScene {
     }
     item.text->setCaption(marker.text.empty() ? " " : marker.text);
     item.text->setColor(to_ogre(marker.color));
-    item.text->setCharacterHeight(static_cast<float>(marker.scale.z));
+    if (marker.ns == kStatus) {
+      item.text->setTextAlignment(rviz::MovableText::H_LEFT, rviz::MovableText::V_ABOVE);
+      item.text->showOnTop(true);
+      item.node->setPosition(Ogre::Vector3::ZERO);
+    } else {
+      item.text->setCharacterHeight(static_cast<float>(marker.scale.z));
+    }
   }
 
   void draw_mesh(const Marker& marker, Item& item) {
