@@ -458,6 +458,34 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
   }
 }
 
+/// The joints of a linkage move as the fingers tell: the springs act against the mean motion of the links
+/// that both sides touch. Their ends on the base's link go back by what this link moves against that mean,
+/// and their damping leaves it out.
+void GraspAssist::leave_joints_free(double step, SimulationState& state, Grip& grip) const {
+  if (object_of(grip.body).size() == 1) return;
+  const auto velocity = [&](std::size_t body, const Vector3& point) -> Vector3 {
+    const Twist twist = twist_of(scene_.bodies[body], state.bodies[body]);
+    return twist.linear + twist.angular.cross(point - state.bodies[body].pose.position);
+  };
+  const Pose& pose = state.bodies[grip.body].pose;
+  for (std::size_t i = 0; i < kGripPoints; ++i) {
+    const Vector3 end = pose * grip.in_body[i], of_base = velocity(grip.body, end);
+    Vector3 against = Vector3::Zero();  // of the base's link against those of the fingers
+    int count = 0;
+    for (const Contact& contact : state.contacts) {
+      if (!contact.touching() || !is_in(grip, contact.key.hand, contact.key.body) ||
+          is_base(grip.by_palm, contact.key.capsule))
+        continue;
+      against += of_base - velocity(contact.key.body, end);
+      ++count;
+    }
+    if (count == 0) return;
+    const Vector3 by_joints = 0.5 / count * against;
+    grip.in_body[i] = pose.to_local(end - step * by_joints);
+    grip.velocity[i] += by_joints;
+  }
+}
+
 /// Largest distance of a spring's end on the body from its end on the hand [m].
 double GraspAssist::offset(const SimulationState& state, const Grip& grip) const {
   const Pose& pose = state.bodies[grip.body].pose;
@@ -478,6 +506,7 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
                  : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
+    leave_joints_free(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
     grip.active = true;

@@ -77,6 +77,7 @@ class GraspAssist {
   void take_what_is_held(double fraction, SimulationState& state) const;
   void take(std::size_t slot, const Opposed& opposed, double fraction, SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
+  void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;
 
