@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../collision/near_bodies.h"
+#include "../response/finger_limits.h"
 #include "grasp.h"
 
 namespace mrhi {
@@ -18,6 +19,7 @@ void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
+  share_strength(end.strength, contacts);
 }
 
 bool before(const Contact& contact, const ContactKey& key) {
