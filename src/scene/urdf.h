@@ -157,6 +157,6 @@ PlacedLink only_body(const std::string& source, UrdfDocument& document);
 /// arrange_joints(), which throws SceneError here.
 void join_bodies(const std::string& source, Scene& scene);
 /// Throws SceneError for bodies that begin inside each other.
-void check_overlaps(const std::string& source, const Scene& scene);
+void check_overlaps(const std::string& source, Scene& scene);
 
 }  // namespace mrhi
