@@ -170,28 +170,34 @@ std::optional<std::vector<double>> numbers_of(const char* c) {
   return numbers;
 }
 
-/// The three vertices of a triangle, as V/T/N each, from 0 on; nothing of any other face.
-std::optional<std::array<std::size_t, 3>> triangle_of(const char* c, std::size_t vertices) {
-  std::array<std::size_t, 3> triangle{};
-  for (std::size_t k = 0; k < 3; ++k) {
+/// Adds a triangle, or both of a convex quadrangle, of vertices as V/T/N each; false: another face.
+bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
+               std::vector<std::array<aiVector3D, 3>>& triangles) {
+  std::vector<aiVector3D> face;
+  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
     char* end = nullptr;
-    c += std::strspn(c, " \t");
-    if (std::isdigit(static_cast<unsigned char>(*c)) == 0) return std::nullopt;
-    triangle[k] = std::strtoul(c, &end, 10) - 1;
-    if (triangle[k] >= vertices) return std::nullopt;
+    if (std::isdigit(static_cast<unsigned char>(*c)) == 0) return false;
+    const std::size_t vertex = std::strtoul(c, &end, 10) - 1;
+    if (vertex >= vertices.size()) return false;
+    face.push_back(vertices[vertex]);
     c = end + std::strspn(end, "/0123456789");
   }
-  return c[std::strspn(c, " \t")] == '\0' ? std::optional(triangle) : std::nullopt;
+  const auto normal = [&](int i, int j, int k) { return (face[j] - face[i]) ^ (face[k] - face[i]); };
+  if (face.size() < 3 || face.size() > 4) return false;
+  triangles.push_back({{face[0], face[1], face[2]}});
+  if (face.size() == 3) return true;
+  triangles.push_back({{face[0], face[2], face[3]}});
+  return normal(0, 1, 2) * normal(0, 2, 3) > 0 && normal(1, 2, 3) * normal(1, 3, 0) > 0;
 }
 
-/// A small OBJ of one group of triangles, as programs write convex pieces; false: another one. Assimp clears
+/// A small OBJ of one group of such faces, as programs write convex pieces; false: another one. Assimp clears
 /// 16 MB for each OBJ that it reads, which takes longer than all else about 200 pieces.
 bool read_piece(const std::string& file, Collector& collector) {
   constexpr std::size_t kLargest = 1u << 20;
   const std::string text = file_text(file, kLargest + 1).value_or("");
   if (text.size() > kLargest || text.find('\0') != std::string::npos) return false;
   std::vector<aiVector3D> vertices;
-  std::vector<std::array<std::size_t, 3>> triangles;
+  std::vector<std::array<aiVector3D, 3>> triangles;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -202,16 +208,14 @@ bool read_piece(const std::string& file, Collector& collector) {
       if (!numbers || numbers->size() != 3) return false;
       vertices.emplace_back(ai_real((*numbers)[0]), ai_real((*numbers)[1]), ai_real((*numbers)[2]));
     } else if (kind == "f") {
-      const auto triangle = triangle_of(rest, vertices.size());
-      if (!triangle) return false;
-      triangles.push_back(*triangle);
+      if (!read_face(rest, vertices, triangles)) return false;
     } else if (kind == "o" || kind == "g" || kind == "usemtl" || kind == "mtllib") {
       if (!triangles.empty() || line.back() == '\\') return false;
     } else if (!line.empty() && kind != "vn" && kind != "vt" && kind != "s" && kind[0] != '#') {
       return false;
     }
   }
-  for (const auto& t : triangles) collector.add({{vertices[t[0]], vertices[t[1]], vertices[t[2]]}});
+  for (const auto& corners : triangles) collector.add(corners);
   return !triangles.empty();
 }
 

@@ -59,6 +59,14 @@ TEST_F(MeshScene, OfAnObjIsTheSameWhoeverReadsIt) {
     piece += std::string("v ") + vertex + "\r\n";
   for (const char* face : {"1 2/1 3/1/1", "1//1 3//1 4", "2 5 3", "1 5 2 ", "4 3 5", "1 4 5"})
     piece += std::string("f ") + face + "\n";
+  std::string cube;
+  for (int i = 0; i < 8; ++i)
+    cube += std::string("v ") + (i & 1 ? "0.1 " : "0 ") + (i & 2 ? "0.1 " : "0 ") + (i & 4 ? "0.1\n" : "0\n");
+  cube += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  folder_.write("ours.obj", cube);
+  folder_.write("theirs.obj", cube + "g nothing\n");
+  EXPECT_EQ(load("filename=\"ours.obj\"").triangles->triangles,
+            load("filename=\"theirs.obj\"").triangles->triangles);
   for (const char* scale : {"", " scale=\"1 -2 3\""}) {
     folder_.write("ours.obj", piece);
     folder_.write("theirs.obj", piece + "g nothing\n");
