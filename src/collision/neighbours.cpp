@@ -5,6 +5,8 @@
 
 #include "../scene/solid_mesh.h"
 
+#include "overlap.h"
+
 namespace mrhi {
 
 Eigen::AlignedBox3d box_around(const Body& body) {
@@ -59,6 +61,11 @@ Neighbours::Neighbours(const Scene& scene)
   for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
   for (Reach& reach : reaches_) reach.ways.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
+  untouching_ = overlaps_in_mechanisms(scene);
+  for (const Joint& joint : scene.joints) untouching_.emplace_back(joint.parent, joint.child);
+  for (std::size_t i = untouching_.size(); i-- > 0;)
+    untouching_.emplace_back(untouching_[i].second, untouching_[i].first);
+  std::sort(untouching_.begin(), untouching_.end());
 }
 
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
@@ -187,7 +194,8 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
 }
 
 /// Sorted, as the broad phase gives them in no order: contacts are found, summed and solved in this order,
-/// and equal states must give equal bits. Bodies that share a joint may overlap there and do not touch.
+/// and equal states must give equal bits. Bodies that share a joint may overlap there and do not touch, as do
+/// those of one mechanism that overlap where they start.
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {
@@ -195,16 +203,9 @@ void Neighbours::list_pairs() {
     const bool fixed_second = scene_.bodies[static_cast<std::size_t>(pair.second)].fixed;
     if (fixed_first && fixed_second) continue;
     if (fixed_second) std::swap(pair.first, pair.second);
-    pairs_.push_back(pair);
+    if (!std::binary_search(untouching_.begin(), untouching_.end(), pair)) pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
-  for (const Joint& joint : scene_.joints) {
-    const std::pair<int, int> joined = std::minmax(joint.parent, joint.child),
-                              turned{joined.second, joined.first};
-    pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
-                                [&](const auto& pair) { return pair == joined || pair == turned; }),
-                 pairs_.end());
-  }
   paired_.clear();
   for (const auto& [a, b] : pairs_) paired_.push_back(a), paired_.push_back(b);
   std::sort(paired_.begin(), paired_.end());

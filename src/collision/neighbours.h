@@ -145,7 +145,7 @@ class Neighbours {
   std::vector<Room> rooms_;
   std::vector<Reach> reaches_;
   std::vector<std::vector<NearBody>> near_hand_;
-  std::vector<std::pair<int, int>> pairs_;
+  std::vector<std::pair<int, int>> pairs_, untouching_;  // sorted
   std::vector<int> paired_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "../text/text.h"
 #include "neighbours.h"
@@ -108,25 +109,62 @@ double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vec
   return deepest;
 }
 
-std::string overlaps_at_start(const Scene& scene) {
-  constexpr int kNamed = 5;
+namespace {
+
+/// For each body the first of those that joints connect it with.
+std::vector<int> mechanisms(const Scene& scene) {
+  std::vector<int> first(scene.bodies.size());
+  std::iota(first.begin(), first.end(), 0);
+  for (const Joint& joint : scene.joints) {
+    if (joint.parent == Joint::kWorld) continue;
+    const int one = first[static_cast<std::size_t>(joint.parent)],
+              other = first[static_cast<std::size_t>(joint.child)];
+    std::replace(first.begin(), first.end(), std::max(one, other), std::min(one, other));
+  }
+  return first;
+}
+
+/// see(a, b, depth), until it returns false.
+template <class See>
+void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
+  if (in_mechanisms && scene.joints.empty()) return;
   const SceneGeometry geometry(scene);
   std::vector<BodyState> states;
   std::transform(scene.bodies.begin(), scene.bodies.end(), std::back_inserter(states), start_state);
-  std::string all;
-  int named = 0;
-  for (std::size_t a = 0; a < scene.bodies.size() && named < kNamed; ++a) {
-    for (std::size_t b = 0; b < a && named < kNamed; ++b) {
+  const std::vector<int> first = mechanisms(scene);
+  for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
       const Body &one = scene.bodies[a], &other = scene.bodies[b];
-      if ((one.fixed && other.fixed) || !are_near(one, other) || are_joined(scene, a, b)) continue;
+      if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
+          are_joined(scene, a, b))
+        continue;
       const double depth = overlap(scene, geometry, states, a, b);
-      if (depth <= kOverlap) continue;
-      all += (all.empty() ? "'" : ", '") + one.name + "' is " + text::number(depth) + " m in '" + other.name +
-             "'";
-      ++named;
+      if (depth > kOverlap && !see(a, b, depth)) return;
     }
   }
+}
+
+}  // namespace
+
+std::string overlaps_at_start(const Scene& scene) {
+  constexpr int kNamed = 5;
+  std::string all;
+  int named = 0;
+  each_overlap(scene, false, [&](std::size_t a, std::size_t b, double depth) {
+    all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " + text::number(depth) + " m in '" +
+           scene.bodies[b].name + "'";
+    return ++named < kNamed;
+  });
   return all;
+}
+
+std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene) {
+  std::vector<std::pair<int, int>> pairs;
+  each_overlap(scene, true, [&](std::size_t a, std::size_t b, double) {
+    pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+    return true;
+  });
+  return pairs;
 }
 
 }  // namespace mrhi

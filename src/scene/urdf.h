@@ -157,7 +157,7 @@ PlacedLink only_body(const std::string& source, UrdfDocument& document);
 /// arrange_joints(), which throws SceneError here.
 void join_bodies(const std::string& source, Scene& scene);
 /// Throws SceneError for bodies that begin inside each other.
-void check_overlaps(const std::string& source, const Scene& scene);
+void check_overlaps(const std::string& source, Scene& scene);
 
 /// Sets gravity, bounds, materials, twists and joints of a scene whose bodies and joints are known, from its
 /// YAML file. A material keeps what the file does not name. Throws SceneError.

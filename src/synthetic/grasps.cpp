@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <variant>
 
+#include "../collision/scene_geometry.h"
 #include "../scene/solid_mesh.h"
 #include "../text/text.h"
 
@@ -227,12 +228,12 @@ std::optional<Closing> closing(const Surface& surface, const Matrix3& axes) {
   return found;
 }
 
-/// The narrowest that the palm has room for; a hand that comes from above is worth 5 mm, a way along one of
-/// the body's own axes 3 mm.
-Closing narrowest(const Body& body, const Surface& surface) {
+/// All that a hand could close on, the best first: the narrowest that the palm has room for; a hand that
+/// comes from above is worth 5 mm, a way along one of the body's own axes 3 mm.
+std::vector<Closing> closings(const Body& body, const Surface& surface) {
   constexpr int kTurns = 12;
   const Vector3 up = body.start.orientation.conjugate() * Vector3::UnitZ();
-  std::optional<Closing> best;
+  std::vector<Closing> all;
   int index = 0;
   for (const Vector3& along : directions()) {
     const double own = index++ < 3 ? 0.0 : 0.003;
@@ -247,16 +248,124 @@ Closing narrowest(const Body& body, const Surface& surface) {
       auto found = closing(surface, axes);
       if (!found) continue;
       found->cost += own - 0.005 * axes.col(2).dot(up);
-      if (!best || found->cost < best->cost - 1e-9) best = found;
+      all.push_back(*found);
     }
   }
-  if (!best || best->width > kWidest)
-    throw std::invalid_argument("object '" + body.name + "' " +
-                                (best ? "is " + text::number(best->width) + " m wide on its narrowest side"
-                                      : std::string("has no two sides that face away from each other")) +
-                                "; allowed: an object that a hand closes on, up to " + text::number(kWidest) +
-                                " m");
+  // Costs that rounding alone tells apart are the same.
+  std::stable_sort(all.begin(), all.end(), [](const Closing& one, const Closing& other) {
+    return std::llround(1e8 * one.cost) < std::llround(1e8 * other.cost);
+  });
+  const bool any = !all.empty();
+  const double narrowest = any ? all.front().width : 0.0;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const Closing& one) { return one.width > kWidest; }),
+            all.end());
+  if (!all.empty()) return all;
+  throw std::invalid_argument("object '" + body.name + "' " +
+                              (any ? "is " + text::number(narrowest) + " m wide on its narrowest side"
+                                   : std::string("has no two sides that face away from each other")) +
+                              "; allowed: an object that a hand closes on, up to " + text::number(kWidest) +
+                              " m");
+}
+
+/// Whether they are much the same to a hand.
+bool are_alike(const Closing& one, const Closing& other) {
+  constexpr double kAlike = 0.95;  // cosine
+  return one.axes.col(1).dot(other.axes.col(1)) > kAlike && one.axes.col(2).dot(other.axes.col(2)) > kAlike;
+}
+
+/// A grasp with fingertips that miss their places by `error`, in the frame of a Closing [m].
+struct Fit {
+  Grasp grasp;
+  double error;
+};
+
+/// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places. They open by
+/// `share` of what the shipped one does.
+Fit fit(const Closing& closing, double share) {
+  std::vector<FingertipContact> pressing = closing.contacts;  // those that have to reach their places
+  pressing.erase(std::remove_if(pressing.begin(), pressing.end(),
+                                [](const auto& contact) { return contact.depth == 0.0; }),
+                 pressing.end());
+  std::optional<Fit> best;
+  for (const char* like : {"cube", "long_cuboid"}) {
+    Grasp grasp = shipped_grasp(like);
+    if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
+    const Vector3 wrist = grasp.wrist.position + closing.height * Vector3::UnitZ();
+    grasp.contacts = closing.contacts;
+    grasp.opening *= share;
+    for (int y = -8; y <= 8; ++y)
+      for (int z = -4; z <= 8; ++z) {
+        grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
+        double error = 0.0, of_all = 0.0, of_open = 0.0;
+        const double moved = 1e-4 * std::hypot(y, z);
+        if (best && moved >= best->error) continue;  // each further term adds to this one
+        place_fingertips(human_hand(), grasp.wrist, pressing, -1.0, grasp.preferred, &error);
+        if (best && error + moved >= best->error) continue;
+        place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred, &of_all);
+        place_fingertips(human_hand(), grasp.wrist, pressing, grasp.opening, grasp.preferred, &of_open);
+        error += 0.3 * of_all + 0.2 * of_open;
+        error += moved;
+        if (!best || error < best->error) best = Fit{grasp, error};
+      }
+  }
   return *best;
+}
+
+/// A body that is in a hand's way, in its own frame.
+class Obstacle {
+ public:
+  explicit Obstacle(const Body& body) : scene_(of(body)), geometry_(scene_) {}
+
+  /// How far a capsule is in it; below 0: outside [m].
+  double depth(const Capsule& capsule) const {
+    double deepest = -1e300;
+    for (std::size_t s = 0; s < scene_.bodies[0].shapes.size(); ++s) {
+      const Pose& pose = scene_.bodies[0].shapes[s].pose;
+      const Capsule local{pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
+      const ManifoldShape& shape = geometry_.shapes[0][s];
+      deepest = std::max(deepest, -closest_on(shape.shape, shape.mesh, local, capsule.radius).distance);
+    }
+    return deepest;
+  }
+
+ private:
+  static Scene of(const Body& body) {
+    Scene scene;
+    scene.bodies.push_back(body);
+    return scene;
+  }
+  Scene scene_;
+  SceneGeometry geometry_;
+};
+
+/// Whether fingers have room from where the palm is to where they press: not from outside of a cup to within.
+bool is_open(const Closing& closing, const Obstacle& obstacle) {
+  constexpr double kLength = 0.05, kRadius = 0.006, kGap = 0.002;  // of a slender finger's end [m]
+  return std::none_of(closing.contacts.begin(), closing.contacts.end(), [&](const FingertipContact& contact) {
+    if (contact.depth == 0.0) return false;
+    const Vector3 tip = closing.axes * (contact.point + (kRadius + kGap) * contact.normal);
+    return obstacle.depth({tip, tip + kLength * closing.axes.col(2), kRadius}) > 0.0;
+  });
+}
+
+/// How far the hand would be in the body while it comes with open fingers, and then with more than its
+/// fingertips while they touch [m]; grasp in the body's frame.
+double depth_on_the_way(const Obstacle& obstacle, const Grasp& grasp) {
+  constexpr double kWay = 0.15, kStep = 0.01;
+  double deepest = 0.0;
+  const auto look = [&](const HandPosture& posture, double off, bool tips) {
+    const Pose wrist{grasp.wrist.position + off * grasp.retreat, grasp.wrist.orientation};
+    const Hand hand = complete_hand(hand_joints(human_hand(), Side::right, wrist, posture), Pose{});
+    for (std::size_t c = 0; c < hand.capsules.size(); ++c) {
+      const bool is_tip = c % kBonesPerFinger == kBonesPerFinger - 1;
+      if (hand.capsules[c].radius <= 0.0 || (is_tip && !tips)) continue;
+      deepest = std::max(deepest, obstacle.depth(hand.capsules[c]));
+    }
+  };
+  const GraspPostures postures(grasp);
+  for (double off = 0.0; off <= kWay; off += kStep) look(postures.open, off, true);
+  look(postures.touching, 0.0, false);
+  return deepest;
 }
 
 const Body& only_free_body(const Scene& scene) {
@@ -387,39 +496,33 @@ std::vector<Quaternion> box_symmetries(const Body& body) {
   return turns;
 }
 
-/// The wrist of a shipped grasp, moved to where all fingertips come nearest to their places.
+/// The first closing whose places a hand reaches and comes to without passing through the body; of those that
+/// it has to pass through, if there are no others, the one with the least of it.
 Grasp narrowest_grasp(const Body& body) {
-  const Closing closing = narrowest(body, Surface(body));
-  std::vector<FingertipContact> pressing = closing.contacts;  // those that have to reach their places
-  pressing.erase(std::remove_if(pressing.begin(), pressing.end(),
-                                [](const auto& contact) { return contact.depth == 0.0; }),
-                 pressing.end());
+  constexpr std::size_t kMaxTried = 8;
+  constexpr double kGrazes = 0.0005;  // on the way [m]
+  const Obstacle obstacle(body);
+  std::vector<Closing> tried;
   std::optional<Grasp> best;
-  double least = 1e300;
-  for (const char* like : {"cube", "long_cuboid"}) {
-    Grasp grasp = shipped_grasp(like);
-    if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
-    const Vector3 wrist = grasp.wrist.position + closing.height * Vector3::UnitZ();
-    grasp.contacts = closing.contacts;
-    for (int y = -8; y <= 8; ++y)
-      for (int z = -4; z <= 8; ++z) {
-        grasp.wrist.position = wrist + 0.005 * Vector3(0.0, y, z);
-        double error = 0.0, of_all = 0.0, of_open = 0.0;
-        const double moved = 1e-4 * std::hypot(y, z);
-        if (moved >= least) continue;  // each further term adds to this one
-        place_fingertips(human_hand(), grasp.wrist, pressing, -1.0, grasp.preferred, &error);
-        if (error + moved >= least) continue;
-        place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred, &of_all);
-        place_fingertips(human_hand(), grasp.wrist, pressing, grasp.opening, grasp.preferred, &of_open);
-        error += 0.3 * of_all + 0.2 * of_open;
-        error += moved;
-        if (error < least) least = error, best = grasp;
-      }
+  double least_error = 1e300, least_depth = 1e300;
+  for (const Closing& closing : closings(body, Surface(body))) {
+    const auto like_this = [&](const Closing& other) { return are_alike(closing, other); };
+    if (!is_open(closing, obstacle) || std::any_of(tried.begin(), tried.end(), like_this)) continue;
+    for (const double share : {1.0, 0.6, 0.3}) {
+      const Fit found = fit(closing, share);
+      least_error = std::min(least_error, found.error);
+      if (found.error > kReached) continue;
+      const Grasp grasp = found.grasp.turned(Quaternion(closing.axes));
+      const double depth = depth_on_the_way(obstacle, grasp);
+      if (depth < least_depth) least_depth = depth, best = grasp;
+      if (depth <= kGrazes) return grasp;
+    }
+    tried.push_back(closing);
+    if (tried.size() == kMaxTried) break;
   }
-  if (least > kReached)
-    throw std::invalid_argument("object '" + body.name + "': no hand reaches round it, by " +
-                                text::number(least) + " m; allowed: an object that a hand closes on");
-  return best->turned(Quaternion(closing.axes));
+  if (best) return *best;
+  throw std::invalid_argument("object '" + body.name + "': no hand reaches round it, by " +
+                              text::number(least_error) + " m; allowed: an object that a hand closes on");
 }
 
 ScriptedMotion grasp_object(const Scene& scene) {
