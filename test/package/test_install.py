@@ -51,11 +51,15 @@ class InstallTest(unittest.TestCase):
             status, said = self.run_("rosrun", NAME, program, "--help")
             self.assertEqual(status, 0, "%s: %s" % (program, said))
             self.assertGreater(len(said), 80, program)
-        for launch in sorted(set(re.findall(r"(\w+\.launch)", readme))):
-            status, said = self.run_("roslaunch", "--files", NAME, launch, "bag:=/hand.bag", "participant:=P01",
-                                     "model:=/hand.task")
-            self.assertEqual(status, 0, said)
-            self.assertIn(os.path.join(self.prefix, "share"), said)
+        # As roslaunch --files does, which would read its own modules for each of them.
+        files = ("import sys, roslaunch.rlutil as r\nwords = ['bag:=/hand.bag', 'participant:=P01', 'model:=/hand.task']\n"
+                 "for file in sys.argv[1:]:\n    (path,) = r.resolve_launch_arguments(['%s', file])\n"
+                 "    r.print_file_list([(path, words)])\n    print()" % NAME)
+        launches = sorted(set(re.findall(r"(\w+\.launch)", readme)))
+        status, said = self.run_("/usr/bin/env", "python3", "-c", files, *launches)
+        self.assertEqual(status, 0, said)
+        for launch, listed in zip(launches, said.strip().split("\n\n")):
+            self.assertIn(os.path.join(self.prefix, "share", NAME, "launch", launch), listed)
 
     def test_rviz_finds_the_display_and_the_panel(self):
         if not os.path.exists(os.path.join(PACKAGE, "devel", "lib", "lib%s_rviz.so" % NAME)):

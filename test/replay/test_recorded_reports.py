@@ -17,7 +17,7 @@ from runs.tables import Run
 FOLDER = os.environ.get('MR_HAND_RECORDINGS') or os.path.join(PACKAGE, '..', 'shared', 'recordings')
 RECORDINGS = [path for path in sorted(glob.glob(os.path.join(FOLDER, '*.csv'))) if os.path.basename(path) != 'MANIFEST.csv']
 SCENES = ('cube', 'cube_on_table', 'mixed')
-MAX_PAGES = 6  # of runs with losses, which take longest
+MAX_PAGES = 2  # of runs with losses, which take longest
 
 
 @unittest.skipUnless(replay_is_built(), 'replay is not built')

@@ -26,7 +26,7 @@ from mr_hand_interaction.srv import DeleteObject, SaveWorld, SetParameter, Spawn
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pointing_hand import PERIOD, frame, hand, push_tips  # noqa: E402
 from standing_clock import INSTANT, StandingClock  # noqa: E402
-from waiting import wait_until  # noqa: E402
+from waiting import TIMEOUT, wait_until  # noqa: E402
 
 NODE = "interaction_node/"
 
@@ -234,7 +234,7 @@ class LiveChangesTest(unittest.TestCase):
                              "constant_velocity", "gravity", "[0, 0, 0]")[0], 0)
 
     def test_dynamic_reconfigure_changes_what_flies_without_a_jump(self):
-        client = Client("interaction_node/tune", timeout=30.0)
+        client = Client("interaction_node/tune", timeout=TIMEOUT)
         self.push()
         self.assertGreater(self.objects["cube"].twist.linear.x, 0.1)
         speed = self.objects["cube"].twist.linear
@@ -253,7 +253,7 @@ class LiveChangesTest(unittest.TestCase):
         self.assertEqual(held["material_stiffness"], 2000.0)
 
     def test_dynamic_reconfigure_fixes_the_noise_that_is_estimated_and_gives_it_back(self):
-        client = Client("interaction_node/tune", timeout=30.0)
+        client = Client("interaction_node/tune", timeout=TIMEOUT)
         for wanted, estimated, noise in (({"filter_noise": 0.002}, False, 0.002),
                                          ({"filter_noise_estimated": True}, True, 0.0004),
                                          ({"filter_noise_estimated": False}, False, 0.0004)):

@@ -23,7 +23,7 @@ from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, Spa
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
-from waiting import wait_until  # noqa: E402
+from waiting import TIMEOUT, wait_until  # noqa: E402
 
 NODE = "interaction_node/"
 RUN = 120.0  # s; a run of the scripted hand lasts 9
@@ -189,7 +189,7 @@ class ReplayTest(unittest.TestCase):
                 self.wait_for_inputs()
                 self.call("set", SetParameter, "material/static_friction", "1.1")
                 self.call("set", SetParameter, "grasp/cube", "free")
-                Client("interaction_node/tune", timeout=30.0).update_configuration(
+                Client("interaction_node/tune", timeout=TIMEOUT).update_configuration(
                     {"filter_window": 5, "contact_model": "seed", "gravity_z": -0.1})
                 self.wait_for_inputs()
                 box = SpawnObjectRequest(name="box", shape="box", size=[0.03, 0.04, 0.05], mass=0.05,
@@ -199,7 +199,7 @@ class ReplayTest(unittest.TestCase):
                 of_mesh = SpawnObjectRequest(name="of_mesh", urdf=MESH % mesh)
                 of_mesh.pose.position.x, of_mesh.pose.position.z = -0.5, 0.5
                 self.call("spawn", SpawnObject, of_mesh)
-                Client("interaction_node/tune", timeout=30.0).update_configuration({"contact_model": "implicit"})
+                Client("interaction_node/tune", timeout=TIMEOUT).update_configuration({"contact_model": "implicit"})
                 self.call("pause", SetBool, False)
                 rospy.ServiceProxy(NODE + "pause", SetBool)(True)
                 rospy.ServiceProxy(NODE + "pause", SetBool)(False)

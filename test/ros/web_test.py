@@ -90,7 +90,7 @@ class Viewer(threading.Thread):
                     async with session.ws_connect("%s/%s/socket" % (self.origin, TOKEN), origin=self.origin,
                                                   max_msg_size=0) as door:
                         while not self._over:
-                            self._take((await door.receive(timeout=10)).data)
+                            self._take((await door.receive(timeout=60)).data)
                 except (aiohttp.ClientError, TypeError):
                     await asyncio.sleep(0.1)  # not there yet
 
@@ -285,7 +285,7 @@ class WebTest(unittest.TestCase):
                 origin = "http://127.0.0.1:%d" % self.port
                 async with session.ws_connect("%s/%s/socket" % (origin, TOKEN), origin=origin, max_msg_size=0) as door:
                     await doors.put_hands_in(door, place)
-                    end = time.monotonic() + 20.0
+                    end = time.monotonic() + 60.0
                     while time.monotonic() < end and not together:
                         await door.send_bytes(struct.pack("<d200f50B", 1e3 * time.monotonic(), *numbers, *(25 * [0] + 25 * [2])))
                         await asyncio.sleep(1.0 / 60)

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "scene_files.h"
-#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -165,14 +165,14 @@ TEST(ObjectRequest, a_colour_has_parts_from_0_to_1_and_no_others) {
     ObjectRequest request = primitive("box", {0.1, 0.1, 0.1});
     request.rgba = rgba;
     test::expect_words(error_of(request), {"color [", "opacity, each a number from 0 to 1"});
-    const std::string given = "\"" + text::number(double(rgba[0])) + " " + text::number(double(rgba[1])) +
-                              " " + text::number(double(rgba[2])) + " " + text::number(double(rgba[3])) +
-                              "\"";
+    std::ostringstream given;
+    given << '"' << rgba[0] << ' ' << rgba[1] << ' ' << rgba[2] << ' ' << rgba[3] << '"';
     const std::string link =
         std::string(test::kInertial) + test::kBox +
-        "<visual><geometry><box size=\"1 1 1\"/></geometry><material name=\"m\"><color rgba=" + given +
+        "<visual><geometry><box size=\"1 1 1\"/></geometry><material name=\"m\"><color rgba=" + given.str() +
         "/></material></visual>";
-    EXPECT_NE(error_of(urdf("<robot name=\"r\">" + test::link("part", link) + "</robot>")), "") << given;
+    EXPECT_NE(error_of(urdf("<robot name=\"r\">" + test::link("part", link) + "</robot>")), "")
+        << given.str();
   }
   ObjectRequest request = primitive("box", {0.1, 0.1, 0.1});
   request.rgba = {{0, 1, 0.5f, 1}};

@@ -88,7 +88,7 @@ def hands(device, value=0.0625):
     return struct.pack('<d200f50B', 1e3 * device, *(200 * [value]), *(50 * [2]))
 
 
-async def answer_until(socket, done, longest=20.0):
+async def answer_until(socket, done, longest=60.0):
     """Answers pings until done(kind, content)."""
     end = time.monotonic() + longest
     while time.monotonic() < end:
