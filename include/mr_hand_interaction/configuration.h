@@ -107,6 +107,10 @@ struct Configuration {
   Material material;                ///< of every body that the scene says nothing else about
   double density = 1000.0;          ///< of bodies whose scene file gives no mass [kg/m^3]
   double hand_radius_scale = 1.0;
+  double hand_joint_speed = HandStrength::kUnlimited;  ///< of a finger's bones in the palm [rad/s]
+  /// Mass that is seen: largest ratio of a tracked hand's displacement to the rendered hand's, while it
+  /// accelerates a heavy object; 1: off.
+  double control_display_ratio = 1.0;
   TrackingConfiguration tracking;
   ContactConfiguration contact;
 };

@@ -30,6 +30,7 @@ struct SimulationState {
   std::vector<BodyContact> body_contacts;      ///< of bodies with each other, sorted by key
   std::vector<BodyContact> sleeping_contacts;  ///< likewise, of bodies that are asleep
   std::vector<HandOffset> offsets;             ///< of the rendered hands, by slot
+  std::vector<MassLag> mass_lags;              ///< likewise
   std::vector<Grip> grips;                     ///< what hands hold, by hand and body
   std::vector<Interaction> interactions;       ///< one per body and hand slot: hand * bodies + body
 };

@@ -185,7 +185,9 @@ std::vector<ParameterEntry> members() {
              unlimited),
       number("hand/pad", " [m]", {0, 0.01}, {0, 0.005}, of(&C::contact, &T::hand, &H::pad)),
       number("hand/restitution", "", {0, 1}, {0, 1}, of(&C::contact, &T::hand, &H::restitution), material),
+      number("hand/joint_speed", " [rad/s]", {0.1, 100}, {0.5, 20}, of(&C::hand_joint_speed), unlimited),
       number("hand/radius_scale", "", {0.1, 10}, {0.5, 2}, of(&C::hand_radius_scale)),
+      number("rendering/control_display_ratio", "", {1, 2}, {1, 2}, of(&C::control_display_ratio)),
   };
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../math/rotation.h"
 #include "../rendering/skin.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -39,6 +40,20 @@ std::string held_by_hands(const Scene& scene, const SimulationState& state) {
     held += (held.empty() ? "" : ", ") + scene.bodies[i].name + (assisted ? " (with grasp assist)" : "");
   }
   return "holding: " + (held.empty() ? "nothing" : held);
+}
+
+/// How fast each operator drifts and turns; empty without operators.
+std::string motion_of_operators(const Scene& scene, const SimulationState& state) {
+  std::string all;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!scene.bodies[i].is_operator) continue;
+    const Twist twist = twist_of(scene.bodies[i], state.bodies[i]);
+    char text[64];
+    std::snprintf(text, sizeof text, ": %.3f m/s, %.1f deg/s", twist.linear.norm(),
+                  twist.angular.norm() / kDegree);
+    all += "\n" + scene.bodies[i].name + text;
+  }
+  return all;
 }
 
 /// STL knows none.
@@ -295,7 +310,7 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   delete_gone(header, array);
   bodies_->add(state, result.contacts, all, {objects, fixtures});
   shadows_->add(state, result, all, shadows);
-  std::string text = held_by_hands(scene_, state) + "  |  " + caption_;
+  std::string text = held_by_hands(scene_, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
   if (!all && text == text_) return;
   text_ = std::move(text);
   texts

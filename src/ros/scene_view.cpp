@@ -83,6 +83,9 @@ void SceneView::take(const mr_hand_interaction::ObjectStateArray& objects) {
     if (!index) continue;
     const auto i = static_cast<std::size_t>(*index);
     state_.bodies[i].pose = from_message(object.pose);
+    // Of unit mass and inertia, as bodies of this scene are by default.
+    state_.bodies[i].linear_momentum = from_message(object.twist.linear);
+    state_.bodies[i].angular_momentum = from_message(object.twist.angular);
     state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
   }
 }

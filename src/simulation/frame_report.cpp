@@ -1,8 +1,10 @@
 #include "frame_report.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "../collision/neighbours.h"
+#include "../rendering/mass_lag.h"
 #include "../response/finger_limits.h"
 #include "grasp.h"
 
@@ -107,15 +109,39 @@ void report_frame(const FrameEnd& end, FrameResult& result) {
       result.tracked.push_back(end.operators.in_world(slot, end.state).current);
 }
 
-void render_hands(HandRenderer& renderer, const Operators& operators, SimulationState& state,
-                  FrameResult& result) {
+namespace {
+
+/// The hand of the slot as it lags behind what it accelerates, in `lagging`; the track itself without lag.
+const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, const FrameResult& result,
+                               std::optional<HandTrack>& lagging) {
+  MassLag& lag = rendering.state.mass_lags[slot];
+  const HandTrack& track = rendering.operators.in_world(slot, rendering.state);
+  if (track.appeared || rendering.control_display_ratio <= 1.0) lag = MassLag();
+  if (rendering.control_display_ratio <= 1.0) return track;
+  const MassLag before = lag;
+  const Nanoseconds now = rendering.state.time;
+  MovedMass moved;
+  if (before.stamp != 0 && now > before.stamp)
+    moved = moved_mass(static_cast<int>(slot), to_seconds(now - before.stamp), rendering.scene,
+                       rendering.gravity, result);
+  advance_mass_lag(rendering.control_display_ratio, moved, now, lag);
+  if (before.zero() && lag.zero()) return track;
+  lag_behind(before, lag, track, lagging ? *lagging : lagging.emplace());
+  return *lagging;
+}
+
+}  // namespace
+
+void render_hands(const Rendering& rendering, FrameResult& result) {
+  SimulationState& state = rendering.state;
+  std::optional<HandTrack> lagging;  // large: made only when a hand lags
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active) continue;
-    const HandTrack& track = operators.in_world(slot, state);
+    const HandTrack& track = lagging_track(slot, rendering, result, lagging);
     result.rendered.emplace_back();
-    renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
-                    state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],
-                    result.rendered.back());
+    rendering.renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
+                              state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],
+                              result.rendered.back());
   }
 }
 

@@ -39,8 +39,15 @@ struct FrameEnd {
 void report_frame(const FrameEnd& end, FrameResult& result);
 
 /// The hands as they are shown, from the contacts of the report; their offsets in the state are updated.
-void render_hands(HandRenderer& renderer, const Operators& operators, SimulationState& state,
-                  FrameResult& result);
+struct Rendering {
+  const Scene& scene;
+  HandRenderer& renderer;
+  const Operators& operators;
+  const Vector3& gravity;
+  double control_display_ratio;
+  SimulationState& state;  ///< its offsets and mass lags are updated
+};
+void render_hands(const Rendering& rendering, FrameResult& result);
 
 /// Ends what a hand does with every body, before the hand is lost.
 void end_interactions(std::size_t slot, Nanoseconds now, SimulationState& state, std::vector<Event>& events);

@@ -46,6 +46,7 @@ void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {
     result.events.push_back({now, EventKind::hand_lost, -1, track.current.id});
     track = HandTrack();
     state.offsets[slot] = HandOffset();
+    state.mass_lags[slot] = MassLag();
   }
 }
 
@@ -56,6 +57,7 @@ void Simulation::Impl::show_hands_that_are_finite() {
     result.not_finite.push_back("rendered " + name_of(result.tracked[i]));
     result.rendered[i].hand = result.tracked[i];
     std::fill(state.offsets.begin(), state.offsets.end(), HandOffset());
+    std::fill(state.mass_lags.begin(), state.mass_lags.end(), MassLag());
   }
 }
 

@@ -75,6 +75,7 @@ void Simulation::Impl::reset() {
   state.restrained.assign(scene.operators.size(), 0);
   state.hands.resize(kMaxHands);
   state.offsets.resize(kMaxHands);
+  state.mass_lags.resize(kMaxHands);
   state.interactions.resize(kMaxHands * scene.bodies.size());
   state.grips.reserve(kMaxHands * scene.bodies.size());
   state.contacts.reserve(64 * kMaxHands);

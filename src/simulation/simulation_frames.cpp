@@ -114,7 +114,7 @@ void Simulation::Impl::report(Nanoseconds stamp) {
 }
 
 void Simulation::Impl::render() {
-  render_hands(renderer, operators, state, result);
+  render_hands({scene, renderer, operators, gravity, configuration.control_display_ratio, state}, result);
   show_hands_that_are_finite();
 }
 

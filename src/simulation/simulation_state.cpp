@@ -202,7 +202,7 @@ void place(std::size_t body, const BodyState& placed, SimulationState& state) {
 
 std::uint64_t hash(const SimulationState& state) {
   const auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
-               body_contacts, sleeping_contacts, offsets, grips, interactions] = state;
+               body_contacts, sleeping_contacts, offsets, mass_lags, grips, interactions] = state;
   leave_out(started, stamps, asleep);
   Fnv1a hash;
   hash.add(time - last_frame);
@@ -212,7 +212,10 @@ std::uint64_t hash(const SimulationState& state) {
   for (const char held : restrained) hash.add(held);
   for (std::size_t slot = 0; slot < hands.size(); ++slot) {
     add_track(hands[slot], time, hash);
-    if (hands[slot].active) add_offset(offsets[slot], time, hash);
+    if (!hands[slot].active) continue;
+    add_offset(offsets[slot], time, hash);
+    const auto& [displacement, velocity, stamp] = mass_lags[slot];
+    if (!mass_lags[slot].zero()) hash.all(displacement, velocity, time - stamp);
   }
   for (const Contact& contact : contacts) add_contact(contact, hash);
   for (const Grip& grip : grips) add_grip(grip, hash);

@@ -261,6 +261,10 @@ class Parts {
     auto& [shift, fingers, lag, stamp, left, left_since] = part;
     all(shift, fingers, lag, stamp, left, left_since);
   }
+  void one(MassLag& part) {
+    auto& [displacement, velocity, stamp] = part;
+    all(displacement, velocity, stamp);
+  }
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
            released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
@@ -280,9 +284,9 @@ class Parts {
   }
   void one(SimulationState& part) {
     auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
-           body_contacts, sleeping_contacts, offsets, grips, interactions] = part;
+           body_contacts, sleeping_contacts, offsets, mass_lags, grips, interactions] = part;
     all(started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts, body_contacts,
-        sleeping_contacts, offsets, grips, interactions);
+        sleeping_contacts, offsets, mass_lags, grips, interactions);
   }
 
  private:
@@ -325,8 +329,9 @@ class Fit {
   bool sizes(const SimulationState& state) const {
     const std::size_t bodies = scene_.bodies.size(), hands = kMaxHands;
     return state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == hands &&
-           state.offsets.size() == hands && state.interactions.size() == hands * bodies &&
-           state.joints.size() == scene_.joints.size() && state.restrained.size() == scene_.operators.size();
+           state.offsets.size() == hands && state.mass_lags.size() == hands &&
+           state.interactions.size() == hands * bodies && state.joints.size() == scene_.joints.size() &&
+           state.restrained.size() == scene_.operators.size();
   }
   bool is_shape(std::size_t body, std::size_t shape) const {
     return body < scene_.bodies.size() && shape < scene_.bodies[body].shapes.size();

@@ -276,6 +276,34 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
   return blend(before, now, minimum_jerk(u));
 }
 
+/// The hand with its fingers' bones turned, from how they were in the palm of `before`, no faster towards how
+/// they are in `tracked` than `speed` allows in `elapsed` seconds. Bones keep their lengths, and joints stay
+/// together as tracked. Thumb and fingers are slowed from the first bone that is tracked beyond the
+/// metacarpal.
+Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapsed) {
+  Hand hand = tracked;
+  const Quaternion palm = tracked.palm.orientation * before.palm.orientation.conjugate();
+  for (int finger = 0; finger < kFingers; ++finger) {
+    Vector3 moved = Vector3::Zero();  // of the next joint from where it is tracked
+    for (int bone = 1; bone < kBonesPerFinger; ++bone) {
+      const auto c = static_cast<std::size_t>(capsule_index(finger, bone));
+      Capsule& capsule = hand.capsules[c];
+      const Capsule& last = before.capsules[c];
+      if (capsule.radius <= 0.0 || last.radius <= 0.0) continue;
+      const Vector3 is = capsule.end - capsule.start, was = palm * (last.end - last.start);
+      const Quaternion turn = Quaternion::FromTwoVectors(was, is);
+      const double angle = 2.0 * std::acos(std::min(1.0, std::abs(turn.w())));
+      capsule.start += moved;
+      if (angle > speed * elapsed && was.norm() > 0.0) {
+        const Quaternion part = Quaternion::Identity().slerp(speed * elapsed / angle, turn);
+        moved += is.norm() * (part * was.normalized()) - is;
+      }
+      capsule.end += moved;
+    }
+  }
+  return hand;
+}
+
 /// The jump is told by raw samples: what is filtered lags behind, and the difference would look like a leap.
 /// A hand that was held begins its filter anew, as its samples of before say nothing about now, and catches
 /// up from the pose that was shown.
@@ -299,6 +327,8 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
     track.current = catching_up(track.rejoin, track.current, stamp);
     if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
   }
+  if (std::isfinite(configuration.hand_joint_speed))
+    track.current = slowed(track.previous, track.current, configuration.hand_joint_speed, away);
   extend_path(away, track);
 }
 

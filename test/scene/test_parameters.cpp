@@ -59,6 +59,8 @@ void expect_defaults(const Configuration& c) {
   EXPECT_EQ(d.material.dynamic_friction, c.material.dynamic_friction);
   EXPECT_EQ(d.stiffness, c.stiffness);
   EXPECT_EQ(d.hand_radius_scale, c.hand_radius_scale);
+  EXPECT_EQ(d.hand_joint_speed, c.hand_joint_speed);
+  EXPECT_EQ(d.control_display_ratio, c.control_display_ratio);
   EXPECT_EQ(d.tracking.hold_time, c.tracking.hold_time);
   EXPECT_EQ(d.tracking.max_speed, c.tracking.max_speed);
   EXPECT_EQ(d.contact.anchors, c.contact.anchors);
@@ -84,6 +86,8 @@ Configuration unlike_defaults() {
   c.filter = {FilterKind::none, 7, false, 11, 12, 13, 0.014, 15, 16};
   c.material = {0.11, 0.22, 0.12, 44};
   c.hand_radius_scale = 2;
+  c.hand_joint_speed = 3;
+  c.control_display_ratio = 1.5;
   c.contact = {false, false, false, false, false,
                false, false, false, false, false,
                false, false, true,  1,     {7, 8, 0.001, 0.03, 0.5, 0.25}};
@@ -137,6 +141,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "filter/window",
                                           "gravity",
                                           "hand/finger_mass",
+                                          "hand/joint_speed",
                                           "hand/pad",
                                           "hand/palm_mass",
                                           "hand/palm_strength",
@@ -147,6 +152,7 @@ TEST(Parameters, NamesAreTheContracts) {
                                           "material/restitution",
                                           "material/static_friction",
                                           "material/stiffness",
+                                          "rendering/control_display_ratio",
                                           "scene/density",
                                           "seed/literal",
                                           "step",
@@ -192,6 +198,8 @@ TEST(Parameters, EachNameSetsItsOwnValue) {
   EXPECT_EQ(0, set("material/dynamic_friction", "0").material.dynamic_friction);
   EXPECT_EQ(1e4, set("material/stiffness", "10000").stiffness);
   EXPECT_EQ(0.5, set("hand/radius_scale", "0.5").hand_radius_scale);
+  EXPECT_EQ(2.5, set("hand/joint_speed", "2.5").hand_joint_speed);
+  EXPECT_EQ(1.3, set("rendering/control_display_ratio", "1.3").control_display_ratio);
   EXPECT_EQ(0, set("tracking/hold_time", "0").tracking.hold_time);
   EXPECT_EQ(5, set("tracking/max_speed", "5").tracking.max_speed);
 }
@@ -263,6 +271,8 @@ TEST(Parameters, RefusesValuesOfAWrongTypeOrOutOfRange) {
       {{"material/stiffness", ".inf", "from 1"}},
       {{"hand/radius_scale", "0.09", "from 0.1 to 10"}},
       {{"hand/radius_scale", "11", "from 0.1 to 10"}},
+      {{"hand/joint_speed", "0", "from 0.1 to 100"}},
+      {{"rendering/control_display_ratio", "0.9", "from 1 to 2"}},
       {{"hand/strength", "0", "from 0.1 to 1000 [N], or 'unlimited'"}},
       {{"hand/palm_strength", "strong", "from 0.1 to 1000 [N], or 'unlimited'"}},
       {{"hand/pad", "0.02", "from 0 to 0.01 [m]"}},

@@ -194,5 +194,50 @@ TEST_F(Tracker, radius_scale_applies_to_every_capsule) {
   EXPECT_DOUBLE_EQ(hands_[0].current.capsules[capsule_index(1, 3)].radius, 0.012);
 }
 
+/// A finger of two bones of 40 and 20 mm that bends by `angle` at its root and as much again at its joint.
+Hand bent(double angle, const Quaternion& palm = Quaternion::Identity()) {
+  Hand hand;
+  hand.id = 1;
+  hand.palm.orientation = palm;
+  const Vector3 root(0.08, 0, 0);
+  const auto along = [](double a) -> Vector3 { return Vector3(std::cos(a), 0, -std::sin(a)); };
+  const Vector3 joint = root + 0.04 * along(angle), tip = joint + 0.02 * along(2.0 * angle);
+  testing::add_finger(hand, capsule_index(1, 1), palm * root, palm * joint, 0.009);
+  testing::add_finger(hand, capsule_index(1, 2), palm * joint, palm * tip, 0.009);
+  return hand;
+}
+
+double angle_between(const Capsule& a, const Capsule& b) {
+  return std::acos(std::min(1.0, (a.end - a.start).normalized().dot((b.end - b.start).normalized())));
+}
+
+TEST_F(Tracker, joint_speed_limits_the_turn_of_bones_in_the_palm_and_keeps_them_whole) {
+  constexpr double kSpeed = 3.0, kFrame = 0.01;
+  configuration_.hand_joint_speed = kSpeed;
+  frame(0.0, {bent(0.0)});
+  Hand last = hands_[0].current;
+  for (int i = 1; i <= 80; ++i) {
+    frame(i * kFrame, {bent(1.0)});  // bent at once
+    const Hand& now = hands_[0].current;
+    const Capsule &near = now.capsules[capsule_index(1, 1)], &far = now.capsules[capsule_index(1, 2)];
+    EXPECT_NEAR((near.end - near.start).norm(), 0.04, 1e-12);
+    EXPECT_NEAR((far.end - far.start).norm(), 0.02, 1e-12);
+    EXPECT_NEAR((far.start - near.end).norm(), 0.0, 1e-12);
+    for (const int c : {capsule_index(1, 1), capsule_index(1, 2)})
+      EXPECT_LE(angle_between(last.capsules[c], now.capsules[c]), kSpeed * kFrame + 1e-6) << i;
+    if (i == 20) EXPECT_GT(angle_between(far, bent(1.0).capsules[capsule_index(1, 2)]), 1.0);
+    last = now;
+  }
+  EXPECT_LT((last.capsules[capsule_index(1, 2)].end - bent(1.0).capsules[capsule_index(1, 2)].end).norm(),
+            1e-12);
+  // The hand as a whole turns as fast as it is tracked.
+  const Quaternion turned(Eigen::AngleAxisd(0.8, Vector3::UnitZ()));
+  frame(0.81, {bent(1.0, turned)});
+  EXPECT_LT((hands_[0].current.capsules[capsule_index(1, 2)].end -
+             bent(1.0, turned).capsules[capsule_index(1, 2)].end)
+                .norm(),
+            1e-9);
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -35,6 +35,15 @@ struct HandOffset {
   bool zero() const;
 };
 
+/// How far the rendered hand lags behind the tracked hand because of the mass that it accelerates
+/// (Configuration::control_display_ratio). Lasts from frame to frame.
+struct MassLag {
+  Vector3 displacement = Vector3::Zero();  ///< of the rendered hand from the tracked one, world [m]
+  Vector3 velocity = Vector3::Zero();      ///< of the displacement [m/s]
+  Nanoseconds stamp = 0;                   ///< of the frame that it was found for; 0: none yet
+  bool zero() const { return displacement == Vector3::Zero() && velocity == Vector3::Zero(); }
+};
+
 /// What a phalanx or the palm presses with, all its contacts together.
 struct Pressed {
   double force = 0.0;               ///< size of the normal forces' sum [N]
