@@ -18,9 +18,9 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction check_scene [--density KG_PER_M3] [--picture FILE.svg] SCENE...
 
-Loads scenes, by name or as URDF files, and prints what became of them: bodies with mass, volume and size,
-joints, and what had to be assumed. --picture draws the (last) scene. Exit status: 0 if all load, 1 if one
-does not, 2 for bad usage.
+Loads scenes, by name or as URDF files, and prints their bodies with mass, volume and size, their joints, and
+what was assumed. --picture draws the last scene. Exit status: 0 if all scenes load, 1 if one does not, 2 for
+bad usage.
 )";
 
 Eigen::AlignedBox3d extent_of(const Body& body) {

@@ -13,8 +13,8 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction hand_interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
-hand_tracking_node and interaction_node in one process; the launch files start it. Its topics, services and
-parameters are those of both; tracking's parameters are in ~hand_tracking. See their --help.
+Runs hand_tracking_node and interaction_node in one process; the launch files start it. It has the topics, services and
+parameters of both. The parameters of hand_tracking_node are in ~hand_tracking. See the --help of both.
 )";
 
 }  // namespace

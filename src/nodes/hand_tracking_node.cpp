@@ -6,7 +6,7 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction hand_tracking_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
-Takes what hand trackers publish, and publishes the hands in world on hand_frame.
+Subscribes to hand trackers, and publishes their hands in the world frame on hand_frame.
 
   /leap_motion/leap_device                      leap_motion/Human, any published version
   /leapmotion/hands/left, /leapmotion/hands/right
@@ -14,12 +14,12 @@ Takes what hand trackers publish, and publishes the hands in world on hand_frame
   hands/pose_array, hands/left/pose_array, hands/right/pose_array
                                                 geometry_msgs/PoseArray of 21, 24, 25 or 26 joints; see docs/trackers.md
   hands/point_cloud, hands/left/point_cloud, hands/right/point_cloud
-                                                sensor_msgs/PointCloud, the same, with channels radius and confidence
-  Each topic takes each of these messages.
-  ~fixed_frame   where hands are placed by tf; default world
-  ~side          of a hand on hands/pose_array or hands/point_cloud; left or right, default right
-  ~order         of joints: a name of docs/trackers.md; default none: recognised by the lengths of bones
-  ~scale         metres per unit of the tracker's lengths; default 1
+                                                sensor_msgs/PointCloud of the same joints, with channels radius and confidence
+  Each topic accepts each of these message types.
+  ~fixed_frame   frame into which tf transforms the hands; default world
+  ~side          side of a hand on hands/pose_array or hands/point_cloud: left or right; default right
+  ~order         order of the joints, a name of docs/trackers.md; default none: recognised by the bone lengths
+  ~scale         metres per unit of the tracker; default 1
 )";
 
 }  // namespace

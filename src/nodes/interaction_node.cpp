@@ -8,16 +8,17 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
-Takes hand_frame, and publishes what the hands do to the objects: rendered_hands, tracked_hands, objects, contacts,
-interaction_events, haptics, markers, /tf, simulation_input, /diagnostics. Services: ~reset, ~pause, ~spawn, ~delete, ~set.
+Subscribes to hand_frame, simulates the contact of the hands with the objects, and publishes rendered_hands,
+tracked_hands, objects, contacts, interaction_events, haptics, markers, /tf, simulation_input, /diagnostics.
+Services: ~reset, ~pause, ~spawn, ~delete, ~set.
 
   ~scene              NAME|FILE; default cube
   ~fixed_frame        default world
   ~haptics/rate       frame or step; default frame
   ~place_by_mouse     default false
-  ~standard_outputs   also as PoseStamped, WrenchStamped, String and PoseArray; default false
+  ~standard_outputs   also publishes PoseStamped, WrenchStamped, String and PoseArray; default false
   ~object_twist/NAME  [vx, vy, vz, wx, wy, wz] at the start
-and all that config/default.yaml lists, such as _contact_model:=seed.
+and all parameters of config/default.yaml, such as _contact_model:=seed.
 )";
 
 }  // namespace

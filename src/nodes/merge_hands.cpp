@@ -19,12 +19,12 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction merge_hands _inputs:="[TOPIC, TOPIC, ...]" [_mode:=people|fused]
 
-Merges the hand_frame topics of several hand_tracking_nodes into one, hand_frame. Their stamps must be of one clock, and
-their hands in one frame.
+Merges the hand_frame topics of several hand_tracking_nodes into one topic, hand_frame. All stamps must come from one
+clock, and all hands must be in one frame.
 
   ~inputs   topics of HandFrame, 2 to 8
-  ~mode     people (default): each topic has hands of its own, as of two people
-            fused: all topics have the hands of one person; of each side one hand comes, by the trackers' confidence
+  ~mode     people (default): each topic has different hands, such as those of two people
+            fused: all topics have the hands of one person; the more confident tracker gives the hand of each side
 )";
 
 constexpr int kQueue = 10;

@@ -22,13 +22,13 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction simulated_operator_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
-Does the trials of a running training_node: takes objects and training/status, and publishes a simulated operator's
-hand on /leap_motion/leap_device.
+Performs the trials of a running training_node: subscribes to objects and training/status, and publishes the hand of a
+simulated operator on /leap_motion/leap_device.
 
   ~task    NAME|FILE; default pick_and_place
   ~group   beginner, veteran or none (undisturbed); default none
   ~seed    default 1
-  ~noise   1: as a Leap's; default 1
+  ~noise   factor on the noise of a Leap; default 1
   ~rate    frames per second; default 115
 )";
 

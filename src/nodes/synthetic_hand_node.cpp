@@ -27,19 +27,19 @@ constexpr const char* kUsage =
        rosrun mr_hand_interaction synthetic_hand_node --csv FILE [--motion NAME] [--side left|right] [--rate HZ]
                                                       [--noise AMPLITUDE] [--seed N] [--scene NAME|FILE]
 
-Publishes a scripted hand on /leap_motion/leap_device, as a Leap's driver would; with --csv writes one run of it as a
-recording, which needs no master.
+Publishes a scripted hand on /leap_motion/leap_device, like a Leap driver. With --csv it writes one run of the motion as
+a recording instead and needs no ROS master.
 
   ~motion   grasp_cube (default) grasp_ball catch_ball pinch_long lift_flat nudge tap slap press_button flip_switch
-            turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs; grasp_object takes the only free
-            object of ~scene on its narrowest side
-  ~scene    of grasp_object: a shipped scene or a URDF file
+            turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs; grasp_object grasps the only free
+            object of ~scene across its narrowest side
+  ~scene    for grasp_object: a shipped scene or a URDF file
   ~side     left or right; default right
   ~rate     frames per second; default 115
-  ~noise    1: as a Leap's; default 0
+  ~noise    factor on the noise of a Leap; default 0
   ~seed     of the noise; default 1
-  ~loop     begins again when it is done; default true
-  ~reset    the service that a run begins with; default none
+  ~loop     repeats the motion; default true
+  ~reset    service that is called before each run; default none
 )";
 
 /// The motion of that name; grasp_object's is made for the scene, a name or a URDF's path. Throws

@@ -162,43 +162,43 @@ const char* replay_help() {
        replay --scene NAME|FILE --input FILE.bag|FILE.csv --output DIR [options]
        replay --compare DIR DIR [--tolerance METRES,RADIANS]
 
-Does again what a live simulation did, from a bag of record.launch; or runs a recording of hands through a scene. As
-fast as the machine goes; needs no ROS master.
+Repeats a live simulation from a bag of record.launch, or runs a recording of hands through a scene. Runs as fast as
+the machine allows and needs no ROS master.
 
-  --scene NAME|FILE         a shipped scene, or a URDF file; else as recorded
+  --scene NAME|FILE         a shipped scene or a URDF file; default: as recorded
   --input FILE              a CSV recording, or a bag (leap_motion/Human, leap_motion_controller/Hand,
                             PoseArray, PointCloud or HandFrame)
-  --output DIR              created if need be; objects.csv, contacts.csv, hands.csv, events.csv, summary.json;
-                            of a bag FILE_replay where none is given
+  --output DIR              folder of objects.csv, contacts.csv, hands.csv, events.csv, summary.json; created if it is
+                            missing; default for a bag: FILE_replay
   --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array or point_cloud, or the only fitting
   --params FILE.yaml        parameters, under the names of the parameter server
-  --set KEY=VALUE           one parameter; stands above --params; repeatable
+  --set KEY=VALUE           one parameter; overrides --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw
-                            where an object's centre of mass starts, in world [m]; repeatable
+                            start pose of an object's centre of mass in world [m]; repeatable
   --object-twist NAME,vx,vy,vz,wx,wy,wz
-                            how it moves at the start, world axes [m/s, rad/s]; repeatable
+                            velocity of an object at the start, world axes [m/s, rad/s]; repeatable
   --hand-transform x,y,z,qx,qy,qz,qw
-                            pose of the device frame in world; else as the bag's /tf_static and /tf have it, else at the origin
-                            and turned by +90 degrees about x
+                            pose of the device frame in world; default: from the bag's /tf_static and /tf, else at the origin
+                            and rotated by +90 degrees about x
   --left TOPIC, --right TOPIC, --both TOPIC
-                            of the bag, where joints of hands are on topics of other names
-  --hand-order NAME         order of the joints in PoseArray and PointCloud; else recognised; docs/trackers.md has them
-  --hand-scale FACTOR       metres per unit of the recording's lengths, as 0.001 for millimetres
-  --export HZ               scripts/export afterwards: demonstration.csv and demonstration.bag, of standard messages
-                            alone; 0: a row for each frame
-  --explain                 scripts/explain afterwards: explain.html and explain.json, when each object was held, how, and
-                            why it was lost
-  --markers RATE            markers.bag too: the markers of a live run at this rate [Hz], for rviz and other viewers, and for
-                            each frame the hands, objects and contacts that rviz's Interaction display draws from
-  --marker-frames FRAME,... markers.bag of these frames alone, by their numbers in frames.csv
-  --film FILE.webp|FILE.mp4 what rviz shows of the run as a film; needs rviz, Xvfb, ImageMagick, and webp or ffmpeg
-  --compare DIR DIR         scripts/compare: when and where the objects of two runs part, and by how much, and whether the
-                            bits are the same
+                            topics of the bag with hand joints, if they have other names
+  --hand-order NAME         order of the joints in PoseArray and PointCloud, see docs/trackers.md; default: recognised
+  --hand-scale FACTOR       metres per unit of the recording, such as 0.001 for millimetres
+  --export HZ               runs scripts/export afterwards: demonstration.csv and demonstration.bag with standard messages
+                            only; 0: a row for each frame
+  --explain                 runs scripts/explain afterwards: explain.html and explain.json tell when and how each object
+                            was held and why it was lost
+  --markers RATE            also writes markers.bag: markers at this rate [Hz] for rviz and other viewers, and the hands,
+                            objects and contacts of each frame for rviz's Interaction display
+  --marker-frames FRAME,... markers.bag of these frames only, by their numbers in frames.csv
+  --film FILE.webp|FILE.mp4 film of the run as rviz shows it; needs rviz, Xvfb, ImageMagick, and webp or ffmpeg
+  --compare DIR DIR         runs scripts/compare: when and where the objects of two runs diverge, by how much, and whether
+                            the runs are equal bit by bit
   --tolerance METRES,RADIANS
-                            what --compare takes as the same place; else 1e-9,1e-9; 0,0: the same to the last digit
+                            tolerance of --compare; default 1e-9,1e-9; 0,0: equal to the last digit
   --help                    this text
 
-Exit status: 0 done, 1 bad data (what was written stays) or runs that part, 2 bad usage.
+Exit status: 0 done, 1 bad data (what was written stays) or runs that diverge, 2 bad usage.
 )";
 }
 
