@@ -521,8 +521,9 @@ Grasp narrowest_grasp(const Body& body) {
     if (tried.size() == kMaxTried) break;
   }
   if (best) return *best;
-  throw std::invalid_argument("object '" + body.name + "': no hand reaches round it, by " +
-                              text::number(least_error) + " m; allowed: an object that a hand closes on");
+  throw std::invalid_argument("object '" + body.name + "': no hand reaches round it" +
+                              (tried.empty() ? "" : ", by " + text::number(least_error) + " m") +
+                              "; allowed: an object that a hand closes on");
 }
 
 ScriptedMotion grasp_object(const Scene& scene) {
