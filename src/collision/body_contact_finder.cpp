@@ -64,11 +64,6 @@ struct ShapePair {
   }
 };
 
-const ManifoldPoint& deepest(const Manifold& manifold) {
-  return *std::max_element(manifold.points.begin(), manifold.points.begin() + manifold.count,
-                           [](const auto& x, const auto& y) { return x.depth < y.depth; });
-}
-
 struct Touch {
   Manifold manifold;
   double time = -1.0;  // of a first touch within the step
@@ -79,7 +74,7 @@ std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
   const auto separation = [&](double time) -> std::optional<Separation<Manifold>> {
     const Manifold manifold = pair.at(time, margin);
     if (manifold.count == 0) return std::nullopt;
-    const ManifoldPoint& nearest = deepest(manifold);
+    const ManifoldPoint& nearest = manifold.deepest();
     const Vector3 relative = pair.a.velocity(time, nearest.point - pair.a.at(time).position) -
                              pair.b.velocity(time, nearest.point - pair.b.at(time).position);
     return Separation<Manifold>{manifold, -nearest.depth, manifold.normal.dot(relative)};
@@ -93,7 +88,7 @@ std::optional<Touch> find_touch(const ShapePair& pair, double step, double follo
   const double least_breadth = followed < 2.0 * kApart ? kLeastBreadth : kAnyBreadth;
   const Manifold manifold = pair.now(margin, least_breadth);
   if (manifold.count == 0) return std::nullopt;
-  if (deepest(manifold).depth >= -followed) return Touch{manifold};
+  if (manifold.deepest().depth >= -followed) return Touch{manifold};
   return swept(pair, step, margin);
 }
 
@@ -211,10 +206,9 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
 /// std::sort has for many, gcc 14 takes for a read beyond these few.
 void sort_points(Manifold& manifold) {
   const auto before = [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.feature < y.feature; };
-  const auto begin = manifold.points.begin();
   for (int count = 1; count < manifold.count; ++count) {
-    const auto next = begin + count;
-    std::rotate(std::upper_bound(begin, next, *next, before), next, next + 1);
+    ManifoldPoint* const next = manifold.begin() + count;
+    std::rotate(std::upper_bound(manifold.begin(), next, *next, before), next, next + 1);
   }
 }
 
@@ -319,8 +313,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
       const Common common = common_of(pair, *touch);
       const std::size_t first = found_.size();
       std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
-      for (int p = 0; p < touch->manifold.count; ++p) {
-        const ManifoldPoint& point = touch->manifold.points[static_cast<std::size_t>(p)];
+      for (const ManifoldPoint& point : touch->manifold) {
         if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "moving_body.h"
 #include "mr_hand_interaction/collision/body_contact.h"
 #include "neighbours.h"
 #include "scene_geometry.h"
+#include "step_motion.h"
 
 namespace mrhi {
 

@@ -2,7 +2,8 @@
 
 #include <stdexcept>
 
-#include "pair_manifolds.h"
+#include "contact_region.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 namespace {
@@ -19,6 +20,49 @@ bool comes_first(const ManifoldShape& a, const ManifoldShape& b) {
   if (a.core || b.core) return a.core.has_value();
   if (a.prism && b.prism) return a.prism->round || !b.prism->round;
   return a.mesh != nullptr || b.mesh == nullptr;
+}
+
+AxisSpan span_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features) {
+  return shape.mesh != nullptr ? shape.mesh->span(capsule, features)
+                               : contact_span(capsule, shape.shape, features);
+}
+
+/// How a capsule lies on a shape, in its frame.
+struct Lying {
+  ClosestFeatures features;
+  AxisSpan span;
+
+  /// How far the capsule is above the surface's plane where its axis is at s.
+  double gap(const Capsule& capsule, double s) const {
+    return features.normal.dot(capsule.axis_point(s) - features.point) - capsule.radius;
+  }
+};
+
+/// What hangs over an edge is nearest there as soon as it tilts: the face is what its middle or its ends
+/// stand over. A bar that tilts by less than kSameFace on the table's edge is nearest at the edge, with a
+/// normal between the face's and the edge's, and would lose its second point. So its middle, then its ends,
+/// are asked by themselves: whichever is over a face with nearly that normal has the face, if the bar is as
+/// deep by it as it is by the edge.
+Lying lying_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features,
+               double margin) {
+  const Lying found{features, span_on(shape, capsule, features)};
+  const double length = (capsule.end - capsule.start).norm();
+  if (found.span.s0 < found.span.s1 || length == 0.0) return found;
+  constexpr double kRise = 0.05;  // of the axis above a face that it is within kSameFace of
+  for (const double s : {0.5, 0.0, 1.0}) {
+    const Vector3 place = capsule.axis_point(s);
+    auto there = closest_on(shape, {place, place, capsule.radius}, margin + kRise * length);
+    if (!there || there->normal.dot(features.normal) < kSameFace) continue;
+    there->axis_parameter = s;
+    const Lying lying{*there, span_on(shape, capsule, *there)};
+    const double nearest = std::min(lying.gap(capsule, lying.span.s0), lying.gap(capsule, lying.span.s1));
+    if (lying.span.s0 < lying.span.s1 && as_deep(-nearest, features.distance)) return lying;
+  }
+  return found;
+}
+
+int name_of(double s) {
+  return s < 1e-9 ? 0 : s > 1.0 - 1e-9 ? 1 : 2;
 }
 
 }  // namespace
@@ -47,6 +91,40 @@ Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const Manifol
   if (a.core) return core_manifold(*a.core, pose_a, b, pose_b, margin);
   if (a.prism && b.prism) return prism_manifold(a, pose_a, b, pose_b, margin, least_breadth);
   return mesh_manifold(a, pose_a, b, pose_b, margin);
+}
+
+std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Capsule& capsule, double margin) {
+  const ClosestFeatures features = closest_on(shape.shape, shape.mesh, capsule, margin);
+  if (features.distance > margin) return std::nullopt;
+  return features;
+}
+
+/// A point is midway between the two surfaces: at a(s) - (r + gap / 2) n, with the gap n.(a(s) - point) - r,
+/// < 0 where they overlap. All in b's frame, turned to world at the end; n is out of b, towards the core.
+Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
+                       double margin) {
+  const auto to_b = [&](const Vector3& place) { return pose_b.to_local(pose_a * place); };
+  const Capsule capsule{to_b(core.start), core.start == core.end ? to_b(core.start) : to_b(core.end),
+                        core.radius};
+  const auto features = closest_on(b, capsule, margin);
+  Manifold manifold;
+  if (!features) return manifold;
+  const Lying lying = lying_on(b, capsule, *features, margin);
+  const Vector3& normal = lying.features.normal;
+  manifold.normal = pose_b.orientation * normal;
+  if (lying.span.s0 == lying.span.s1) {
+    const Vector3 midway = features->point + 0.5 * features->distance * normal;
+    const bool ball = core.start == core.end;
+    add_point(manifold, pose_b * midway, -features->distance, ball ? 0 : name_of(features->axis_parameter));
+    return manifold;
+  }
+  for (const int end : {0, 1}) {
+    const double s = end == 0 ? lying.span.s0 : lying.span.s1, gap = lying.gap(capsule, s);
+    const Vector3 place = capsule.axis_point(s);
+    if (gap <= margin)
+      add_point(manifold, pose_b * Vector3(place - (capsule.radius + 0.5 * gap) * normal), -gap, end);
+  }
+  return manifold;
 }
 
 }  // namespace mrhi

@@ -5,12 +5,12 @@
 
 #include "closest_features.h"
 #include "god_object.h"
-#include "moving_hand.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "neighbours.h"
 #include "scene_geometry.h"
+#include "step_motion.h"
 
 namespace mrhi {
 

@@ -1,7 +1,6 @@
 #include "contact_region.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace mrhi {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <algorithm>
 
-#include "broad_phase.h"
+#include "neighbours.h"
 
 namespace mrhi {
 namespace {

@@ -1,9 +1,60 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
 #include "closest_features.h"
+#include "mr_hand_interaction/math.h"
 #include "segment.h"
 
 namespace mrhi {
+
+/// The part of the line x + t * dx that is inside a shape. Of a convex shape that is one interval in..out,
+/// the common part of those of its slabs and balls (Kay & Kajiya 1986; Ericson, Real-Time Collision
+/// Detection, 5.3.3); it is empty where out < in.
+class Chord {
+ public:
+  /// Keeps |x + t dx| <= half: t between (-half - x) / dx and (half - x) / dx, in whatever order. A level
+  /// line is in or out as a whole; by the quotients it would be 0 / 0 along a side.
+  void clip_to_slab(double x, double dx, double half) {
+    if (std::abs(dx) < kLevel) {
+      if (std::abs(x) > half + kBorder) out_ = -std::numeric_limits<double>::infinity();
+      return;
+    }
+    const double a = (-half - x) / dx, b = (half - x) / dx;
+    clip(std::min(a, b), std::max(a, b));
+  }
+  /// Keeps what is within `radius` of the origin, in as many dimensions as the line is given in.
+  template <class Vector>
+  /// t = f -+ sqrt(r^2 - m^2) / |dx| about the foot f = -x.dx / dx^2, which is m off the origin. With a line
+  /// given in the plane this is an endless cylinder.
+  void clip_to_ball(const Vector& x, const Vector& dx, double radius) {
+    const double length = dx.norm();
+    if (length < kLevel) {
+      if (x.norm() > radius + kBorder) out_ = -std::numeric_limits<double>::infinity();
+      return;
+    }
+    const double nearest = -x.dot(dx) / (length * length);
+    const double miss = (x + nearest * dx).norm();
+    if (miss > radius + kBorder) out_ = -std::numeric_limits<double>::infinity();
+    const double half = std::sqrt(std::max(0.0, radius * radius - miss * miss)) / length;
+    clip(nearest - half, nearest + half);
+  }
+  /// Where it ends; nothing if the line misses the shape.
+  std::optional<double> out() const { return out_ < in_ ? std::nullopt : std::optional<double>(out_); }
+
+ private:
+  /// A line that runs along a side at this distance from it still meets the shape [m].
+  static constexpr double kBorder = 1e-9;
+  /// Components of the direction below this are rounding.
+  static constexpr double kLevel = 1e-12;
+
+  void clip(double from, double to) { in_ = std::max(in_, from), out_ = std::min(out_, to); }
+
+  double in_ = -std::numeric_limits<double>::infinity(), out_ = -in_;
+};
 
 /// Normals that differ by less than this are the same [rad].
 constexpr double kSameNormal = 1e-6;

@@ -3,10 +3,9 @@
 #include <vector>
 
 #include "closest_features.h"
-#include "moving_body.h"
-#include "moving_hand.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/configuration.h"
+#include "step_motion.h"
 
 namespace mrhi {
 

@@ -2,9 +2,10 @@
 #include <map>
 #include <mutex>
 
+#include "../scene/solid_mesh.h"
 #include "mesh_collision.h"
 #include "mesh_nearest.h"
-#include "mesh_shape.h"
+#include "mesh_tree.h"
 
 namespace mrhi {
 namespace {
@@ -12,6 +13,18 @@ namespace {
 constexpr double kUnlimited = 1e300;
 /// Faces on which a finger lies flat for less than this are part of a curve, that it touches at a point [m].
 constexpr double kLeastFlat = 0.002;
+
+/// The parts of a mesh whose parts may overlap; none of another.
+std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
+  std::vector<MeshShape> parts;
+  if (mesh.parts.size() < 2) return parts;
+  for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
+    const auto begin = mesh.triangles.begin();
+    const auto end = p + 1 < mesh.parts.size() ? begin + mesh.parts[p + 1] : mesh.triangles.end();
+    parts.emplace_back(cut_out(mesh, {begin + mesh.parts[p], end}));
+  }
+  return parts;
+}
 
 }  // namespace
 
@@ -107,28 +120,6 @@ class NearMemory {
 
   std::array<Set, 127> sets_;
 };
-
-namespace {
-
-/// The parts of a mesh whose parts may overlap; none of another.
-std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
-  std::vector<MeshShape> parts;
-  if (mesh.parts.size() < 2) return parts;
-  for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
-    const auto begin = mesh.triangles.begin();
-    const auto end = p + 1 < mesh.parts.size() ? begin + mesh.parts[p + 1] : mesh.triangles.end();
-    TriangleMesh part{{}, {begin + mesh.parts[p], end}};
-    for (std::array<int, 3>& triangle : part.triangles)
-      for (int& v : triangle) {
-        part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
-        v = static_cast<int>(part.vertices.size()) - 1;
-      }
-    parts.emplace_back(part);
-  }
-  return parts;
-}
-
-}  // namespace
 
 /// A mesh of parts is their union. What is outside all of them is nearest to the union's surface, whatever
 /// lies within: one search through the tree of all faces finds it. What is inside a part has to leave that,

@@ -1,10 +1,10 @@
-#include "pair_manifolds.h"
+#include "body_manifold.h"
 
 #include <algorithm>
 
 #include "contact_region.h"
 #include "flat_face.h"
-#include "mesh_shape.h"
+#include "mesh_tree.h"
 
 namespace mrhi {
 namespace {
@@ -303,7 +303,7 @@ void add_region(const Touches& touches, const Touch& deepest, int number, Names&
     while (named[name]) ++name;
     named[name] = true;
     add_point(manifold, touch.point, touch.depth, name);
-    manifold.points[static_cast<std::size_t>(manifold.count - 1)].region = static_cast<std::uint8_t>(number);
+    (manifold.end() - 1)->region = static_cast<std::uint8_t>(number);
   }
 }
 

@@ -91,4 +91,12 @@ void MeshTree::search(const Cost& cost, const Limit& limit, const See& see) cons
   }
 }
 
+/// What a MeshCollider holds, for those who ask for a mesh's parts.
+struct MeshShape {
+  explicit MeshShape(const TriangleMesh& mesh) : surface(mesh), tree(surface) {}
+
+  MeshSurface surface;
+  MeshTree tree;
+};
+
 }  // namespace mrhi

@@ -2,9 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "../scene/solid_mesh.h"
+
+#include "overlap.h"
 
 namespace mrhi {
+
+Eigen::AlignedBox3d box_around(const Body& body) {
+  if (body.shapes.empty()) return Eigen::AlignedBox3d(Vector3::Zero(), Vector3::Zero());
+  Eigen::AlignedBox3d box;
+  for (const PlacedShape& placed : body.shapes) box.extend(box_around(placed));
+  return box;
+}
+
+Eigen::AlignedBox3d box_around(const Hand& hand) {
+  Eigen::AlignedBox3d box;
+  for (const Capsule& capsule : hand.capsules) {
+    if (capsule.radius <= 0.0) continue;
+    const Vector3 radius = Vector3::Constant(capsule.radius);
+    box.extend(capsule.start.cwiseMin(capsule.end) - radius);
+    box.extend(capsule.start.cwiseMax(capsule.end) + radius);
+  }
+  return box;
+}
+
+std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::vector<BodyState>& bodies,
+                             double margin) {
+  const Eigen::AlignedBox3d box = box_around(hand);
+  std::vector<int> near;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (is_near(box, bodies[b].pose.position, scene.bodies[b].bounding_radius + margin))
+      near.push_back(static_cast<int>(b));
+  }
+  return near;
+}
+
 namespace {
 
 // Room around a body at rest, and as a part of its size; what a moving one has beyond that: its way in some
@@ -28,6 +61,11 @@ Neighbours::Neighbours(const Scene& scene)
   for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
   for (Reach& reach : reaches_) reach.ways.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
+  untouching_ = overlaps_in_mechanisms(scene);
+  for (const Joint& joint : scene.joints) untouching_.emplace_back(joint.parent, joint.child);
+  for (std::size_t i = untouching_.size(); i-- > 0;)
+    untouching_.emplace_back(untouching_[i].second, untouching_[i].first);
+  std::sort(untouching_.begin(), untouching_.end());
 }
 
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
@@ -40,8 +78,7 @@ void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vec
 /// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place half-way at the part f of
 /// the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
 void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach) {
-  reach.min.setConstant(std::numeric_limits<double>::max());
-  reach.max = -reach.min;
+  reach.box.setEmpty();
   reach.ways.clear();
   if (!hand.active) return;
   for (int c = 0; c < kCapsules; ++c) {
@@ -63,8 +100,8 @@ void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Rea
                          way.reach;
       way.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
     }
-    reach.min = reach.min.cwiseMin(start.cwiseMin(end) - Vector3::Constant(way.reach));
-    reach.max = reach.max.cwiseMax(start.cwiseMax(end) + Vector3::Constant(way.reach));
+    reach.box.extend(start.cwiseMin(end) - Vector3::Constant(way.reach));
+    reach.box.extend(start.cwiseMax(end) + Vector3::Constant(way.reach));
     reach.ways.push_back(way);
   }
 }
@@ -90,11 +127,12 @@ bool Neighbours::Way::comes_near(const Vector3& centre, double radius) const {
 
 /// By the planes of the box's faces. A gap in any of these three directions is one (separating axes): the
 /// greatest is a bound from below, loose beside edges and corners only.
-double Neighbours::Way::clearance(const BodyBox& box, const Pose& pose, const Matrix3& rotation) const {
+double Neighbours::Way::clearance(const Eigen::AlignedBox3d& box, const Pose& pose,
+                                  const Matrix3& rotation) const {
   const Vector3 half_along = 0.5 * along;
-  const Vector3 middle = rotation.transpose() * (start + half_along - pose.position) - box.centre;
+  const Vector3 middle = rotation.transpose() * (start + half_along - pose.position) - box.center();
   const Vector3 half_length = (rotation.transpose() * half_along).cwiseAbs();
-  return (middle.cwiseAbs() - half_length - box.half).maxCoeff() - reach;
+  return (middle.cwiseAbs() - half_length - 0.5 * box.sizes()).maxCoeff() - reach;
 }
 
 bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double seconds) const {
@@ -141,7 +179,7 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
     const Reach& reach = reaches_[slot];
     near_hand_[slot].clear();
     if (reach.ways.empty()) continue;
-    for (const int body : broad_phase_.query(reach.min, reach.max)) {
+    for (const int body : broad_phase_.query(reach.box.min(), reach.box.max())) {
       const Room& room = rooms_[static_cast<std::size_t>(body)];
       const Pose& pose = bodies[static_cast<std::size_t>(body)].pose;
       const Matrix3 rotation = pose.orientation.toRotationMatrix();
@@ -156,7 +194,8 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
 }
 
 /// Sorted, as the broad phase gives them in no order: contacts are found, summed and solved in this order,
-/// and equal states must give equal bits. Bodies that share a joint may overlap there and do not touch.
+/// and equal states must give equal bits. Bodies that share a joint may overlap there and do not touch, as do
+/// those of one mechanism that overlap where they start.
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {
@@ -164,16 +203,9 @@ void Neighbours::list_pairs() {
     const bool fixed_second = scene_.bodies[static_cast<std::size_t>(pair.second)].fixed;
     if (fixed_first && fixed_second) continue;
     if (fixed_second) std::swap(pair.first, pair.second);
-    pairs_.push_back(pair);
+    if (!std::binary_search(untouching_.begin(), untouching_.end(), pair)) pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
-  for (const Joint& joint : scene_.joints) {
-    const std::pair<int, int> joined = std::minmax(joint.parent, joint.child),
-                              turned{joined.second, joined.first};
-    pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
-                                [&](const auto& pair) { return pair == joined || pair == turned; }),
-                 pairs_.end());
-  }
   paired_.clear();
   for (const auto& [a, b] : pairs_) paired_.push_back(a), paired_.push_back(b);
   std::sort(paired_.begin(), paired_.end());

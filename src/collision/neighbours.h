@@ -1,16 +1,52 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "body_box.h"
-#include "broad_phase.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
+
+/// Box along the body's axes around all its shapes, body frame [m].
+Eigen::AlignedBox3d box_around(const Body& body);
+
+/// Axis-aligned box around a hand in world; empty without capsules [m].
+Eigen::AlignedBox3d box_around(const Hand& hand);
+
+/// True if a ball may touch the box.
+inline bool is_near(const Eigen::AlignedBox3d& box, const Vector3& centre, double radius) {
+  return box.squaredExteriorDistance(centre) <= radius * radius;
+}
+
+/// Indices, ascending, of all bodies, fixtures too, that may be nearer to the hand than `margin` [m].
+std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::vector<BodyState>& bodies,
+                             double margin);
+
+/// Axis-aligned boxes of bodies; finds those that a box touches. A cache of the state, not part of it. Of
+/// spheres' boxes: sound (a body is within its sphere, a sphere within its box), never exact.
+class BroadPhase {
+ public:
+  explicit BroadPhase(std::size_t bodies);
+  ~BroadPhase();
+  BroadPhase(BroadPhase&&) noexcept;
+
+  /// Places body `index` as a sphere about `centre` [m]. A body never placed is never found. Allocates the
+  /// first time only.
+  void update(int index, const Vector3& centre, double radius);
+  /// Indices, ascending, of bodies whose box touches min..max. Valid until the next call.
+  const std::vector<int>& query(const Vector3& min, const Vector3& max);
+  /// All pairs whose boxes touch, the smaller index first, in no order. Valid until the next call.
+  const std::vector<std::pair<int, int>>& pairs();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// A body and the capsules of a hand that may come near it in this frame, ascending.
 struct NearBody {
@@ -85,14 +121,14 @@ class Neighbours {
   /// A capsule's axis half-way through the frame, and how far from it the capsule reaches in the frame.
   struct Way {
     bool comes_near(const Vector3& centre, double radius) const;
-    double clearance(const BodyBox& box, const Pose& pose, const Matrix3& rotation) const;
+    double clearance(const Eigen::AlignedBox3d& box, const Pose& pose, const Matrix3& rotation) const;
 
     int capsule;
     Vector3 start, along;
     double reach;
   };
   struct Reach {
-    Vector3 min, max;  // of a hand in this frame; min > max without a hand
+    Eigen::AlignedBox3d box;  // of a hand in this frame; empty without a hand
     std::vector<Way> ways;
   };
   static void measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach);
@@ -105,11 +141,11 @@ class Neighbours {
 
   const Scene& scene_;
   BroadPhase broad_phase_;
-  std::vector<BodyBox> boxes_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
   std::vector<Room> rooms_;
   std::vector<Reach> reaches_;
   std::vector<std::vector<NearBody>> near_hand_;
-  std::vector<std::pair<int, int>> pairs_;
+  std::vector<std::pair<int, int>> pairs_, untouching_;  // sorted
   std::vector<int> paired_;
 };
 

@@ -1,10 +1,12 @@
 #include "overlap.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 
 #include "../text/text.h"
-#include "body_box.h"
-#include "placed_collider.h"
+#include "neighbours.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 namespace {
@@ -20,20 +22,6 @@ bool are_joined(const Scene& scene, std::size_t a, std::size_t b) {
     return (joint.parent == ia && joint.child == ib) || (joint.parent == ib && joint.child == ia);
   });
 }
-
-std::vector<BodyState> start_states(const Scene& scene) {
-  std::vector<BodyState> states;
-  states.reserve(scene.bodies.size());
-  for (const Body& body : scene.bodies) {
-    states.emplace_back();
-    states.back().pose = body.start;
-  }
-  return states;
-}
-
-}  // namespace
-
-namespace {
 
 /// A body's union of shapes, as a place in world sees it.
 struct Solid {
@@ -67,7 +55,7 @@ struct Solid {
 /// that coincide.
 double common_ball(const Solid& a, const Solid& b) {
   constexpr int kAcross = 5, kMostSteps = 16;
-  const BodyBox box = box_around(a.body);
+  const Eigen::AlignedBox3d box = box_around(a.body);
   double largest = 0.0;
   constexpr int kStarts = kAcross * kAcross * kAcross;
   for (int i = 0; i < kStarts; ++i) {
@@ -75,7 +63,7 @@ double common_ball(const Solid& a, const Solid& b) {
     const int row = start / kAcross, layer = row / kAcross;
     const Vector3 part(start % kAcross, row % kAcross, layer);
     const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9;
-    Vector3 place = a.pose * Vector3(box.centre + offset.cwiseProduct(box.half));
+    Vector3 place = a.pose * Vector3(box.center() + offset.cwiseProduct(0.5 * box.sizes()));
     for (int step = 0; step < kMostSteps; ++step) {
       const Solid::Depth in_a = a.at(place), in_b = b.at(place);
       largest = std::max(largest, 2.0 * std::min(in_a.depth, in_b.depth));
@@ -115,31 +103,68 @@ double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vec
       const Manifold manifold =
           body_manifold(geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose,
                         geometry.shapes[b][j], bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0);
-      for (int k = 0; k < manifold.count; ++k)
-        deepest = std::max(deepest, manifold.points[static_cast<std::size_t>(k)].depth);
+      for (const ManifoldPoint& point : manifold) deepest = std::max(deepest, point.depth);
     }
   }
   return deepest;
 }
 
-std::string overlaps_at_start(const Scene& scene) {
-  constexpr int kNamed = 5;
+namespace {
+
+/// For each body the first of those that joints connect it with.
+std::vector<int> mechanisms(const Scene& scene) {
+  std::vector<int> first(scene.bodies.size());
+  std::iota(first.begin(), first.end(), 0);
+  for (const Joint& joint : scene.joints) {
+    if (joint.parent == Joint::kWorld) continue;
+    const int one = first[static_cast<std::size_t>(joint.parent)],
+              other = first[static_cast<std::size_t>(joint.child)];
+    std::replace(first.begin(), first.end(), std::max(one, other), std::min(one, other));
+  }
+  return first;
+}
+
+/// see(a, b, depth), until it returns false.
+template <class See>
+void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
+  if (in_mechanisms && scene.joints.empty()) return;
   const SceneGeometry geometry(scene);
-  const std::vector<BodyState> states = start_states(scene);
-  std::string all;
-  int named = 0;
-  for (std::size_t a = 0; a < scene.bodies.size() && named < kNamed; ++a) {
-    for (std::size_t b = 0; b < a && named < kNamed; ++b) {
+  std::vector<BodyState> states;
+  std::transform(scene.bodies.begin(), scene.bodies.end(), std::back_inserter(states), start_state);
+  const std::vector<int> first = mechanisms(scene);
+  for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
       const Body &one = scene.bodies[a], &other = scene.bodies[b];
-      if ((one.fixed && other.fixed) || !are_near(one, other) || are_joined(scene, a, b)) continue;
+      if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
+          are_joined(scene, a, b))
+        continue;
       const double depth = overlap(scene, geometry, states, a, b);
-      if (depth <= kOverlap) continue;
-      all += (all.empty() ? "'" : ", '") + one.name + "' is " + text::number(depth) + " m in '" + other.name +
-             "'";
-      ++named;
+      if (depth > kOverlap && !see(a, b, depth)) return;
     }
   }
+}
+
+}  // namespace
+
+std::string overlaps_at_start(const Scene& scene) {
+  constexpr int kNamed = 5;
+  std::string all;
+  int named = 0;
+  each_overlap(scene, false, [&](std::size_t a, std::size_t b, double depth) {
+    all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " + text::number(depth) + " m in '" +
+           scene.bodies[b].name + "'";
+    return ++named < kNamed;
+  });
   return all;
+}
+
+std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene) {
+  std::vector<std::pair<int, int>> pairs;
+  each_overlap(scene, true, [&](std::size_t a, std::size_t b, double) {
+    pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+    return true;
+  });
+  return pairs;
 }
 
 }  // namespace mrhi

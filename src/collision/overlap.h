@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mr_hand_interaction/integration/body_state.h"
@@ -18,7 +19,11 @@ double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vec
                std::size_t a, std::size_t b);
 
 /// "'cube' is 0.02 m in 'table'" for the pairs that overlap by more than kOverlap where they start, the first
-/// few of them; empty: none does. Fixtures may overlap each other.
+/// few of them; empty: none does. Fixtures may overlap each other, and so may bodies of one mechanism.
 std::string overlaps_at_start(const Scene& scene);
+
+/// Bodies of one mechanism, which joints connect with others between, that overlap by more than kOverlap
+/// where they start. They do not touch each other. The greater index comes first.
+std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene);
 
 }  // namespace mrhi

@@ -1,10 +1,10 @@
-#include "pair_manifolds.h"
+#include "body_manifold.h"
 
 #include <algorithm>
 
-#include "convex_axis.h"
 #include "flat_face.h"
-#include "placed_collider.h"
+#include "prism.h"
+#include "scene_geometry.h"
 
 namespace mrhi {
 namespace {
@@ -15,12 +15,8 @@ constexpr double kAnyDistance = 1e300;
 /// Names of two points at which lines touch.
 constexpr int kSides = 200;
 
-const ManifoldPoint* deepest_of(const Manifold& manifold) {
-  const auto shallower = [](const ManifoldPoint& a, const ManifoldPoint& b) { return a.depth < b.depth; };
-  return std::max_element(manifold.points.begin(), manifold.points.begin() + manifold.count, shallower);
-}
 double deepest_depth(const Manifold& manifold) {
-  return manifold.count > 0 ? deepest_of(manifold)->depth : -1e300;
+  return manifold.count > 0 ? manifold.deepest().depth : -1e300;
 }
 
 /// What touches by a face, if the direction n (out of b towards a, best of those tried) is near the normal of
@@ -46,7 +42,7 @@ struct FlatContact {
   bool is_certain(double thickness) const {
     if (!found) return false;
     const double depth = deepest_depth(manifold);
-    const double border = (by_a ? of_a : of_b).to_border(deepest_of(manifold)->point);
+    const double border = (by_a ? of_a : of_b).to_border(manifold.deepest().point);
     if (4.0 * depth >= thickness) return false;
     return depth <= 0.0 || border >= 2.0 * depth || is_wide(depth);
   }
@@ -63,15 +59,14 @@ struct FlatContact {
   bool is_wide(double depth) const {
     constexpr double kSameDepth = 1e-6;
     double width = manifold.count > 2 ? 1e300 : 0.0;
-    for (int i = 0; i < manifold.count; ++i) {
-      const ManifoldPoint& from = manifold.points[static_cast<std::size_t>(i)];
+    for (const ManifoldPoint& from : manifold) {
       if (from.depth < depth - kSameDepth) return false;
-      for (int j = 0; j < i; ++j) {
-        const Vector3 edge = manifold.points[static_cast<std::size_t>(j)].point - from.point;
+      for (const ManifoldPoint* to = manifold.begin(); to != &from; ++to) {
+        const Vector3 edge = to->point - from.point;
         const Vector3 out = edge.cross(manifold.normal);
         double low = 0.0, high = 0.0;
-        for (int k = 0; k < manifold.count; ++k) {
-          const double beside = out.dot(manifold.points[static_cast<std::size_t>(k)].point - from.point);
+        for (const ManifoldPoint& other : manifold) {
+          const double beside = out.dot(other.point - from.point);
           low = std::min(low, beside), high = std::max(high, beside);
         }
         width = std::min(width, (high - low) / std::max(out.norm(), kParallel));
@@ -100,7 +95,7 @@ Manifold lines_or_point(const Prism& a, const Prism& b, const Vector3& normal, d
     manifold.points[0].feature = static_cast<std::uint8_t>(name_of(on_a, on_b));
   }
   const double missing = -separation - deepest_depth(manifold);
-  for (int i = 0; i < manifold.count; ++i) manifold.points[static_cast<std::size_t>(i)].depth += missing;
+  for (ManifoldPoint& point : manifold) point.depth += missing;
   return manifold;
 }
 

@@ -1,6 +1,50 @@
 #include "scene_geometry.h"
 
+#include <limits>
+#include <type_traits>
+
+#include "flat_part.h"
+
 namespace mrhi {
+namespace {
+
+/// Calls `of_mesh` for a mesh, `of_other` for any other shape, which answers by itself.
+template <typename OfMesh, typename OfOther>
+auto ask(const Shape& shape, const OfMesh& of_mesh, const OfOther& of_other) {
+  return std::visit(
+      [&](const auto& asked) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(asked)>, Mesh>) {
+          return of_mesh();
+        } else {
+          return of_other(asked);
+        }
+      },
+      shape);
+}
+
+}  // namespace
+
+ClosestFeatures closest_on(const Shape& shape, const MeshCollider* mesh, const Capsule& capsule,
+                           double margin) {
+  constexpr double kNowhere = std::numeric_limits<double>::infinity();
+  const ClosestFeatures none{kNowhere, Vector3::UnitZ(), Vector3::Zero(), 0.0};
+  return ask(
+      shape, [&] { return mesh->closest(capsule, margin).value_or(none); },
+      [&](const auto& asked) { return asked.closest(capsule, margin); });
+}
+
+AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features) {
+  return ask(
+      shape, [&] { return at_point(features); },
+      [&](const auto& asked) { return asked.span(capsule, features); });
+}
+
+PlacedCollider::PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh)
+    : shape_(placed.shape),
+      mesh_(mesh),
+      has_bodys_frame_(placed.pose.position.isZero(0.0) && placed.pose.orientation.vec().isZero(0.0)),
+      rotation_(placed.pose.orientation.toRotationMatrix()),
+      position_(placed.pose.position) {}
 
 SceneGeometry::SceneGeometry(const Scene& scene)
     : meshes(scene.bodies.size()), shapes(scene.bodies.size()), colliders(scene.bodies.size()) {

@@ -4,10 +4,53 @@
 #include <vector>
 
 #include "body_manifold.h"
+#include "closest_features.h"
+#include "mesh_collision.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "placed_collider.h"
 
 namespace mrhi {
+
+/// Closest features, in whose place anything of a distance beyond `margin` may stand where nothing is nearer
+/// than that [m]. Capsule and features in the shape's frame; `mesh` is null unless the shape is one.
+ClosestFeatures closest_on(const Shape& shape, const MeshCollider* mesh, const Capsule& capsule,
+                           double margin);
+
+/// A shape of a body as the hand's capsules meet it.
+class PlacedCollider {
+ public:
+  /// Keeps references; `mesh` is null unless the shape is one.
+  PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh);
+
+  ClosestFeatures closest(const Capsule& capsule, double margin) const {
+    return closest_on(shape_, mesh_, capsule, margin);
+  }
+  bool has_bodys_frame() const { return has_bodys_frame_; }
+  AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
+    return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
+  }
+
+  /// Between the body's frame and the shape's.
+  ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both
+  /// Shapes that have the body's frame are asked without a rotation, which would only add its rounding.
+  Capsule to_shape(const Capsule& in_body) const {
+    if (has_bodys_frame_) return in_body;
+    return {rotation_.transpose() * (in_body.start - position_),
+            rotation_.transpose() * (in_body.end - position_), in_body.radius};
+  }
+  /// A mesh's face is not taken along: `span` has to be asked in the shape's frame.
+  ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
+    if (has_bodys_frame_) return in_shape;
+    return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,
+            in_shape.axis_parameter};
+  }
+
+ private:
+  const Shape& shape_;
+  const MeshCollider* mesh_;
+  const bool has_bodys_frame_;
+  const Matrix3 rotation_;
+  const Vector3 position_;
+};
 
 /// What collision makes of a scene's shapes, once, at loading. Refers to the scene. Its parts refer to shapes
 /// in the scene and to meshes behind pointers, not to each other's places in these lists, which may grow.

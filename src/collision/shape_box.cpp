@@ -1,6 +1,5 @@
 #include <limits>
 
-#include "chord.h"
 #include "flat_part.h"
 
 namespace mrhi {

@@ -1,6 +1,5 @@
-#include "chord.h"
-#include "convex_axis.h"
 #include "flat_part.h"
+#include "prism.h"
 
 namespace mrhi {
 namespace {

@@ -6,15 +6,6 @@
 #include "mr_hand_interaction/scene/shape.h"
 
 namespace mrhi {
-namespace {
-
-template <typename See>
-void each_corner(const TriangleMesh& mesh, const See& see) {
-  for (const std::array<int, 3>& triangle : mesh.triangles)
-    for (const int vertex : triangle) see(mesh.vertices[static_cast<std::size_t>(vertex)]);
-}
-
-}  // namespace
 
 std::optional<Capsule> Mesh::core() const {
   return std::nullopt;
@@ -23,7 +14,9 @@ std::optional<Capsule> Mesh::core() const {
 /// Vertices that no triangle has do not count.
 double Mesh::bounding_radius() const {
   double squared = 0.0;
-  each_corner(*triangles, [&](const Vector3& corner) { squared = std::max(squared, corner.squaredNorm()); });
+  for (const std::array<int, 3>& triangle : triangles->triangles)
+    for (const int v : triangle)
+      squared = std::max(squared, triangles->vertices[static_cast<std::size_t>(v)].squaredNorm());
   return std::sqrt(squared);
 }
 

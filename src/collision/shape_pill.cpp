@@ -1,4 +1,3 @@
-#include "chord.h"
 #include "flat_part.h"
 #include "segment.h"
 

@@ -288,6 +288,13 @@ struct About {
   double cosine, sine;
 };
 
+/// `by_momentum` times the size of the momentum is the angle. Series for short turns.
+About about(double by_momentum, double squared_momentum) {
+  const double x = by_momentum * by_momentum * squared_momentum;  // the angle's square
+  return {series(x, 1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0),
+          by_momentum * series(x, 1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0)};
+}
+
 /// With n the way of m, e = n^2 / (4 L^2) and k = 2 E / L^2 - J, the whole angle is
 ///
 ///     (2 E t + integral of n . k n / (4 (1 - e)) dt) / L,
@@ -313,10 +320,7 @@ About about(const Way& way, const Triple& m, const Triple& n, const Triple& mome
   const double integral =
       t * (16.0 / 120.0 * at_middle + 7.0 / 120.0 * at_end) - t * t * (2.0 / 240.0 * half_slope);
 
-  const double turned = 0.5 * (t * twice_energy + integral), by_momentum = turned * over;
-  const double x = turned * by_momentum;  // the angle's square
-  return {series(x, 1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0),
-          by_momentum * series(x, 1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0)};
+  return about(0.5 * (t * twice_energy + integral) * over, m.dot(m));
 }
 
 /// Turns the orientation on by a unit quaternion, as turn_on() above. A short turn's cosine is near 1, so
@@ -344,6 +348,11 @@ void turn_shortly(const Body& body, const Vector3& angular_momentum, double step
   const Triple momentum = triple(angular_momentum);
   const Triple u{q.x(), q.y(), q.z()}, across = momentum.cross(u), twice = across + across;
   const Triple local = momentum + q.w() * twice + twice.cross(u);
+  if (spread(body) == 0.0) {
+    // The momentum keeps its place in a body of equal moments, which turns about it at L / I.
+    const About turn = about(0.5 * step * body.inverse_moments.x(), local.dot(local));
+    return turn_on(turn.cosine, turn.sine * local, q);
+  }
   const Triple axes[] = {triple(body.principal_axes.col(0)), triple(body.principal_axes.col(1)),
                          triple(body.principal_axes.col(2))};
   const Triple m{axes[0].dot(local), axes[1].dot(local), axes[2].dot(local)};

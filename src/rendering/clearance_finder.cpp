@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "renderer.h"
 
@@ -13,17 +12,6 @@ constexpr double kRound = 0.005;  // [m]
 constexpr double kFlat = 1e-4;    // [m]
 /// Normals of one side of a body differ by no more than this (cosine).
 constexpr double kSameSide = 0.5;
-
-Eigen::AlignedBox3d box_of(const Hand& hand) {
-  Eigen::AlignedBox3d box;
-  for (const Capsule& capsule : hand.capsules) {
-    if (capsule.radius <= 0.0) continue;
-    const Vector3 radius = Vector3::Constant(capsule.radius);
-    box.extend(capsule.start.cwiseMin(capsule.end) - radius);
-    box.extend(capsule.start.cwiseMax(capsule.end) + radius);
-  }
-  return box;
-}
 
 const Contact* touching(const std::vector<Contact>& contacts, int slot, int capsule, int body, int shape) {
   for (const Contact& contact : contacts) {
@@ -209,12 +197,11 @@ class OffsetProblem {
 bool ClearanceFinder::begin(const Setting& setting, double margin) {
   near_.clear();
   shown_in_.clear();
-  const Eigen::AlignedBox3d hand = box_of(setting.tracked);
+  const Eigen::AlignedBox3d hand = box_around(setting.tracked);
   for (std::size_t b = 0; b < setting.bodies.size(); ++b) {
     const Body& body = scene_.bodies[b];
     const Pose& pose = setting.bodies[b].pose;
-    const double reach = body.bounding_radius + margin;
-    if (hand.squaredExteriorDistance(pose.position) > reach * reach) continue;
+    if (!is_near(hand, pose.position, body.bounding_radius + margin)) continue;
     const ContactFinder::PlacedFrame frame{pose.orientation.toRotationMatrix(), pose.position};
     std::vector<Near>& list = setting.interactions[b].shown_in ? shown_in_ : near_;
     for (int shape = 0; shape < static_cast<int>(body.shapes.size()); ++shape)

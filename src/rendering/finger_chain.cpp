@@ -53,8 +53,7 @@ ThumbRest make_thumb_rest() {
   return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
 }
 
-}  // namespace
-
+/// The hand with its palm lagging behind.
 ///     x' = c + R (x - c),   R_palm' = lag.frame R R_palm,   c the palm's position, R = lag.whole
 void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned) {
   turned = tracked;
@@ -67,6 +66,8 @@ void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned) {
   }
   turned.palm.orientation = (lag.frame * lag.whole * tracked.palm.orientation).normalized();
 }
+
+}  // namespace
 
 FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift, const Hand* lags_behind)
     : finger_(finger), tied_(has(tracked, 1)) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../collision/near_bodies.h"
+#include "../collision/neighbours.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 #include "renderer.h"
 
@@ -38,6 +38,72 @@ bool same_way(const HandOffset& a, const HandOffset& b) {
   return a.shift == b.shift && a.lag.whole.coeffs() == b.lag.whole.coeffs() &&
          a.lag.frame.coeffs() == b.lag.frame.coeffs() &&
          std::equal(a.fingers.begin(), a.fingers.end(), b.fingers.begin(), same);
+}
+
+constexpr double kHeld = 0.0005;    // joints that their limits keep from staying by less do not matter [m]
+constexpr double kFirstTurn = 0.2;  // of the search for axes of the palm in which they can [rad]
+constexpr double kLastTurn = 0.02;  // [rad]
+constexpr double kFlatPalm = 1e-4;  // less than this is no palm [m^2]
+
+/// Axes of a palm by its bones: wrist and roots of index and little finger. By its orientation if it has
+/// none. x between the roots of index and little finger as seen from the wrist, z across both, y = z x x. z
+/// points into a right hand's palm and out of a left hand's back: no matter, as only the turn between two of
+/// one hand is asked for.
+Quaternion axes_by_bones(const Hand& hand) {
+  const int index = capsule_index(1, 1), little = capsule_index(4, 1);
+  if (!hand.has(index) || !hand.has(little)) return hand.palm.orientation;
+  const Vector3 a = hand.capsules[static_cast<std::size_t>(index)].start - hand.wrist;
+  const Vector3 b = hand.capsules[static_cast<std::size_t>(little)].start - hand.wrist;
+  const Vector3 out = a.cross(b);
+  if (out.norm() < kFlatPalm) return hand.palm.orientation;
+  Matrix3 axes;
+  axes.col(0) = (a + b).normalized();
+  axes.col(2) = out.normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return Quaternion(axes);
+}
+
+constexpr double kTimeConstant = 0.05;   // [s]
+constexpr double kLongestWay = 0.0008;   // in a frame, of the hand, and again of a finger on it [m]
+constexpr double kHome = 1e-6;           // nearer than this is back [m]
+constexpr double kLongestTurn = 0.0004;  // in a frame, of a fingertip with the palm [m]
+constexpr double kHandReach = 0.15;      // of the hand from its palm's position [m]
+constexpr double kFingerReach = 0.1;     // of a finger from its root [m]
+
+/// What is left of an offset that reaches this far. An offset of the size `way` goes back by the part 1 -
+/// exp(-t / 50 ms), but by no more than `longest`: exponential when near, a constant way a frame when far.
+double share_left(double way, double decayed, double longest = kLongestWay) {
+  if (way <= kHome) return 0.0;
+  return 1.0 - std::min(1.0 - decayed, longest / way);
+}
+
+Quaternion turned_back(const Quaternion& turn, double reach, double decayed) {
+  const double angle = turn.angularDistance(Quaternion::Identity());
+  const double left = share_left(reach * angle, decayed, kLongestTurn);
+  return left == 0.0 ? Quaternion::Identity() : Quaternion::Identity().slerp(left, turn);
+}
+
+double decayed_share(const HandOffset& offset, Nanoseconds stamp) {
+  return std::exp(-to_seconds(stamp - offset.stamp) / kTimeConstant);
+}
+
+/// The offset on its way back to none, likewise, within the joints' limits of now: an offset that was right a
+/// frame ago may be beyond them. `chain` has the palm so (lag_returning).
+HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& chain) {
+  HandOffset left = offset;
+  if (offset.zero()) return left;
+  left.lag = lag_returning(offset, stamp);
+  const double decayed = decayed_share(offset, stamp);
+  left.shift *= share_left(offset.shift.norm(), decayed);
+  for (int f = 0; f < kFingers; ++f) {
+    FingerOffset& turned = left.fingers[static_cast<std::size_t>(f)];
+    if ((turned == 0.0).all() && left.lag.zero()) continue;
+    const FingerChain& finger = chain.finger(f);
+    turned = turned.max(finger.lower()).min(finger.upper());
+    turned *= share_left(finger.way(turned), decayed);
+    if (!left.lag.zero()) turned = turned.max(finger.lower()).min(finger.upper());
+  }
+  return left;
 }
 
 }  // namespace
@@ -207,33 +273,6 @@ double deepest_penetration(const Hand& hand, const ContactFinder& finder, const 
   return deepest;
 }
 
-namespace {
-
-constexpr double kHeld = 0.0005;    // joints that their limits keep from staying by less do not matter [m]
-constexpr double kFirstTurn = 0.2;  // of the search for axes of the palm in which they can [rad]
-constexpr double kLastTurn = 0.02;  // [rad]
-constexpr double kFlatPalm = 1e-4;  // less than this is no palm [m^2]
-
-/// Axes of a palm by its bones: wrist and roots of index and little finger. By its orientation if it has
-/// none. x between the roots of index and little finger as seen from the wrist, z across both, y = z x x. z
-/// points into a right hand's palm and out of a left hand's back: no matter, as only the turn between two of
-/// one hand is asked for.
-Quaternion axes_by_bones(const Hand& hand) {
-  const int index = capsule_index(1, 1), little = capsule_index(4, 1);
-  if (!hand.has(index) || !hand.has(little)) return hand.palm.orientation;
-  const Vector3 a = hand.capsules[static_cast<std::size_t>(index)].start - hand.wrist;
-  const Vector3 b = hand.capsules[static_cast<std::size_t>(little)].start - hand.wrist;
-  const Vector3 out = a.cross(b);
-  if (out.norm() < kFlatPalm) return hand.palm.orientation;
-  Matrix3 axes;
-  axes.col(0) = (a + b).normalized();
-  axes.col(2) = out.normalized();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  return Quaternion(axes);
-}
-
-}  // namespace
-
 /// With this lag, how far joints' limits keep phalanges from where they were shown, all fingers together [m].
 double HandRenderer::Impl::held_by_limits(const PalmLag& lag) {
   chain.begin(setting->tracked, lag);
@@ -277,88 +316,6 @@ PalmLag HandRenderer::Impl::lag_staying() {
   return lag;
 }
 
-namespace {
-
-constexpr std::uint16_t kNoBody = std::numeric_limits<std::uint16_t>::max();
-
-/// Of one end of a capsule: 0 its start, 1 its end.
-ContactKey key_of(std::size_t capsule, int end) {
-  ContactKey key{};
-  key.point = key.shape = static_cast<std::uint8_t>(end);
-  key.capsule = static_cast<std::uint8_t>(capsule);
-  key.body = kNoBody;
-  return key;
-}
-
-}  // namespace
-
-double Pace::beyond(const Hand& placed) const {
-  return farthest_joint(before_, placed) - way_;
-}
-
-/// The ball |x - x0| <= way is not linear: its tangent plane at the joint's side, with n = (x0 - x) / |x0 -
-/// x|, has n.x >= n.x0 - way, and the gap there is way - |x - x0|. The height has the capsule's radius taken
-/// off, so that a clearance's gap, which takes it off too, is that of the axis. Where a joint moves aside,
-/// the plane turns from pass to pass.
-double Pace::keep(const Hand& placed, std::vector<Clearance>& clearances) const {
-  double least = 0.0;
-  for (std::size_t c = 0; c < kCapsules; ++c) {
-    const Capsule &from = before_.capsules[c], &to = placed.capsules[c];
-    if (from.radius <= 0.0 || to.radius <= 0.0) continue;
-    for (int end = 0; end < 2; ++end) {
-      const Vector3 &start = end == 0 ? from.start : from.end, &now = end == 0 ? to.start : to.end;
-      const double gap = way_ - (now - start).norm();
-      const ContactKey key = key_of(c, end);
-      auto known = std::find_if(clearances.begin(), clearances.end(),
-                                [&](const Clearance& clearance) { return clearance.key == key; });
-      if (known == clearances.end()) {
-        if (gap >= 0.0) continue;
-        known = clearances.emplace(clearances.end());
-        known->key = key;
-        known->s = end;
-      }
-      known->normal = (start - now).normalized();
-      known->height = known->normal.dot(start) - way_ - to.radius;
-      known->gap = gap;
-      least = std::min(least, gap);
-    }
-  }
-  return least;
-}
-
-void Pace::forget(std::vector<Clearance>& clearances) {
-  const auto ours = [](const Clearance& clearance) { return clearance.key.body == kNoBody; };
-  clearances.erase(std::remove_if(clearances.begin(), clearances.end(), ours), clearances.end());
-}
-
-namespace {
-
-constexpr double kTimeConstant = 0.05;   // [s]
-constexpr double kLongestWay = 0.0008;   // in a frame, of the hand, and again of a finger on it [m]
-constexpr double kHome = 1e-6;           // nearer than this is back [m]
-constexpr double kLongestTurn = 0.0004;  // in a frame, of a fingertip with the palm [m]
-constexpr double kHandReach = 0.15;      // of the hand from its palm's position [m]
-constexpr double kFingerReach = 0.1;     // of a finger from its root [m]
-
-/// What is left of an offset that reaches this far. An offset of the size `way` goes back by the part 1 -
-/// exp(-t / 50 ms), but by no more than `longest`: exponential when near, a constant way a frame when far.
-double share_left(double way, double decayed, double longest = kLongestWay) {
-  if (way <= kHome) return 0.0;
-  return 1.0 - std::min(1.0 - decayed, longest / way);
-}
-
-Quaternion turned_back(const Quaternion& turn, double reach, double decayed) {
-  const double angle = turn.angularDistance(Quaternion::Identity());
-  const double left = share_left(reach * angle, decayed, kLongestTurn);
-  return left == 0.0 ? Quaternion::Identity() : Quaternion::Identity().slerp(left, turn);
-}
-
-double decayed_share(const HandOffset& offset, Nanoseconds stamp) {
-  return std::exp(-to_seconds(stamp - offset.stamp) / kTimeConstant);
-}
-
-}  // namespace
-
 bool HandOffset::zero() const {
   if (!lag.zero()) return false;
   for (const FingerOffset& finger : fingers) {
@@ -373,24 +330,6 @@ PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp) {
   const double decayed = decayed_share(offset, stamp);
   left.whole = turned_back(offset.lag.whole, kHandReach, decayed);
   left.frame = turned_back(offset.lag.frame, kFingerReach, decayed);
-  return left;
-}
-
-/// Limits are those of the hand as it is now: an offset that was right a frame ago may be beyond them.
-HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& chain) {
-  HandOffset left = offset;
-  if (offset.zero()) return left;
-  left.lag = lag_returning(offset, stamp);
-  const double decayed = decayed_share(offset, stamp);
-  left.shift *= share_left(offset.shift.norm(), decayed);
-  for (int f = 0; f < kFingers; ++f) {
-    FingerOffset& turned = left.fingers[static_cast<std::size_t>(f)];
-    if ((turned == 0.0).all() && left.lag.zero()) continue;
-    const FingerChain& finger = chain.finger(f);
-    turned = turned.max(finger.lower()).min(finger.upper());
-    turned *= share_left(finger.way(turned), decayed);
-    if (!left.lag.zero()) turned = turned.max(finger.lower()).min(finger.upper());
-  }
   return left;
 }
 

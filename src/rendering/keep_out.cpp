@@ -19,7 +19,71 @@ constexpr double kAnyway = 1.0;        // no bound [m]
 constexpr double kPace = 0.0018;       // that a joint may go beyond what the farthest tracked one does [m]
 constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is not looked at again [m]
 
+constexpr std::uint16_t kNoBody = std::numeric_limits<std::uint16_t>::max();
+
+/// Of one end of a capsule: 0 its start, 1 its end.
+ContactKey key_of(std::size_t capsule, int end) {
+  ContactKey key{};
+  key.point = key.shape = static_cast<std::uint8_t>(end);
+  key.capsule = static_cast<std::uint8_t>(capsule);
+  key.body = kNoBody;
+  return key;
+}
+
 }  // namespace
+
+/// How far the joints of a shown hand may go in a frame.
+class Pace {
+ public:
+  /// From where they were in `before`, `way` at the most [m]. Keeps a reference.
+  Pace(const Hand& before, double way) : before_(before), way_(way) {}
+
+  /// By how much the joint goes too far that goes the farthest [m]; < 0: none does.
+  double beyond(const Hand& placed) const { return farthest_joint(before_, placed) - way_; }
+
+  /// Each joint that goes too far, and each in `clearances` already, must keep off the plane that touches the
+  /// ball it may be in. Returns the least gap [m], at most 0.
+  ///
+  /// The ball |x - x0| <= way is not linear: its tangent plane at the joint's side, with n = (x0 - x) / |x0 -
+  /// x|, has n.x >= n.x0 - way, and the gap there is way - |x - x0|. The height has the capsule's radius
+  /// taken off, so that a clearance's gap, which takes it off too, is that of the axis. Where a joint moves
+  /// aside, the plane turns from pass to pass.
+  double keep(const Hand& placed, std::vector<Clearance>& clearances) const {
+    double least = 0.0;
+    for (std::size_t c = 0; c < kCapsules; ++c) {
+      const Capsule &from = before_.capsules[c], &to = placed.capsules[c];
+      if (from.radius <= 0.0 || to.radius <= 0.0) continue;
+      for (int end = 0; end < 2; ++end) {
+        const Vector3 &start = end == 0 ? from.start : from.end, &now = end == 0 ? to.start : to.end;
+        const double gap = way_ - (now - start).norm();
+        const ContactKey key = key_of(c, end);
+        auto known = std::find_if(clearances.begin(), clearances.end(),
+                                  [&](const Clearance& clearance) { return clearance.key == key; });
+        if (known == clearances.end()) {
+          if (gap >= 0.0) continue;
+          known = clearances.emplace(clearances.end());
+          known->key = key;
+          known->s = end;
+        }
+        known->normal = (start - now).normalized();
+        known->height = known->normal.dot(start) - way_ - to.radius;
+        known->gap = gap;
+        least = std::min(least, gap);
+      }
+    }
+    return least;
+  }
+
+  /// Takes the joints out of `clearances` again.
+  static void forget(std::vector<Clearance>& clearances) {
+    const auto ours = [](const Clearance& clearance) { return clearance.key.body == kNoBody; };
+    clearances.erase(std::remove_if(clearances.begin(), clearances.end(), ours), clearances.end());
+  }
+
+ private:
+  const Hand& before_;
+  double way_;
+};
 
 /// Deeper than kShallow the side on which the hand was shown before has a say, which the first look at the
 /// frame did not know: gaps are found anew.

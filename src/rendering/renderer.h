@@ -26,9 +26,6 @@ struct ThumbRest {
 };
 const ThumbRest& thumb_rest();
 
-/// The hand with its palm lagging behind. Writes to `turned`.
-void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned);
-
 /// A tracked finger as a chain: a root joint that flexes and abducts, fixed to the palm, and two hinges.
 /// Joints are turned from where they were tracked, so that bones keep their lengths whatever the offset. All
 /// in world.
@@ -206,26 +203,7 @@ class ClearanceFinder {
   std::vector<Near> shown_in_;
 };
 
-/// How far the joints of a shown hand may go in a frame.
-class Pace {
- public:
-  /// From where they were in `before`, `way` at the most [m]. Keeps a reference.
-  Pace(const Hand& before, double way) : before_(before), way_(way) {}
-
-  /// By how much the joint goes too far that goes the farthest [m]; < 0: none does.
-  double beyond(const Hand& placed) const;
-
-  /// Each joint that goes too far, and each in `clearances` already, must keep off the plane that touches the
-  /// ball it may be in. Returns the least gap [m], at most 0.
-  double keep(const Hand& placed, std::vector<Clearance>& clearances) const;
-
-  /// Takes the joints out of `clearances` again.
-  static void forget(std::vector<Clearance>& clearances);
-
- private:
-  const Hand& before_;
-  double way_;
-};
+class Pace;  ///< how far the joints may go in a frame
 
 constexpr double kClear = 2e-5;      ///< gaps of more than -this are clear [m]
 constexpr double kTolerated = 1e-4;  ///< a gap of less than -this is too deep once all is done [m]
@@ -292,12 +270,8 @@ struct HandRenderer::Impl {
   double elapsed = 0.0;      // since then [s]
 };
 
-/// The offset on its way back to none, from where it was at the frame before to `stamp`: it decays, and no
-/// joint goes farther in one frame than a person would see as a jump. Within the joints' limits of now.
-/// `chain` has the palm so (lag_returning).
-HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& chain);
-
-/// HandOffset::lag likewise.
+/// HandOffset::lag on its way back to none, from where it was at the frame before to `stamp`: it decays, and
+/// no joint goes farther in one frame than a person would see as a jump.
 PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp);
 
 }  // namespace mrhi

@@ -1,10 +1,8 @@
 #include "skin.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
-#include <utility>
 
 #include "../math/rotation.h"
 #include "../simulation/contact_phase.h"
@@ -51,72 +49,6 @@ const std::array<Skin, 3>& skins() {
   static const std::array<Skin, 3> all = read_skins();
   return all;
 }
-
-}  // namespace
-
-std::string_view shipped_skins() {
-  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "rest_skin.bin is written so");
-  return {reinterpret_cast<const char*>(kSkinBytes), sizeof kSkinBytes};
-}
-
-/// The cross product of two sides is twice the area along the normal; summed, large triangles count for more.
-/// A left hand's triangles run clockwise, and the sign is turned.
-void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& hand,
-                const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
-  const double per_area =
-      (hand.side == Side::left ? -kFacets : kFacets) / (hand.palm_width * hand.palm_width);
-  for (const auto& triangle : triangles) {
-    const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
-               c = static_cast<std::size_t>(triangle[2]);
-    const Vector3& corner = vertices[a];
-    const Vector3 area = per_area * (vertices[b] - corner).cross(vertices[c] - corner);
-    normals[a] += area;
-    normals[b] += area;
-    normals[c] += area;
-  }
-}
-
-const Skin& Skin::detailed() {
-  return skins()[0];
-}
-
-const Skin& Skin::human() {
-  return skins()[1];
-}
-
-const Skin& Skin::outline() {
-  return skins()[2];
-}
-
-/// Linear blend skinning (Magnenat-Thalmann, Laperriere & Thalmann 1988):
-///     x = sum_b w_b (start_b + along length_b x_b + radius_b A_b beyond),   A_b the bone's axes in world.
-/// It thins a joint that bends far, as a mean of two turns does: so there are bones half-way, the bends.
-bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
-  if (!has_whole_skin(hand)) return false;
-  const SkinRig rig = pose_rig(hand);
-  std::array<Carrier, kSkinBones> carriers;
-  std::transform(rig.begin(), rig.end(), carriers.begin(), carrier);
-  surface.vertices.resize(size());
-  surface.normals.resize(size());
-  std::size_t i = 0;
-  for (std::size_t v = 0; v < size(); ++v) {
-    Vector3 place = Vector3::Zero(), normal = Vector3::Zero();
-    for (; i < model_.ends[v]; ++i) {
-      const SkinModel::Influence& influence = model_.influences[i];
-      const Carrier& c = carriers[static_cast<std::size_t>(influence.bone)];
-      place += influence.weight *
-               (c.start + influence.along * c.along + c.beyond * influence.beyond.cast<double>());
-      normal += c.axes * influence.normal.cast<double>();
-    }
-    surface.vertices[v] = place;
-    surface.normals[v] = normal;
-  }
-  add_facets(model_.triangles, hand, surface.vertices, surface.normals);
-  for (Vector3& normal : surface.normals) normal.normalize();
-  return true;
-}
-
-namespace {
 
 HandPosture rest_posture() {
   HandPosture posture = HandPosture::Zero();
@@ -211,26 +143,6 @@ class Poser {
   SkinRig rig_;
 };
 
-}  // namespace
-
-const RestHand& rest_hand() {
-  static const RestHand rest = make_rest_hand();
-  return rest;
-}
-
-bool has_whole_skin(const Hand& hand) {
-  for (int i = 0; i < kPhalanges; ++i) {
-    if (i != capsule_index(0, 0) && !hand.has(i)) return false;
-  }
-  return hand.palm_width > 0.0;
-}
-
-SkinRig pose_rig(const Hand& hand) {
-  return Poser(hand).pose();
-}
-
-namespace {
-
 // A touch is seen around its middle as far as this, in radii of what presses.
 constexpr double kSpot = 2.0, kSpotCore = 1.1;
 constexpr double kLightTouch = 0.8;  // how red it is without force
@@ -301,7 +213,96 @@ std::array<Floats, kCapsules> make_counts() {
   return counts;
 }
 
+constexpr double kYieldingForce = 2.0;  // force with which 63 % of the deepest compression is reached [N]
+constexpr double kAround = 1.3;         // radii of the phalanx about the contact, in which skin is flattened
+
+/// Height h over the plane becomes 0 up to the depth d, h from 3 d on, and 3/2 (h - d) between.
+double flattened(double height, double depth) {
+  if (height >= 3.0 * depth) return height;
+  return std::max(0.0, 1.5 * (height - depth));
+}
+
+constexpr double kLidDepth = 0.01;  // from the rim to the lid's middle [m]
+
 }  // namespace
+
+std::string_view shipped_skins() {
+  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "rest_skin.bin is written so");
+  return {reinterpret_cast<const char*>(kSkinBytes), sizeof kSkinBytes};
+}
+
+/// The cross product of two sides is twice the area along the normal; summed, large triangles count for more.
+/// A left hand's triangles run clockwise, and the sign is turned.
+void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& hand,
+                const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
+  const double per_area =
+      (hand.side == Side::left ? -kFacets : kFacets) / (hand.palm_width * hand.palm_width);
+  for (const auto& triangle : triangles) {
+    const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
+               c = static_cast<std::size_t>(triangle[2]);
+    const Vector3& corner = vertices[a];
+    const Vector3 area = per_area * (vertices[b] - corner).cross(vertices[c] - corner);
+    normals[a] += area;
+    normals[b] += area;
+    normals[c] += area;
+  }
+}
+
+const Skin& Skin::detailed() {
+  return skins()[0];
+}
+
+const Skin& Skin::human() {
+  return skins()[1];
+}
+
+const Skin& Skin::outline() {
+  return skins()[2];
+}
+
+/// Linear blend skinning (Magnenat-Thalmann, Laperriere & Thalmann 1988):
+///     x = sum_b w_b (start_b + along length_b x_b + radius_b A_b beyond),   A_b the bone's axes in world.
+/// It thins a joint that bends far, as a mean of two turns does: so there are bones half-way, the bends.
+bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
+  if (!has_whole_skin(hand)) return false;
+  const SkinRig rig = pose_rig(hand);
+  std::array<Carrier, kSkinBones> carriers;
+  std::transform(rig.begin(), rig.end(), carriers.begin(), carrier);
+  surface.vertices.resize(size());
+  surface.normals.resize(size());
+  std::size_t i = 0;
+  for (std::size_t v = 0; v < size(); ++v) {
+    Vector3 place = Vector3::Zero(), normal = Vector3::Zero();
+    for (; i < model_.ends[v]; ++i) {
+      const SkinModel::Influence& influence = model_.influences[i];
+      const Carrier& c = carriers[static_cast<std::size_t>(influence.bone)];
+      place += influence.weight *
+               (c.start + influence.along * c.along + c.beyond * influence.beyond.cast<double>());
+      normal += c.axes * influence.normal.cast<double>();
+    }
+    surface.vertices[v] = place;
+    surface.normals[v] = normal;
+  }
+  add_facets(model_.triangles, hand, surface.vertices, surface.normals);
+  for (Vector3& normal : surface.normals) normal.normalize();
+  return true;
+}
+
+const RestHand& rest_hand() {
+  static const RestHand rest = make_rest_hand();
+  return rest;
+}
+
+bool has_whole_skin(const Hand& hand) {
+  for (int i = 0; i < kPhalanges; ++i) {
+    if (i != capsule_index(0, 0) && !hand.has(i)) return false;
+  }
+  return hand.palm_width > 0.0;
+}
+
+SkinRig pose_rig(const Hand& hand) {
+  return Poser(hand).pose();
+}
 
 /// How much of the touching colour a vertex takes: of the touches of its own finger, or the palm's.
 float SkinPaint::redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
@@ -340,19 +341,6 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, 
   }
 }
 
-namespace {
-
-constexpr double kYieldingForce = 2.0;  // force with which 63 % of the deepest compression is reached [N]
-constexpr double kAround = 1.3;         // radii of the phalanx about the contact, in which skin is flattened
-
-/// Height h over the plane becomes 0 up to the depth d, h from 3 d on, and 3/2 (h - d) between.
-double flattened(double height, double depth) {
-  if (height >= 3.0 * depth) return height;
-  return std::max(0.0, 1.5 * (height - depth));
-}
-
-}  // namespace
-
 void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
                 const Skin& skin, SkinSurface& surface) {
   for (const Contact& contact : contacts) {
@@ -369,12 +357,6 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
     }
   }
 }
-
-namespace {
-
-constexpr double kLidDepth = 0.01;  // from the rim to the lid's middle [m]
-
-}  // namespace
 
 /// The rim is one loop of edges. From its middle: the loop is jagged, and a fan from one of its own corners
 /// would stand out between its teeth.

@@ -6,7 +6,6 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
-#include <set>
 #include <stdexcept>
 
 #include "../collision/overlap.h"
@@ -41,6 +40,14 @@ class ScratchFolder {
  private:
   std::string path_;
 };
+
+std::string scene_file(const ReplayArguments& arguments) {
+  try {
+    return find_scene_file(arguments.scene, scene_folders());
+  } catch (const SceneError& error) {
+    throw UsageError(std::string("--scene: ") + error.what());
+  }
+}
 
 /// What is given by hand, over what was recorded.
 class Overrides {
@@ -87,12 +94,7 @@ class Overrides {
 
  private:
   void take_scene(World& world) {
-    std::string file;
-    try {
-      file = find_scene_file(arguments_.scene, scene_folders());
-    } catch (const SceneError& error) {
-      throw UsageError(std::string("--scene: ") + error.what());
-    }
+    const std::string file = scene_file(arguments_);
     World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
       return a.name == b.name && a.bytes == b.bytes;
@@ -264,8 +266,7 @@ class LogRun {
     const std::uint64_t here = hash(simulation().state());
     char text[20];
     std::snprintf(text, sizeof text, "%016" PRIx64, here);
-    *hashes_ << std::to_string(entry.sequence) << std::to_string(entry.stamp) << std::string(text);
-    hashes_->end_row();
+    hashes_->row(std::to_string(entry.sequence), std::to_string(entry.stamp), text);
     if (broken_ || !overrides_.differing().empty()) return;
     ++live().compared;
     if (here == entry.state_hash) ++live().same;
@@ -370,13 +371,7 @@ void replay_log(const ReplayArguments& arguments, LogSource& log, const std::str
 
 Simulation prepare_simulation(const ReplayArguments& arguments) {
   const Configuration configuration = configured(arguments);
-  std::string file;
-  try {
-    file = find_scene_file(arguments.scene, scene_folders());
-  } catch (const SceneError& error) {
-    throw UsageError(std::string("--scene: ") + error.what());
-  }
-  Scene scene = load_scene(file, scene_options(configuration));
+  Scene scene = load_scene(scene_file(arguments), scene_options(configuration));
   for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
   const std::string overlaps = arguments.object_poses.empty() ? "" : overlaps_at_start(scene);
   if (!overlaps.empty()) throw UsageError("--object-pose: " + overlaps + "; allowed: places that are free");

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "../scene/limits.h"
 #include "../simulation/contact_phase.h"
 #include "../text/files.h"
 #include "generated_tables.h"
@@ -58,10 +59,6 @@ std::string made_folder(const std::string& folder) {
   throw std::runtime_error("cannot make folder " + folder + (error ? ": " + error.message() : ""));
 }
 
-void add_quaternion(CsvFile& file, const Quaternion& q) {
-  file << q.x() << q.y() << q.z() << q.w();
-}
-
 /// The highest level of any hand.
 InteractionLevel level_of(std::size_t body, const SimulationState& state) {
   InteractionLevel level = InteractionLevel::none;
@@ -79,12 +76,6 @@ bool is_lost(const Hand& hand, const SimulationState& state) {
 Vector3 half_extents(const Body& body) {
   const Box* box = body.shapes.size() == 1 ? std::get_if<Box>(&body.shapes[0].shape) : nullptr;
   return box == nullptr ? Vector3(Vector3::Zero()) : box->half_extents;
-}
-
-const Joint* joint_of(std::size_t body, const Scene& scene) {
-  for (const Joint& joint : scene.joints)
-    if (joint.child == static_cast<int>(body)) return &joint;
-  return nullptr;
 }
 
 }  // namespace
@@ -152,9 +143,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
   if (!begun_) first_stamp_ = result.stamp;
   begun_ = true;
   const double time = to_seconds(result.stamp - first_stamp_);
-  CsvFile& frames = table(kFrames);
-  frames << time << frame_ << result.stamp << gravity;
-  frames.end_row();
+  table(kFrames).row(time, frame_, result.stamp, gravity);
   if (scene_is_new_) write_bodies(time);
   write_objects(time, result, state);
   if (!scene_->joints.empty()) write_joints(time, state);
@@ -178,7 +167,7 @@ void ResultWriter::write_bodies(double time) {
     bodies << time << body.name << body.mass << body.material.static_friction
            << body.material.dynamic_friction << body.material.restitution << body.bounding_radius
            << half_extents(body);
-    const Joint* joint = joint_of(i, *scene_);
+    const Joint* joint = joint_of(*scene_, static_cast<int>(i));
     if (joint == nullptr) bodies.skip(4);
     if (joint != nullptr)
       bodies << joint->name << (joint->kind == JointKind::turning ? "turning" : "sliding") << joint->lower
@@ -189,78 +178,63 @@ void ResultWriter::write_bodies(double time) {
 }
 
 void ResultWriter::write_objects(double time, const FrameResult& result, const SimulationState& state) {
-  CsvFile& objects = table(kObjects);
   for (std::size_t i = 0; i < scene_->bodies.size(); ++i) {
     const Body& body = scene_->bodies[i];
     if (body.fixed) continue;
+    const Pose& pose = state.bodies[i].pose;
     const Twist twist = twist_of(body, state.bodies[i]);
     const InteractionLevel level = level_of(i, state);
     const std::optional<Vector3> assist = assist_force(i, result);
-    objects << time << body.name << state.bodies[i].pose.position;
-    add_quaternion(objects, state.bodies[i].pose.orientation);
-    objects << twist.linear << twist.angular << static_cast<int>(level)
-            << (level == InteractionLevel::grasp ? 1 : 0) << (assist ? 1 : 0)
-            << assist.value_or(Vector3::Zero()) << frame_;
-    objects.end_row();
+    table(kObjects).row(time, body.name, pose.position, pose.orientation, twist.linear, twist.angular,
+                        static_cast<int>(level), level == InteractionLevel::grasp, assist.has_value(),
+                        assist.value_or(Vector3::Zero()), frame_);
   }
 }
 
 void ResultWriter::write_joints(double time, const SimulationState& state) {
-  CsvFile& joints = table(kJoints);
   for (std::size_t i = 0; i < scene_->joints.size(); ++i) {
     const JointState& joint = state.joints[i];
-    joints << time << scene_->joints[i].name << joint.position << joint_velocity(*scene_, i, state.bodies)
-           << joint.effort << frame_;
-    joints.end_row();
+    table(kJoints).row(time, scene_->joints[i].name, joint.position, joint_velocity(*scene_, i, state.bodies),
+                       joint.effort, frame_);
   }
 }
 
 void ResultWriter::write_contacts(double time, const FrameResult& result, const SimulationState& state) {
-  CsvFile& contacts = table(kContacts);
   for (const Contact& contact : result.contacts) {
     const Body& body = scene_->bodies[contact.key.body];
     const int capsule = contact.key.capsule;
     const FrictionUse use = friction_use(contact, body.material);
-    contacts << time << body.name << hand_id(contact, state) << finger_of(capsule) << bone_of(capsule)
-             << static_cast<int>(phase(contact)) << contact.point << contact.normal << contact.depth
-             << contact.impulse << contact.force << finger_name(capsule) << bone_name(capsule)
-             << phase_name(phase(contact)) << use.normal << use.tangential << use.limit
-             << (use.limit > 0.0 ? use.tangential / use.limit : 0.0) << (contact.touching() ? 1 : 0)
-             << (contact.friction == Friction::slipping ? 1 : 0) << contact.patch << frame_;
-    contacts.end_row();
+    const double share = use.limit > 0.0 ? use.tangential / use.limit : 0.0;
+    table(kContacts).row(time, body.name, hand_id(contact, state), finger_of(capsule), bone_of(capsule),
+                         static_cast<int>(phase(contact)), contact.point, contact.normal, contact.depth,
+                         contact.impulse, contact.force, finger_name(capsule), bone_name(capsule),
+                         phase_name(phase(contact)), use.normal, use.tangential, use.limit, share,
+                         contact.touching(), contact.friction == Friction::slipping, contact.patch, frame_);
   }
 }
 
 void ResultWriter::write_palm(double time, const Hand& hand, const SimulationState& state) {
-  CsvFile& palms = table(kPalms);
-  palms << time << hand.id << static_cast<int>(hand.side) << hand.palm.position;
-  add_quaternion(palms, hand.palm.orientation);
-  palms << hand.confidence << (is_lost(hand, state) ? 1 : 0) << frame_;
-  palms.end_row();
+  table(kPalms).row(time, hand.id, static_cast<int>(hand.side), hand.palm.position, hand.palm.orientation,
+                    hand.confidence, is_lost(hand, state), frame_);
 }
 
 void ResultWriter::write_hand(double time, const Hand& hand, const RenderedHand* rendered) {
-  CsvFile& hands = table(kHands);
   for (int i = 0; i < kCapsules; ++i) {
     if (!hand.has(i)) continue;
     const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
     const bool touching = rendered != nullptr && rendered->touching[static_cast<std::size_t>(i)];
-    hands << time << hand.id << static_cast<int>(hand.side) << finger_of(i) << bone_of(i)
-          << (rendered != nullptr ? 1 : 0) << capsule.start << capsule.end << capsule.radius
-          << (touching ? 1 : 0) << frame_;
-    hands.end_row();
+    table(kHands).row(time, hand.id, static_cast<int>(hand.side), finger_of(i), bone_of(i),
+                      rendered != nullptr, capsule.start, capsule.end, capsule.radius, touching, frame_);
   }
 }
 
 void ResultWriter::write_events(const FrameResult& result) {
-  CsvFile& events = table(kEvents);
   for (const Event& event : result.events) {
+    const auto body = static_cast<std::size_t>(event.body);
     const bool has_body = event.body >= 0;
-    events << to_seconds(event.stamp - first_stamp_) << event_name(event.kind)
-           << (has_body ? scene_->bodies[static_cast<std::size_t>(event.body)].name : std::string())
-           << event.hand_id << frame_
-           << (has_body && assist_force(static_cast<std::size_t>(event.body), result) ? 1 : 0);
-    events.end_row();
+    table(kEvents).row(to_seconds(event.stamp - first_stamp_), event_name(event.kind),
+                       has_body ? scene_->bodies[body].name : std::string(), event.hand_id, frame_,
+                       has_body && assist_force(body, result));
   }
 }
 

@@ -83,7 +83,15 @@ struct ContactStep {
   const std::array<int, kMaxHands>* operators = nullptr;
 };
 
-/// How an object answers a touch. All memory is in the contacts: a model keeps nothing but scratch space.
+/// True if all that changes a body's momenta in the response is the hands of the only operator, from the
+/// step's start on: the operator then receives the opposite of that change, whatever the contacts' forces.
+inline bool reacts_by_momentum(const ContactStep& step, std::size_t body) {
+  return step.scene.operators.size() == 1 && step.scene.joints.empty() && step.body_contacts.empty() &&
+         step.changes.mean_impact_time(body) == 0.0;
+}
+
+/// How an object responds to contacts. All memory is in the contacts: a model keeps nothing but scratch
+/// space.
 class ContactModel {
  public:
   virtual ~ContactModel() = default;

@@ -113,7 +113,7 @@ void ImpactPoint::advance_arms(double seconds, double closed) {
 //     m_n = 1 / n'Kn  (Eq. 14's denominator),     m_t = 1 / lambda_max(T'KT),     K = K_a + K_b
 //
 // One number serves both tangential directions, though K is not isotropic: with a matrix the fixed point of
-// relax_tangential() would not oppose the sliding. The largest eigenvalue keeps it from overshooting. Joints
+// relax() would not oppose the sliding. The largest eigenvalue keeps it from overshooting. Joints
 // may leave a point no direction: it then has an effective mass of 0.
 void ImpactPoint::begin() {
   normal_impulse = 0.0;
@@ -122,43 +122,40 @@ void ImpactPoint::begin() {
   // Eq. 12 of both: an impulse p parts the points by (K_a + K_b) p.
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
   const auto mass = [](double response) { return response > 0.0 ? 1.0 / response : 0.0; };
-  normal_mass = mass(normal.dot(k * normal));
+  normal_response = k * normal;
+  normal_mass = mass(normal.dot(normal_response));
   if (friction > 0.0) tangential_mass = mass(max_tangential_response(k, normal));
 }
 
-// A row of projected Gauss-Seidel (Catto 2005): the sum of the impulses must not pull, a single one may.
+// A row of projected Gauss-Seidel (Catto 2005): the sum of the normal impulses must not pull, a single one
+// may.
 //
-//     j <- max(0, j + m_n (target - u)),      u = n.w with all impulses so far
-//
-// which for a single point is Eq. 14 at once. At the end 0 <= j, target <= u, and one of them with =:
-// Newton's law for many points as Moreau (1988) has it.
-double ImpactPoint::relax_normal() {
-  const double velocity = normal.dot(relative_velocity());
-  const double wanted = std::max(0.0, normal_impulse + normal_mass * (target - velocity));
-  const double change = wanted - normal_impulse;
-  normal_impulse = wanted;
-  a.apply(change * normal);
-  b.apply(-change * normal);
-  return error_of(std::abs(change));
-}
-
-// Likewise, within Coulomb's disc of radius mu j. Both directions at once: limited one by one they would make
-// a square, and friction at its corners would be 1.4 times too strong.
-//
+//     j <- max(0, j + m_n (target - u)),                 u = n.w with all impulses so far
 //     d <- disc(d + m_t (w - n n.w)),    |d| <= mu j,    on b, along the sliding of a over it
 //
-// j is the last one of the same sweep. Impacts use static friction, the limit of Coulomb's law.
-double ImpactPoint::relax_tangential() {
-  if (friction <= 0.0) return 0.0;
-  const Vector3 velocity = relative_velocity();
-  Vector3 wanted = friction_impulse + tangential_mass * (velocity - normal.dot(velocity) * normal);
-  const double most = friction * normal_impulse, length = wanted.norm();
-  if (length > most) wanted *= most / length;
-  const Vector3 change = wanted - friction_impulse;
-  friction_impulse = wanted;
-  a.apply(-change);
-  b.apply(change);
-  return error_of(change.norm());
+// The first is for a single point Eq. 14 at once. At the end 0 <= j, target <= u, and one of them with =:
+// Newton's law for many points as Moreau (1988) has it. Friction takes j and w of after the normal impulse,
+// w + (j' - j) K n, and both directions at once: limited one by one they would make a square, and friction at
+// its corners would be 1.4 times too strong. Impacts use static friction, the limit of Coulomb's law.
+double ImpactPoint::relax() {
+  Vector3 velocity = relative_velocity();
+  const double change =
+      std::max(0.0, normal_impulse + normal_mass * (target - normal.dot(velocity))) - normal_impulse;
+  normal_impulse += change;
+  Vector3 impulse = -change * normal;
+  double error = std::abs(change);
+  if (friction > 0.0) {
+    velocity += change * normal_response;
+    Vector3 wanted = friction_impulse + tangential_mass * (velocity - normal.dot(velocity) * normal);
+    const double most = friction * normal_impulse, length = wanted.norm();
+    if (length > most) wanted *= most / length;
+    error = std::max(error, (wanted - friction_impulse).norm());
+    impulse += wanted - friction_impulse;
+    friction_impulse = wanted;
+  }
+  a.apply(-impulse);
+  b.apply(impulse);
+  return normal_mass > 0.0 ? error / normal_mass : 0.0;
 }
 
 void ImpactPoint::undo() {

@@ -69,6 +69,7 @@ struct ImpactPoint {
   // The impact.
   Vector3 approach;                            // relative velocity before it [m/s]
   double target = 0.0;                         // rate after it, as it would be at the step's start [m/s]
+  Vector3 normal_response;                     // of the relative velocity to a unit impulse along n [1/kg]
   double normal_mass = 0.0;                    // effective [kg]
   double normal_impulse = 0.0;                 // accumulated [N s]
   double tangential_mass = 0.0;                // likewise, of any tangential direction at least [kg]
@@ -92,11 +93,9 @@ struct ImpactPoint {
 
   /// Finds the effective masses. No impulse has been accumulated yet.
   void begin();
-  /// Moves the rate towards its target by impulses that only push; returns its change [m/s].
-  double relax_normal();
-  /// Stops the sliding within Coulomb's disc; returns the change of the impulse over the normal's effective
-  /// mass [m/s].
-  double relax_tangential();
+  /// Moves the rate towards its target by impulses that only push, and stops the sliding within Coulomb's
+  /// disc. Returns the largest change of an impulse over the normal's effective mass [m/s].
+  double relax();
   /// Accumulated impulse on b; a has received the opposite [N s].
   Vector3 impulse() const { return friction_impulse - normal_impulse * normal; }
   /// Takes the accumulated impulse back.
@@ -108,7 +107,6 @@ struct ImpactPoint {
 
  private:
   void advance_arms(double seconds, double closed);
-  double error_of(double impulse) const { return normal_mass > 0.0 ? impulse / normal_mass : 0.0; }
 };
 
 }  // namespace mrhi

@@ -110,6 +110,17 @@ ImpactSolver::ImpactSolver() : precision_(kExact) {
   laws_.reserve(kUsualPoints);
 }
 
+// A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give it
+// at the step's end: backward Euler's gap, as the springs see it.
+template <typename VelocityOf>
+void ImpactSolver::drop_separating(const ContactStep& step, VelocityOf velocity_of) {
+  const auto separates = [&](const ImpactPoint& point) {
+    const double rate = point.normal.dot(point.hand_velocity - velocity_of(point));
+    return point.by_hand && point.gap + step.step * rate > 0.0;
+  };
+  points_.erase(std::remove_if(points_.begin(), points_.end(), separates), points_.end());
+}
+
 // Impacts by a hand are simultaneous, those between bodies sequential: elastic bodies pass momentum on only
 // if each impact starts from the result of the one before (in Newton's cradle, solved simultaneously, the
 // first ball would bounce back and the others move on as one). A large island has no time for that.
@@ -120,8 +131,12 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
   for (const Island& island : islands.all()) {
     collect(step, island);
-    if (springs && by_hand_ && island.bodies.size() == 1 && is_held(step, island))
-      drop_separating(step, springs(island));
+    if (springs && by_hand_ && island.bodies.size() == 1 && is_held(step, island)) {
+      const Twist carried = springs(island);
+      drop_separating(step, [&carried](const ImpactPoint& point) -> Vector3 {
+        return carried.linear + carried.angular.cross(point.b.arm);
+      });
+    }
     const bool large = is_large(island);
     precision_ = large ? kVisible : kExact;
     work_ = 0;
@@ -139,11 +154,125 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   }
 }
 
-bool ImpactSolver::resolve(ContactStep& step, std::vector<ImpactPoint>& points) {
+// A held island is solved once before the impact, as a held body is, to see what its springs carry away from
+// the hand. The impulses of limits are reported last: start_with() begins the joints' laws anew.
+void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFriction friction,
+                           IslandProblem& problem, const std::vector<JointState>& joints) {
+  friction_ = friction;
   precision_ = kExact;
+  problem_ = &problem;
+  velocity_ = problem.start();
+  collect_in_joints(step, island, joints);
+  if (points_.empty()) return;
+  if (is_held(step, island)) {
+    problem.solve();
+    drop_separating(step, [&problem](const ImpactPoint& point) -> Vector3 {
+      return point.b.joints->jacobian * problem.joint_velocity();
+    });
+  }
   impact_.clear();
-  for (ImpactPoint& point : points) impact_.push_back(&point);
-  return resolve_impact(step);
+  for (ImpactPoint& point : points_) impact_.push_back(&point);
+  // Fingers from opposite directions have no solution by Newton's law: their springs act.
+  if (!resolve_impact(step)) return;
+  problem.start_with(velocity_, step, joints);
+  for (const ImpactPoint& point : points_) {
+    if (point.total != nullptr) continue;
+    Eigen::Index unknown = 0;
+    point.b.joints->jacobian.row(0).cwiseAbs().maxCoeff(&unknown);
+    problem.note_limit_impulse(unknown, -point.normal_impulse * point.b.joints->jacobian(0, unknown));
+  }
+}
+
+/// Joints that reach a limit within the step are contacts along their coordinate. Springs and gravity, which
+/// act through the step, then find the joint on its way back and give it no further energy.
+///
+///     w = hand_velocity - J u, with J of body 2 less that of body 1: w.n < 0 approaches (Eq. 8)
+///     a limit:   room = upper - q for u > 0, q - lower for u < 0;   collides if 0 < room < h |u|
+///                w = -sign u: < 0 approaches, as of surfaces; the impulse on the joint is -sign j
+void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
+                                     const std::vector<JointState>& joints) {
+  points_.clear();
+  for (const IslandBody& body : island.bodies) {
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      Contact& contact = step.contacts[i];
+      if (contact.ignored || contact.struck) continue;
+      ImpactPoint point = point_in_joints(contact.normal, -contact.depth);
+      set_hand(contact, point);
+      problem_->add_point_jacobian(island.place_of(body.body),
+                                   contact.point - step.bodies[body.body].pose.position, 1.0,
+                                   coordinates_[points_.size()].jacobian);
+      Material material = step.scene.bodies[body.body].material;
+      material.restitution = contact.restitution.value_or(material.restitution);
+      if (add_in_joints(step.step, point, material)) contact.time_of_impact = points_.back().time;
+    }
+  }
+  for (const Link& link : island.links) {
+    BodyContact& contact = step.body_contacts[link.index];
+    if (contact.struck) continue;
+    ImpactPoint point = point_in_joints(contact.normal, contact.first_touch >= 0.0 ? 0.0 : -contact.depth);
+    point.between = &contact, point.total = &contact.impulse, point.struck = &contact.struck;
+    auto& jacobian = coordinates_[points_.size()].jacobian;
+    problem_->add_point_jacobian(island.place_of(contact.key.b), contact.arm_b, 1.0, jacobian);
+    if (!step.scene.bodies[contact.key.a].fixed)
+      problem_->add_point_jacobian(island.place_of(contact.key.a), contact.arm_a, -1.0, jacobian);
+    add_in_joints(step.step, point, contact.material);
+  }
+  for (Eigen::Index unknown = 0; unknown < velocity_.size(); ++unknown) {
+    if (problem_->joint_of(unknown) == LinkageBody::kNone) continue;
+    const auto index = static_cast<std::size_t>(problem_->joint_of(unknown));
+    const Joint& joint = step.scene.joints[index];
+    const double sign = velocity_[unknown] > 0.0 ? 1.0 : -1.0, position = joints[index].position;
+    const double room = sign > 0.0 ? joint.upper - position : position - joint.lower;
+    if (joint.restitution <= 0.0 || room <= 0.0) continue;
+    const ImpactPoint point = point_in_joints(Vector3::UnitX(), room);
+    coordinates_[points_.size()].jacobian(0, unknown) = sign;
+    Material smooth;
+    smooth.restitution = joint.restitution;
+    smooth.static_friction = 0.0;
+    add_in_joints(step.step, point, smooth);
+  }
+}
+
+/// Returns the next point, with a zero Jacobian in `coordinates_`.
+ImpactPoint ImpactSolver::point_in_joints(const Vector3& normal, double gap) {
+  if (coordinates_.size() == points_.size()) coordinates_.emplace_back();
+  JointCoordinates& coordinates = coordinates_[points_.size()];
+  coordinates.jacobian.setZero(3, velocity_.size());
+  coordinates.velocity = &velocity_;
+  ImpactPoint point;
+  point.b.joints = &coordinates;
+  point.normal = normal;
+  point.gap = gap;
+  return point;
+}
+
+/// Adds the point if it collides within the step. Gravity is not in the rate: the velocity is that of the
+/// step's start.
+bool ImpactSolver::add_in_joints(double step, ImpactPoint point, const Material& material) {
+  const double rate = point.rate();
+  if (classify(rate) != Approach::colliding) return false;
+  point.time = time_to_close(point.gap, rate, 0.0);
+  if (point.between != nullptr && point.between->first_touch >= 0.0) point.time = point.between->first_touch;
+  if (point.time >= step) return false;
+  JointCoordinates& coordinates = coordinates_[points_.size()];
+  coordinates.response.resize(velocity_.size(), 3);
+  for (int i = 0; i < 3; ++i) {
+    column_ = coordinates.jacobian.row(i).transpose();
+    problem_->solve_mass(column_);
+    coordinates.response.col(i) = column_;
+  }
+  add(point, material);
+  return true;
+}
+
+/// Sets what a point with a hand has: the capsule's mass and recoil.
+void ImpactSolver::set_hand(Contact& contact, ImpactPoint& point) {
+  point.by_hand = true;
+  point.hand_velocity = contact.hand_velocity;
+  point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
+  point.a.recoil = recoils_.begin(contact.key);
+  point.total = &contact.impulse;
+  point.struck = &contact.struck;
 }
 
 void ImpactSolver::collect(ContactStep& step, const Island& island) {
@@ -193,14 +322,9 @@ void ImpactSolver::add(ContactStep& step, Contact& contact) {
   if (point.time >= step.step) return;
   contact.time_of_impact = point.time;
   point.b = partner(step, contact.key.body, contact.point - state.pose.position);
-  point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
-  point.a.recoil = recoils_.begin(contact.key);
-  point.by_hand = true;
+  set_hand(contact, point);
   point.gap = -contact.depth;
-  point.hand_velocity = contact.hand_velocity;
   point.normal = contact.normal;
-  point.total = &contact.impulse;
-  point.struck = &contact.struck;
   by_hand_ = true;
   add(point, body.material);
   points_.back().restitution = contact.restitution.value_or(body.material.restitution);
@@ -219,17 +343,6 @@ void ImpactSolver::add(ImpactPoint point, const Material& material) {
   point.restitution = material.restitution;
   if (friction_ == ImpactFriction::coulomb) point.friction = material.static_friction;
   points_.push_back(point);
-}
-
-// A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give the body
-// at the step's end: backward Euler's gap, as the springs see it.
-void ImpactSolver::drop_separating(const ContactStep& step, const Twist& carried) {
-  const auto separates = [&](const ImpactPoint& point) {
-    const Vector3 velocity = carried.linear + carried.angular.cross(point.b.arm);
-    const double rate = point.normal.dot(point.hand_velocity - velocity);
-    return point.by_hand && point.gap + step.step * rate > 0.0;
-  };
-  points_.erase(std::remove_if(points_.begin(), points_.end(), separates), points_.end());
 }
 
 void ImpactSolver::drop_slow(const ContactStep& step) {
@@ -322,7 +435,7 @@ bool ImpactSolver::solve(double max_impulse) {
     work_ += impact_.size();
     double error = 0.0, scale = 0.0, sum = 0.0;
     for (ImpactPoint* point : impact_) {
-      error = std::max({error, point->relax_normal(), point->relax_tangential()});
+      error = std::max(error, point->relax());
       if (point->normal_mass > 0.0) scale = std::max(scale, point->normal_impulse / point->normal_mass);
       sum += point->normal_impulse;
     }

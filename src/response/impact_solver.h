@@ -1,11 +1,13 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <vector>
 
 #include "contact_step.h"
 #include "impact.h"
 #include "impact_point.h"
+#include "island_problem.h"
 #include "islands.h"
 
 namespace mrhi {
@@ -29,9 +31,11 @@ class ImpactSolver {
   /// velocity at the step's start alone, every phalanx beside a grip that accelerates would hit the body.
   void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                const SpringMotion& springs = {});
-  /// Resolves points in joint coordinates as one impact. False if no impulses that only push satisfy
-  /// Newton's law; the points are then as they were.
-  bool resolve(ContactStep& step, std::vector<ImpactPoint>& points);
+  /// Resolves the impacts of an island with joints, in the coordinates of its problem, as one: contacts with
+  /// hands, between bodies, and joints that reach a limit. Linkages transmit the impulses. The problem then
+  /// starts from the velocities that they leave.
+  void resolve(ContactStep& step, const Island& island, ImpactFriction friction, IslandProblem& problem,
+               const std::vector<JointState>& joints);
 
  private:
   /// How precisely an impact is solved.
@@ -42,12 +46,17 @@ class ImpactSolver {
   static const Precision kExact, kVisible;
 
   void collect(ContactStep& step, const Island& island);
+  void collect_in_joints(ContactStep& step, const Island& island, const std::vector<JointState>& joints);
+  ImpactPoint point_in_joints(const Vector3& normal, double gap);
+  bool add_in_joints(double step, ImpactPoint point, const Material& material);
+  void set_hand(Contact& contact, ImpactPoint& point);
   void add(ContactStep& step, Contact& contact);
   void add(ContactStep& step, BodyContact& contact);
   void add(ImpactPoint point, const Material& material);
   void note_twists(const ContactStep& step, const Island& island);
   bool is_slow(const ContactStep& step, const BodyContact& contact) const;
-  void drop_separating(const ContactStep& step, const Twist& carried);
+  template <typename VelocityOf>
+  void drop_separating(const ContactStep& step, VelocityOf velocity_of);
   void drop_slow(const ContactStep& step);
   void resolve_simultaneously(ContactStep& step);
   void resolve_sequentially(ContactStep& step, const Island& island);
@@ -68,6 +77,11 @@ class ImpactSolver {
   bool by_hand_ = false;  // a hand takes part in the island's impacts
   Precision precision_;
   std::size_t work_ = 0;  // points relaxed for the island
+
+  // Of an island with joints.
+  const IslandProblem* problem_ = nullptr;
+  std::deque<JointCoordinates> coordinates_;  // at least as many as points; keep their memory
+  Eigen::VectorXd velocity_, column_;         // of the joints, with the impulses applied so far
 };
 
 }  // namespace mrhi

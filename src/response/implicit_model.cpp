@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "finger_limits.h"
-#include "operator_reaction.h"
 
 namespace mrhi {
 namespace {
@@ -58,8 +57,7 @@ void ImplicitModel::resolve_impacts(ContactStep& step) {
     problem_.solve();
     return problem_.velocity();
   };
-  impacts_.resolve(step, islands_,
-                   configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none, springs);
+  impacts_.resolve(step, islands_, impact_friction(), springs);
 }
 
 /// A surface that is inside has had its approach, impact or not.

@@ -22,6 +22,9 @@ class ImplicitModel : public ContactModel {
   void resolve_impacts(ContactStep& step);
   void solve_islands(ContactStep& step);
   static void end_contacts(ContactStep& step);
+  ImpactFriction impact_friction() const {
+    return configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none;
+  }
 
  private:
   bool solve(ContactStep& step, const Island& island);

@@ -29,13 +29,6 @@ struct TorqueSlope {
   }
 };
 
-double lightest_operator(const Scene& scene) {
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const Operator& op : scene.operators)
-    lightest = std::min(lightest, scene.bodies[static_cast<std::size_t>(op.body)].mass);
-  return lightest;
-}
-
 /// Takes the motion of what carries the hand out of the row's drive: a twist at the centre of its `arm`.
 void leave_carrier(const Twist& carrier, const Triple& arm, SpringContact& row) {
   const Triple spin = triple(carrier.angular);
@@ -99,7 +92,6 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
     effort_.iterations = 6, effort_.limits = 0, effort_.anew = false;
   } else if (step.operators != nullptr && island.links.size() == 0) {
     const Body& body = step.scene.bodies[masses_[0].body];
-    if (body.mass <= kMinCoupled * lightest_operator(step.scene)) return;
     const int op = sole_operator(step, island);
     if (op >= 0 && body.mass > kMinCoupled * step.scene.bodies[static_cast<std::size_t>(op)].mass)
       couple(step, body, step.bodies[masses_[0].body], static_cast<std::size_t>(op));

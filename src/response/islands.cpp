@@ -1,8 +1,6 @@
 #include "islands.h"
 
 #include <algorithm>
-#include <functional>
-#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -52,7 +50,7 @@ void Islands::unite(int a, int b) {
 }
 
 // Contacts come sorted by their bodies, so those of a body are one run of them.
-void Islands::build(const ContactStep& step) {
+void Islands::build(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   bodies_.clear();
   links_.clear();
   for (std::size_t first = 0, last = 0; first < step.contacts.size(); first = last) {
@@ -61,8 +59,8 @@ void Islands::build(const ContactStep& step) {
     if (!step.scene.bodies[body].fixed) bodies_.push_back({static_cast<int>(body), body, first, last});
   }
   add_gripped(step);
-  if (!step.body_contacts.empty()) link_bodies(step);
-  divide(step.scene.bodies.size());
+  if (!step.body_contacts.empty() || !groups.empty()) link_bodies(step, groups);
+  divide(step.scene, !groups.empty());
 }
 
 /// What a hand holds without touching it just now.
@@ -76,13 +74,14 @@ void Islands::add_gripped(const ContactStep& step) {
   }
 }
 
-// Fixtures unite nothing: they do not move, and what stands on the same table is not one island.
-void Islands::link_bodies(const ContactStep& step) {
+// Fixtures unite nothing: they do not move, and what stands on the same table is not one island. Joints unite
+// as contacts do: M of a linkage is dense, so that a force on one of its bodies moves all.
+void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
   listed_.assign(step.scene.bodies.size(), false);
-  const auto list = [&](std::uint16_t body) {
-    if (!listed_[body]) bodies_.push_back({body, body, 0, 0});
+  const auto list = [&](std::size_t body) {
+    if (!listed_[body]) bodies_.push_back({static_cast<int>(body), body, 0, 0});
     listed_[body] = true;
   };
   for (std::size_t i = 0; i < step.body_contacts.size(); ++i) {
@@ -92,6 +91,12 @@ void Islands::link_bodies(const ContactStep& step) {
     if (step.scene.bodies[contact.key.a].fixed) continue;
     list(contact.key.a);
     unite(contact.key.a, contact.key.b);
+  }
+  for (const std::vector<int>& group : groups) {
+    for (const int body : group) {
+      list(static_cast<std::size_t>(body));
+      unite(group.front(), body);
+    }
   }
   gather();
 }
@@ -113,46 +118,25 @@ void Islands::gather() {
   if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
 }
 
-// Joints unite as contacts do: M of a linkage is dense, so that what pushes one of its bodies moves all.
-void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
-  parent_.resize(step.scene.bodies.size());
-  std::iota(parent_.begin(), parent_.end(), 0);
-  for (const Link& link : links_) {
-    const BodyContactKey& key = step.body_contacts[link.index].key;
-    if (!step.scene.bodies[key.a].fixed) unite(key.a, key.b);
-  }
-  for (const std::vector<int>& group : groups) {
-    for (const int body : group) {
-      bodies_.push_back({body, static_cast<std::size_t>(body), 0, 0});
-      unite(group.front(), body);
-    }
-  }
-  gather();
-  divide(step.scene.bodies.size());
-  apart_.clear();
-  const auto flies = [&](const Island& island) {
-    return std::all_of(island.bodies.begin(), island.bodies.end(),
-                       [&](const IslandBody& body) { return step.scene.bodies[body.body].flies; });
-  };
-  std::copy_if(islands_.begin(), islands_.end(), std::back_inserter(apart_), std::not_fn(flies));
-  islands_.erase(std::remove_if(islands_.begin(), islands_.end(), std::not_fn(flies)), islands_.end());
-}
-
 // Bodies and links are sorted by root, so an island is a run of each.
-void Islands::divide(std::size_t bodies) {
+void Islands::divide(const Scene& scene, bool by_joints) {
   islands_.clear();
-  places_.resize(bodies, -1);
+  with_joints_.clear();
+  places_.resize(scene.bodies.size(), -1);
   const Link *link = links_.data(), *const links_end = link + links_.size();
   const IslandBody *body = bodies_.data(), *const bodies_end = body + bodies_.size();
   while (body != bodies_end) {
     const int root = body->root;
     Island island{{body, body}, {link, link}, places_.data()};
-    for (; body != bodies_end && body->root == root; ++body)
+    bool has_joints = false;
+    for (; body != bodies_end && body->root == root; ++body) {
       places_[body->body] = static_cast<int>(body - island.bodies.first);
+      has_joints = has_joints || (by_joints && !scene.bodies[body->body].flies);
+    }
     while (link != links_end && link->root == root) ++link;
     island.bodies.last = body;
     island.links.last = link;
-    islands_.push_back(island);
+    (has_joints ? with_joints_ : islands_).push_back(island);
   }
 }
 

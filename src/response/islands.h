@@ -49,25 +49,24 @@ bool is_held(const ContactStep& step, const Island& island);
 /// Bodies that touch nothing, and fixtures, belong to none.
 class Islands {
  public:
-  void build(const ContactStep& step);
+  /// Bodies of a group, which hang together on joints, belong to one island, touched or not. Islands with any
+  /// of them are in with_joints(), and not in all().
+  void build(const ContactStep& step, const std::vector<std::vector<int>>& groups = {});
   /// By their first body.
   const std::vector<Island>& all() const { return islands_; }
-  /// Bodies of a group, which hang together, belong to one island, touched or not. Islands with any of them
-  /// are then in apart(), and no more in all().
-  void join(const ContactStep& step, const std::vector<std::vector<int>>& groups);
-  const std::vector<Island>& apart() const { return apart_; }
+  const std::vector<Island>& with_joints() const { return with_joints_; }
 
  private:
   void add_gripped(const ContactStep& step);
-  void link_bodies(const ContactStep& step);
+  void link_bodies(const ContactStep& step, const std::vector<std::vector<int>>& groups);
   void gather();
-  void divide(std::size_t bodies);
+  void divide(const Scene& scene, bool by_joints);
   int root_of(int body);
   void unite(int a, int b);
 
   std::vector<IslandBody> bodies_;
   std::vector<Link> links_;
-  std::vector<Island> islands_, apart_;
+  std::vector<Island> islands_, with_joints_;
   std::vector<int> parent_;   // by body
   std::vector<int> places_;   // by body
   std::vector<char> listed_;  // by body: whether it is among them already

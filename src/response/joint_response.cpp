@@ -6,11 +6,11 @@
 namespace mrhi {
 namespace {
 
-/// A linkage none of whose points is faster than this is still [m/s]: a tenth of what a body that sleeps may
-/// have (simulation/sleeping.cpp).
-constexpr double kStill = 1e-6;
-/// What has been still for so long sleeps [s].
-constexpr double kTired = 0.5;
+/// A linkage is still if none of its points is faster [m/s]: a tenth of the speed of a body that may sleep
+/// (simulation/sleeping.cpp).
+constexpr double kStillSpeed = 1e-6;
+/// A linkage that has been still for so long sleeps [s].
+constexpr double kSleepDelay = 0.5;
 
 bool has(const Island& island, int body) {
   return island.place_of(static_cast<std::size_t>(body)) >= 0;
@@ -40,20 +40,19 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
 // theirs alone: free_flight() moves none of their bodies.
 void JointedModel::respond(ContactStep& step) {
   begin_contacts(step);
-  islands_.build(step);
-  islands_.join(step, groups_);
+  islands_.build(step, groups_);
   ImplicitModel::resolve_impacts(step);
   solve_islands(step);
   std::fill(awake_.begin(), awake_.end(), char(0));
   std::fill(solved_.begin(), solved_.end(), char(0));
-  for (const Island& island : islands_.apart()) {
+  for (const Island& island : islands_.with_joints()) {
     if (!sleeps(step, island)) respond(step, island);
   }
   end_contacts(step);
   fly(step);
 }
 
-/// It has lain still for long, and nothing has pushed it since.
+/// True if the island has been still for long, and nothing has pushed it since.
 bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
   if (!configuration_.sleep || is_touched(step, island)) return false;
   const auto moves = [&](const IslandBody& body) {
@@ -63,13 +62,12 @@ bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
   if (std::any_of(island.bodies.begin(), island.bodies.end(), moves)) return false;
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!has(island, groups_[i].front())) continue;
-    return state_.joints[static_cast<std::size_t>(linkages_[i].bodies.back().joint)].still >= kTired;
+    return state_.joints[static_cast<std::size_t>(linkages_[i].bodies.back().joint)].still >= kSleepDelay;
   }
   return false;
 }
 
-/// Where its joints have it now.
-/// Poses are made of the joints' places, M of the poses: in this order.
+/// Places a linkage where its joints are. Its mass matrix follows from the poses.
 void JointedModel::place(const ContactStep& step, std::size_t index) {
   const Linkage& linkage = linkages_[index];
   positions_.resize(linkage.joints());
@@ -91,7 +89,7 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
     place(step, i);
   }
   problem_.begin(step, island, configuration_, linkages_, motions_, state_.joints, usual_step_);
-  resolve_impacts(step, island);
+  impacts_.resolve(step, island, impact_friction(), problem_, state_.joints);
   if (!problem_.acts()) return;
   bool agree = problem_.solve();
   if (!agree && step.operators == nullptr) problem_.keep_to_energy(step, island);
@@ -103,21 +101,6 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (has(island, groups_[i].front())) solved_[i] = 1;
   }
-}
-
-// A held island is solved once before the impact, as ImplicitModel does, to see what its springs carry away
-// from the hand. The impulses of limits are reported last: start_with() begins the joints' laws anew.
-void JointedModel::resolve_impacts(ContactStep& step, const Island& island) {
-  linkage_impacts_.find(step, island, problem_, state_.joints, configuration_.impact_friction);
-  if (linkage_impacts_.points().empty()) return;
-  if (is_held(step, island)) {
-    problem_.solve();
-    linkage_impacts_.drop_separating(step.step, problem_.joint_velocity());
-  }
-  // Fingers from opposite directions have no solution by Newton's law: their springs act.
-  if (!impacts_.resolve(step, linkage_impacts_.points())) return;
-  problem_.start_with(linkage_impacts_.velocity(), step, state_.joints);
-  linkage_impacts_.note_limits(problem_);
 }
 
 void JointedModel::fly(const ContactStep& step) {
@@ -148,16 +131,17 @@ void JointedModel::rest(const ContactStep& step, std::size_t linkage) {
   for (const LinkageBody& link : linkages_[linkage].bodies) {
     const auto b = static_cast<std::size_t>(link.body);
     const Twist twist = twist_of(scene_.bodies[b], step.bodies[b]);
-    still = still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kStill;
+    still =
+        still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kStillSpeed;
   }
-  bool tired = still;
+  bool sleeps = still;
   for (const LinkageBody& link : linkages_[linkage].bodies) {
     if (link.joint == LinkageBody::kNone) continue;
     double& lasted = state_.joints[static_cast<std::size_t>(link.joint)].still;
     lasted = still ? lasted + step.step : 0.0;
-    tired = tired && lasted >= kTired;
+    sleeps = sleeps && lasted >= kSleepDelay;
   }
-  if (!tired) return;
+  if (!sleeps) return;
   for (const int body : groups_[linkage]) {
     step.bodies[static_cast<std::size_t>(body)].linear_momentum.setZero();
     step.bodies[static_cast<std::size_t>(body)].angular_momentum.setZero();

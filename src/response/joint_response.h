@@ -5,7 +5,6 @@
 #include "../joints/linkage.h"
 #include "../joints/linkage_flight.h"
 #include "implicit_model.h"
-#include "linkage_impacts.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/simulation_state.h"
 
@@ -25,7 +24,6 @@ class JointedModel : public ImplicitModel {
   bool sleeps(const ContactStep& step, const Island& island) const;
   void place(const ContactStep& step, std::size_t linkage);
   void respond(ContactStep& step, const Island& island);
-  void resolve_impacts(ContactStep& step, const Island& island);
   void fly(const ContactStep& step);
   void rest(const ContactStep& step, std::size_t linkage);
   void note(std::size_t joint);
@@ -39,7 +37,6 @@ class JointedModel : public ImplicitModel {
   std::vector<LinkageFlight> flights_;
   std::vector<char> awake_, solved_;  // by linkage; solved: gravity has been given
   const double usual_step_;           // [s]
-  LinkageImpacts linkage_impacts_;
   Eigen::VectorXd positions_;
 };
 

@@ -268,25 +268,11 @@ void LargeIslandSolver::prepare(Patch& patch) const {
                                                             const Vector3& friction) {
   Body &a = body(point.a), &b = body(point.b);
   const Vector3 impulse = friction - normal * point.normal;
-  a.motion.velocity -= a.inverse_mass * impulse;
-  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(friction) - normal * point.turned_a;
   b.motion.velocity += b.inverse_mass * impulse;
   b.motion.spin += b.inverse_inertia * point.arm_b.cross(friction) - normal * point.turned_b;
-}
-
-/// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
-/// the surfaces part at u, so that a released object is not thrown off (docs/contact.md, release).
-///
-///     -dp/du = k (p'(d+) e (1 - r^2) + 2 p(d+) r / u_f),      r = u / u_f, no fading left where r = 1
-double LargeIslandSolver::normal_impulse_at(std::size_t i, double rate, double& slope) const {
-  const Point& point = points_[i];
-  const double deep = std::max(0.0, point.depth - point.ahead * rate);
-  const double parting = std::min(std::max(rate, 0.0) * point.fade, 1.0), kept = 1.0 - parting * parting;
-  double pressed = deep, steepness = deep > 0.0 ? 1.0 : 0.0;
-  if (point.nonlinear) rows_[i].spring.press(deep, pressed, steepness);
-  const double fading = parting < 1.0 ? 2.0 * pressed * parting * point.fade : 0.0;
-  slope = point.stiffness * (steepness * point.ahead * kept + fading);
-  return point.stiffness * pressed * kept;
+  if (a.inverse_mass == 0.0) return;
+  a.motion.velocity -= a.inverse_mass * impulse;
+  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(friction) - normal * point.turned_a;
 }
 
 /// The normal impulse that the contact's own law asks for, if the rate is `rate` without it.
@@ -302,7 +288,7 @@ double LargeIslandSolver::normal_impulse_at(std::size_t i, double rate, double& 
   return find_faded_impulse(i, rate, plain);
 }
 
-/// Newton's method, kept between bounds.
+/// Newton's method, kept between bounds, with p(u) = h Spring::normal_force().
 ///
 ///     g(u) = u - u_0 - w p(u) = 0,     g' = 1 - w dp/du >= 1       in u_0 <= u <= u_0 + w p_plain
 ///
@@ -310,13 +296,13 @@ double LargeIslandSolver::normal_impulse_at(std::size_t i, double rate, double& 
 /// plain spring has it: pad and fade only give less. A step of Newton's that leaves the bracket is replaced
 /// by halving it: beyond the release speed p is 0, and does not show where it begins.
 double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double plain) const {
-  const double mobility = points_[i].normal_mobility;
+  const double mobility = points_[i].normal_mobility, response = step_ * mobility;
   double low = rate, high = rate + mobility * plain, at = high;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     double slope;
-    const double off = at - rate - mobility * normal_impulse_at(i, at, slope);
+    const double off = at - rate - response * rows_[i].spring.normal_force(at, slope);
     (off > 0.0 ? high : low) = at;
-    const double next = at - off / (1.0 + mobility * slope);
+    const double next = at - off / (1.0 + response * slope);
     if (std::abs(next - at) <= 1e-9 * (high - rate)) break;
     at = next > low && next < high ? next : 0.5 * (low + high);
   }

@@ -100,7 +100,6 @@ class LargeIslandSolver {
   Vector3 relative_velocity(const Point& point) const;
   double rate_of(const Point& point) const;
   void apply(const Point& point, double normal, const Vector3& friction);
-  double normal_impulse_at(std::size_t i, double rate, double& slope) const;
   double find_normal_impulse(std::size_t i, double rate) const;
   double find_faded_impulse(std::size_t i, double rate, double plain) const;
   static Vector3 wanted_friction(const Point& point, const Vector3& sliding);

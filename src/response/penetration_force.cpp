@@ -7,10 +7,6 @@
 
 namespace mrhi {
 
-PenetrationLaw penetration_law(const ContactConfiguration& configuration) {
-  return {configuration.damping, configuration.release_fade};
-}
-
 // Eqs. 16 and 17: gamma times the depth, along n alone. The factor behind it is not in the paper: without any
 // loss what is held in microgravity rings for ever.
 //
@@ -82,8 +78,8 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 //     p += h f,  then  x += h p / m:  symplectic Euler's method, stable below h = 2 / w, w^2 = sum gamma / m
 //
 // Forces of later contacts see the velocity that earlier ones have left, positions stay those of the start.
-void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
-  const double fade = release_fade(law.release_fade);
+void penetration_phase(const ContactConfiguration& configuration, ContactStep& step) {
+  const double fade = release_fade(configuration.release_fade);
   auto first = step.contacts.begin();
   while (first != step.contacts.end()) {
     const std::size_t index = first->key.body;
@@ -96,7 +92,7 @@ void penetration_phase(const PenetrationLaw& law, ContactStep& step) {
       share += contact->touching() ? contact->share : 0.0;
     // Of N phalanges in touch c = 2 zeta sqrt(N gamma m) together: each has c / N, times its share.
     const double damping =
-        body.fixed || share == 0.0 || !law.damping
+        body.fixed || share == 0.0 || !configuration.damping
             ? 0.0
             : kTangentialDamping * 2.0 * std::sqrt(body.material.stiffness * body.mass / share);
     for (auto contact = first; contact != last; ++contact) {

@@ -22,13 +22,6 @@ constexpr double release_fade(bool on) {
 /// While slipping, a contact sticks again once friction needs less than this part of what sliding gives.
 constexpr double kStickAgain = 0.9;
 
-/// What this project adds to the paper's penetration phase; with neither it is the paper to the letter.
-struct PenetrationLaw {
-  bool damping = true;  ///< contact/damping: half critical, of the motion along the surface, inside the cone
-  bool release_fade = true;  ///< contact/release_fade: see kReleaseSpeed
-};
-PenetrationLaw penetration_law(const ContactConfiguration& configuration);
-
 /// Normal part of the penetration force, towards the inside of the object (Eqs. 16, 17) [N]; depth is from
 /// where the phalanx's surface entered, `normal_velocity` as in Eq. 8, `fade` of release_fade().
 double normal_force(double stiffness, double depth, double normal_velocity, double fade);
@@ -50,7 +43,8 @@ constexpr double kTangentialDamping = 0.5;
 Vector3 penetration_force(const Body& body, const BodyState& state, double damping, double fade,
                           Contact& contact);
 
-/// The penetration phase: the forces of all contacts act for one step.
-void penetration_phase(const PenetrationLaw& law, ContactStep& step);
+/// The penetration phase: the forces of all contacts act for one step. Without contact/damping
+/// (kTangentialDamping) and contact/release_fade (kReleaseSpeed) it is the paper to the letter.
+void penetration_phase(const ContactConfiguration& configuration, ContactStep& step);
 
 }  // namespace mrhi

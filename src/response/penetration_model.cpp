@@ -7,23 +7,23 @@ namespace {
 /// Penetration forces only, after the paper's reference [10] (Hoell et al. 2018).
 class PenetrationModel : public ContactModel {
  public:
-  explicit PenetrationModel(const PenetrationLaw& law) : law_(law) {}
+  explicit PenetrationModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
  private:
-  const PenetrationLaw law_;
+  const ContactConfiguration configuration_;
 };
 
 }  // namespace
 
 void PenetrationModel::respond(ContactStep& step) {
-  penetration_phase(law_, step);
+  penetration_phase(configuration_, step);
 }
 
 /// The paper's stiffness.
 extern const ContactModelEntry penetration_model{
     "penetration", 2, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<PenetrationModel>(penetration_law(configuration));
+      return std::make_unique<PenetrationModel>(configuration);
     }};
 
 }  // namespace mrhi

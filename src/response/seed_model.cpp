@@ -9,11 +9,11 @@ namespace {
 /// friction while it touches (3.4.2), as docs/contact.md reads the equations.
 class SeedModel : public ContactModel {
  public:
-  explicit SeedModel(const PenetrationLaw& law) : law_(law) {}
+  explicit SeedModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
  private:
-  const PenetrationLaw law_;
+  const ContactConfiguration configuration_;
   Islands islands_;
   ImpactSolver impacts_;
 };
@@ -93,14 +93,14 @@ void SeedModel::respond(ContactStep& step) {
   impacts_.resolve(step, islands_, ImpactFriction::none);
   // A phalanx that is inside has had its approach, impact or not.
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
-  penetration_phase(law_, step);
+  penetration_phase(configuration_, step);
 }
 
 /// The paper's stiffness.
 extern const ContactModelEntry seed_model{
     "seed", 1, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
       if (configuration.literal) return std::make_unique<LiteralSeedModel>();
-      return std::make_unique<SeedModel>(penetration_law(configuration));
+      return std::make_unique<SeedModel>(configuration);
     }};
 
 }  // namespace mrhi

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "../collision/way_out.h"
+#include "../collision/closest_features.h"
 #include "contact_step.h"
 #include "impact.h"
 #include "penetration_force.h"

@@ -51,6 +51,9 @@ struct Spring {
   /// until it is pressed to `pad`, and of a finger, which gives way beyond its strength.
   [[gnu::always_inline]] inline void press(double deep, double& pressed, double& steepness) const;
 
+  /// Normal force at a rate of the gap [N], and the slope by which it falls with the rate [N s/m].
+  [[gnu::always_inline]] inline double normal_force(double rate, double& slope) const;
+
   /// At the relative velocity `u` of 1 at the contact point and the relative spin about n. Renews Coulomb's
   /// limits by the normal force there first, where asked.
   [[gnu::always_inline]] inline void respond(const Triple& u, double spin, bool renew_limits,
@@ -117,19 +120,23 @@ inline void Spring::press(double deep, double& pressed, double& steepness) const
 // What the limits gain with N, dL/dv, is left out of it: Coulomb's law is not associated (de Saxce & Feng
 // 1998), and the matrix with it not symmetric. Held limits are Tresca's friction; that they are renewed
 // from iterate to iterate is the fixed point between the two (Haslinger 1983).
-inline void Spring::respond(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
-  const double rate = u.dot(normal);
+inline double Spring::normal_force(double rate, double& slope) const {
   const double deep = std::max(0.0, depth - ahead * rate);
   const double parting = std::min(std::max(rate, 0.0) * fade, 1.0);
   const double kept = 1.0 - parting * parting;
   double pressed, steepness;
   press(deep, pressed, steepness);
-  const double push = stiffness * pressed * kept;
-  response.push = push;
-  // Where N is 0 so is its slope. It has to be said: beyond the release speed r stays 1 and p is not 0, so
-  // the fade's part of the formula would be left over.
+  const double force = stiffness * pressed * kept;
+  // Where N is 0 so is its slope: beyond the release speed r stays 1 and p is not 0, so the fade's part of
+  // the formula would be left over.
   const double steep = steepness * ahead * kept + pressed * parting * (2.0 * fade);
-  response.normal_slope = push <= 0.0 ? 0.0 : stiffness * steep;
+  slope = force <= 0.0 ? 0.0 : stiffness * steep;
+  return force;
+}
+
+inline void Spring::respond(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
+  const double rate = u.dot(normal);
+  const double push = response.push = normal_force(rate, response.normal_slope);
   if (renew_limits) {
     slip_limit = friction * push + bond;
     twist_limit = patch_friction * push;

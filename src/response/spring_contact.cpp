@@ -63,16 +63,6 @@ Vector3 slide(const SpringContact& solved, double dynamic_friction, double step)
   return stretch + followed * (drawn - stretch) - kept;
 }
 
-void follow(const ContactStep& step, const Vector3& slide, Contact& contact) {
-  const Pose& pose = step.bodies[contact.key.body].pose;
-  contact.god_object = pose.to_local(contact.point + slide - contact.lever);
-}
-
-void follow(const ContactStep& step, const Vector3& slide, BodyContact& contact) {
-  const Pose& pose = step.bodies[contact.key.b].pose;
-  contact.anchor_b = pose.to_local(pose * contact.anchor_b + slide);
-}
-
 /// Sliding speed up to which friction between objects stays static [m/s].
 /// Friction falls from mu to phi as surfaces slide, not as the force of one point reaches its limit: the
 /// corners of a block on a ramp bear unlike loads and yield one after the other before it slides, and a load
@@ -80,26 +70,22 @@ void follow(const ContactStep& step, const Vector3& slide, BodyContact& contact)
 /// steps it is what a step's fall makes.
 constexpr double kStaticSpeed = 0.01;
 
-/// Which friction a contact of bodies has that has yielded in this step: by the way that it slides with
-/// static friction.
-void settle_friction(const ContactStep& step, const SpringContact& solved, BodyContact& touch) {
-  const Vector3 way = slide(solved, touch.material.static_friction, step.step);
-  const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
-  touch.friction = way.norm() > speed * step.step ? Friction::slipping : Friction::sticking;
+/// Drags the end on the body where the contact has yielded. Between bodies friction stays static if the
+/// contact slides slowly with static friction.
+void follow(const ContactStep& step, const SpringContact& solved, Contact& contact) {
+  const Material& material = step.scene.bodies[contact.key.body].material;
+  const Vector3 slid = slide(solved, contact.grip * friction_of(material, contact.friction), step.step);
+  const Pose& pose = step.bodies[contact.key.body].pose;
+  contact.god_object = pose.to_local(contact.point + slid - contact.lever);
 }
-void settle_friction(const ContactStep&, const SpringContact&, Contact&) {}
 
-double grip_of(const Contact& contact) {
-  return contact.grip;
-}
-double grip_of(const BodyContact&) {
-  return 1.0;
-}
-const Material& material_of(const ContactStep& step, const Contact& contact) {
-  return step.scene.bodies[contact.key.body].material;
-}
-const Material& material_of(const ContactStep&, const BodyContact& contact) {
-  return contact.material;
+void follow(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
+  const double slid_statically = slide(solved, contact.material.static_friction, step.step).norm();
+  const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
+  contact.friction = slid_statically > speed * step.step ? Friction::slipping : Friction::sticking;
+  const Pose& pose = step.bodies[contact.key.b].pose;
+  const Vector3 slid = slide(solved, friction_of(contact.material, contact.friction), step.step);
+  contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
 }
 
 /// The turn that is left of the twist, as far as the torque holds it.
@@ -127,9 +113,7 @@ void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& t
   const bool sticks = solved.response.wanted_squared <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
   if (sticks || solved.response.push <= 0.0) return;
-  settle_friction(step, solved, touch);
-  const double friction = grip_of(touch) * friction_of(material_of(step, touch), touch.friction);
-  follow(step, slide(solved, friction, step.step), touch);
+  follow(step, solved, touch);
 }
 
 }  // namespace
@@ -229,15 +213,6 @@ double integral(double from, double to, Function function) {
   return half / 9.0 * (5.0 * function(middle - off) + 8.0 * function(middle) + 5.0 * function(middle + off));
 }
 
-// N(v) as in Spring::respond().
-double push(const Spring& spring, double rate) {
-  const double deep = std::max(0.0, spring.depth - spring.ahead * rate);
-  const double parting = std::min(std::max(rate, 0.0) * spring.fade, 1.0);
-  double pressed, steepness;
-  spring.press(deep, pressed, steepness);
-  return spring.stiffness * pressed * (1.0 - parting * parting);
-}
-
 /// Depth at which the spring begins to give way.
 /// Spring::press() solved for p(d) = Y: d = Y + D / 2 beyond the pad, where p >= D / 2, and d = sqrt(2 Y D)
 /// within it.
@@ -261,7 +236,8 @@ double push_energy(const Spring& spring, double rate) {
   for (const double kink : kinks) {
     const double to = std::min(kink, end);
     if (to <= from) continue;
-    energy += integral(from, to, [&](double x) { return push(spring, x); });
+    double slope;
+    energy += integral(from, to, [&](double x) { return spring.normal_force(x, slope); });
     from = to;
   }
   return energy;

@@ -77,12 +77,6 @@ void check_bodies(const Scene& scene, const Joint& joint) {
   }
 }
 
-const Joint* joint_of(const Scene& scene, int body) {
-  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(),
-                                  [body](const Joint& joint) { return joint.child == body; });
-  return found == scene.joints.end() ? nullptr : &*found;
-}
-
 void check_tree(const Scene& scene, const Joint& joint) {
   if (joint_of(scene, joint.child) != &joint) {
     refuse(joint,
@@ -131,6 +125,12 @@ std::size_t depth_of(const Scene& scene, const Joint& joint) {
 }
 
 }  // namespace
+
+const Joint* joint_of(const Scene& scene, int body) {
+  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(),
+                                  [body](const Joint& joint) { return joint.child == body; });
+  return found == scene.joints.end() ? nullptr : &*found;
+}
 
 Pose joint_motion(const Joint& joint, double position) {
   if (joint.kind == JointKind::sliding) return {position * joint.axis, Quaternion::Identity()};

@@ -41,6 +41,12 @@ constexpr Range kReach{1e-5, 10.0};
 
 namespace mrhi {
 
+struct Joint;
+struct Scene;
+
+/// The joint by which a body hangs on another one; null if there is none.
+const Joint* joint_of(const Scene& scene, int body);
+
 /// One number of a material: its name in files, what it may be, and what a slider spans of that.
 struct MaterialField {
   const char* name;

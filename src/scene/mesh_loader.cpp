@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <clocale>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <new>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 
 #include "../text/files.h"
@@ -34,6 +38,12 @@ class Collector {
     for (unsigned i = 0; i < node.mNumChildren; ++i) add(scene, *node.mChildren[i], transform);
   }
 
+  void add(const std::array<aiVector3D, 3>& corners) {
+    std::array<int, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k]);
+    add(triangle, scale_.prod() < 0);
+  }
+
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
@@ -43,11 +53,15 @@ class Collector {
       if (face.mNumIndices != 3) continue;
       std::array<int, 3> triangle;
       for (int k = 0; k < 3; ++k) triangle[k] = vertex(transform * part.mVertices[face.mIndices[k]]);
-      if (mirrored) std::swap(triangle[1], triangle[2]);
-      const bool is_point_or_line =
-          triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-      if (!is_point_or_line) mesh_.triangles.push_back(triangle);
+      add(triangle, mirrored);
     }
+  }
+
+  void add(std::array<int, 3> triangle, bool mirrored) {
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    const bool is_point_or_line =
+        triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+    if (!is_point_or_line) mesh_.triangles.push_back(triangle);
   }
 
   int vertex(const aiVector3D& place) {
@@ -142,8 +156,73 @@ std::string plain_stl(const std::string& file) {
   return bytes;
 }
 
+/// Numbers of a line, with a decimal point whatever the locale; nothing if there is anything else.
+std::optional<std::vector<double>> numbers_of(const char* c) {
+  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  std::vector<double> numbers;
+  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
+    char* end = nullptr;
+    if (std::strspn(c, "+-.0123456789eE") != std::strcspn(c, " \t")) return std::nullopt;
+    numbers.push_back(strtod_l(c, &end, c_locale));
+    if (end != c + std::strcspn(c, " \t")) return std::nullopt;
+    c = end;
+  }
+  return numbers;
+}
+
+/// Adds a triangle, or both of a convex quadrangle, of vertices as V/T/N each; false: another face.
+bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
+               std::vector<std::array<aiVector3D, 3>>& triangles) {
+  std::vector<aiVector3D> face;
+  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
+    char* end = nullptr;
+    if (std::isdigit(static_cast<unsigned char>(*c)) == 0) return false;
+    const std::size_t vertex = std::strtoul(c, &end, 10) - 1;
+    if (vertex >= vertices.size()) return false;
+    face.push_back(vertices[vertex]);
+    c = end + std::strspn(end, "/0123456789");
+  }
+  const auto normal = [&](int i, int j, int k) { return (face[j] - face[i]) ^ (face[k] - face[i]); };
+  if (face.size() < 3 || face.size() > 4) return false;
+  triangles.push_back({{face[0], face[1], face[2]}});
+  if (face.size() == 3) return true;
+  triangles.push_back({{face[0], face[2], face[3]}});
+  return normal(0, 1, 2) * normal(0, 2, 3) > 0 && normal(1, 2, 3) * normal(1, 3, 0) > 0;
+}
+
+/// A small OBJ of one group of such faces, as programs write convex pieces; false: another one. Assimp clears
+/// 16 MB for each OBJ that it reads, which takes longer than all else about 200 pieces.
+bool read_piece(const std::string& file, Collector& collector) {
+  constexpr std::size_t kLargest = 1u << 20;
+  const std::string text = file_text(file, kLargest + 1).value_or("");
+  if (text.size() > kLargest || text.find('\0') != std::string::npos) return false;
+  std::vector<aiVector3D> vertices;
+  std::vector<std::array<aiVector3D, 3>> triangles;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    const std::string kind = line.substr(0, line.find_first_of(" \t"));
+    const char* const rest = line.c_str() + kind.size();
+    if (kind == "v") {
+      const auto numbers = numbers_of(rest);
+      if (!numbers || numbers->size() != 3) return false;
+      vertices.emplace_back(ai_real((*numbers)[0]), ai_real((*numbers)[1]), ai_real((*numbers)[2]));
+    } else if (kind == "f") {
+      if (!read_face(rest, vertices, triangles)) return false;
+    } else if (kind == "o" || kind == "g" || kind == "usemtl" || kind == "mtllib") {
+      if (!triangles.empty() || line.back() == '\\') return false;
+    } else if (!line.empty() && kind != "vn" && kind != "vt" && kind != "s" && kind[0] != '#') {
+      return false;
+    }
+  }
+  for (const auto& corners : triangles) collector.add(corners);
+  return !triangles.empty();
+}
+
 /// Assimp reads what is given to it without any limit, and a small file may stand for an endless scene.
 TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assimp::Importer& importer) {
+  Collector collector(scale);
+  if (lower_extension(file) == ".obj" && read_piece(file, collector)) return collector.take();
   const std::string stl = lower_extension(file) == ".stl" ? plain_stl(file) : "";
   const aiScene* scene =
       stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
@@ -154,7 +233,6 @@ TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assim
     throw std::runtime_error("cannot be read: " + text::one_line(problem, 120) +
                              "; allowed: a whole STL, OBJ, DAE, PLY or glTF file");
   }
-  Collector collector(scale);
   collector.add(*scene, *scene->mRootNode, aiMatrix4x4());
   return collector.take();
 }

@@ -6,7 +6,6 @@
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
-#include "scene_yaml.h"
 #include "shape_kinds.h"
 #include "urdf.h"
 
@@ -32,7 +31,7 @@ PlacedLink placed_shape(const ObjectRequest& request) {
   auto link = std::make_shared<urdf::Link>();
   auto collision = std::make_shared<urdf::Collision>();
   auto geometry = std::make_shared<urdf::Mesh>();
-  geometry->filename = as_filename({&kind, request.size});
+  geometry->filename = as_filename(kind, request.size);
   collision->geometry = geometry;
   link->collision_array = {collision};
   link->inertial = std::make_shared<urdf::Inertial>();

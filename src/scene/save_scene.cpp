@@ -82,8 +82,9 @@ class Writer {
     for (const Body& body : scene_.bodies) {
       if (!body.is_operator) write_link(body);
     }
-    for (const Body& body : scene_.bodies) {
-      if (joint_of(body) == nullptr && !body.is_operator)
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      const Body& body = scene_.bodies[b];
+      if (joint_of(scene_, static_cast<int>(b)) == nullptr && !body.is_operator)
         write_joint(root() + "_to_" + body.name, body.fixed ? "fixed" : "floating", root(), body,
                     body.start * body.link_in_body, "");
     }
@@ -96,13 +97,6 @@ class Writer {
     std::string name = "world";
     while (find_body(scene_, name)) name += "_";
     return name;
-  }
-
-  const Joint* joint_of(const Body& body) const {
-    for (const Joint& joint : scene_.joints) {
-      if (&scene_.bodies[static_cast<std::size_t>(joint.child)] == &body) return &joint;
-    }
-    return nullptr;
   }
 
   void write_link(const Body& body) {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "../text/text.h"
@@ -123,6 +122,15 @@ std::vector<char> those_that_go(std::size_t body, const Scene& scene) {
   return goes;
 }
 
+/// Keeps the items that `stays` says of, which puts their indices right.
+template <typename Item, typename Stays>
+void keep(std::vector<Item>& items, const Stays& stays) {
+  std::vector<Item> kept;
+  for (Item& item : items)
+    if (stays(item)) kept.push_back(std::move(item));
+  items = std::move(kept);
+}
+
 }  // namespace
 
 std::optional<GraspMode> grasp_mode(const std::string& name) {
@@ -191,12 +199,10 @@ Body& free_body(Scene& scene, const std::string& name) {
 }
 
 void append(const Scene& part, Scene& scene) {
-  std::vector<std::string> names;
-  for (const Body& body : scene.bodies) names.push_back(body.name);
   for (const Body& body : part.bodies) {
     if (find_body(scene, body.name))
       throw std::invalid_argument("object '" + body.name + "' is there already; allowed: a name other than " +
-                                  text::joined(names));
+                                  text::joined(text::names_of(scene.bodies)));
   }
   for (const Joint& joint : part.joints) {
     if (find_joint(scene, joint.name))
@@ -233,39 +239,21 @@ std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
 
 void remove_body(std::size_t body, Scene& scene) {
   const std::vector<char> goes = those_that_go(body, scene);
-  std::vector<int> place;  // of each body among those that stay
-  std::vector<Body> bodies;
-  for (std::size_t b = 0; b < goes.size(); ++b) {
-    place.push_back(static_cast<int>(bodies.size()));
-    if (goes[b] == 0) bodies.push_back(std::move(scene.bodies[b]));
-  }
-  scene.bodies = std::move(bodies);
-  std::vector<Joint> joints;
-  for (Joint& joint : scene.joints) {
-    if (goes[static_cast<std::size_t>(joint.child)] != 0) continue;
-    if (joint.parent != Joint::kWorld) joint.parent = place[static_cast<std::size_t>(joint.parent)];
-    joint.child = place[static_cast<std::size_t>(joint.child)];
-    joints.push_back(std::move(joint));
-  }
-  scene.joints = std::move(joints);
-  const auto stays = [&](int b) { return goes[static_cast<std::size_t>(b)] == 0; };
-  std::vector<Operator> operators;
-  for (Operator op : scene.operators) {
-    if (!stays(op.body)) continue;
-    op.body = place[static_cast<std::size_t>(op.body)];
+  std::vector<int> place;  // of each body among those that stay; -1: it goes
+  int staying = 0;
+  for (const char gone : goes) place.push_back(gone != 0 ? -1 : staying++);
+  std::size_t b = 0;
+  keep(scene.bodies, [&](const Body&) { return goes[b++] == 0; });
+  const auto stays = [&](int& index) { return (index = place[static_cast<std::size_t>(index)]) >= 0; };
+  keep(scene.joints, [&](Joint& joint) {
+    if (joint.parent != Joint::kWorld) stays(joint.parent);
+    return stays(joint.child);
+  });
+  keep(scene.operators, [&](Operator& op) {
     if (op.restraint && !stays(*op.restraint)) op.restraint.reset();
-    if (op.restraint) op.restraint = place[static_cast<std::size_t>(*op.restraint)];
-    operators.push_back(op);
-  }
-  scene.operators = std::move(operators);
-  std::vector<Tether> tethers;
-  for (Tether tether : scene.tethers) {
-    if (!stays(tether.body) || !stays(tether.fixture)) continue;
-    tether.body = place[static_cast<std::size_t>(tether.body)];
-    tether.fixture = place[static_cast<std::size_t>(tether.fixture)];
-    tethers.push_back(tether);
-  }
-  scene.tethers = std::move(tethers);
+    return stays(op.body);
+  });
+  keep(scene.tethers, [&](Tether& tether) { return stays(tether.body) && stays(tether.fixture); });
 }
 
 }  // namespace mrhi

@@ -9,7 +9,6 @@
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
 #include "limits.h"
-#include "scene_yaml.h"
 #include "solid_mesh.h"
 #include "urdf.h"
 
@@ -334,7 +333,13 @@ void join_bodies(const std::string& source, Scene& scene) {
 
 /// Bodies that begin inside each other push each other out with all they have, and many of them at once cost
 /// more than a step has time for.
-void check_overlaps(const std::string& file, const Scene& scene) {
+void check_overlaps(const std::string& file, Scene& scene) {
+  Warnings warnings;
+  for (const auto& [a, b] : overlaps_in_mechanisms(scene))
+    warnings.add("links of one mechanism that overlap where they start do not touch each other",
+                 "'" + scene.bodies[static_cast<std::size_t>(b)].name + "' and '" +
+                     scene.bodies[static_cast<std::size_t>(a)].name + "'");
+  for (const std::string& line : warnings.lines()) scene.warnings.push_back(line);
   const std::string overlaps = overlaps_at_start(scene);
   if (overlaps.empty()) return;
   throw SceneError(file + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +

@@ -1,4 +1,4 @@
-#include "scene_yaml.h"
+#include "urdf.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,9 +64,7 @@ void read_joint(const YamlElement& element, Joint& joint) {
 /// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is
 /// arrange_joints()'s to say.
 void read_joint_settings(const YamlElement& element, Scene& scene) {
-  std::vector<std::string> names;
-  for (const Joint& joint : scene.joints) names.push_back(joint.name);
-  for (const std::string& name : checked_keys(element, names))
+  for (const std::string& name : checked_keys(element, text::names_of(scene.joints)))
     read_joint(element.at(name), scene.joints[static_cast<std::size_t>(*find_joint(scene, name))]);
 }
 
@@ -185,11 +183,7 @@ void read_operators(const YamlElement& element, Scene& scene) {
                  std::to_string(kMaxHands));
   for (const auto& entry : element.node) {
     const std::string name = yaml_text(entry.first);
-    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-             c == '-';
-    });
-    if (!plain) element.fail("name '" + name + "' is not allowed; allowed: letters, digits, _ and -");
+    if (!is_name(name)) element.fail("name '" + name + "' is not allowed; allowed: " + kNameIs);
     read_operator(name, element.at(name), scene);
   }
 }
@@ -198,8 +192,6 @@ void read_tethers(const YamlElement& element, Scene& scene) {
   if (!element.node.IsSequence()) element.refuse("a list of tethers");
   for (std::size_t i = 0; i < element.node.size(); ++i) read_tether(element.at(i), scene);
 }
-
-using Element = YamlElement;
 
 void read_bounds(const Element& element, Bounds& bounds) {
   for (const std::string& key : checked_keys(element, {"min", "max"})) {
@@ -211,9 +203,7 @@ void read_bounds(const Element& element, Bounds& bounds) {
 }
 
 void read_material(const Element& element, Body& body) {
-  std::vector<std::string> known;
-  for (const MaterialField& field : material_fields()) known.push_back(field.name);
-  const std::vector<std::string> keys = checked_keys(element, known);
+  const std::vector<std::string> keys = checked_keys(element, text::names_of(material_fields()));
   for (const MaterialField& field : material_fields()) {
     if (std::find(keys.begin(), keys.end(), field.name) == keys.end()) continue;
     const Element given = element.at(field.name);
@@ -226,11 +216,8 @@ void read_material(const Element& element, Body& body) {
 }
 
 void read_materials(const Element& element, Scene& scene) {
-  std::vector<std::string> links;
-  for (const Body& body : scene.bodies) links.push_back(body.name);
-  for (const std::string& link : checked_keys(element, links)) {
+  for (const std::string& link : checked_keys(element, text::names_of(scene.bodies)))
     read_material(element.at(link), scene.bodies[*find_body(scene, link)]);
-  }
 }
 
 void read_grasps(const Element& element, Scene& scene) {
@@ -250,16 +237,9 @@ void read_twists(const Element& element, Scene& scene) {
     if (!body.fixed) links.push_back(body.name);
   }
   for (const std::string& link : checked_keys(element, links)) {
-    const Element given = element.at(link);
-    if (!given.node.IsSequence() || given.node.size() != 6) given.refuse("six numbers, m/s and rad/s");
-    Vector3 parts[2];
-    for (std::size_t i = 0; i < 6; ++i) {
-      const double most = i < 3 ? body_limits::kSpeed.max : body_limits::kSpin.max;
-      const std::optional<double> number = yaml_number(given.node[i]);
-      if (!number || std::abs(*number) > most) given.at(i).refuse("numbers up to " + text::number(most));
-      parts[i / 3][static_cast<Eigen::Index>(i % 3)] = *number;
-    }
-    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist = {parts[0], parts[1]};
+    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist =
+        read_six(element.at(link), {-body_limits::kSpeed.max, body_limits::kSpeed.max},
+                 {-body_limits::kSpin.max, body_limits::kSpin.max}, false);
   }
 }
 

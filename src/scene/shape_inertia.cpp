@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <stdexcept>
 
 #include "solid_mesh.h"
 
@@ -75,20 +74,10 @@ SolidMoments placed(const SolidMoments& in_shape, const Pose& pose) {
   return moments;
 }
 
-Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
-  Eigen::AlignedBox3d box;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
-      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
-    }
-  return box;
-}
-
 bool may_overlap(const std::vector<PlacedShape>& shapes) {
   std::vector<Eigen::AlignedBox3d> boxes;
   boxes.reserve(shapes.size());
-  for (const PlacedShape& shape : shapes) boxes.push_back(box_of(shape));
+  for (const PlacedShape& shape : shapes) boxes.push_back(box_around(shape));
   for (std::size_t a = 0; a < boxes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if ((boxes[a].intersection(boxes[b]).sizes().array() > 0.0).all()) return true;
@@ -117,9 +106,7 @@ bool has_parts(const std::vector<PlacedShape>& shapes) {
 class Columns {
  public:
   explicit Columns(const TriangleMesh& mesh) : lines_(kLines * kLines) {
-    Eigen::AlignedBox3d box;
-    for (const auto& t : mesh.triangles)
-      for (const int v : t) box.extend(mesh.vertices[std::size_t(v)]);
+    const Eigen::AlignedBox3d box = box_around(mesh);
     low_ = {box.min().y(), box.min().z()};
     cell_ = Eigen::Vector2d(box.sizes().y(), box.sizes().z()) / kLines;
     if (!(cell_.minCoeff() > 0.0)) return;
@@ -188,6 +175,29 @@ class Columns {
 };
 
 }  // namespace
+
+void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all) {
+  const int first = static_cast<int>(all.vertices.size());
+  for (const Vector3& vertex : mesh.vertices) all.vertices.push_back(pose * vertex);
+  for (const auto& t : mesh.triangles) all.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
+}
+
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const auto& triangle : mesh.triangles)
+    for (const int v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+  return box;
+}
+
+Eigen::AlignedBox3d box_around(const PlacedShape& shape) {
+  Eigen::AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
+      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+    }
+  return box;
+}
 
 TriangleMesh convex_hull(const TriangleMesh& mesh) {
   std::vector<Vector3> points = mesh.vertices;
@@ -275,13 +285,7 @@ SolidMoments moments_of(const std::vector<PlacedShape>& shapes) {
   SolidMoments all = sum_of(shapes);
   if (!has_parts(shapes) && !may_overlap(shapes)) return all;
   TriangleMesh surfaces;
-  for (const PlacedShape& shape : shapes) {
-    const TriangleMesh mesh = surface_of(shape);
-    const int first = static_cast<int>(surfaces.vertices.size());
-    surfaces.vertices.insert(surfaces.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    for (const auto& t : mesh.triangles)
-      surfaces.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
-  }
+  for (const PlacedShape& shape : shapes) append(surface_of(shape), Pose{}, surfaces);
   add(shared_moments(surfaces, all.volume), -1.0, all);
   return all;
 }

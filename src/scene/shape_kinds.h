@@ -27,20 +27,11 @@ const ShapeKind* find_shape_kind(const std::string& name);
 /// Names of all kinds, for messages.
 std::string shape_kind_names();
 
-/// A kind and its sizes.
-struct GivenShape {
-  const ShapeKind* kind;
-  std::vector<double> size;
-};
-
 // urdfdom knows neither all kinds nor that there may be others: what it shall hand on stands in place of a
 // mesh's filename.
-std::string as_filename(const GivenShape& shape);
-std::optional<GivenShape> from_filename(const std::string& filename);
+std::string as_filename(const ShapeKind& kind, const std::vector<double>& size);
 
-// Likewise of a mesh whose convex hull is meant.
+/// Stands before the filename of a mesh whose convex hull is meant.
 const char* const kHullPrefix = ":hull:";
-bool is_hull(const std::string& filename);
-std::string without_hull(const std::string& filename);
 
 }  // namespace mrhi

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace mrhi {
 namespace {
@@ -114,21 +113,6 @@ Triangles without_doubled(const Triangles& triangles) {
     if (seen.emplace(key, true).second) kept.push_back(triangle);
   }
   return kept;
-}
-
-/// Some of a mesh's triangles, with their own vertices alone.
-TriangleMesh cut_out(const TriangleMesh& mesh, const Triangles& triangles) {
-  TriangleMesh part;
-  std::map<int, int> renamed;
-  for (Triangle triangle : triangles) {
-    for (int& v : triangle) {
-      const auto known = renamed.emplace(v, static_cast<int>(part.vertices.size()));
-      if (known.second) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
-      v = known.first->second;
-    }
-    part.triangles.push_back(triangle);
-  }
-  return part;
 }
 
 /// Triangles that hang together by edges of two, each part turned the way of its first one.
@@ -354,6 +338,20 @@ std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMes
 
 }  // namespace
 
+TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles) {
+  TriangleMesh part;
+  std::map<int, int> renamed;
+  for (Triangle triangle : triangles) {
+    for (int& v : triangle) {
+      const auto known = renamed.emplace(v, static_cast<int>(part.vertices.size()));
+      if (known.second) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+      v = known.first->second;
+    }
+    part.triangles.push_back(triangle);
+  }
+  return part;
+}
+
 double signed_volume(const TriangleMesh& mesh) {
   return mesh.vertices.empty() ? 0.0 : volume_of(mesh, mesh.triangles);
 }
@@ -409,13 +407,10 @@ std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shap
       continue;
     }
     const TriangleMesh& mesh = *std::get<Mesh>(placed.shape).triangles;
-    const int vertices = static_cast<int>(all->vertices.size()),
-              first = static_cast<int>(all->triangles.size());
+    const int first = static_cast<int>(all->triangles.size());
     for (const int part : mesh.parts.empty() ? std::vector<int>{0} : mesh.parts)
       all->parts.push_back(first + part);
-    for (const Vector3& vertex : mesh.vertices) all->vertices.push_back(placed.pose * vertex);
-    for (const Triangle& t : mesh.triangles)
-      all->triangles.push_back({{t[0] + vertices, t[1] + vertices, t[2] + vertices}});
+    append(mesh, placed.pose, *all);
   }
   joined.push_back({Mesh{all, "", Vector3::Ones()}, Pose{}});
   return joined;

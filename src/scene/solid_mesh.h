@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -61,6 +62,16 @@ SolidMoments signed_moments(const TriangleMesh& mesh);
 /// What parts of closed surfaces overlap, as often as there are parts too many; zero where that is less than
 /// 0.1 % of `volume`.
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume);
+
+/// Some of a mesh's triangles, with their own vertices alone.
+TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles);
+
+/// Adds a mesh that is placed in the frame of the other, but for its `parts`.
+void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all);
+
+/// Box around the triangles, and around a shape along the axes of the frame that it is placed in [m].
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh);
+Eigen::AlignedBox3d box_around(const PlacedShape& shape);
 
 /// A shape's surface in the frame that it is placed in: a mesh itself, facets within a round shape.
 TriangleMesh surface_of(const PlacedShape& shape);

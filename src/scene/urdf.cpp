@@ -2,10 +2,8 @@
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
-#include <algorithm>
 #include <cstdint>
 #include <mutex>
-#include <optional>
 
 #include "../text/text.h"
 #include "../text/untrusted_input.h"

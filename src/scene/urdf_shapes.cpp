@@ -58,12 +58,27 @@ Shape make_long(const Sizes& s) {
 
 namespace fs = std::filesystem;
 
-Vector3 to_vector(const urdf::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
-
 bool begins_with(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+/// A kind and its sizes, as as_filename() has written them.
+struct GivenShape {
+  const ShapeKind* kind;
+  Sizes size;
+};
+
+std::optional<GivenShape> from_filename(const std::string& filename) {
+  if (!begins_with(filename, kPrefix)) return std::nullopt;
+  std::istringstream words(filename.substr(kPrefix.size()));
+  words.imbue(std::locale::classic());
+  std::string name;
+  words >> name;
+  GivenShape given{find_shape_kind(name), {}};
+  if (given.kind == nullptr) return std::nullopt;
+  for (std::string word; words >> word;) given.size.push_back(size_in(word));
+  given.size.resize(given.kind->sizes.size(), 0.0);
+  return given;
 }
 
 void check_extent(const Vector3& extent, double part, const char* where) {
@@ -75,10 +90,7 @@ void check_extent(const Vector3& extent, double part, const char* where) {
 
 /// Of a thing that collides each size, as a box's; a picture may be flat.
 void check_sizes(const TriangleMesh& mesh, bool solid) {
-  Eigen::AlignedBox3d box;
-  for (const std::array<int, 3>& triangle : mesh.triangles)
-    for (const int vertex : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(vertex)]);
-  const Vector3 extent = box.sizes();
+  const Vector3 extent = box_around(mesh).sizes();
   check_extent(extent, extent.maxCoeff(), "along the longest axis");
   if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
@@ -134,9 +146,7 @@ const ShapeKind* find_shape_kind(const std::string& name) {
 }
 
 std::string shape_kind_names() {
-  std::vector<std::string> names;
-  for (const ShapeKind& kind : shape_kinds()) names.push_back(kind.name);
-  return text::joined(names);
+  return text::joined(text::names_of(shape_kinds()));
 }
 
 std::string ShapeKind::describe(const std::vector<double>& size) const {
@@ -147,31 +157,10 @@ std::string ShapeKind::describe(const std::vector<double>& size) const {
   return all;
 }
 
-std::string as_filename(const GivenShape& shape) {
-  std::string name = kPrefix + shape.kind->name;
-  for (const double size : shape.size) name += " " + text::exact(size);
+std::string as_filename(const ShapeKind& kind, const std::vector<double>& size) {
+  std::string name = kPrefix + kind.name;
+  for (const double part : size) name += " " + text::exact(part);
   return name;
-}
-
-bool is_hull(const std::string& filename) {
-  return filename.compare(0, std::string(kHullPrefix).size(), kHullPrefix) == 0;
-}
-
-std::string without_hull(const std::string& filename) {
-  return is_hull(filename) ? filename.substr(std::string(kHullPrefix).size()) : filename;
-}
-
-std::optional<GivenShape> from_filename(const std::string& filename) {
-  if (filename.compare(0, kPrefix.size(), kPrefix) != 0) return std::nullopt;
-  std::istringstream words(filename.substr(kPrefix.size()));
-  words.imbue(std::locale::classic());
-  std::string name;
-  words >> name;
-  GivenShape given{find_shape_kind(name), {}};
-  if (given.kind == nullptr) return std::nullopt;
-  for (std::string word; words >> word;) given.size.push_back(size_in(word));
-  given.size.resize(given.kind->sizes.size(), 0.0);
-  return given;
 }
 
 double bounding_radius(const Shape& shape) {
@@ -186,8 +175,9 @@ struct ShapeReader::Named {
 };
 
 ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
-  const std::string uri = without_hull(mesh.filename);
-  return {uri, find_file(uri), to_vector(mesh.scale), is_hull(mesh.filename)};
+  const bool hull = begins_with(mesh.filename, kHullPrefix);
+  const std::string uri = hull ? mesh.filename.substr(std::string(kHullPrefix).size()) : mesh.filename;
+  return {uri, find_file(uri), {mesh.scale.x, mesh.scale.y, mesh.scale.z}, hull};
 }
 
 /// As it is written, or as others write it: with backslashes, or with blanks as %20.

@@ -10,8 +10,6 @@ namespace {
 constexpr double kMinClosingSpeed = 0.03;
 /// and than this fraction of its own and its base's speed: a hand that slaps or nudges does not close.
 constexpr double kMinClosingRatio = 0.25;
-/// A finger whose aperture grows faster than this takes nothing [m/s].
-constexpr double kMaxOpeningSpeed = 0.1;
 /// Of a body from the line between a finger and what it closes against, at most [m].
 constexpr double kBeside = 0.01;
 /// Beyond this a body is not looked at [m].
@@ -19,8 +17,6 @@ constexpr double kFar = 0.1;
 /// The normals under both are as far from each other (cosine). A fingertip that taps on a cube has the thumb
 /// beside the next face.
 constexpr double kOpposite = -0.3;
-/// Normals may be so far from opposite at the most, whatever the friction [rad].
-constexpr double kWidest = 1.5;
 
 double distance_from_axis(const Vector3& point, const Capsule& capsule) {
   const Vector3 along = capsule.end - capsule.start;
@@ -87,9 +83,9 @@ bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, 
   return tip && base && tip->features.normal.dot(base->features.normal) < kOpposite;
 }
 
-/// What a finger does about an object that is near the line to what it closes against.
-void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, const Object& object,
-                             const Poses& poses, Look& look) const {
+bool ClosingHand::closes_on(const HandTrack& track, bool by_palm, int finger, const Object& object,
+                            const Poses& poses) const {
+  if (!closes(track, by_palm, finger)) return false;
   const Hand& hand = track.current;
   const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
   bool is_far = true;
@@ -97,73 +93,17 @@ void ClosingHand::look_along(const HandTrack& track, bool by_palm, int finger, c
     const Body& body = scene_.bodies[static_cast<std::size_t>(object[i])];
     is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kBeside;
   }
-  if (is_far) return;
-  const auto beside = nearest(line, object, poses, kBeside);
-  if (!beside) return;
-  if (closes(track, by_palm, finger) && on_opposite_faces(hand, by_palm, finger, object, poses))
-    look.closing = static_cast<std::uint8_t>(look.closing | 1 << finger);
-  if (beside->features.distance > 0.0 || closing_speed(track, by_palm, finger) < -kMaxOpeningSpeed) return;
-  if (!look.touches) look.touches = touches(hand, object, poses);
-  const auto here = opposed(*look.touches, by_palm, finger);
-  std::optional<Opposed>& found = look.opposed;
-  if (!here || (found && found->by_palm != by_palm)) return;
-  const std::uint8_t others = found ? found->taking_part : std::uint8_t(0);
-  if (!found || here->depth > found->depth) found = here;
-  found->taking_part = static_cast<std::uint8_t>(others | 1 << finger);
+  return !is_far && nearest(line, object, poses, kBeside) &&
+         on_opposite_faces(hand, by_palm, finger, object, poses);
 }
 
-ClosingHand::Look ClosingHand::look_at(const HandTrack& track, const Object& object,
-                                       const Poses& poses) const {
-  Look look;
-  for (const bool by_palm : {false, true}) {
-    for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger) {
-      if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)))
-        look_along(track, by_palm, finger, object, poses, look);
-    }
-  }
-  return look;
-}
-
-ClosingHand::Touches ClosingHand::touches(const Hand& hand, const Object& object, const Poses& poses) const {
-  Touches result;
-  for (std::size_t c = 0; c < kCapsules; ++c) {
-    if (hand.capsules[c].radius <= 0.0) continue;
-    const auto found = nearest(hand.capsules[c], object, poses, 0.0);
-    if (!found) continue;
-    const ClosestFeatures& features = found->features;
-    result[c] = {true, found->body, -features.distance, features.normal, features.point};
-  }
-  return result;
-}
-
-/// Two points hold a body if the friction cones of both contain the other (Nguyen 1988): their normals are
-/// then at most two friction angles from opposite. Points deep in the body tell no more than this.
-std::optional<ClosingHand::Opposed> ClosingHand::opposed(const Touches& touches, bool by_palm,
-                                                         int finger) const {
-  const auto friction_angle = [this](const Touch& touch) {
-    return std::atan(scene_.bodies[static_cast<std::size_t>(touch.body)].material.static_friction);
-  };
-  double most = 1.0;
-  std::optional<Opposed> result;
-  for (int c = 0; c < kCapsules; ++c) {
-    const Touch& base = touches[static_cast<std::size_t>(c)];
-    if (!base.touches || !is_base(by_palm, c)) continue;
-    for (int bone = 1; bone < kBonesPerFinger; ++bone) {
-      const Touch& other = touches[static_cast<std::size_t>(capsule_index(finger, bone))];
-      const double across = base.normal.dot(other.normal);
-      if (!other.touches || across > most) continue;
-      if (across > -std::cos(std::min(friction_angle(base) + friction_angle(other), kWidest))) continue;
-      most = across;
-      result = Opposed{std::max(base.depth, other.depth),
-                       base.depth + other.depth,
-                       base.point,
-                       other.point,
-                       by_palm,
-                       base.body,
-                       0};
-    }
-  }
-  return result;
+bool ClosingHand::closes_on(const HandTrack& track, const Object& object, const Poses& poses) const {
+  for (const bool by_palm : {false, true})
+    for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger)
+      if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)) &&
+          closes_on(track, by_palm, finger, object, poses))
+        return true;
+  return false;
 }
 
 }  // namespace mrhi

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -14,41 +13,19 @@ bool has_tip(const Hand& hand, int finger);
 /// True for what fingers close against: the palm with its metacarpals, or the thumb.
 bool is_base(bool by_palm, int capsule);
 
-/// What a hand does about an object, from a frame to the next: which fingers close on it, and whether two
-/// sides of the hand have it between them. An object is one body, or all bodies of a floating linkage. Bodies
-/// as they are when the frame begins, the hand as when it ends.
+/// What fingers do about an object, from a frame to the next. An object is one body, or all bodies of a
+/// floating linkage. Bodies as they are when the frame begins, the hand as when it ends.
 class ClosingHand {
  public:
   /// Indices in Scene::bodies.
   using Object = std::vector<int>;
   using Poses = std::vector<Pose>;
-  /// Two sides of a hand that could hold an object between them. World.
-  struct Opposed {
-    double depth;           ///< of the deeper side [m]
-    double squeeze;         ///< of both sides together [m]
-    Vector3 base, fingers;  ///< where they touch
-    bool by_palm;
-    int body;                  ///< that the base touches
-    std::uint8_t taking_part;  ///< fingers, a bit each
-  };
-  /// A capsule of the hand that is in a body, by the way out that is nearest.
-  struct Touch {
-    bool touches = false;
-    int body = 0;
-    double depth = 0.0;  ///< [m]
-    Vector3 normal, point;
-  };
-  using Touches = std::array<Touch, kCapsules>;
-  struct Look {
-    std::optional<Touches> touches;  ///< found when first asked for
-    std::optional<Opposed> opposed;
-    std::uint8_t closing = 0;  ///< fingers that close on it, a bit each
-  };
 
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  Look look_at(const HandTrack& track, const Object& object, const Poses& poses) const;
+  /// True if a finger closes on the object, which is between it and its base.
+  bool closes_on(const HandTrack& track, const Object& object, const Poses& poses) const;
   /// Distance of a side of a grip, its base or its fingers, from the object; negative inside; at most `limit`
   /// [m].
   double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses,
@@ -65,14 +42,12 @@ class ClosingHand {
     ClosestFeatures features;
     int body;
   };
-  void look_along(const HandTrack& track, bool by_palm, int finger, const Object& object, const Poses& poses,
-                  Look& look) const;
+  bool closes_on(const HandTrack& track, bool by_palm, int finger, const Object& object,
+                 const Poses& poses) const;
   std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const Poses& poses,
                                  double margin) const;
   bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
                          const Poses& poses) const;
-  Touches touches(const Hand& hand, const Object& object, const Poses& poses) const;
-  std::optional<Opposed> opposed(const Touches& touches, bool by_palm, int finger) const;
 
   const Scene& scene_;
   const ContactFinder& finder_;

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "../collision/near_bodies.h"
+#include "../collision/neighbours.h"
 #include "../rendering/mass_lag.h"
+#include "../response/finger_limits.h"
 #include "grasp.h"
 
 namespace mrhi {
@@ -20,6 +21,7 @@ void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
+  share_strength(end.strength, contacts);
 }
 
 bool before(const Contact& contact, const ContactKey& key) {
@@ -66,16 +68,16 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active) continue;
     const HandTrack& track = end.operators.in_world(slot, state);
-    const HandExtent hand(track.current);
+    const Eigen::AlignedBox3d hand = box_around(track.current);
     for (std::size_t b = 0; b < bodies; ++b) {
       const int body = static_cast<int>(b);
-      const bool is_near =
-          hand.reaches(state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
+      const bool near =
+          is_near(hand, state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || struck;
       const bool is_held_fixture = end.scene.bodies[b].fixed && !end.operators.none();
       if ((end.scene.bodies[b].fixed && !is_held_fixture) || end.scene.bodies[b].is_operator ||
-          (!is_near && !may_end))
+          (!near && !may_end))
         continue;
       const Grip* const grip = grip_on(end, slot, body);
       InteractionLevel seen = InteractionLevel::contact;

@@ -29,6 +29,7 @@ struct FrameEnd {
   ContactFinder& finder;
   const Operators& operators;
   const FrameTransfer& transfer;
+  const HandStrength& strength;
   SimulationState& state;  ///< its interactions are updated
 };
 

@@ -12,7 +12,8 @@ constexpr double kHoverBegins = 0.03;  // [m]
 /// Norm of the loads' vector sum over the sum of their norms: at most this for a grasp to begin, and to last.
 constexpr double kBalanced = 0.6, kStillBalanced = 0.75;
 
-/// Loads of contacts, by their depths.
+/// Normal loads of contacts, by their depths and the strength of the fingers. A finger that has gone through
+/// the object applies no more force than one that complies at its surface.
 struct Load {
   Vector3 sum = Vector3::Zero();
   double total = 0.0;
@@ -21,15 +22,17 @@ struct Load {
 };
 
 template <typename Counts>
-Load load_of(const std::vector<Contact>& contacts, Counts&& counts) {
+Load load_of(const Scene& scene, const std::vector<Contact>& contacts, Counts&& counts) {
   Load load;
   int last_capsule = -1;
   for (const Contact& contact : contacts) {
     if (!counts(contact.key)) continue;
     if (contact.impulse != Vector3::Zero()) load.struck = true;
     if (!contact.touching()) continue;
-    load.sum += contact.share * contact.depth * contact.normal;
-    load.total += contact.share * contact.depth;
+    const double stiffness = contact.share * scene.bodies[contact.key.body].material.stiffness;
+    const double normal = std::min(stiffness * contact.depth, contact.strength);
+    load.sum += normal * contact.normal;
+    load.total += normal;
     const int capsule = kCapsules * contact.key.hand + contact.key.capsule;
     if (capsule != last_capsule) ++load.capsules;
     last_capsule = capsule;
@@ -43,11 +46,12 @@ bool is_balanced(const Load& load, double balanced) {
 
 /// True if the hands on a body grasp it together, and those without this one do not: each side of a box that
 /// two hands lift.
-bool grasps_with_others(int slot, int body, const std::vector<Contact>& contacts, double balanced) {
+bool grasps_with_others(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
+                        double balanced) {
   const auto of_all = [body](const ContactKey& key) { return key.body == body; };
   const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
-  return is_balanced(load_of(contacts, of_all), balanced) &&
-         !is_balanced(load_of(contacts, of_others), balanced);
+  return is_balanced(load_of(scene, contacts, of_all), balanced) &&
+         !is_balanced(load_of(scene, contacts, of_others), balanced);
 }
 
 /// Tongs are grasped by both their arms, each of which is pressed from one side.
@@ -57,7 +61,7 @@ bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Cont
   const auto of_linkage = [&](const ContactKey& key) {
     return key.hand == slot && floating_root(scene, key.body) == root;
   };
-  return root && is_balanced(load_of(contacts, of_linkage), balanced);
+  return root && is_balanced(load_of(scene, contacts, of_linkage), balanced);
 }
 
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
@@ -80,11 +84,11 @@ bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body
 InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
                             const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
                             InteractionLevel before) {
-  const Load load =
-      load_of(contacts, [&](const ContactKey& key) { return key.hand == slot && key.body == body; });
+  const auto of_hand = [&](const ContactKey& key) { return key.hand == slot && key.body == body; };
+  const Load load = load_of(scene, contacts, of_hand);
   const double balanced = before == InteractionLevel::grasp ? kStillBalanced : kBalanced;
   if (is_balanced(load, balanced)) return InteractionLevel::grasp;
-  if (load.capsules >= 1 && grasps_with_others(slot, body, contacts, balanced))
+  if (load.capsules >= 1 && grasps_with_others(scene, slot, body, contacts, balanced))
     return InteractionLevel::grasp;
   if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, balanced))
     return InteractionLevel::grasp;

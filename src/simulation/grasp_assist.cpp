@@ -10,8 +10,9 @@ namespace {
 constexpr double kPadDepth = 0.003;
 /// A hand that is deeper in a fixture is rendered elsewhere, and grasps nothing where it is tracked [m].
 constexpr double kBuriedDepth = 0.015;
-/// Compliance depth of a touch that is about to begin [m].
-constexpr double kMinCompliance = 1e-6;
+/// Compliance of a light touch beyond its depth: more than any finger moves in a step, so that it applies no
+/// force within the step either [m].
+constexpr double kLight = 1.0;
 /// Rate at which a finger that has stopped without an opposite touch regains its force [m/s].
 constexpr double kRecoverySpeed = 0.03;
 /// Cosine between the normals of touches on opposite faces, at most.
@@ -40,6 +41,8 @@ constexpr double kStiffnessRatio = 5.0;
 constexpr double kMinReach = 0.04, kMaxReach = 0.06;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
+/// Normals may be so far from opposite at the most, whatever the friction [rad].
+constexpr double kWidest = 1.5;
 
 /// Opening by which the hand releases the body: `fraction` of the way to where both sides just touch it [m].
 double release_opening(const Grip& grip, double fraction) {
@@ -156,20 +159,6 @@ bool GraspAssist::slips(const std::vector<Contact>& contacts, const Grip& grip) 
   });
 }
 
-/// True if all of the hand that touches the object overlapped it as hand or object appeared.
-bool GraspAssist::overlaps_since_it_appeared(std::size_t slot, std::size_t body,
-                                             const SimulationState& state) const {
-  bool overlaps = false;
-  for (const Contact& contact : state.contacts) {
-    if (contact.key.hand != slot || object_index_[contact.key.body] != object_index_[body] ||
-        contact.depth <= 0.0)
-      continue;
-    if (!contact.ignored) return false;
-    overlaps = true;
-  }
-  return overlaps;
-}
-
 /// Poses of the object's bodies in the frame that the hand in `slot` moves in. Until the next call.
 const std::vector<Pose>& GraspAssist::poses_of(std::size_t slot, std::size_t body,
                                                const SimulationState& state) const {
@@ -205,9 +194,10 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
       const bool looked_at = std::any_of(near.begin(), one, [&](const NearBody& before) {
         return object_index_[static_cast<std::size_t>(before.body)] == object_index_[body];
       });
-      if (mode_of(body) != GraspMode::free && !looked_at && !is_shown_in(slot, body, state) &&
-          !is_known(slot, body, state))
-        look_at(slot, body, state);
+      if (mode_of(body) == GraspMode::assist && scene_.bodies[body].flies && !looked_at &&
+          !is_shown_in(slot, body, state) &&
+          closing_hand_.closes_on(track, object_of(body), poses_of(slot, body, state)))
+        closing_.push_back({slot, body});
     }
   }
 }
@@ -216,14 +206,6 @@ bool GraspAssist::is_buried(std::size_t slot, const SimulationState& state) cons
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
     return contact.key.hand == slot && contact.touching() && contact.depth > kBuriedDepth &&
            scene_.bodies[contact.key.body].fixed;
-  });
-}
-
-/// Nothing new is found about a body that a grip supports or has released, or of a hand that does not close
-/// any more.
-bool GraspAssist::is_known(std::size_t slot, std::size_t body, const SimulationState& state) const {
-  return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-    return is_in(grip, slot, body) && (grip.active || grip.released || !grip.closes);
   });
 }
 
@@ -317,24 +299,74 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
     state.interactions[grip.hand * state.bodies.size() + static_cast<std::size_t>(part)].shown_in = true;
 }
 
-/// No compliance on bodies that hang on joints: tongs are closed by one side of each arm.
-void GraspAssist::look_at(std::size_t slot, std::size_t body, SimulationState& state) {
-  const bool never = mode_of(body) == GraspMode::never;
-  const auto look = closing_hand_.look_at(state.hands[slot], object_of(body), poses_of(slot, body, state));
-  if (look.opposed && (never || look.opposed->depth > kPadDepth) && !state.hands[slot].emerged &&
-      !overlaps_since_it_appeared(slot, body, state))
-    take(slot, *look.opposed, state);
-  if (look.closing != 0 && !never && scene_.bodies[body].flies) closing_.push_back({slot, body});
+/// Two contacts hold a body if the friction cones of both contain the other (Nguyen 1988): their normals are
+/// then at most two friction angles from opposite.
+std::optional<GraspAssist::Opposed> GraspAssist::opposed(std::size_t slot, std::size_t body, bool by_palm,
+                                                         const std::vector<Contact>& contacts) const {
+  const auto touches = [&](const Contact& contact) {
+    return contact.depth > 0.0 && contact.key.hand == slot &&
+           object_index_[contact.key.body] == object_index_[body];
+  };
+  const auto friction_angle = [this](const Contact& contact) {
+    return std::atan(scene_.bodies[contact.key.body].material.static_friction);
+  };
+  Opposed result;
+  double most = 1.0;
+  for (const Contact& base : contacts) {
+    if (!touches(base) || !is_base(by_palm, base.key.capsule)) continue;
+    for (const Contact& other : contacts) {
+      if (!touches(other) || (base.ignored && other.ignored) || is_base(true, other.key.capsule) ||
+          is_base(by_palm, other.key.capsule))
+        continue;
+      const double across = base.normal.dot(other.normal);
+      if (across > -std::cos(std::min(friction_angle(base) + friction_angle(other), kWidest))) continue;
+      const int bit = 1 << finger_of(other.key.capsule);
+      result.taking_part = static_cast<std::uint8_t>(result.taking_part | bit);
+      result.depth = std::max({result.depth, base.depth, other.depth});
+      if (across >= most) continue;
+      most = across;
+      result.squeeze = base.depth + other.depth;
+      result.base = base.point, result.fingers = other.point;
+      result.body = base.key.body;
+    }
+  }
+  result.by_palm = by_palm;
+  return result.taking_part != 0 ? std::optional<Opposed>(result) : std::nullopt;
+}
+
+/// Takes each object that a hand has between opposing contacts. A grip that is active, released or lost stays
+/// as it is; any other goes on with the fingers that have come to it.
+void GraspAssist::take_what_is_held(double fraction, SimulationState& state) const {
+  const std::vector<Contact>& contacts = state.contacts;
+  for (auto one = contacts.begin(); one != contacts.end(); ++one) {
+    const std::size_t slot = one->key.hand, body = one->key.body;
+    if (one->depth <= 0.0 || mode_of(body) == GraspMode::free) continue;
+    const bool looked_at = std::any_of(contacts.begin(), one, [&](const Contact& before) {
+      return before.depth > 0.0 && before.key.hand == slot &&
+             object_index_[before.key.body] == object_index_[body];
+    });
+    if (looked_at) continue;
+    const auto known = std::find_if(state.grips.begin(), state.grips.end(),
+                                    [&](const Grip& grip) { return is_in(grip, slot, body); });
+    const bool is_new = known == state.grips.end();
+    if (!is_new && (known->active || known->released || known->lost)) continue;
+    if (is_buried(slot, state) || is_shown_in(slot, body, state)) continue;
+    auto found = opposed(slot, body, false, contacts);
+    if (!found) found = opposed(slot, body, true, contacts);
+    if (!found || (mode_of(body) != GraspMode::never && found->depth <= kPadDepth)) continue;
+    if (is_new || known->by_palm != found->by_palm || (found->taking_part & ~known->fingers) != 0)
+      take(slot, *found, fraction, state);
+  }
 }
 
 /// A body that was taken before and needed no support is taken anew, but keeps its place in the hand.
 /// The springs of a grip on a linkage act on the part that the thumb or the palm touches.
-void GraspAssist::take(std::size_t slot, const ClosingHand::Opposed& opposed, SimulationState& state) const {
-  const auto known = std::find_if(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
-    return is_in(grip, slot, static_cast<std::size_t>(opposed.body));
-  });
+void GraspAssist::take(std::size_t slot, const Opposed& opposed, double fraction,
+                       SimulationState& state) const {
+  const auto known = std::find_if(state.grips.begin(), state.grips.end(),
+                                  [&](const Grip& grip) { return is_in(grip, slot, opposed.body); });
   const bool is_new = known == state.grips.end();
-  const auto b = is_new ? static_cast<std::size_t>(opposed.body) : known->body;
+  const std::size_t b = is_new ? opposed.body : known->body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
   const Pose pose = operators_.in_hands_frame(slot, b, state);
   const Material& material = scene_.bodies[b].material;
@@ -345,7 +377,8 @@ void GraspAssist::take(std::size_t slot, const ClosingHand::Opposed& opposed, Si
   grip.by_palm = opposed.by_palm;
   grip.fingers = opposed.taking_part;
   grip.min_aperture = grip.mean_aperture = aperture(grip, from);
-  grip.touch_aperture = std::max(grip.min_aperture, aperture(grip, to) + opposed.squeeze);
+  const double now = grip.min_aperture + fraction * (aperture(grip, to) - grip.min_aperture);
+  grip.touch_aperture = std::max(grip.min_aperture, now + opposed.squeeze);
   int fingers = 0;
   for (int finger = 0; finger < kFingers; ++finger) fingers += grip.takes_part(finger) ? 1 : 0;
   const HandStrength& strength = configuration_.hand;
@@ -372,6 +405,10 @@ void GraspAssist::take(std::size_t slot, const ClosingHand::Opposed& opposed, Si
   }
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
+  place(fraction, fraction, state.hands[slot], grip);
+  if (is_new)
+    for (std::size_t i = 0; i < kGripPoints; ++i)
+      grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
   const auto after = [](const Grip& x, const Grip& y) {
     return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
   };
@@ -395,7 +432,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   const bool opposed = closes && is_opposed(contact, state.contacts);
   if (released || (closes && !opposed)) {
     contact.struck = true;
-    contact.compliance = std::max(contact.depth, kMinCompliance);
+    contact.compliance = std::max(contact.depth, 0.0) + kLight;
   } else {
     const double kept = std::min(contact.compliance, contact.depth) - kRecoverySpeed * step;
     contact.compliance = opposed ? 0.0 : std::max(kept, 0.0);
@@ -421,6 +458,34 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
   }
 }
 
+/// The joints of a linkage move as the fingers tell: the springs act against the mean motion of the links
+/// that both sides touch. Their ends on the base's link go back by what this link moves against that mean,
+/// and their damping leaves it out.
+void GraspAssist::leave_joints_free(double step, SimulationState& state, Grip& grip) const {
+  if (object_of(grip.body).size() == 1) return;
+  const auto velocity = [&](std::size_t body, const Vector3& point) -> Vector3 {
+    const Twist twist = twist_of(scene_.bodies[body], state.bodies[body]);
+    return twist.linear + twist.angular.cross(point - state.bodies[body].pose.position);
+  };
+  const Pose& pose = state.bodies[grip.body].pose;
+  for (std::size_t i = 0; i < kGripPoints; ++i) {
+    const Vector3 end = pose * grip.in_body[i], of_base = velocity(grip.body, end);
+    Vector3 against = Vector3::Zero();  // of the base's link against those of the fingers
+    int count = 0;
+    for (const Contact& contact : state.contacts) {
+      if (!contact.touching() || !is_in(grip, contact.key.hand, contact.key.body) ||
+          is_base(grip.by_palm, contact.key.capsule))
+        continue;
+      against += of_base - velocity(contact.key.body, end);
+      ++count;
+    }
+    if (count == 0) return;
+    const Vector3 by_joints = 0.5 / count * against;
+    grip.in_body[i] = pose.to_local(end - step * by_joints);
+    grip.velocity[i] += by_joints;
+  }
+}
+
 /// Largest distance of a spring's end on the body from its end on the hand [m].
 double GraspAssist::offset(const SimulationState& state, const Grip& grip) const {
   const Pose& pose = state.bodies[grip.body].pose;
@@ -432,12 +497,16 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!acts_) return;
+  take_what_is_held(fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = touching_sides(grip, state.contacts).both();
-    const bool lost = touching ? slips(state.contacts, grip) : grip.opened <= kMinOpening;
+    const bool lost =
+        touching ? slips(state.contacts, grip) || !opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
+                 : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
+    leave_joints_free(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
     grip.active = true;

@@ -14,8 +14,9 @@ namespace mrhi {
 /// an opposite face. The first finger then does not knock the body away.
 ///
 /// Support: a hand that has a body between two opposed sides, deeper than a fingertip pad, takes it (Grip).
-/// Contacts act as ever. Only if the body slips, or leaves one side, and is off its place in the hand, the
-/// grip becomes active: springs of bounded force add what the contacts lack, until the hand opens.
+/// Contacts act as ever. Only if the body slips, or its contacts no longer oppose each other, and it is off
+/// its place in the hand, the grip becomes active: springs of bounded force add what the contacts lack, until
+/// the hand opens.
 ///
 /// All bodies of a floating linkage are one object: a thumb on its base and a finger on its lid are two
 /// sides. An object may be without assist, or not to be grasped at all (GraspMode).
@@ -48,10 +49,19 @@ class GraspAssist {
   const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) const;
   bool slips(const std::vector<Contact>& contacts, const Grip& grip) const;
-  bool overlaps_since_it_appeared(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_buried(std::size_t slot, const SimulationState& state) const;
-  bool is_known(std::size_t slot, std::size_t body, const SimulationState& state) const;
+  /// Opposing contacts of a hand that could hold an object between them. World.
+  struct Opposed {
+    double depth = 0.0;     ///< of the deeper contact [m]
+    double squeeze = 0.0;   ///< of both contacts together [m]
+    Vector3 base, fingers;  ///< where they touch
+    bool by_palm = false;
+    std::size_t body = 0;          ///< that the base touches
+    std::uint8_t taking_part = 0;  ///< fingers, a bit each
+  };
+  std::optional<Opposed> opposed(std::size_t slot, std::size_t body, bool by_palm,
+                                 const std::vector<Contact>& contacts) const;
   /// Whether the base, and the fingers, of a grip touch the object.
   struct TouchingSides {
     bool base = false, fingers = false;
@@ -64,9 +74,10 @@ class GraspAssist {
   bool holds_again(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
-  void look_at(std::size_t slot, std::size_t body, SimulationState& state);
-  void take(std::size_t slot, const ClosingHand::Opposed& opposed, SimulationState& state) const;
+  void take_what_is_held(double fraction, SimulationState& state) const;
+  void take(std::size_t slot, const Opposed& opposed, double fraction, SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
+  void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "../response/impact.h"
-#include "../response/operator_reaction.h"
 
 namespace mrhi {
 namespace {

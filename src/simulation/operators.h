@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "../collision/moving_hand.h"
 #include "../collision/neighbours.h"
+#include "../collision/step_motion.h"
 #include "../response/island_problem.h"
 #include "mr_hand_interaction/simulation_state.h"
 

@@ -107,7 +107,8 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
 void Simulation::Impl::report(Nanoseconds stamp) {
   result.stamp = stamp;
   operators.end_frame(state);
-  report_frame({scene, hands, neighbours, finder, operators, transfer, state}, result);
+  report_frame({scene, hands, neighbours, finder, operators, transfer, configuration.contact.hand, state},
+               result);
   leave_out_contacts_that_are_not_finite();
   reported = true;
 }

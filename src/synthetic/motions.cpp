@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scripted_grasp.h"
+#include "../text/text.h"
 
 namespace mrhi {
 namespace {
@@ -11,11 +11,20 @@ namespace {
 constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
 constexpr double kAside = 0.16;     // [m] further away, where the hand comes from
 
+/// Opens the hand round an object at `at`, draws it back to `off` along `retreat` and on to `aside`.
+void release(Script& script, const GraspPostures& postures, const Pose& at, const Pose& off,
+             const Vector3& retreat, const Pose& aside) {
+  script.then(0.7, at, postures.near).by_way_of(postures.touching, 1.0 - postures.touching_share);
+  script.then(0.5, at, postures.open).then(0.7, off, postures.open, 0.1 * retreat);
+  script.then(0.8, aside, relaxed_posture());
+}
+
 /// A hand that takes hold of something, moves it and lets go.
 class Grip {
  public:
-  Grip(Script& script, const Grasp& grasp, const Vector3& place)
-      : script_(script),
+  /// Goes on from `script`.
+  Grip(Script script, const Grasp& grasp, const Vector3& place)
+      : script_(std::move(script)),
         postures_(grasp),
         retreat_(grasp.retreat),
         at_(Pose{place, Quaternion::Identity()} * grasp.wrist) {}
@@ -44,19 +53,17 @@ class Grip {
     script_.then(duration, at_, postures_.pressing).round(centre);
     return *this;
   }
-  Grip& let_go(const Vector3& aside) {
-    script_.hold(0.4).then(0.7, at_, postures_.near);
-    script_.by_way_of(postures_.touching, 1.0 - postures_.touching_share);
+  ScriptedMotion let_go(const Vector3& aside) {
     const Pose off = shifted(at_, 0.07 * retreat_);
-    script_.then(0.5, at_, postures_.open).then(0.7, off, postures_.open, 0.1 * retreat_);
-    script_.then(0.8, shifted(off, aside), relaxed_posture());
-    return *this;
+    release(script_.hold(0.4), postures_, at_, off, retreat_, shifted(off, aside));
+    return script_.motion();
   }
 
   const GraspPostures& postures() const { return postures_; }
+  Script& script() { return script_; }
 
  private:
-  Script& script_;
+  Script script_;
   GraspPostures postures_;
   Vector3 retreat_;
   Pose at_;
@@ -68,38 +75,15 @@ void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& 
   const Pose target = Pose{centre, Quaternion::Identity()} * carried;
   const Pose wrist = target * grasp.wrist;
   const Vector3 retreat = carried.orientation * grasp.retreat;
-  script.then(1.4, wrist, postures.pressing).hold(0.6);
-  script.then(0.7, wrist, postures.near).by_way_of(postures.touching, 1.0 - postures.touching_share);
-  script.then(0.5, wrist, postures.open);
-  script.then(0.7, shifted(wrist, kApproach * retreat), postures.open, 0.1 * retreat);
-  script.then(0.8, shifted(wrist, kApproach * retreat + aside), relaxed_posture());
+  release(script.then(1.4, wrist, postures.pressing).hold(0.6), postures, wrist,
+          shifted(wrist, kApproach * retreat), retreat, shifted(wrist, kApproach * retreat + aside));
 }
 
 ScriptedMotion reach_and_carry(const char* object, const Vector3& aside) {
   return reach_and_carry(object, shipped_grasp(object), scene_object(), aside);
 }
 
-}  // namespace
-
-ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
-                               const Vector3& aside) {
-  Script script(scene);
-  Grip grip(script, grasp, object);
-  grip.take(aside, kApproach, 0.15).hold(0.4);
-  carry_and_release(script, grasp, grip.postures(), object, {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())},
-                    aside);
-  return script.motion();
-}
-
-static ScriptedMotion grasp_cube() {
-  return reach_and_carry("cube", {0.05, -kAside, 0.02});
-}
-
-static ScriptedMotion grasp_ball() {
-  return reach_and_carry("ball", {0.05, -kAside, 0.02});
-}
-
-static ScriptedMotion catch_ball() {
+ScriptedMotion catch_ball() {
   constexpr double kMeet = 0.7, kClose = 0.3, kPress = 0.4, kStop = 0.5, kStart = 0.4;  // [s]
   const Vector3 velocity(0.0, -0.3, 0.0);
   const Grasp grasp = shipped_grasp("ball").turned(turn(90.0, Vector3::UnitX()));
@@ -123,16 +107,6 @@ static ScriptedMotion catch_ball() {
   return script.motion();
 }
 
-static ScriptedMotion pinch_long() {
-  return reach_and_carry("long_cuboid", {0.04, -kAside, 0.0});
-}
-
-static ScriptedMotion lift_flat() {
-  return reach_and_carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04});
-}
-
-namespace {
-
 constexpr double kHalfCube = 0.025;
 constexpr double kPeakSpeed = 1.875;  // of minimum jerk, in lengths per duration
 
@@ -141,17 +115,7 @@ Vector3 touching_tip(const Vector3& normal) {
   return scene_object() + (kHalfCube + human_hand().fingers[1].radius) * normal;
 }
 
-Keyframe key(double time, const Pose& wrist, const HandPosture& posture) {
-  Keyframe frame;
-  frame.time = time;
-  frame.wrist = wrist;
-  frame.posture = posture;
-  return frame;
-}
-
-}  // namespace
-
-static ScriptedMotion nudge() {
+ScriptedMotion nudge() {
   constexpr double kSpeed = 0.1, kWay = 0.09;
   const HandPosture posture = pointing_posture();
   const Vector3 forward = Vector3::UnitY();
@@ -161,15 +125,13 @@ static ScriptedMotion nudge() {
   const Pose pushed = shifted(contact, 0.5 * kWay * forward);
   const Pose away = shifted(ready, {0.06, -0.10, 0.04});
   const double stroke = kPeakSpeed * kWay / kSpeed;
-  ScriptedMotion motion;
-  motion.scene = "cube";
-  motion.keyframes = {key(0.0, away, relaxed_posture()),  key(0.9, ready, posture),
-                      key(1.1, ready, posture),           key(1.1 + stroke, pushed, posture),
-                      key(1.6 + stroke, pushed, posture), key(2.8 + stroke, away, relaxed_posture())};
-  return motion;
+  Script script("cube");
+  script.at(0.0, away, relaxed_posture()).at(0.9, ready, posture).at(1.1, ready, posture);
+  script.at(1.1 + stroke, pushed, posture).at(1.6 + stroke, pushed, posture);
+  return script.at(2.8 + stroke, away, relaxed_posture()).motion();
 }
 
-static ScriptedMotion tap() {
+ScriptedMotion tap() {
   constexpr double kSpeed = 0.5, kSwing = 40.0 * M_PI / 180.0;
   HandPosture touching = pointing_posture();
   touching.col(1) << 0.0, 0.1, 0.35, 0.2, 0.0;
@@ -187,19 +149,13 @@ static ScriptedMotion tap() {
   const Pose at = wrist_for_index_tip(touching_tip(Vector3::UnitZ()),
                                       hand_pose(Vector3::Zero(), fingers, dorsal), touching);
   const Pose away = shifted(at, {0.06, -0.16, 0.06});
-  ScriptedMotion motion;
-  motion.scene = "cube";
-  motion.keyframes = {key(0.0, away, relaxed_posture()),
-                      key(1.0, at, raised),
-                      key(1.3, at, raised),
-                      key(1.3 + stroke, at, struck),
-                      key(1.7 + stroke, at, raised),
-                      key(2.1 + stroke, at, raised),
-                      key(3.1 + stroke, away, relaxed_posture())};
-  return motion;
+  Script script("cube");
+  script.at(0.0, away, relaxed_posture()).at(1.0, at, raised).at(1.3, at, raised);
+  script.at(1.3 + stroke, at, struck).at(1.7 + stroke, at, raised).at(2.1 + stroke, at, raised);
+  return script.at(3.1 + stroke, away, relaxed_posture()).motion();
 }
 
-static ScriptedMotion slap() {
+ScriptedMotion slap() {
   constexpr double kSpeed = 1.5, kBefore = 0.26, kAfter = 0.26;
   const HandPosture posture = flat_posture();
   const Vector3 swing(-1.0, 0.0, 0.0);
@@ -211,18 +167,12 @@ static ScriptedMotion slap() {
                      direction.orientation};
   const Pose drawn = shifted(contact, -kBefore * swing), through = shifted(contact, kAfter * swing);
   const double stroke = kPeakSpeed * (kBefore + kAfter) / kSpeed;
-  ScriptedMotion motion;
-  motion.scene = "cube";
-  motion.keyframes = {key(0.0, shifted(drawn, {0.02, -0.10, 0.0}), relaxed_posture()),
-                      key(0.8, drawn, posture),
-                      key(1.0, drawn, posture),
-                      key(1.0 + stroke, through, posture),
-                      key(1.4 + stroke, through, posture),
-                      key(2.3 + stroke, shifted(through, {0.0, -0.12, -0.02}), relaxed_posture())};
-  return motion;
+  Script script("cube");
+  script.at(0.0, shifted(drawn, {0.02, -0.10, 0.0}), relaxed_posture());
+  script.at(0.8, drawn, posture).at(1.0, drawn, posture);
+  script.at(1.0 + stroke, through, posture).at(1.4 + stroke, through, posture);
+  return script.at(2.3 + stroke, shifted(through, {0.0, -0.12, -0.02}), relaxed_posture()).motion();
 }
-
-namespace {
 
 constexpr double kThumbDepth = 0.006, kFingerDepth = 0.003;  // that the tips press beyond the surface [m]
 
@@ -240,19 +190,14 @@ Pose touching(const Vector3& point, const Vector3& normal) {
 /// Thumb and two fingers on either side of an upright bar, palm to the panel, fingers to the right. Its frame
 /// is world's at the bar's middle.
 Grasp bar_grasp(double width) {
-  HandPosture preferred;
-  preferred << 25, 0, 0, 0, -4,  //
-      5, 50, 50, 80, 80,         //
-      15, 38, 38, 95, 95,        //
-      30, 25, 25, 60, 60,        //
-      35, 0, 0, 0, 0;
   const double x = 0.5 * width;
   const Vector3 right = Vector3::UnitX();
   return {hand_pose({-0.0443, -0.1067, -0.0186}, {0.878, 0.377, 0.296}, {0.311, -0.918, 0.246}),
           {{0, {-x, 0.0, 0.0}, -right, kThumbDepth},
            {1, {x, 0.0, 0.009}, right, kFingerDepth},
            {2, {x, 0.0, -0.009}, right, kFingerDepth}},
-          posture_of_degrees(preferred),
+          posture_of_degrees(
+              {{25, 0, 0, 0, -4}, {5, 50, 50, 80, 80}, {15, 38, 38, 95, 95}, {30, 25, 25, 60, 60}, {35}}),
           0.014,
           -Vector3::UnitY()};
 }
@@ -284,47 +229,6 @@ ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& 
   script.then(0.9, shifted(off, kBeside), relaxed_posture());
   return script.motion();
 }
-
-}  // namespace
-
-static ScriptedMotion press_button() {
-  return push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0);
-}
-
-/// Down on its end, which stands up at 20 degrees.
-static ScriptedMotion flip_switch() {
-  return push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2);
-}
-
-static ScriptedMotion pull_lever() {
-  return push({0.16, 0.085, 0.368}, Vector3::UnitZ(), {0.0, 0.0, -0.03}, 1.2);
-}
-
-/// A quarter of a turn by its upper arm.
-static ScriptedMotion turn_valve() {
-  const Vector3 axle(0.01, 0.12, 0.34);
-  Script script("panel");
-  Grip grip(script, bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
-  grip.take(kBeside).hold(0.3).turn_about(1.6, axle, turn(60.0, Vector3::UnitY())).let_go(kBeside);
-  return script.motion();
-}
-
-static ScriptedMotion open_drawer() {
-  Script script("panel");
-  Grip grip(script, rail_grasp(0.012), {-0.13, 0.10, 0.15});
-  grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
-  return script.motion();
-}
-
-static ScriptedMotion open_door() {
-  const Vector3 hinge(0.2, 0.14, 0.17);
-  Script script("panel");
-  Grip grip(script, bar_grasp(0.012), {0.075, 0.10, 0.17});
-  grip.take(kBeside).hold(0.3).turn_about(2.0, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
-  return script.motion();
-}
-
-namespace {
 
 constexpr double kHatchFace = 0.115;  // where a fingertip is that turns a latch: before the hatch [m]
 
@@ -371,80 +275,121 @@ Grasp tongs_grasp(double angle) {
   return grasp;
 }
 
-}  // namespace
-
 /// Both latches, then the hatch by its handle.
-static ScriptedMotion open_hatch() {
+ScriptedMotion open_hatch() {
   const Vector3 hinge(0.12, 0.14, 0.25);
   Script script("hatch");
   script.then(0.0, shifted(touching({-0.09, 0.02, 0.30}, -Vector3::UnitY()), kBeside), relaxed_posture());
   turn_latch(script, {-0.13, 0.123, 0.33}, 1.0);
   turn_latch(script, {-0.13, 0.123, 0.17}, -1.0);
-  Grip grip(script, bar_grasp(0.012), {-0.07, 0.10, 0.25});
-  grip.take(kBeside).hold(0.3).turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ())).let_go({0.0, -0.03, 0.0});
-  return script.motion();
+  return Grip(script, bar_grasp(0.012), {-0.07, 0.10, 0.25})
+      .take(kBeside)
+      .hold(0.3)
+      .turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ()))
+      .let_go({0.0, -0.03, 0.0});
 }
 
-static ScriptedMotion squeeze_tongs() {
+ScriptedMotion squeeze_tongs() {
   const Grasp open_grasp = tongs_grasp(0.29);
   const GraspPostures half(tongs_grasp(0.2)), closed(tongs_grasp(0.1));
   const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
   const Pose before = shifted(at, kApproach * open_grasp.retreat);
   const Vector3 aside(0.05, -kAside, 0.02);
-  Script script("tongs");
-  Grip grip(script, open_grasp, scene_object());
+  Grip grip(Script("tongs"), open_grasp, scene_object());
   const GraspPostures& open = grip.take(aside, kApproach, 0.15).postures();
+  Script& script = grip.script();
   for (int squeeze = 0; squeeze < 2; ++squeeze)
     script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, half.pressing).hold(0.2);
-  script.then(0.5, at, open.pressing);
-  script.then(0.7, at, open.near).by_way_of(open.touching, 1.0 - open.touching_share);
-  script.then(0.5, at, open.open).then(0.7, before, open.open, 0.1 * open_grasp.retreat);
-  script.then(0.8, shifted(before, aside), relaxed_posture());
+  release(script.then(0.5, at, open.pressing), open, at, before, open_grasp.retreat, shifted(before, aside));
   return script.motion();
 }
-
-namespace {
 
 struct MotionEntry {
   const char* name;
   ScriptedMotion (*make)();
 };
-constexpr MotionEntry kMotions[] = {{"grasp_cube", grasp_cube},
-                                    {"grasp_ball", grasp_ball},
-                                    {"catch_ball", catch_ball},
-                                    {"pinch_long", pinch_long},
-                                    {"lift_flat", lift_flat},
-                                    {"nudge", nudge},
-                                    {"tap", tap},
-                                    {"slap", slap},
-                                    {"press_button", press_button},
-                                    {"flip_switch", flip_switch},
-                                    {"turn_valve", turn_valve},
-                                    {"pull_lever", pull_lever},
-                                    {"open_drawer", open_drawer},
-                                    {"open_door", open_door},
-                                    {"open_hatch", open_hatch},
-                                    {"squeeze_tongs", squeeze_tongs}};
+const MotionEntry kMotions[] = {
+    {"grasp_cube",
+     [] {
+       return reach_and_carry("cube", {0.05, -kAside, 0.02});
+     }},
+    {"grasp_ball",
+     [] {
+       return reach_and_carry("ball", {0.05, -kAside, 0.02});
+     }},
+    {"catch_ball", catch_ball},
+    {"pinch_long",
+     [] {
+       return reach_and_carry("long_cuboid", {0.04, -kAside, 0.0});
+     }},
+    {"lift_flat",
+     [] {
+       return reach_and_carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04});
+     }},
+    {"nudge", nudge},
+    {"tap", tap},
+    {"slap", slap},
+    {"press_button",
+     [] {
+       return push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0);
+     }},
+    // Down on its end, which stands up at 20 degrees.
+    {"flip_switch",
+     [] {
+       return push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2);
+     }},
+    // A quarter of a turn by its upper arm.
+    {"turn_valve",
+     [] {
+       const Vector3 axle(0.01, 0.12, 0.34);
+       Grip grip(Script("panel"), bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
+       return grip.take(kBeside)
+           .hold(0.3)
+           .turn_about(1.6, axle, turn(60.0, Vector3::UnitY()))
+           .let_go(kBeside);
+     }},
+    {"pull_lever",
+     [] {
+       return push({0.16, 0.085, 0.368}, Vector3::UnitZ(), {0.0, 0.0, -0.03}, 1.2);
+     }},
+    {"open_drawer",
+     [] {
+       Grip grip(Script("panel"), rail_grasp(0.012), {-0.13, 0.10, 0.15});
+       return grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
+     }},
+    {"open_door",
+     [] {
+       Grip grip(Script("panel"), bar_grasp(0.012), {0.075, 0.10, 0.17});
+       grip.take(kBeside).hold(0.3).turn_about(2.0, {0.2, 0.14, 0.17}, turn(60.0, Vector3::UnitZ()));
+       return grip.let_go({0.0, -0.03, 0.0});
+     }},
+    {"open_hatch", open_hatch},
+    {"squeeze_tongs", squeeze_tongs}};
 
 }  // namespace
 
+ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
+                               const Vector3& aside) {
+  Grip grip(Script(scene), grasp, object);
+  grip.take(aside, kApproach, 0.15).hold(0.4);
+  carry_and_release(grip.script(), grasp, grip.postures(), object,
+                    {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())}, aside);
+  return grip.script().motion();
+}
+
 std::vector<std::string> motion_names() {
-  std::vector<std::string> names;
-  for (const MotionEntry& entry : kMotions) names.emplace_back(entry.name);
-  return names;
+  return text::names_of(kMotions);
 }
 
 ScriptedMotion make_motion(const std::string& name) {
-  std::string known;
   for (const MotionEntry& entry : kMotions) {
-    if (name == entry.name) {
-      ScriptedMotion motion = entry.make();
-      motion.name = name;
-      return motion;
-    }
-    known += std::string(known.empty() ? "" : ", ") + entry.name;
+    if (name != entry.name) continue;
+    ScriptedMotion motion = entry.make();
+    motion.name = name;
+    return motion;
   }
-  throw std::invalid_argument("motion '" + name + "' is not known: use one of " + known);
+  throw std::invalid_argument("motion '" + name + "' is not known: use one of " +
+                              text::joined(motion_names()));
 }
 
 }  // namespace mrhi

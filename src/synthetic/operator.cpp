@@ -6,7 +6,6 @@
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
 #include "motions.h"
-#include "scripted_grasp.h"
 
 namespace mrhi {
 namespace {

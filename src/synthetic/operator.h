@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "motions.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
-#include "scripted_grasp.h"
 
 namespace mrhi {
 
@@ -34,7 +34,6 @@ struct OperatorSkill {
 };
 
 OperatorSkill beginner_skill();
-OperatorSkill veteran_skill();
 
 /// One person of the group ("beginner" or "veteran"): each figure of the group's with a deviation of a fifth.
 /// Throws std::invalid_argument that lists the groups.

@@ -121,14 +121,10 @@ OperatorSkill beginner_skill() {
   return skill_of(&Figure::beginner);
 }
 
-OperatorSkill veteran_skill() {
-  return skill_of(&Figure::veteran);
-}
-
 OperatorSkill draw_skill(const std::string& group, std::uint64_t seed) {
   if (group != "beginner" && group != "veteran")
     throw std::invalid_argument("group '" + group + "' is not known: use one of beginner, veteran");
-  OperatorSkill skill = group == "beginner" ? beginner_skill() : veteran_skill();
+  OperatorSkill skill = skill_of(group == "beginner" ? &Figure::beginner : &Figure::veteran);
   Random random(seed);
   for (const Figure& figure : kFigures)
     if (figure.personal)

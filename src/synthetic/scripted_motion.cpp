@@ -151,33 +151,16 @@ HandJoints hand_joints(const HandSkeleton& skeleton, Side side, const Pose& wris
 }
 
 HandPosture relaxed_posture() {
-  HandPosture p;
-  p << 10, 2, 0, -2, -4,   //
-      5, 25, 28, 30, 32,   //
-      15, 30, 34, 36, 36,  //
-      20, 18, 20, 22, 22,  //
-      10, 0, 0, 0, 0;
-  return posture_of_degrees(p);
+  return posture_of_degrees(
+      {{10, 2, 0, -2, -4}, {5, 25, 28, 30, 32}, {15, 30, 34, 36, 36}, {20, 18, 20, 22, 22}, {10}});
 }
 
 HandPosture flat_posture() {
-  HandPosture p;
-  p << -5, 0, 0, 0, 2,  //
-      -5, 4, 4, 4, 4,   //
-      5, 6, 6, 6, 6,    //
-      5, 4, 4, 4, 4,    //
-      0, 0, 0, 0, 0;
-  return posture_of_degrees(p);
+  return posture_of_degrees({{-5, 0, 0, 0, 2}, {-5, 4, 4, 4, 4}, {5, 6, 6, 6, 6}, {5, 4, 4, 4, 4}});
 }
 
 HandPosture pointing_posture() {
-  HandPosture p;
-  p << 20, 0, 0, 0, 0,    //
-      20, 8, 68, 70, 72,  //
-      30, 8, 95, 95, 92,  //
-      35, 5, 55, 55, 55,  //
-      25, 0, 0, 0, 0;
-  return posture_of_degrees(p);
+  return posture_of_degrees({{20}, {20, 8, 68, 70, 72}, {30, 8, 95, 95, 92}, {35, 5, 55, 55, 55}, {25}});
 }
 
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal) {
@@ -197,8 +180,9 @@ Quaternion turn(double degrees, const Vector3& axis) {
   return Quaternion(Eigen::AngleAxisd(degrees * M_PI / 180.0, axis));
 }
 
-HandPosture posture_of_degrees(const HandPosture& degrees) {
-  return (M_PI / 180.0) * degrees;
+HandPosture posture_of_degrees(const double (&degrees)[kFingerJoints][kFingers]) {
+  using Rows = Eigen::Matrix<double, kFingerJoints, kFingers, Eigen::RowMajor>;
+  return (M_PI / 180.0) * Rows(Eigen::Map<const Rows>(&degrees[0][0]));
 }
 
 HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {

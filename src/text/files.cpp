@@ -4,10 +4,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <locale>
-#include <stdexcept>
 
 #include "mr_hand_interaction/input_error.h"
 #include "text.h"

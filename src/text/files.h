@@ -77,6 +77,7 @@ class CsvRows {
   CsvRows& operator<<(const std::string& text);
   CsvRows& operator<<(const char* text) { return *this << std::string(text); }
   CsvRows& operator<<(const Vector3& value) { return *this << value.x() << value.y() << value.z(); }
+  CsvRows& operator<<(const Quaternion& q) { return *this << q.x() << q.y() << q.z() << q.w(); }
   /// As many empty cells as it would be, if it is not there.
   template <class Value>
   CsvRows& operator<<(const std::optional<Value>& value) {
@@ -108,6 +109,12 @@ class CsvFile {
   void skip(std::size_t cells) { rows_.skip(cells); }
   /// Throws std::runtime_error if the disk does not take it.
   void end_row();
+  /// A whole row, likewise.
+  template <class... Values>
+  void row(const Values&... values) {
+    (rows_ << ... << values);
+    end_row();
+  }
   void flush();
 
  private:

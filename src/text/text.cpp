@@ -3,7 +3,6 @@
 #include <locale.h>
 #include <stdlib.h>
 
-#include <algorithm>
 #include <locale>
 #include <sstream>
 

@@ -20,6 +20,15 @@ std::string vector(const Vector3& value);
 /// The number that is the whole text, with a decimal point whatever the locale; nothing of anything else.
 std::optional<double> to_number(const std::string& text);
 std::string joined(const std::vector<std::string>& names);
+
+/// The names of items that have one each.
+template <typename Items>
+std::vector<std::string> names_of(const Items& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.emplace_back(item.name);
+  return names;
+}
+
 /// What is between the commas: one more than there are.
 std::vector<std::string> split(const std::string& text);
 

@@ -112,41 +112,6 @@ class Tags {
   bool declares_ = false, strange_ = false;
 };
 
-}  // namespace
-
-bool is_utf8(const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
-    if (length == 0 || at + length > text.size()) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
-    at += length;
-  }
-  return true;
-}
-
-std::optional<std::string> xml_danger(const std::string& xml) {
-  if (xml.size() > kMostXmlBytes)
-    return "is longer than " + std::to_string(kMostXmlBytes) + " bytes; allowed: at most that";
-  if (has_control_characters(xml) || !is_utf8(xml))
-    return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
-  Tags tags(xml);
-  tags.follow();
-  if (tags.declares()) return "has a document type; allowed: none";
-  if (tags.strange())
-    return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
-  if (tags.deepest() > kDeepest)
-    return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
-  if (tags.elements() > kMostElements)
-    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMostElements);
-  if (tags.attributes() > kMostAttributes)
-    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
-           std::to_string(kMostAttributes);
-  return {};
-}
-
-namespace {
-
 constexpr char kDone = 'd', kFailed = 'f';
 
 // Sanitizers keep terabytes of addresses for themselves.
@@ -228,6 +193,37 @@ std::string read_all(int from, const ChildLimits& limits) {
 }
 
 }  // namespace
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
+    if (length == 0 || at + length > text.size()) return false;
+    for (std::size_t i = 1; i < length; ++i)
+      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
+    at += length;
+  }
+  return true;
+}
+
+std::optional<std::string> xml_danger(const std::string& xml) {
+  if (xml.size() > kMostXmlBytes)
+    return "is longer than " + std::to_string(kMostXmlBytes) + " bytes; allowed: at most that";
+  if (has_control_characters(xml) || !is_utf8(xml))
+    return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
+  Tags tags(xml);
+  tags.follow();
+  if (tags.declares()) return "has a document type; allowed: none";
+  if (tags.strange())
+    return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
+  if (tags.deepest() > kDeepest)
+    return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
+  if (tags.elements() > kMostElements)
+    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMostElements);
+  if (tags.attributes() > kMostAttributes)
+    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
+           std::to_string(kMostAttributes);
+  return {};
+}
 
 std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
   int ends[2];

@@ -3,7 +3,6 @@
 #include <yaml-cpp/eventhandler.h>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <sstream>
 

@@ -31,18 +31,12 @@ std::string beside(const std::string& urdf_file, const std::vector<std::string>&
   return YAML::Dump(node);
 }
 
-std::string names_of(const std::vector<Joint>& joints) {
-  std::vector<std::string> names;
-  names.reserve(joints.size());
-  for (const Joint& joint : joints) names.push_back(joint.name);
-  return names.empty() ? "none, as it has no joints" : text::joined(names);
-}
-
 void check_goals(const TaskObject& object, const std::vector<Goal>& goals, const Scene& scene) {
   for (const Goal& goal : goals) {
     if (goal.kind == GoalKind::joint && !find_joint(scene, goal.joint))
-      throw SceneError(object.file + ": a goal asks for joint '" + goal.joint +
-                       "', which is not there; allowed: " + names_of(scene.joints));
+      throw SceneError(
+          object.file + ": a goal asks for joint '" + goal.joint + "', which is not there; allowed: " +
+          (scene.joints.empty() ? "none, as it has no joints" : text::joined(text::names_of(scene.joints))));
   }
 }
 
@@ -149,7 +143,7 @@ ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals
 
 ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
                          const SceneOptions& options) {
-  ObjectModel model = load_object({fixture.name, fixture.file, fixture.pose, {}}, {}, scene_folders, options);
+  ObjectModel model = load_object(fixture, {}, scene_folders, options);
   if (model.is_device())
     throw SceneError(fixture.file + ": the fixture '" + fixture.name +
                      "' is of links on joints; allowed: one link with a shape");

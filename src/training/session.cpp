@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <random>
 #include <sstream>
@@ -13,7 +12,6 @@
 #include "../text/files.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/training/session_setup.h"
 #include "revision.h"
 
 namespace mrhi {
@@ -80,28 +78,6 @@ std::string parameters_text(const Configuration& configuration) {
   for (const std::string& name : parameter_names())
     all += name + ": " + parameter_text(configuration, name) + '\n';
   return all;
-}
-
-std::string mesh_file(const std::string& uri, const SceneOptions& options) {
-  const std::string kFile = "file://";
-  return uri.compare(0, kFile.size(), kFile) == 0 ? uri.substr(kFile.size())
-                                                  : options.resolve_package_uri(uri);
-}
-
-/// A line for each mesh of the bodies, by the name of its file: where a package lies may change.
-void add_meshes(const Scene& scene, const SceneOptions& options, std::map<std::string, std::string>& sums) {
-  const auto add = [&](const auto& shapes) {
-    for (const auto& placed : shapes) {
-      const auto* mesh = std::get_if<Mesh>(&placed.shape);
-      if (mesh == nullptr) continue;
-      const std::string file = mesh_file(mesh->uri, options);
-      sums[fs::path(file).filename().string()] = sha256(bytes_of(file));
-    }
-  };
-  for (const Body& body : scene.bodies) {
-    add(body.shapes);
-    add(body.visuals);
-  }
 }
 
 std::string list_of(const std::map<std::string, std::string>& sums) {
@@ -369,7 +345,9 @@ SessionSetup session_setup(const std::string& task_file, const Task& task, Confi
     setup.files[free_name(setup, name, ".urdf")] = bytes_of(urdf);
     const fs::path yaml = fs::path(urdf).replace_extension(".yaml");
     if (fs::exists(yaml)) setup.files[free_name(setup, name, ".yaml")] = bytes_of(yaml.string());
-    add_meshes(load_scene(urdf, options), options, meshes);
+    // By the names of the files: where a package lies may change.
+    for (const SceneFile& mesh : load_scene(urdf, options).mesh_files)
+      meshes[fs::path(mesh.path).filename().string()] = sha256(bytes_of(mesh.path));
   };
   for (const TaskObject& object : task.objects) add(object.name, object.file);
   for (const Fixture& fixture : task.fixtures) add(fixture.name, fixture.file);

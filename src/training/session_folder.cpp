@@ -28,33 +28,22 @@ const char *const kTrials = "trials.csv", *const kEvents = "events.csv", *const 
 const char* const kTrialColumns =
     "trial,object,condition,repetition,result,start,completion_time,manipulation_time,maintenance_time,"
     "release_time,attempts,drops,path_length,grip_force_mean,grip_force_max,release_drift,release_speed,"
-    "tracking_losses,grasps,manipulation_drops,touches,arrival_speed,misplacement,misalignment,operator_"
-    "speed,"
-    "operator_spin";
+    "tracking_losses,grasps,manipulation_drops,touches,arrival_speed,misplacement,misalignment,"
+    "operator_speed,operator_spin";
 const char* const kEventColumns = "time,trial,stage,event,object,detail,stamp,utc";
 const char* const kHandColumns = "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching";
 
 /// A line of a table, of numbers with six decimals.
-class Line {
- public:
-  Line() {
-    stream_.imbue(std::locale::classic());
-    stream_.setf(std::ios::fixed);
-  }
-  template <class Value>
-  Line& operator<<(const Value& value) {
-    row_ << value;
-    return *this;
-  }
-  std::string text() {
-    row_.end_row();
-    return stream_.str();
-  }
-
- private:
-  std::ostringstream stream_;
-  CsvRows row_{stream_};
-};
+template <class... Values>
+std::string line_of(const Values&... values) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream.setf(std::ios::fixed);
+  CsvRows row(stream);
+  (row << ... << values);
+  row.end_row();
+  return stream.str();
+}
 
 constexpr std::size_t kLargestTable = std::size_t{256} << 20;  // of a table
 
@@ -236,7 +225,25 @@ std::string holder(const std::string& file) {
 class FolderLock {
  public:
   /// Throws SessionError that names the process and machine that has it, or says that it cannot be written.
-  explicit FolderLock(const std::string& folder);
+  explicit FolderLock(const std::string& folder) {
+    const std::string file = folder + kLockFile;
+    file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
+    struct stat opened {};
+    if (file_ >= 0 && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
+      close(file_);
+      throw SessionError(file + ": is no file; allowed: a file, or none yet");
+    }
+    if (file_ < 0)
+      throw SessionError(file + ": cannot be written: " + std::strerror(errno) +
+                         "; allowed: a folder to write to with space left");
+    if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
+      write_holder(file_);
+      return;
+    }
+    const std::string has_it = holder(file);
+    close(file_);
+    throw SessionError(folder + ": is in use by " + has_it + "; allowed: another folder, or end that first");
+  }
   ~FolderLock() { close(file_); }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -244,26 +251,6 @@ class FolderLock {
  private:
   int file_ = -1;
 };
-
-FolderLock::FolderLock(const std::string& folder) {
-  const std::string file = folder + kLockFile;
-  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
-  struct stat opened {};
-  if (file_ >= 0 && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
-    close(file_);
-    throw SessionError(file + ": is no file; allowed: a file, or none yet");
-  }
-  if (file_ < 0)
-    throw SessionError(file + ": cannot be written: " + std::strerror(errno) +
-                       "; allowed: a folder to write to with space left");
-  if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
-    write_holder(file_);
-    return;
-  }
-  const std::string has_it = holder(file);
-  close(file_);
-  throw SessionError(folder + ": is in use by " + has_it + "; allowed: another folder, or end that first");
-}
 
 SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& header,
                              const SessionSetup& setup)
@@ -302,11 +289,10 @@ void SessionFolder::check(const SessionHeader& header, const SessionSetup& setup
   } else if (is_there(folder / "setup") && !is_there(folder / "setup" / "SHA256SUMS")) {
     throw SessionError((folder / "setup").string() + ": is no session's; allowed: another folder");
   }
-  for (const char* const name : {kTrials, kEvents, kHands, kHandsRaw}) {
+  const std::pair<const char*, const char*> tables[]{
+      {kTrials, kTrialColumns}, {kEvents, kEventColumns}, {kHands, kHandColumns}, {kHandsRaw, kHandColumns}};
+  for (const auto& [name, columns] : tables) {
     const std::string table = (folder / name).string();
-    const char* const columns = name == kTrials   ? kTrialColumns
-                                : name == kEvents ? kEventColumns
-                                                  : kHandColumns;
     rows_in(table, columns, contents_of(table, columns).lines);
   }
 }
@@ -365,35 +351,26 @@ void SessionFolder::check_there() const {
 }
 
 void SessionFolder::log(const EventRow& row) {
-  Line line;
-  line << row.time;
-  line << (row.trial > 0 ? std::make_optional(row.trial) : std::nullopt);
-  line << to_string(row.stage) << row.event << row.object << row.detail;
-  line << stamp_text(row.stamp) << row.utc;
-  events_.write(line.text());
+  const auto trial = row.trial > 0 ? std::make_optional(row.trial) : std::nullopt;
+  events_.write(line_of(row.time, trial, to_string(row.stage), row.event, row.object, row.detail,
+                        stamp_text(row.stamp), row.utc));
 }
 
 void SessionFolder::log(const TrialRow& row) {
   const TrialMeasures& m = row.measures;
-  Line line;
-  line << row.trial << row.object << condition_ << row.repetition << to_string(row.result);
-  line << row.start << m.completion_time;
-  for (const std::optional<double>& time : m.stage_times) line << time;
-  line << m.attempts << m.drops << m.path_length << m.grip_force_mean << m.grip_force_max;
-  line << m.release_drift << m.release_speed << m.tracking_losses;
-  line << m.attempts << m.manipulation_drops << m.touches;
-  line << m.arrival_speed << m.misplacement << m.misalignment << m.operator_speed << m.operator_spin;
-  trials_.write(line.text());
+  trials_.write(line_of(row.trial, row.object, condition_, row.repetition, to_string(row.result), row.start,
+                        m.completion_time, m.stage_times[0], m.stage_times[1], m.stage_times[2], m.attempts,
+                        m.drops, m.path_length, m.grip_force_mean, m.grip_force_max, m.release_drift,
+                        m.release_speed, m.tracking_losses, m.attempts, m.manipulation_drops, m.touches,
+                        m.arrival_speed, m.misplacement, m.misalignment, m.operator_speed, m.operator_spin));
 }
 
 void SessionFolder::log(const HandRow& row) {
   constexpr int kIndex = 1, kDistal = 3, kTracked = 0, kUntouched = 0;
-  Line line;
-  line << row.time << row.hand << row.side << kIndex << kDistal << kTracked;
-  line << row.start << row.end << row.radius << kUntouched;
   Table& table = row.filtered ? hands_ : hands_raw_;
   if (!table.out.is_open()) open_table(row.filtered ? kHands : kHandsRaw, kHandColumns, table);
-  table.write(line.text());
+  table.write(line_of(row.time, row.hand, row.side, kIndex, kDistal, kTracked, row.start, row.end, row.radius,
+                      kUntouched));
 }
 
 }  // namespace mrhi

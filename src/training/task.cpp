@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include "../math/rotation.h"
@@ -309,10 +308,10 @@ TaskObject read_object(const Element& element) {
   return object;
 }
 
-Fixture read_fixture(const Element& element) {
-  const TaskObject placed = read_placed(element, {"name", "file", "position", "orientation"});
+TaskObject read_fixture(const Element& element) {
+  const TaskObject fixture = read_placed(element, {"name", "file", "position", "orientation"});
   check_has(element, {"name", "file", "position"});
-  return {placed.name, placed.file, placed.start};
+  return fixture;
 }
 
 template <class Item>
@@ -324,8 +323,7 @@ std::vector<Item> read_list(const Element& element, Item (*read)(const Element&)
 }
 
 void check_names(const Element& root, const Task& task) {
-  std::vector<std::string> names;
-  for (const TaskObject& object : task.objects) names.push_back(object.name);
+  std::vector<std::string> names = text::names_of(task.objects);
   for (const Fixture& fixture : task.fixtures) names.push_back(fixture.name);
   std::sort(names.begin(), names.end());
   const auto twice = std::adjacent_find(names.begin(), names.end());

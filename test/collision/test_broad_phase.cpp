@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "collision/broad_phase.h"
+#include "collision/neighbours.h"
 #include "random_capsules.h"
 
 namespace mrhi {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "collision/closest_features.h"
-#include "collision/way_out.h"
 #include "mesh_shapes.h"
 #include "placed_shapes.h"
 

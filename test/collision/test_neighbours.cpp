@@ -104,14 +104,14 @@ TEST(Neighbours, tell_no_more_clearance_than_there_is_wherever_hand_and_body_are
   EXPECT_GT(apart, 100);
 }
 
-TEST(BodyBox, holds_all_shapes_of_a_body_and_no_more) {
+TEST(BoxAround, holds_all_shapes_of_a_body_and_no_more) {
   Body body = testing::box_body(Vector3(0.02, 0.04, 0.06), 0.1);
   const Quaternion quarter_about_x(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitX()));
   body.shapes.push_back({Cylinder{0.01, 0.05}, {Vector3(0.1, 0, 0), quarter_about_x}});
   body.shapes.push_back({Sphere{0.01}, {Vector3(0, 0, 0.05), quarter_about_x}});
-  const BodyBox box = box_around(body);
-  EXPECT_LE((box.centre - box.half - Vector3(-0.01, -0.05, -0.03)).norm(), 1e-15);
-  EXPECT_LE((box.centre + box.half - Vector3(0.11, 0.05, 0.06)).norm(), 1e-15);
+  const Eigen::AlignedBox3d box = box_around(body);
+  EXPECT_LE((box.min() - Vector3(-0.01, -0.05, -0.03)).norm(), 1e-15);
+  EXPECT_LE((box.max() - Vector3(0.11, 0.05, 0.06)).norm(), 1e-15);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "collision/body_manifold.h"
-#include "collision/flat_faces.h"
 #include "collision/mesh_collision.h"
-#include "collision/mesh_shape.h"
+#include "collision/mesh_surface.h"
+#include "collision/mesh_tree.h"
 #include "random_capsules.h"
 #include "support/tessellated.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "collision/way_out.h"
+#include "collision/closest_features.h"
 
 namespace mrhi {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/simulation.h"
 #include "scene/scene_files.h"
 #include "support/joints.h"
 
@@ -120,6 +121,23 @@ TEST(JointScene, limits_that_are_none_and_mimic_load_with_a_warning) {
   for (const std::string& inside : {std::string(R"(<limit lower="1" upper="0" effort="1" velocity="1"/>)"),
                                     kLimit + R"(<mimic joint="other"/>)"})
     EXPECT_EQ(error(test::robot(door + joint("hinge", "revolute", "frame", "door", inside))), "");
+}
+
+/// Upper arm, elbow and forearm, of which the first and the last are inside each other.
+TEST(JointScene, links_of_a_mechanism_that_overlap_load_with_a_warning_and_do_not_push_each_other) {
+  const std::string arm = test::link("upper", kPart) + test::link("elbow", kPart) +
+                          test::link("fore", kPart) + joint("u", "floating", "world", "upper") +
+                          joint("a", "continuous", "upper", "elbow") +
+                          joint("b", "continuous", "elbow", "fore", "", R"(xyz="0.02 0 0")");
+  Scene scene = load(test::robot(arm));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  test::expect_words(scene.warnings[0], {"do not touch each other", "'upper' and 'fore'"});
+  Simulation simulation(scene, Configuration());
+  simulation.advance({0, {}});
+  for (int i = 1; i <= 20; ++i) simulation.advance({i * 10'000'000, {}});
+  for (const BodyState& body : simulation.state().bodies) EXPECT_EQ(body.linear_momentum, Vector3::Zero());
+  const std::string other = test::link("other", kPart) + joint("o", "floating", "world", "other");
+  test::expect_words(error(test::robot(arm + other)), {"'other' is 0.05 m in 'upper'", "at most 0.001 m"});
 }
 
 TEST(JointScene, refuses_a_chain_of_more_than_32_in_a_file_and_in_what_is_spawned) {

@@ -122,5 +122,27 @@ TEST(HandStrength, all_points_of_a_flat_palm_have_its_mass_together) {
   EXPECT_NEAR(struck.norm() / 0.4, (1.0 + Material().restitution) * 0.5 * kSpeed, 1e-9);
 }
 
+// A heavy cube, which the difference of the forces hardly moves: thumb 35 mm deep in it, index 7 mm.
+TEST(HandStrength, a_grasp_is_balanced_by_forces_and_not_by_depths) {
+  Configuration configuration = testing::implicit_configuration();
+  configuration.contact.hand = HandStrength::of_a_person();
+  configuration.contact.grasp_assist = false;
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(0.05), 100.0)), configuration);
+  bool grasped = false;
+  testing::play(
+      simulation, 0.0, 0.5, 120.0,
+      [](double t) {
+        const double closed = testing::smooth(t, 0.2);
+        Hand hand = testing::empty_hand();
+        testing::add_fingertip(hand, capsule_index(1, 3), Vector3(0.035 - 0.017 * closed, 0, 0),
+                               Vector3::UnitX());
+        testing::add_fingertip(hand, capsule_index(0, 3), Vector3(-0.035 + 0.045 * closed, 0, 0),
+                               -Vector3::UnitX());
+        return hand;
+      },
+      [&](const Simulation& s) { grasped = grasped || testing::has_event(s, EventKind::grasp_begin); });
+  EXPECT_TRUE(grasped);
+}
+
 }  // namespace
 }  // namespace mrhi

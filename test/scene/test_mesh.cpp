@@ -51,6 +51,34 @@ TEST_F(MeshScene, IsScaledAlsoByAMirror) {
   EXPECT_NEAR(0.3, scene_.bodies.at(0).bounding_radius, 1e-6);
 }
 
+// A file of one group is read by ourselves; an empty second group leaves it to assimp.
+TEST_F(MeshScene, OfAnObjIsTheSameWhoeverReadsIt) {
+  std::string piece = "# piece\no piece\nvn 0 0 1\nvt 0 0\n";
+  for (const char* vertex : {"0.0123456789 -1e-3 0", "  0.1 3.00000001E-2\t0.5e-1",
+                             "-0.07 0.04 0.1234567891234", "+0.02 0.05 1.25e-2", "0.033333333 0.011 -0.1"})
+    piece += std::string("v ") + vertex + "\r\n";
+  for (const char* face : {"1 2/1 3/1/1", "1//1 3//1 4", "2 5 3", "1 5 2 ", "4 3 5", "1 4 5"})
+    piece += std::string("f ") + face + "\n";
+  std::string cube;
+  for (int i = 0; i < 8; ++i)
+    cube += std::string("v ") + (i & 1 ? "0.1 " : "0 ") + (i & 2 ? "0.1 " : "0 ") + (i & 4 ? "0.1\n" : "0\n");
+  cube += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  folder_.write("ours.obj", cube);
+  folder_.write("theirs.obj", cube + "g nothing\n");
+  EXPECT_EQ(load("filename=\"ours.obj\"").triangles->triangles,
+            load("filename=\"theirs.obj\"").triangles->triangles);
+  for (const char* scale : {"", " scale=\"1 -2 3\""}) {
+    folder_.write("ours.obj", piece);
+    folder_.write("theirs.obj", piece + "g nothing\n");
+    const Mesh ours = load(std::string("filename=\"ours.obj\"") + scale),
+               theirs = load(std::string("filename=\"theirs.obj\"") + scale);
+    ASSERT_EQ(ours.triangles->vertices.size(), theirs.triangles->vertices.size());
+    for (std::size_t v = 0; v < 5; ++v)  // assimp rounds differently
+      EXPECT_LT((ours.triangles->vertices[v] - theirs.triangles->vertices[v]).norm(), 1e-7);
+    EXPECT_EQ(ours.triangles->triangles, theirs.triangles->triangles);
+  }
+}
+
 TEST_F(MeshScene, IsReadFromAnAsciiStl) {
   const char* const facets[] = {"0 0 0 0 .1 0 .1 0 0", "0 0 0 .1 0 0 0 0 .1", "0 0 0 0 0 .1 0 .1 0",
                                 ".1 0 0 0 .1 0 0 0 .1"};

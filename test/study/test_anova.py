@@ -131,7 +131,7 @@ class AgreesWithOthers(unittest.TestCase):
 
 class ManyStudies(unittest.TestCase):
     """Rates of significant results among seeded studies; the bounds hold for 999 of 1000 such counts."""
-    STUDIES = 1000
+    STUDIES = 500
 
     def rates(self, mixing, effect, field='p', sizes=(15, 15)):
         random, groups = np.random.RandomState(20), np.repeat(range(len(sizes)), sizes)

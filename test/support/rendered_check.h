@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "collision/near_bodies.h"
+#include "collision/neighbours.h"
 #include "support/finger_angles.h"
 #include "support/fixtures.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "synthetic/scripted_grasp.h"
+#include "synthetic/motions.h"
 
 namespace mrhi {
 namespace {

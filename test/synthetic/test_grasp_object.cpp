@@ -26,6 +26,19 @@ Scene scene_of(const test::Folder& folder, const Object& object) {
                     {});
 }
 
+/// Four walls, a floor that is the narrowest through the centre, but that no hand reaches, and a handle.
+std::string mug() {
+  const std::string wall = R"(<box size="0.06 0.003 0.08"/>)", across = R"(<box size="0.003 0.06 0.08"/>)";
+  return collision(wall, R"(<origin xyz="0 -0.0285 0"/>)") +
+         collision(wall, R"(<origin xyz="0 0.0285 0"/>)") +
+         collision(across, R"(<origin xyz="-0.0285 0 0"/>)") +
+         collision(across, R"(<origin xyz="0.0285 0 0"/>)") +
+         collision(R"(<box size="0.06 0.06 0.003"/>)", R"(<origin xyz="0 0 -0.0385"/>)") +
+         collision(R"(<box size="0.008 0.01 0.05"/>)", R"(<origin xyz="0.052 0 0"/>)") +
+         collision(R"(<box size="0.02 0.01 0.008"/>)", R"(<origin xyz="0.04 0 0.021"/>)") +
+         collision(R"(<box size="0.02 0.01 0.008"/>)", R"(<origin xyz="0.04 0 -0.021"/>)");
+}
+
 class GraspObject : public ::testing::TestWithParam<Object> {};
 
 // Carried by 80 mm: 60 mm of that, in the hand, while it has not opened.
@@ -56,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Object{"can", collision(R"(<cylinder radius="0.033" length="0.1"/>)")},
                       Object{"lying_can", collision(R"(<cylinder radius="0.025" length="0.1"/>)"),
                              "1.5708 0 0.5"},
-                      Object{"ball", collision(R"(<sphere radius="0.033"/>)")},
+                      Object{"ball", collision(R"(<sphere radius="0.033"/>)")}, Object{"mug", mug()},
+                      Object{"turned_mug", mug(), "0.4 0.7 1.9"},
                       Object{"pen", collision(R"(<capsule radius="0.006" length="0.12"/>)"), "0 1.5708 0"},
                       Object{"plate", collision(R"(<box size="0.09 0.09 0.012"/>)"), "0 0 0.3"}),
     [](const auto& object) { return std::string(object.param.name); });

@@ -66,7 +66,7 @@ TEST_F(TaskFile, reads_every_key) {
   EXPECT_EQ(folder_.path() + "/a.urdf", task.objects[0].file);
   EXPECT_EQ(1.0, task.objects[0].start.orientation.z());
   EXPECT_EQ(6.0, task.objects[0].twist.angular.z());
-  EXPECT_EQ(1.0, task.fixtures.at(0).pose.position.x());
+  EXPECT_EQ(1.0, task.fixtures.at(0).start.position.x());
   EXPECT_EQ("Up", instruction(task, 0, "a"));
   EXPECT_NEAR(M_PI / 2, *task.goals[1].angle_tolerance, 1e-12);
   EXPECT_EQ(Leaving::stop, task.goals[1].leaving);
@@ -191,8 +191,8 @@ TEST(ObjectModels, are_refused_without_what_the_task_asks_of_them) {
   test::expect_words(error({"cube", "mixed", {}, {}}, {}), {"mixed", "one link 'cube'"});
   test::expect_words(error({"wall", "hatch", {}, {Vector3::UnitX(), Vector3::Zero()}}, {}),
                      {"'wall'", "twist", "a lone body"});
-  EXPECT_TRUE(load_fixture({"cube", "cube", {}}, {"config/scenes"}, {}).scene.bodies.front().fixed);
-  EXPECT_THROW(load_fixture({"wall", "hatch", {}}, {"config/scenes"}, {}), SceneError);
+  EXPECT_TRUE(load_fixture({"cube", "cube", {}, {}}, {"config/scenes"}, {}).scene.bodies.front().fixed);
+  EXPECT_THROW(load_fixture({"wall", "hatch", {}, {}}, {"config/scenes"}, {}), SceneError);
 }
 
 TEST(ObjectModels, of_devices_stand_where_the_task_has_them) {

@@ -64,21 +64,16 @@ struct TaskObject {
   std::string name;
   std::string file;  ///< a URDF with this link: a shipped scene's name, or a path
   Pose start;        ///< of the body, of a device of its URDF's root, in world
-  Twist twist;       ///< world axes
+  Twist twist;       ///< world axes; of a fixture 0
 };
-
-/// A body that never moves.
-struct Fixture {
-  std::string name, file;  ///< as a TaskObject's
-  Pose pose;               ///< of the link in world
-};
+using Fixture = TaskObject;  ///< a body that never moves
 
 /// What a lab writes in YAML. Immutable once loaded.
 struct Task {
   std::string name, instructions;
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   std::vector<TaskObject> objects;    ///< one trial has one of them
-  std::vector<Fixture> fixtures;      ///< there in all trials
+  std::vector<TaskObject> fixtures;   ///< bodies that never move, there in all trials
   std::string scene;         ///< whose fixtures and operator are there too: a name or a path; empty: none
   bool latin_square = true;  ///< order of objects; else as listed
   int repetitions = 1;

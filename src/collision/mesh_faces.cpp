@@ -1,12 +1,133 @@
-#include "flat_faces.h"
+#include "mesh_surface.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 
 namespace mrhi {
 namespace {
+
+/// Exactly the same place is one vertex; what is nearly so has been joined as the file was loaded, if it was.
+bool before(const Vector3& a, const Vector3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+/// A side of a triangle, from vertex `side` to the next.
+struct Side {
+  int triangle = -1, side = 0;
+  bool exists() const { return triangle >= 0; }
+};
+
+/// A side by its ends, the lesser first, and then by its direction.
+struct DirectedSide {
+  int low, high;
+  bool down;
+  Side of;
+
+  bool same_line(const DirectedSide& other) const { return low == other.low && high == other.high; }
+  friend bool operator<(const DirectedSide& a, const DirectedSide& b) {
+    return std::make_tuple(a.low, a.high, a.down, a.of.triangle) <
+           std::make_tuple(b.low, b.high, b.down, b.of.triangle);
+  }
+};
+
+std::vector<DirectedSide> sides_of(const TriangleMesh& mesh) {
+  std::vector<DirectedSide> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+      sides.push_back(
+          {std::min(from, to), std::max(from, to), from > to, {static_cast<int>(t), static_cast<int>(k)}});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+/// The mesh with its vertices in the order of their places, those at one place joined, and its triangles in
+/// the order of their vertices: the same for any order in a file. Vertices that no triangle has are left out.
+///
+/// A triangle is turned to begin with its least vertex, which keeps its sense; what has lost a vertex by
+/// joining has no area and goes.
+TriangleMesh sorted(const TriangleMesh& mesh) {
+  std::vector<char> used(mesh.vertices.size(), 0);
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (const int v : triangle) used[static_cast<std::size_t>(v)] = 1;
+  std::vector<std::size_t> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return before(mesh.vertices[a], mesh.vertices[b]); });
+  TriangleMesh result;
+  std::vector<int> renamed(mesh.vertices.size(), -1);
+  for (const std::size_t v : order) {
+    if (used[v] == 0) continue;
+    if (result.vertices.empty() || result.vertices.back() != mesh.vertices[v])
+      result.vertices.push_back(mesh.vertices[v]);
+    renamed[v] = static_cast<int>(result.vertices.size()) - 1;
+  }
+  for (std::array<int, 3> triangle : mesh.triangles) {
+    for (int& v : triangle) v = renamed[static_cast<std::size_t>(v)];
+    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+    result.triangles.push_back(triangle);
+  }
+  std::sort(result.triangles.begin(), result.triangles.end());
+  return result;
+}
+
+/// Of each triangle's three sides (from vertex k to the next) the triangle and the side beyond it.
+class Neighbourhood {
+ public:
+  /// Of a closed surface whose triangles all face outwards each line has as many sides up as down. Sides of
+  /// one line pair up in the order of their triangles: more than two meet where bodies touch along an edge,
+  /// and any pairing closes it.
+  explicit Neighbourhood(const TriangleMesh& mesh) : beyond_(mesh.triangles.size()) {
+    const std::vector<DirectedSide> sides = sides_of(mesh);
+    const auto set = [this](const Side& of, const Side& beyond) {
+      beyond_[static_cast<std::size_t>(of.triangle)][static_cast<std::size_t>(of.side)] = beyond;
+    };
+    for (auto first = sides.begin(); first != sides.end();) {
+      const auto last = std::find_if(first, sides.end(), [&](const auto& s) { return !s.same_line(*first); });
+      auto up = first, down = std::find_if(first, last, [](const auto&s) { return s.down; });
+      closed_ = closed_ && down - first == last - down;
+      const auto end_of_up = down;
+      for (; up != end_of_up && down != last; ++up, ++down) set(up->of, down->of), set(down->of, up->of);
+      first = last;
+    }
+    find_pieces();
+  }
+
+  const Side& beyond(int triangle, int side) const {
+    return beyond_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(side)];
+  }
+  bool closed() const { return closed_; }        ///< every side has one beyond it, that runs the other way
+  bool one_piece() const { return one_piece_; }  ///< every triangle is reached from every other
+
+ private:
+  void find_pieces() {
+    if (beyond_.empty()) return;
+    std::vector<char> reached(beyond_.size(), 0);
+    std::vector<int> open{0};
+    reached[0] = 1;
+    std::size_t count = 1;
+    while (!open.empty()) {
+      const int triangle = open.back();
+      open.pop_back();
+      for (const Side& next : beyond_[static_cast<std::size_t>(triangle)]) {
+        if (!next.exists() || reached[static_cast<std::size_t>(next.triangle)] != 0) continue;
+        reached[static_cast<std::size_t>(next.triangle)] = 1;
+        open.push_back(next.triangle);
+        ++count;
+      }
+    }
+    one_piece_ = count == beyond_.size();
+  }
+
+  std::vector<std::array<Side, 3>> beyond_;
+  bool closed_ = true, one_piece_ = true;
+};
 
 /// A plane fitted to triangles by their areas, as they are added. With A_i the doubled area vectors (edge x
 /// edge, along the normal) and x_i the middles:
@@ -78,7 +199,7 @@ class FaceFinder {
     std::vector<int> open{seed};
     for (std::size_t next = 0; next < open.size(); ++next) {
       for (int side = 0; side < 3; ++side) {
-        const Neighbourhood::Side beyond = neighbourhood_.beyond(open[next], side);
+        const Side beyond = neighbourhood_.beyond(open[next], side);
         if (!beyond.exists() || face_of_[slot(beyond.triangle)] >= 0) continue;
         if (!goes_on(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
         take(beyond.triangle, face);
@@ -96,7 +217,7 @@ class FaceFinder {
   /// one's apex above the other's plane, A.(apex - corner) / |A|, the lesser of the two: a length, as the
   /// tolerance is. An angle would ask much of slivers, whose apex is near the side that they share. Triangles
   /// that face each other (A.B <= 0) are a fold, however flat.
-  bool goes_on(int triangle, int side, const Neighbourhood::Side& beyond) const {
+  bool goes_on(int triangle, int side, const Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
     const Vector3 &area = areas_[slot(triangle)], &other = areas_[slot(beyond.triangle)];
     if (area.dot(other) <= 0.0) return false;
@@ -140,7 +261,7 @@ class SeamFinder {
       : mesh_(mesh), tolerance_(tolerance), around_(mesh.vertices.size()) {
     for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
       for (int k = 0; k < 3; ++k) {
-        const Neighbourhood::Side beyond = neighbourhood.beyond(t, k);
+        const Side beyond = neighbourhood.beyond(t, k);
         const int face = faces.face_of(t), other = beyond.exists() ? faces.face_of(beyond.triangle) : -1;
         const bool twice =
             beyond.exists() && std::make_pair(beyond.triangle, beyond.side) < std::make_pair(t, k);
@@ -271,19 +392,14 @@ std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& 
   return normals;
 }
 
-double extent_of(const TriangleMesh& mesh) {
-  if (mesh.vertices.empty()) return 0.0;
-  Vector3 min = mesh.vertices[0], max = min;
-  for (const Vector3& v : mesh.vertices) min = min.cwiseMin(v), max = max.cwiseMax(v);
-  return (max - min).maxCoeff();
-}
-
 }  // namespace
 
 FlatFaces flat_faces(const TriangleMesh& unsorted) {
   const TriangleMesh mesh = sorted(unsorted);
   const Neighbourhood neighbourhood(mesh);
-  const double tolerance = kFlatness * extent_of(mesh);
+  Eigen::AlignedBox3d box;
+  for (const Vector3& v : mesh.vertices) box.extend(v);
+  const double tolerance = kFlatness * box.sizes().maxCoeff();
   const FaceFinder faces(mesh, neighbourhood, tolerance);
   const SeamFinder lines(mesh, neighbourhood, faces, tolerance);
 
