@@ -42,6 +42,15 @@ class ScratchFolder {
   std::string path_;
 };
 
+/// Throws UsageError.
+std::string scene_file(const ReplayArguments& arguments) {
+  try {
+    return find_scene_file(arguments.scene, scene_folders());
+  } catch (const SceneError& error) {
+    throw UsageError(std::string("--scene: ") + error.what());
+  }
+}
+
 /// What is given by hand, over what was recorded.
 class Overrides {
  public:
@@ -87,12 +96,7 @@ class Overrides {
 
  private:
   void take_scene(World& world) {
-    std::string file;
-    try {
-      file = find_scene_file(arguments_.scene, scene_folders());
-    } catch (const SceneError& error) {
-      throw UsageError(std::string("--scene: ") + error.what());
-    }
+    const std::string file = scene_file(arguments_);
     World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
       return a.name == b.name && a.bytes == b.bytes;
@@ -370,12 +374,7 @@ void replay_log(const ReplayArguments& arguments, LogSource& log, const std::str
 
 Simulation prepare_simulation(const ReplayArguments& arguments) {
   const Configuration configuration = configured(arguments);
-  std::string file;
-  try {
-    file = find_scene_file(arguments.scene, scene_folders());
-  } catch (const SceneError& error) {
-    throw UsageError(std::string("--scene: ") + error.what());
-  }
+  const std::string file = scene_file(arguments);
   Scene scene = load_scene(file, scene_options(configuration));
   for (const auto& [name, pose] : arguments.object_poses) place(scene, name, pose);
   const std::string overlaps = arguments.object_poses.empty() ? "" : overlaps_at_start(scene);

@@ -6,7 +6,6 @@
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
-#include "scene_yaml.h"
 #include "shape_kinds.h"
 #include "urdf.h"
 

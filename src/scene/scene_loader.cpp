@@ -9,7 +9,6 @@
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
 #include "limits.h"
-#include "scene_yaml.h"
 #include "solid_mesh.h"
 #include "urdf.h"
 

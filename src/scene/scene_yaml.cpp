@@ -1,4 +1,4 @@
-#include "scene_yaml.h"
+#include "urdf.h"
 
 #include <algorithm>
 #include <cmath>
@@ -185,11 +185,7 @@ void read_operators(const YamlElement& element, Scene& scene) {
                  std::to_string(kMaxHands));
   for (const auto& entry : element.node) {
     const std::string name = yaml_text(entry.first);
-    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-             c == '-';
-    });
-    if (!plain) element.fail("name '" + name + "' is not allowed; allowed: letters, digits, _ and -");
+    if (!is_name(name)) element.fail("name '" + name + "' is not allowed; allowed: " + kNameIs);
     read_operator(name, element.at(name), scene);
   }
 }
@@ -250,20 +246,22 @@ void read_twists(const Element& element, Scene& scene) {
     if (!body.fixed) links.push_back(body.name);
   }
   for (const std::string& link : checked_keys(element, links)) {
-    const Element given = element.at(link);
-    if (!given.node.IsSequence() || given.node.size() != 6) given.refuse("six numbers, m/s and rad/s");
-    Vector3 parts[2];
-    for (std::size_t i = 0; i < 6; ++i) {
-      const double most = i < 3 ? body_limits::kSpeed.max : body_limits::kSpin.max;
-      const std::optional<double> number = yaml_number(given.node[i]);
-      if (!number || std::abs(*number) > most) given.at(i).refuse("numbers up to " + text::number(most));
-      parts[i / 3][static_cast<Eigen::Index>(i % 3)] = *number;
-    }
-    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist = {parts[0], parts[1]};
+    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist =
+        read_twist(element.at(link));
   }
 }
 
 }  // namespace
+
+Twist read_twist(const YamlElement& element) {
+  const auto given = yaml_numbers(element.node, 6);
+  const Twist twist = given ? Twist{Vector3(given->data()), Vector3(given->data() + 3)} : Twist{};
+  if (!given || !body_limits::kSpeed.contains(twist.linear.norm()) ||
+      !body_limits::kSpin.contains(twist.angular.norm()))
+    element.refuse("six numbers [vx, vy, vz, wx, wy, wz], at most " + text::number(body_limits::kSpeed.max) +
+                   " m/s and " + text::number(body_limits::kSpin.max) + " rad/s");
+  return twist;
+}
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   read_yaml<SceneError>(yaml_file, [&] {

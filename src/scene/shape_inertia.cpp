@@ -75,16 +75,6 @@ SolidMoments placed(const SolidMoments& in_shape, const Pose& pose) {
   return moments;
 }
 
-Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
-  Eigen::AlignedBox3d box;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
-      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
-    }
-  return box;
-}
-
 bool may_overlap(const std::vector<PlacedShape>& shapes) {
   std::vector<Eigen::AlignedBox3d> boxes;
   boxes.reserve(shapes.size());
@@ -188,6 +178,16 @@ class Columns {
 };
 
 }  // namespace
+
+Eigen::AlignedBox3d box_of(const PlacedShape& shape) {
+  Eigen::AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
+      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+    }
+  return box;
+}
 
 TriangleMesh convex_hull(const TriangleMesh& mesh) {
   std::vector<Vector3> points = mesh.vertices;

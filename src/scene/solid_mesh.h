@@ -61,6 +61,9 @@ SolidMoments signed_moments(const TriangleMesh& mesh);
 /// 0.1 % of `volume`.
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume);
 
+/// What holds a shape, along the axes of the frame that it is placed in.
+Eigen::AlignedBox3d box_of(const PlacedShape& shape);
+
 /// A shape's surface in the frame that it is placed in: a mesh itself, facets within a round shape.
 TriangleMesh surface_of(const PlacedShape& shape);
 

@@ -82,26 +82,10 @@ std::string parameters_text(const Configuration& configuration) {
   return all;
 }
 
-std::string mesh_file(const std::string& uri, const SceneOptions& options) {
-  const std::string kFile = "file://";
-  return uri.compare(0, kFile.size(), kFile) == 0 ? uri.substr(kFile.size())
-                                                  : options.resolve_package_uri(uri);
-}
-
-/// A line for each mesh of the bodies, by the name of its file: where a package lies may change.
-void add_meshes(const Scene& scene, const SceneOptions& options, std::map<std::string, std::string>& sums) {
-  const auto add = [&](const auto& shapes) {
-    for (const auto& placed : shapes) {
-      const auto* mesh = std::get_if<Mesh>(&placed.shape);
-      if (mesh == nullptr) continue;
-      const std::string file = mesh_file(mesh->uri, options);
-      sums[fs::path(file).filename().string()] = sha256(bytes_of(file));
-    }
-  };
-  for (const Body& body : scene.bodies) {
-    add(body.shapes);
-    add(body.visuals);
-  }
+/// A line for each mesh, by the name of its file: where a package lies may change.
+void add_meshes(const Scene& scene, std::map<std::string, std::string>& sums) {
+  for (const SceneFile& mesh : scene.mesh_files)
+    sums[fs::path(mesh.path).filename().string()] = sha256(bytes_of(mesh.path));
 }
 
 std::string list_of(const std::map<std::string, std::string>& sums) {
@@ -369,7 +353,7 @@ SessionSetup session_setup(const std::string& task_file, const Task& task, Confi
     setup.files[free_name(setup, name, ".urdf")] = bytes_of(urdf);
     const fs::path yaml = fs::path(urdf).replace_extension(".yaml");
     if (fs::exists(yaml)) setup.files[free_name(setup, name, ".yaml")] = bytes_of(yaml.string());
-    add_meshes(load_scene(urdf, options), options, meshes);
+    add_meshes(load_scene(urdf, options), meshes);
   };
   for (const TaskObject& object : task.objects) add(object.name, object.file);
   for (const Fixture& fixture : task.fixtures) add(fixture.name, fixture.file);
