@@ -121,24 +121,31 @@ class _Terms:
             (data.y - data.x @ self.beta) * self.residual))
 
     def derivatives(self):
-        """Score and expected information of the variances; P and Q of Kenward and Roger."""
+        """Score and expected information of the variances."""
         g, phi = self.data.g, self.phi
-        between, rows = g @ self.weighted, len(self.phi)
-        flat, by_row = between.reshape(len(g), -1, rows), self.weighted.reshape(-1, rows)
-        p = -by_row.T @ flat
-        q = flat.transpose(0, 2, 1)[:, None] @ (self.inverse @ between).reshape(len(g), -1, rows)
+        between, solved, p = self._between()
+        of_q = between.reshape(len(g), -1) @ (solved @ phi).reshape(len(g), -1).T  # traces of Q and phi
         vg = self.inverse @ g
         traces = vg.reshape(len(g), -1) @ vg.transpose(0, 1, 3, 2).reshape(len(g), -1).T
         phi_p = phi @ p
-        information = 0.5 * (traces - 2 * np.tensordot(q, phi, ([2, 3], [1, 0])) + np.einsum('kpq,lqp->kl', phi_p, phi_p))
+        information = 0.5 * (traces - 2 * of_q + np.einsum('kpq,lqp->kl', phi_p, phi_p))
         score = -0.5 * (np.trace(vg, axis1=2, axis2=3).sum(axis=1) + np.trace(phi_p, axis1=1, axis2=2) -
                         np.sum((g @ self.residual[:, :, None])[..., 0] * self.residual, axis=(1, 2)))
-        return score, information, p, q
+        return score, information
+
+    def _between(self):
+        """G V^-1 X and V^-1 G V^-1 X of each component, and P of Kenward and Roger."""
+        between, rows = self.data.g @ self.weighted, len(self.phi)
+        p = -self.weighted.reshape(-1, rows).T @ between.reshape(len(between), -1, rows)
+        return between, self.inverse @ between, p
 
     def adjusted(self):
-        _, information, p, q = self.derivatives()
+        _, information = self.derivatives()
+        between, solved, p = self._between()
+        shape = len(between), -1, len(self.phi)
+        q = between.reshape(shape).transpose(0, 2, 1)[:, None] @ solved.reshape(shape)
         self.p, self.w = p, np.linalg.pinv(information)
-        middle = np.einsum('kl,klpq->pq', self.w, q - np.einsum('kpr,rs,lsq->klpq', p, self.phi, p))
+        middle = np.einsum('kl,klpq->pq', self.w, q - np.einsum('kpr,rs,lsq->klpq', p, self.phi, p, optimize=True))
         return self.phi + 2 * self.phi @ middle @ self.phi
 
 
@@ -149,7 +156,7 @@ def _maximise(data):
     theta[-last:] = 0.5
     terms = _Terms(data, theta)
     for _ in range(MOST_STEPS):
-        score, information, _, _ = terms.derivatives()
+        score, information = terms.derivatives()
         free = (theta > 0) | (score > 0)
         step = np.zeros(count)
         step[free] = np.linalg.lstsq(information[np.ix_(free, free)], score[free], rcond=None)[0]

@@ -5,6 +5,7 @@ import collections
 import hmac
 import json
 import logging
+import math
 import os
 import time
 
@@ -20,6 +21,8 @@ PATIENCE = 10.0  # [s]: for a handshake, for a request on a new connection, and 
 FIRST_PINGS, FIRST_PERIOD, PERIOD = 8, 0.05, 0.5  # how often a viewer is asked for its time [s]
 UNSENT = 8192  # bytes: a viewer with more of them is slow, and waits for its next frame
 SETTLING = 0.2  # [s]: until all nodes know a new mount; so long the one before holds
+LONGEST_SILENCE = 60.0  # [s] between two lines about refusals
+MAX_REASONS = 50  # that are counted apart between two lines
 STARVED = 1.0  # [s] after which a viewer is sent a frame though nothing moved
 HEADERS = {'Cache-Control': 'no-store', 'Referrer-Policy': 'no-referrer', 'X-Content-Type-Options': 'nosniff',
            'Content-Security-Policy': "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data:"}
@@ -50,23 +53,24 @@ class Port:
 
 
 class Refusals:
-    """Says why somebody was refused: at once, but of many in a second only how many."""
+    """Says why somebody was refused: the first time at once, then only how many times. The log stays small however long somebody
+    goes on: the time between two lines doubles, up to LONGEST_SILENCE, and is 1 s again after as long without a refusal."""
 
     def __init__(self, say):
-        self._say, self._told, self._untold = say, -1.0, collections.Counter()
+        self._say, self._told, self._silence, self._untold = say, -math.inf, 1.0, collections.Counter()
 
     def add(self, line):
-        now = time.monotonic()
-        if now - self._told < 1.0:
-            if not self._untold:
-                asyncio.get_running_loop().call_later(1.0, self._tell)
-            self._untold[line] += 1
+        wait = self._told + self._silence - time.monotonic()
+        if wait <= 0.0 and not self._untold:
+            self._told, self._silence = time.monotonic(), 1.0
+            self._say('refused: ' + line)
             return
-        self._told = now
-        self._say('refused: ' + line)
+        if not self._untold:
+            asyncio.get_running_loop().call_later(wait, self._tell)
+        self._untold[line if line in self._untold or len(self._untold) < MAX_REASONS else 'other reasons'] += 1
 
     def _tell(self):
-        self._told = time.monotonic()
+        self._told, self._silence = time.monotonic(), min(2.0 * self._silence, LONGEST_SILENCE)
         untold, self._untold = self._untold, collections.Counter()
         for line, count in untold.most_common(3):
             self._say('refused%s: %s' % (' %d times' % count if count > 1 else '', line))

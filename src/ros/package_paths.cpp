@@ -4,6 +4,7 @@
 #include <ros/package.h>
 #endif
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -17,12 +18,15 @@ namespace fs = std::filesystem;
 const char* const kPackage = "mr_hand_interaction";
 const std::string kScheme = "package://";
 
-/// Where a package is on the ROS path; empty if there is none, or where this is built without ROS.
+/// Where a package is on the ROS path; empty if there is none, or where this is built without ROS. Asked for
+/// an unknown one, roslib searches the path anew (24 ms) and prints lines of its own.
 std::string package_folder([[maybe_unused]] const std::string& name) {
 #ifdef MR_HAND_INTERACTION_WITHOUT_ROS
   return {};
 #else
-  return ros::package::getPath(name);
+  std::vector<std::string> known;
+  ros::package::getAll(known);
+  return std::find(known.begin(), known.end(), name) == known.end() ? "" : ros::package::getPath(name);
 #endif
 }
 
@@ -51,7 +55,6 @@ std::vector<std::string> share_folders() {
 #ifdef MR_HAND_INTERACTION_SOURCE_DIR
   add(MR_HAND_INTERACTION_SOURCE_DIR);
 #endif
-  // Last, as it complains on stderr where there is no such package.
   if (folders.empty() && std::getenv("ROS_PACKAGE_PATH") != nullptr) add(package_folder(kPackage));
   return folders;
 }

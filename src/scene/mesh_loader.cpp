@@ -124,7 +124,7 @@ std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
 }
 
 /// An STL as assimp knows it: without bytes behind its triangles, of which each takes 50 and the first begins
-/// at 84; and if it is text, in lower case.
+/// at 84; and if it is text, in lower case and without blanks before it.
 std::string plain_stl(const std::string& file) {
   std::string bytes = file_text(file, kMostBytes).value_or("");
   std::uint32_t count = 0;
@@ -133,7 +133,10 @@ std::string plain_stl(const std::string& file) {
   const std::uint64_t whole = 84 + std::uint64_t(50) * count;
   if (whole <= bytes.size()) {
     bytes.resize(whole);
-  } else if (bytes.compare(0, 5, "SOLID") == 0) {
+    return bytes;
+  }
+  bytes.erase(0, bytes.find_first_not_of(" \t\r\n"));
+  if (bytes.compare(0, 5, "SOLID") == 0) {
     for (char& c : bytes) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   return bytes;

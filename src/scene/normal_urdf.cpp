@@ -42,6 +42,26 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
+std::string trimmed(std::string text) {
+  text.erase(text.find_last_not_of(" \t\r\n") + 1);
+  return text.erase(0, text.find_first_not_of(" \t\r\n"));
+}
+
+/// As URDF gives a value, or as SDF does.
+std::string value_of(const XMLElement* element) {
+  const char* text = element == nullptr ? nullptr : element->GetText();
+  return trimmed(attribute(element, "value", text == nullptr ? "" : text));
+}
+
+/// The first element of this name within another one, however deep; nullptr: none.
+const XMLElement* find_within(const XMLElement& element, const char* name) {
+  for (const XMLElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const XMLElement* found = std::string(e->Name()) == name ? e : find_within(*e, name);
+    if (found != nullptr) return found;
+  }
+  return nullptr;
+}
+
 template <class See>
 void each(const XMLElement& parent, const char* name, const See& see) {
   for (const XMLElement* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name))
@@ -188,21 +208,17 @@ class Normaliser {
                                  "' is in a loop of joints, or hangs on one; allowed: a tree of links");
   }
 
-  /// Of PyBullet's <contact> in a link, and Gazebo's <gazebo reference="link">.
+  /// Of Gazebo's <gazebo reference="link">, and in a link of PyBullet's <contact> and Drake's properties.
   void read_friction() {
-    const auto note = [&](const std::string& link, const std::string& text) {
-      if (const auto value = text::to_number(text)) result_.friction[links_.of(link)] = *value;
+    const auto read = [&](const XMLElement& of, const char* name, const char* link) {
+      if (const auto value = text::to_number(value_of(find_within(of, name))))
+        result_.friction[links_.of(attribute(&of, link))] = *value;
     };
     each(robot_, "gazebo", [&](const XMLElement& gazebo) {
-      const XMLElement* mu = gazebo.FirstChildElement("mu1");
-      const char* text = mu == nullptr ? nullptr : mu->GetText();
-      const std::vector<std::string> words = words_of(text == nullptr ? attribute(mu, "value") : text);
-      if (!words.empty()) note(attribute(&gazebo, "reference"), words.front());
+      for (const char* name : {"mu", "mu1"}) read(gazebo, name, "reference");
     });
     each(robot_, "link", [&](const XMLElement& link) {
-      const XMLElement* contact = link.FirstChildElement("contact");
-      if (contact != nullptr)
-        note(attribute(&link, "name"), attribute(contact->FirstChildElement("lateral_friction"), "value"));
+      for (const char* name : {"drake:mu_static", "lateral_friction"}) read(link, name, "name");
     });
   }
 
@@ -257,7 +273,8 @@ class Normaliser {
     if (mass == nullptr) return;
     open("inertial", {});
     write_origin(*inertial, "link " + in_quotes(name) + " inertial");
-    tag("mass", {{"value", attribute(mass, "value", "0")}});
+    const std::string given = value_of(mass);
+    tag("mass", {{"value", given.empty() ? "0" : given}});
     const XMLElement* inertia = inertial->FirstChildElement("inertia");
     Attributes moments;
     for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"})
@@ -325,7 +342,7 @@ class Normaliser {
   }
 
   void write_mesh(const XMLElement& mesh, bool hull) {
-    Attributes given{{"filename", (hull ? kHullPrefix : "") + attribute(&mesh, "filename")}};
+    Attributes given{{"filename", (hull ? kHullPrefix : "") + trimmed(attribute(&mesh, "filename"))}};
     std::string scale = numbers(&mesh, "scale");
     if (words_of(scale).size() == 1) {
       warnings_.add("a scale of one number is that of all axes", in_quotes(scale));
@@ -351,9 +368,31 @@ class Normaliser {
     }
     open("material", {{"name", "material_" + std::to_string(++written_)}});
     if (const XMLElement* color = material->FirstChildElement("color"))
-      tag("color", {{"rgba", numbers(color, "rgba")}});
+      tag("color", {{"rgba", rgba(numbers(color, "rgba"), link)}});
     if (const XMLElement* texture = material->FirstChildElement("texture")) texture->Accept(&out_);
     out_.CloseElement();
+  }
+
+  /// Whole numbers of 0 to 255 are divided by that. Rounding beyond 1 is cut off.
+  std::string rgba(const std::string& given, const std::string& link) {
+    constexpr double kRounding = 1e-3;
+    std::vector<double> parts;
+    for (const std::string& word : words_of(given)) parts.push_back(text::to_number(word).value_or(-1.0));
+    const auto is_byte = [](double part) { return part >= 0.0 && part <= 255.0 && part == std::floor(part); };
+    const auto is_rounded = [](double part) { return part >= 0.0 && part <= 1.0 + kRounding; };
+    const bool rounded = std::all_of(parts.begin(), parts.end(), is_rounded), has_opacity = parts.size() == 4;
+    const bool bytes = !rounded && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
+                       (!has_opacity || is_byte(parts[3]) || is_rounded(parts[3]));
+    if (!rounded && !bytes) return given;
+    if (bytes)
+      warnings_.add("colors of 0 to 255 are divided by 255",
+                    in_quotes(given) + " of link " + in_quotes(link));
+    std::string scaled;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const bool is_share = !bytes || (i == 3 && parts[3] <= 1.0);
+      scaled += (i == 0 ? "" : " ") + text::exact(std::min(1.0, is_share ? parts[i] : parts[i] / 255.0));
+    }
+    return scaled;
   }
 
   void write_joint(const XMLElement& joint) {
@@ -377,14 +416,23 @@ class Normaliser {
     out_.CloseElement();
   }
 
-  /// Effort and velocity, which urdfdom wants and nothing here uses, are 0.
+  /// Effort and velocity, which urdfdom wants and nothing here uses, are 0. No joint moves further than
+  /// kCoordinate.
   void read_limit(const XMLElement& joint, const std::string& what, std::string& type, Attributes& limit) {
     const XMLElement* given = joint.FirstChildElement("limit");
     std::string lower = attribute(given, "lower"), upper = attribute(given, "upper");
     const bool none = lower.empty() && upper.empty();
     if (lower.empty()) lower = "0";
     if (upper.empty()) upper = "0";
-    const std::optional<double> least = text::to_number(lower), most = text::to_number(upper);
+    const auto held = [](std::string& text) {
+      std::optional<double> number = mrhi::text::to_number(text);
+      if (number && !joint_ranges::kCoordinate.contains(*number) && !std::isnan(*number)) {
+        number = *number > 0.0 ? joint_ranges::kCoordinate.max : joint_ranges::kCoordinate.min;
+        text = mrhi::text::exact(*number);
+      }
+      return number;
+    };
+    const std::optional<double> least = held(lower), most = held(upper);
     const bool crossed = least && most && *least > *most;
     if (none || crossed) {
       warnings_.add("joints move without limits",
@@ -399,12 +447,16 @@ class Normaliser {
     if (type != "fixed") limit = {{"lower", lower}, {"upper", upper}, {"effort", "0"}, {"velocity", "0"}};
   }
 
-  /// A root that has a shape or a mass is a body; "world" is a fixture.
+  /// A root that has a shape or a mass is a body, and so are links that all hang fixed on an empty root of
+  /// another name than "world"; "world" is a fixture.
   void hang_root_on_world() {
     std::set<std::string> children;
     each(robot_, "joint", [&](const XMLElement& joint) { children.insert(child_of(joint)); });
     const XMLElement* root = nullptr;
     int roots = 0;
+    bool all_fixed = true;
+    each(robot_, "joint",
+         [&](const XMLElement& joint) { all_fixed = all_fixed && attribute(&joint, "type") == "fixed"; });
     each(robot_, "link", [&](const XMLElement& link) {
       if (children.count(links_.of(attribute(&link, "name"))) == 0) root = &link, ++roots;
     });
@@ -412,10 +464,14 @@ class Normaliser {
     const XMLElement* inertial = root->FirstChildElement("inertial");
     const XMLElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
     const bool has_mass = text::to_number(attribute(mass, "value")).value_or(0.0) > 0.0;
-    if (root->FirstChildElement("visual") == nullptr && root->FirstChildElement("collision") == nullptr &&
-        !has_mass)
-      return;
     const std::string child = links_.of(attribute(root, "name"));
+    if (root->FirstChildElement("visual") == nullptr && root->FirstChildElement("collision") == nullptr &&
+        !has_mass) {
+      if (child == "world" || children.empty() || !all_fixed) return;
+      warnings_.add(
+          "links on fixed joints are one free body; a root that is named 'world' makes them fixtures",
+          in_quotes(attribute(root, "name")));
+    }
     const std::string world = links_.add("world ");
     tag("link", {{"name", world}});
     open("joint",

@@ -169,15 +169,60 @@ std::vector<Triangles> parts_of(const Triangles& triangles) {
   return parts;
 }
 
-/// Fans over the holes of a part that are small; each runs against the triangles at its border.
-void fill_small_holes(TriangleMesh& mesh, Triangles& part) {
+/// Triangles divided where a vertex of the border is on an edge of it, as where CAD programs mesh one face
+/// finer than the next.
+Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, double distance) {
+  constexpr std::size_t kMostBorder = 4000;  // edges that are compared with each other
+  const std::size_t most = 2 * triangles.size() + kMostBorder;
+  for (bool divides = true; divides && triangles.size() < most;) {
+    divides = false;
+    std::vector<std::pair<int, int>> border;
+    for (const auto& [ends, edge] : edges_of(triangles))
+      if (edge.balance != 0) border.push_back(ends);
+    if (border.size() > kMostBorder) break;
+    Triangles divided;
+    for (const Triangle& triangle : triangles) {
+      int on_edge = -1;
+      std::size_t k = 0;
+      for (; k < 3 && on_edge < 0; ++k) {
+        const int from = triangle[k], to = triangle[(k + 1) % 3];
+        const std::pair<int, int> ends = std::minmax(from, to);
+        if (!std::binary_search(border.begin(), border.end(), ends)) continue;
+        const Vector3 a = mesh.vertices[std::size_t(from)], along = mesh.vertices[std::size_t(to)] - a;
+        const double length = along.norm();
+        for (const auto& other : border)
+          for (const int v : {other.first, other.second}) {
+            const Vector3 from_a = mesh.vertices[std::size_t(v)] - a;
+            const double s = from_a.dot(along) / length;
+            if (s > distance && s < length - distance && from_a.cross(along).norm() < distance * length)
+              on_edge = v;
+          }
+      }
+      if (on_edge < 0) {
+        divided.push_back(triangle);
+        continue;
+      }
+      divides = true;
+      const int from = triangle[k - 1], to = triangle[k % 3], opposite = triangle[(k + 1) % 3];
+      if (on_edge != opposite)
+        divided.insert(divided.end(), {{{from, on_edge, opposite}}, {{on_edge, to, opposite}}});
+    }
+    triangles = divided;
+  }
+  return triangles;
+}
+
+/// Fans over the holes of a part that are small or lack one triangle; each runs against the triangles at its
+/// border. Returns whether one that is not small was filled.
+bool fill_holes(const TriangleMesh& mesh, Triangles& part) {
   const double widest = kSmallHole * extent_of(mesh, part);
   std::map<int, int> next;  // along the border
   for (const auto& [ends, edge] : edges_of(part)) {
     if (edge.balance == 0) continue;
     const bool up = edge.balance > 0;
-    if (!next.emplace(up ? ends.second : ends.first, up ? ends.first : ends.second).second) return;
+    if (!next.emplace(up ? ends.second : ends.first, up ? ends.first : ends.second).second) return false;
   }
+  bool large = false;
   while (!next.empty()) {
     std::vector<int> loop;
     Eigen::AlignedBox3d box;
@@ -186,9 +231,12 @@ void fill_small_holes(TriangleMesh& mesh, Triangles& part) {
       loop.push_back(at->second);
       next.erase(at);
     }
-    if (loop.size() < 3 || box.sizes().norm() > widest) continue;
+    const bool small = box.sizes().norm() <= widest;
+    if (loop.size() < 3 || (loop.size() > 3 && !small)) continue;
+    large = large || !small;
     for (std::size_t i = 2; i < loop.size(); ++i) part.push_back({{loop[0], loop[i - 1], loop[i]}});
   }
+  return large;
 }
 
 /// The solid angle of a closed part as seen from a place is 4 pi inside and 0 outside (van Oosterom &
@@ -268,10 +316,12 @@ bool are_solid(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
 std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMesh& mesh) {
   std::vector<Triangles> solids;
   Triangles open;
-  bool left_out = false;
+  bool left_out = false, filled = false;
   for (Triangles& part : parts) {
-    if (!is_solid(mesh, part)) fill_small_holes(mesh, part);
-    if (is_solid(mesh, part)) solids.push_back(part);
+    const bool large = !is_solid(mesh, part) && fill_holes(mesh, part);
+    if (!is_solid(mesh, part)) continue;
+    solids.push_back(part);
+    filled = filled || large;
   }
   for (const Triangles& part : parts) {
     if (is_solid(mesh, part)) continue;
@@ -288,6 +338,7 @@ std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMes
   }
   std::vector<std::string> assumed;
   if (left_out) assumed.push_back("has flat sheets, which are left out");
+  if (filled) assumed.push_back("is not closed: triangles that it lacks are added");
   if (!open.empty()) {
     const TriangleMesh hull = convex_hull(cut_out(mesh, open));
     const int first = static_cast<int>(mesh.vertices.size());
@@ -337,6 +388,7 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     return put(parts, mesh), std::vector<std::string>{};
   }
   mesh = best;
+  mesh.triangles = divided_at_border(mesh, mesh.triangles, kSeams[2] * extent);
   std::vector<std::string> warnings = put_with_hull(parts_of(mesh.triangles), mesh);
   const auto has_area = [&](const Triangle& t) {
     const Vector3 a = corner(mesh, t, 0);

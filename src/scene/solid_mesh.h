@@ -31,9 +31,10 @@ class NoVolume : public std::runtime_error {
 
 /// Makes a solid of a surface. Each connected part is turned outward, or inward where it is a cavity of
 /// another. Of doubled faces one is kept, vertices within 1e-4 of the extent are joined if that closes the
-/// surface, and small holes are filled. Parts that are open all the same become one convex hull; flat sheets
-/// beside solids are left out. `parts` is set where solids overlap. Returns what was assumed, for warnings,
-/// each going on from the mesh's name. Throws NoVolume.
+/// surface, edges are divided where another triangle's vertex is on them, and small holes are filled. Parts
+/// that are open all the same become one convex hull; flat sheets beside solids are left out. `parts` is set
+/// where solids overlap. Returns what was assumed, for warnings, each going on from the mesh's name. Throws
+/// NoVolume.
 std::vector<std::string> make_solid(TriangleMesh& mesh);
 
 /// By the divergence theorem; negative if the triangles are turned inward [m^3].

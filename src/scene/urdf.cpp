@@ -3,6 +3,7 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 #include <algorithm>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 
@@ -48,6 +49,28 @@ std::string from_latin1(const std::string& text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte >= 0x80) utf8 += static_cast<char>(0xC0 | (byte >> 6));
     utf8 += static_cast<char>(byte < 0x80 ? byte : 0x80 | (byte & 0x3F));
+  }
+  return utf8;
+}
+
+/// Text as editors and shells of Windows may write it, which say so by its first two bytes.
+std::optional<std::string> from_utf16(const std::string& text) {
+  const bool little = text.compare(0, 2, "\xFF\xFE") == 0;
+  if ((!little && text.compare(0, 2, "\xFE\xFF") != 0) || text.size() % 2 != 0) return std::nullopt;
+  const auto unit = [&](std::size_t at) -> std::uint32_t {
+    const auto first = static_cast<unsigned char>(text[at]),
+               second = static_cast<unsigned char>(text[at + 1]);
+    return little ? first | second << 8 : first << 8 | second;
+  };
+  std::string utf8;
+  for (std::size_t at = 2; at < text.size(); at += 2) {
+    std::uint32_t code = unit(at);
+    if (code >= 0xD800 && code < 0xDC00 && at + 3 < text.size())
+      code = 0x10000 + ((code & 0x3FF) << 10 | (unit(at += 2) & 0x3FF));
+    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // bytes behind the first
+    constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
+    utf8 += static_cast<char>(kFirst[more] | code >> 6 * more);
+    for (int i = more - 1; i >= 0; --i) utf8 += static_cast<char>(0x80 | (code >> 6 * i & 0x3F));
   }
   return utf8;
 }
@@ -183,7 +206,7 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
 }  // namespace
 
 UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
-  const std::string xml = is_utf8(given) ? given : from_latin1(given);
+  const std::string xml = is_utf8(given) ? given : from_utf16(given).value_or(from_latin1(given));
   if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   UrdfDocument document;
   try {

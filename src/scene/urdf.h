@@ -125,6 +125,7 @@ class ShapeReader {
   struct Named;
   Named named(const urdf::Mesh& mesh) const;
   std::string find_file(const std::string& uri) const;
+  std::string find_path(const std::string& uri) const;
   std::optional<Shape> read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
   std::shared_ptr<const TriangleMesh> solid_of(const Named& mesh, const std::string& element);
   const TriangleMesh& triangles_of(const Named& mesh);

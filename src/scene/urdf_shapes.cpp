@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <locale>
@@ -79,6 +81,19 @@ void check_sizes(const TriangleMesh& mesh, bool solid) {
   const Vector3 extent = box.sizes();
   check_extent(extent, extent.maxCoeff(), "along the longest axis");
   if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
+}
+
+/// What %20 and the like stand for.
+std::string decoded(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) != 0)
+      code = static_cast<int>(std::strtol(uri.substr(i + 1, 2).c_str(), nullptr, 16));
+    text += code < ' ' ? uri[i] : static_cast<char>(code);
+    if (code >= ' ') i += 2;
+  }
+  return text;
 }
 
 /// NAME/PATH in the folders above, as other simulators find packages: in one of them, or one that has the
@@ -175,17 +190,24 @@ ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
   return {uri, find_file(uri), to_vector(mesh.scale), is_hull(mesh.filename)};
 }
 
-/// Paths of other systems have backslashes.
+/// As it is written, or as others write it: with backslashes, or with blanks as %20.
 std::string ShapeReader::find_file(const std::string& uri) const {
   const auto given = options_.mesh_files.find(uri);
   if (given != options_.mesh_files.end()) return given->second;
+  std::string path = uri;
+  std::string file = find_path(path);
+  if (file.empty()) std::replace(path.begin(), path.end(), '\\', '/'), file = find_path(path);
+  return file.empty() ? find_path(decoded(path)) : file;
+}
+
+std::string ShapeReader::find_path(const std::string& uri) const {
   for (const char* scheme : {"package://", "model://"}) {
     if (!begins_with(uri, scheme)) continue;
     const std::string file = options_.resolve_package_uri ? options_.resolve_package_uri(uri) : "";
     return is_file(file) ? file : find_above(folder_, uri.substr(std::string(scheme).size()));
   }
   std::string path = begins_with(uri, "file://") ? uri.substr(7) : uri;
-  if (!is_file(fs::path(folder_) / path)) std::replace(path.begin(), path.end(), '\\', '/');
+  if (begins_with(uri, "file://localhost/")) path.erase(0, 9);
   return is_file(fs::path(folder_) / path) ? (fs::path(folder_) / path).string() : "";
 }
 

@@ -26,6 +26,12 @@ bool goes_evenly(Nanoseconds by_stamp, Nanoseconds by_receipt) {
 /// Of a slow stream, frames may be so many times as far apart as the last two were.
 constexpr Nanoseconds kIntervals = 4;
 
+/// Clocks drift by less than 1 s in so many.
+constexpr Nanoseconds kDrift = 1000;
+
+/// Corrections of two streams are of one step if they differ by no more: as late as receipts may be.
+constexpr Nanoseconds kSameStep = 100'000'000;
+
 }  // namespace
 
 /// Receipts that go back are those of a recording that begins anew: so does all here.
@@ -39,7 +45,8 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
   const Nanoseconds passed = std::max<Nanoseconds>(0, frame.receipt - last_->receipt);
   const Nanoseconds longest =
       std::max({StampCheck::kAhead, kIntervals * interval_, passed + StampCheck::kAhead});
-  if (since > 0 && since <= longest) return accept(frame);
+  const bool waited_less = frame.lead() <= lead_ + StampCheck::kAhead;
+  if (since > 0 && (since <= longest || waited_less)) return accept(frame);
   const std::optional<Frame> before = off_;
   off_ = frame;
   if (!before || !goes_evenly(frame.stamp - before->stamp, frame.receipt - before->receipt))
@@ -51,11 +58,13 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
     verdict.is_step = true;
     correction_ += last_->stamp + passed - frame.stamp;
   }
-  verdict.stamp = accept(frame).stamp;
+  verdict.stamp = accept(frame, true).stamp;
   return verdict;
 }
 
-StampSteps::Verdict StampSteps::accept(const Frame& frame) {
+StampSteps::Verdict StampSteps::accept(const Frame& frame, bool anew) {
+  const Nanoseconds passed = last_ ? std::max<Nanoseconds>(0, frame.receipt - last_->receipt) : 0;
+  lead_ = last_ && !anew ? std::max(lead_ - passed / kDrift, frame.lead()) : frame.lead();
   interval_ = last_ && !off_ ? std::min(frame.stamp - last_->stamp, StampCheck::kBack) : 0;
   last_ = frame;
   off_.reset();
@@ -122,6 +131,7 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
     result.corrected.emplace_back(
         kStep, text::number(to_seconds(joints.stamp - verdict.stamp)) + " s on " + input.stream);
   joints.stamp = verdict.stamp;
+  if (verdict.is_step) joints.stamp += share_correction(stream);
   correct(stream, joints, result);
   if (input.one_of_a_side) gaps_.fill(joints);
   result = completed(joints, device, std::move(result));
@@ -129,6 +139,19 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
   result.frame = pairs_.take(*input.side, *result.frame);
   result.waits = !result.frame;
   return result;
+}
+
+/// The hands of a tracker stay together: a step that another stream has had is the same. Returns what is to
+/// be added to this frame's stamp.
+Nanoseconds JointsInput::share_correction(Stream& stream) {
+  const Nanoseconds found = stream.steps.correction();
+  for (const auto& [name, other] : streams_) {
+    const Nanoseconds known = other.steps.correction();
+    if (&other == &stream || known == 0 || std::abs(known - found) > kSameStep) continue;
+    stream.steps.share(known);
+    return known - found;
+  }
+  return 0;
 }
 
 /// A hand whose joints are all placeholders is none; it is reported when it becomes one.

@@ -88,7 +88,8 @@ class OrderRecognition {
 
 /// Takes the steps of a tracker's clock out of its stamps, with the time of receipt as witness. Two frames in
 /// a row that are off by the same time, while their receipts go on evenly, prove a step: the second one then
-/// continues the stream where its receipt says. The first one keeps its stamp; StampCheck leaves it out.
+/// continues the stream where its receipt says. The first one keeps its stamp; StampCheck leaves it out. A
+/// frame that is no further ahead of its receipt than others were has only waited less than they did.
 class StampSteps {
  public:
   struct Verdict {
@@ -101,16 +102,22 @@ class StampSteps {
   /// A frame's stamp, and when it was received, where that is known.
   Verdict take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt);
 
+  /// What is added to the stamps, 0 before the first step. Streams of one clock share it.
+  Nanoseconds correction() const { return correction_; }
+  void share(Nanoseconds correction) { correction_ = correction; }
+
  private:
   struct Frame {
     Nanoseconds stamp, receipt;
+    Nanoseconds lead() const { return stamp - receipt; }
   };
-  Verdict accept(const Frame& frame);
+  Verdict accept(const Frame& frame, bool anew = false);
 
-  std::optional<Frame> last_;   // that was accepted, with its own stamp
-  std::optional<Frame> off_;    // the frame before, if it was off
-  Nanoseconds interval_ = 0;    // between the last two accepted
-  Nanoseconds correction_ = 0;  // to add to the stamps
+  std::optional<Frame> last_;  // that was accepted, with its own stamp
+  std::optional<Frame> off_;   // the frame before, if it was off
+  Nanoseconds interval_ = 0;   // between the last two accepted
+  Nanoseconds lead_ = 0;       // largest of those accepted, fading: clocks drift
+  Nanoseconds correction_ = 0;
   std::uint64_t accepted_ = 0;
 };
 
@@ -164,6 +171,7 @@ class JointsInput {
     StampSteps steps;
     std::array<bool, 2> wrist_moves{}, is_placeholder{};  // by side
   };
+  Nanoseconds share_correction(Stream& stream);
   void correct(Stream& stream, JointsFrame& joints, SourceFrame& result) const;
   static SourceFrame completed(const JointsFrame& joints, const Device& device, SourceFrame result);
 

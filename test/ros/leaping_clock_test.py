@@ -63,7 +63,7 @@ class LeapingClockTest(unittest.TestCase):
                     wait_until(lambda: self.clock.leap is None, "the clock's leap")
                     del frames[:]
                     wait_until(lambda: len(frames) > 100, "hands after the clock was at %s" % leap)
-                    self.assertIsNone(launch.process.poll(), "the launch has ended")
+                    self.assertFalse(launch.has_ended(), "the launch has ended")
             subscriber.unregister()
 
 

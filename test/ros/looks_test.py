@@ -41,6 +41,10 @@ def is_cube(r, g, b):
     return r > 70 and 0.6 * r < g < 0.8 * r and b < 0.15 * r
 
 
+def is_text(r, g, b):
+    return min(r, g, b) > 100 and max(r, g, b) < 1.15 * min(r, g, b)
+
+
 class Region:
     """The pixels of a colour: their share of the picture, and their middle, from its top left."""
 
@@ -86,7 +90,7 @@ class LooksTest(unittest.TestCase):
             launch.__exit__()
         self.fail("the cube was not grasped")
 
-    def draw(self, focus, hidden, least):
+    def draw(self, focus, hidden, least, view="0.5,0.55"):
         """The picture once it has these shares of colours."""
         shares = {}
 
@@ -94,12 +98,12 @@ class LooksTest(unittest.TestCase):
             shares.update({colour.__name__: Region(file, colour).share for colour in least})
             return all(shares[colour.__name__] > share for colour, share in least.items())
         picture = os.path.join(self.folder.name, "picture.png")
-        options = screenshot.parse(["--motion=grasp_cube", "--view=0.5,0.55", "--distance=0.34", f"--hide={hidden}",
+        options = screenshot.parse(["--motion=grasp_cube", f"--view={view}", "--distance=0.34", f"--hide={hidden}",
                                     f"--size={WIDTH}x{HEIGHT}", f"--output={picture}"])
         self.assertTrue(screenshot.draw(options, focus, self.deadline, complete), f"rviz has not drawn all: {shares}")
         return picture
 
-    def test_hand_and_cube_are_seen_and_the_hands_layer_can_be_switched_off(self):
+    def test_hand_cube_and_text_are_seen_and_the_hands_layer_can_be_switched_off(self):
         missing = missing_tools()
         if missing:
             self.skipTest(f"nothing to draw with: {', '.join(missing)} not installed")
@@ -114,6 +118,10 @@ class LooksTest(unittest.TestCase):
 
         without = Region(self.draw(focus, "hand,text", {is_cube: 0.008}), is_skin)
         self.assertLess(without.share, 0.1 * skin.share)
+
+        for view in "0.5,0.55", "top":
+            text = Region(self.draw(focus, "hand,contacts,friction,forces,Grid", {is_text: 0.001}, view), is_text)
+            self.assertTrue(text.x < 0.4 * WIDTH and text.y > 0.9 * HEIGHT, f"the text is in the lower left corner: {view}")
 
 
 if __name__ == "__main__":

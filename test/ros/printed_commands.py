@@ -238,5 +238,5 @@ class User:
             state = master.getSystemState()
             return names <= {node for topics in state for _, listed in topics for node in listed}
         with Launch(file, *arguments) as launch:
-            wait_until(lambda: up() or launch.process.poll() is not None, "the nodes of %s" % command)
-            assert launch.process.poll() is None, command
+            wait_until(lambda: up() or launch.has_ended(), "the nodes of %s" % command)
+            assert not launch.has_ended(), command

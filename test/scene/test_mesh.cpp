@@ -92,6 +92,12 @@ TEST_F(MeshScene, IsFoundByPathFileUriAndPackage) {
   const std::string file = folder_.write("wedge.obj", std::string(kVertices) + kOutward);
   EXPECT_EQ("file://" + file, load("filename=\"wedge.obj\"").uri);
   EXPECT_EQ("file://" + file, load("filename=\"file://" + file + "\"").uri);
+  folder_.write("my 50% wedge.obj", std::string(kVertices) + kOutward);
+  for (const std::string name : {"my 50% wedge.obj", "my%2050%25%20wedge.obj", " my%2050%%20wedge.obj\n"})
+    EXPECT_EQ("file://" + folder_.path() + "/my 50% wedge.obj", load("filename=\"" + name + "\"").uri);
+  for (const std::string scheme : {"file://", "file://localhost"})
+    EXPECT_EQ(4u, load("filename=\"" + scheme + folder_.path() + "/my%2050%25%20wedge.obj\"")
+                      .triangles->vertices.size());
   SceneOptions options;
   options.resolve_package_uri = [&](const std::string& uri) {
     return uri == "package://shapes/wedge.obj" ? file : std::string();
@@ -160,7 +166,10 @@ TEST_F(MeshScene, IsHeldToTheSizesOfEveryOtherShape) {
 TEST_F(MeshScene, TakesTheHullOfASurfaceThatIsNotClosedAndSaysSo) {
   folder_.write("open.obj", std::string(kVertices) + "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
   EXPECT_NEAR(kVolume, test::volume(*load("filename=\"open.obj\"").triangles), 1e-6 * kVolume);
-  test::expect_words(scene_.warnings.at(0), {"'open.obj'", "not closed", "convex hull"});
+  test::expect_words(scene_.warnings.at(0), {"'open.obj'", "not closed", "are added"});
+  folder_.write("pyramid.obj", std::string(kVertices) + "v 0.1 0.1 0\nf 1 2 4\nf 2 5 4\nf 5 3 4\nf 3 1 4\n");
+  EXPECT_NEAR(2 * kVolume, test::volume(*load("filename=\"pyramid.obj\"").triangles), 2e-6 * kVolume);
+  test::expect_words(scene_.warnings.at(0), {"'pyramid.obj'", "not closed", "convex hull"});
   folder_.write("leaf.obj", std::string(kVertices) + "f 1 2 3\nf 1 3 2\n");
   test::expect_words(error("filename=\"leaf.obj\""),
                      {"'thing'", "no collision with a volume", "flat sheets"});
@@ -190,7 +199,7 @@ TEST_F(MeshScene, IsReadFromAnStlWithBytesTooManyOrInCapitals) {
   }
   folder_.write("wedge.stl", binary + "more bytes");
   EXPECT_NEAR(kVolume, test::volume(*load("filename=\"wedge.stl\"").triangles), 1e-6 * kVolume);
-  folder_.write("wedge.stl", text + "ENDSOLID WEDGE\n");
+  folder_.write("wedge.stl", "\n  " + text + "ENDSOLID WEDGE\n");
   EXPECT_NEAR(kVolume, test::volume(*load("filename=\"wedge.stl\"").triangles), 1e-6 * kVolume);
 }
 
@@ -302,6 +311,15 @@ TEST_F(MeshScene, IsClosedOverASeamOfRounding) {
   folder_.write("gap.obj", std::string(kVertices) + "v 0.1 3e-5 0\nf 1 3 2\nf 1 5 4\nf 1 4 3\nf 2 3 4\n");
   load("filename=\"gap.obj\"");
   test::expect_words(scene_.warnings.at(0), {"'gap.obj'", "not closed"});
+}
+
+// As CAD programs write it where one face is meshed finer than the next: a vertex is on an edge of another.
+TEST_F(MeshScene, IsClosedWhereAVertexIsOnTheEdgeOfAnotherTriangle) {
+  folder_.write("wedge.obj", std::string(kVertices) +
+                                 "v 0.05 0.05 0\nv 0.025 0.075 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\n" +
+                                 "f 2 5 4\nf 5 6 4\nf 6 3 4\n");
+  EXPECT_NEAR(kVolume, test::volume(*load("filename=\"wedge.obj\"").triangles), 1e-6 * kVolume);
+  EXPECT_TRUE(scene_.warnings.empty());
 }
 
 TEST_F(MeshScene, MayBeOpenWhereItIsOnlySeen) {

@@ -307,9 +307,62 @@ TEST(UrdfScene, LimitsThatAreNotWholeAreCompletedAndThatIsSaid) {
   const Scene equal = door("revolute", R"(<limit lower="0" upper="0"/>)");
   EXPECT_TRUE(equal.joints.empty() && equal.bodies.at(0).fixed);
   test::expect_words(equal.warnings.at(0), {"equal limits", "'j'"});
+  for (const char* far : {R"(lower="-inf" upper="inf")", R"(lower="-1e9" upper="1e16")"}) {
+    const Joint free = door("revolute", "<limit " + std::string(far) + "/>").joints.at(0);
+    EXPECT_EQ(-1000, free.lower);
+    EXPECT_EQ(1000, free.upper);
+  }
   const Scene mimic = door("continuous", R"(<mimic joint="other"/>)");
   EXPECT_EQ(1u, mimic.joints.size());
   test::expect_words(mimic.warnings.at(0), {"<mimic>", "'j'"});
+}
+
+TEST(UrdfScene, LinksFixedOnAnEmptyRootAreOneFreeBodyUnlessTheRootIsTheWorld) {
+  const std::string cup = link("cup", std::string(kInertial) + kBox) +
+                          link("handle", std::string(kInertial) + kBox) + joint("fixed", "base", "cup") +
+                          joint("fixed", "cup", "handle", R"(xyz="0.1 0 0")");
+  const Scene scene = load("<robot name=\"t\"><link name=\"base\"/>" + cup + "</robot>");
+  ASSERT_EQ(1u, scene.bodies.size());
+  EXPECT_FALSE(scene.bodies[0].fixed);
+  EXPECT_NEAR(0.2, scene.bodies[0].mass, 1e-12);
+  test::expect_words(scene.warnings.at(0), {"one free body", "'world'", "'base'"});
+  const std::string door =
+      link("door", std::string(kInertial) + kBox) + joint("revolute", "base", "door", R"(xyz="0 1 0")");
+  EXPECT_TRUE(load("<robot name=\"t\"><link name=\"base\"/>" + cup + door + "</robot>").bodies[0].fixed)
+      << "what something moves on stands still";
+}
+
+TEST(UrdfScene, IsReadFromUtf16AsWindowsWritesIt) {
+  const std::string text = robot(link("thing", std::string(kInertial) + kBox) +
+                                 joint("floating", "world", "thing") + "<!-- \xC3\xBC \xF0\x9F\xA7\xAA -->");
+  const std::u16string wide = u"<!-- \u00FC \U0001F9EA -->";
+  for (const bool little : {true, false}) {
+    std::string bytes = little ? "\xFF\xFE" : "\xFE\xFF";
+    const auto put = [&](char16_t unit) {
+      const char low = static_cast<char>(unit & 0xFF), high = static_cast<char>(unit >> 8);
+      bytes += little ? low : high, bytes += little ? high : low;
+    };
+    for (const char c : text.substr(0, text.find("<!--"))) put(static_cast<char16_t>(c));
+    for (const char16_t unit : wide) put(unit);
+    for (const char c : std::string("</robot>")) put(static_cast<char16_t>(c));
+    EXPECT_EQ("thing", load(bytes).bodies.at(0).name);
+  }
+}
+
+TEST(UrdfScene, ColoursOfOtherRangesAreBroughtIntoOurs) {
+  const auto color = [](const std::string& rgba) {
+    const Scene scene = load(thing(std::string(kInertial) + kBox +
+                                   "<visual><geometry><sphere radius=\"1\"/></geometry><material "
+                                   "name=\"m\"><color rgba=\"" +
+                                   rgba + "\"/></material></visual>"));
+    return std::make_pair(scene.bodies.at(0).visuals.at(0).rgba, scene.warnings.size());
+  };
+  EXPECT_EQ(std::make_pair((std::array<float, 4>{{1.0f, 0.2f, 0.0f, 1.0f}}), std::size_t(1)),
+            color("255 51 0 255"));
+  EXPECT_EQ(std::make_pair((std::array<float, 4>{{1.0f, 0.2f, 0.0f, 0.5f}}), std::size_t(1)),
+            color("255 51 0 0.5"));
+  EXPECT_EQ(std::make_pair((std::array<float, 4>{{1.0f, 0.2f, 0.0f, 1.0f}}), std::size_t(0)),
+            color("1.00001 0.2 0 1"));
 }
 
 TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {
@@ -323,6 +376,16 @@ TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {
   EXPECT_EQ(0.25, scene.bodies.at(1).material.dynamic_friction);
   EXPECT_TRUE(scene.bodies.at(1).own_material.static_friction);
   EXPECT_FALSE(scene.bodies.at(1).own_material.restitution);
+  const auto friction = [](const std::string& in_link, const std::string& behind) {
+    return load(robot(link("a", in_link + kInertial + kBox) + joint("floating", "world", "a") + behind))
+        .bodies.at(0)
+        .material.static_friction;
+  };
+  EXPECT_EQ(0.6, friction("<contact><lateral_friction> 0.6 </lateral_friction></contact>", ""));
+  EXPECT_EQ(0.6, friction("<contact><drake:mu_static value=\"0.6\"/></contact>", ""));
+  EXPECT_EQ(0.6, friction("", R"(<gazebo reference="a"><collision><surface><friction><ode><mu>0.6</mu></ode>
+                                 </friction></surface></collision></gazebo>)"));
+  EXPECT_EQ(0.6, friction("", R"(<gazebo reference="a"><mu1 value="0.6"/></gazebo>)"));
 }
 
 TEST(UrdfScene, WarnsOfUnitsThatCannotBeMeant) {

@@ -9,6 +9,8 @@ import numpy as np
 from study.measures import OBJECTS, QUESTIONS
 from study.session_folder import TRIALS
 
+DRAWING = frozenset(('bars.draw_bars', 'distributions.draw_conditions', 'distributions.draw_ratings', 'learning.draw',
+                     'progress._draw'))
 KEYS = ('object', 'repetition', 'start')
 HEADER = '''version: 1
 participant: "{participant}"
@@ -27,12 +29,18 @@ software: "0.1.0"
 
 
 @contextlib.contextmanager
-def undrawn():
-    """Figures are made, but neither laid out nor drawn, which takes most of an analysis' time: their files are empty. For tests
-    that look at none."""
-    def save(_, path, **__):
+def undrawn(*drawn):
+    """Files of figures are empty, except those of the functions `drawn`: drawing takes most of an analysis' time. For tests that
+    look at no figure."""
+    def draw(*arguments):
+        folder, name = arguments[-2:]
+        os.makedirs(folder, exist_ok=True)
+        path = os.path.join(folder, name + '.svg')
         open(path, 'wb').close()
-    with mock.patch('matplotlib.figure.Figure.savefig', save), mock.patch('matplotlib.figure.Figure.tight_layout'):
+        return path
+    with contextlib.ExitStack() as stack:
+        for function in DRAWING.difference(drawn):
+            stack.enter_context(mock.patch('study.' + function, draw))
         yield
 
 

@@ -51,7 +51,7 @@ class Program(unittest.TestCase):
         return path
 
     def test_a_study_of_people_and_simulated_operators(self):
-        made_up_study.write_study(os.path.join(self.root, 'a'), 6, conditions=('implicit', 'soft_pad'),
+        made_up_study.write_study(os.path.join(self.root, 'a'), 4, conditions=('implicit', 'soft_pad'),
                                   object_effect=2, measures=SOME)
         made_up_study.write_study(os.path.join(self.root, 'b'), 4, simulated=True, measures=SOME)
         hands = [self.write_hands('raw.csv', 0.004), self.write_hands('filtered.csv', 0.001)]
@@ -79,7 +79,7 @@ class Program(unittest.TestCase):
             self.assertTrue('%s: %.2f m long' % (name, path.length) in drawn)
 
     def test_the_same_sessions_give_the_same_files(self):
-        made_up_study.write_study(os.path.join(self.root, 'a'), 4, objects=('cube',), measures=SOME)
+        made_up_study.write_study(os.path.join(self.root, 'a'), 2, objects=('cube',), measures=SOME)
         kept = []
         for _ in range(2):
             # Processes of their own: each has another order of sets.

@@ -12,6 +12,7 @@ import threading
 import time
 import types
 import unittest
+from unittest import mock
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 try:
@@ -145,6 +146,26 @@ class DoorTest(unittest.TestCase):
                     return reply.status == 200
             self.assertTrue(await returns(), 'there is room again')
         self.run_with(visit)
+
+    def test_refusals_that_go_on_for_an_hour_are_all_counted_in_few_lines(self):
+        now, lines, due = [0.0], [], []
+        loop = types.SimpleNamespace(call_later=lambda wait, call: due.append((now[0] + wait, call)))
+        with mock.patch.object(server.time, 'monotonic', lambda: now[0]), \
+                mock.patch.object(server.asyncio, 'get_running_loop', lambda: loop):
+            refusals = server.Refusals(lines.append)
+            for k in range(36000):
+                now[0] = 0.1 * k
+                while due and due[0][0] <= now[0]:
+                    due.pop(0)[1]()
+                refusals.add('wrong access token')
+            self.assertEqual(lines[0], 'refused: wrong access token')
+            self.assertLess(len(lines), 80, 'one a minute, and a few at the start')
+            counted = sum(int(line.split()[1]) for line in lines[1:]) + 1
+            self.assertGreater(counted, 36000 - 10 * server.LONGEST_SILENCE - 1, 'none is lost but those still to be told')
+            due[0][1]()
+            now[0] += 61.0
+            refusals.add('another')
+            self.assertEqual(lines[-1], 'refused: another', 'told at once after a pause')
 
     def test_viewers_beyond_the_limit_are_refused(self):
         async def visit(door, session):

@@ -82,6 +82,7 @@ class InteractionDisplay : public rviz::Display {
     }
     if ((eye() - drawn_from_).norm() > kEyeMoved) changed_ = true;
     if (std::exchange(changed_, false)) draw();
+    scene_->pin_status(camera());
   }
 
   void reset() override {
@@ -307,11 +308,12 @@ class InteractionDisplay : public rviz::Display {
     return true;
   }
 
+  const Ogre::Camera& camera() const { return *context_->getViewManager()->getCurrent()->getCamera(); }
+
   Vector3 eye() const {
-    const Ogre::Vector3 camera = scene_node_->convertWorldToLocalPosition(
-        context_->getViewManager()->getCurrent()->getCamera()->getDerivedPosition());
-    return Eigen::Vector3f(static_cast<float>(camera.x), static_cast<float>(camera.y),
-                           static_cast<float>(camera.z))
+    const Ogre::Vector3 place = scene_node_->convertWorldToLocalPosition(camera().getDerivedPosition());
+    return Eigen::Vector3f(static_cast<float>(place.x), static_cast<float>(place.y),
+                           static_cast<float>(place.z))
         .cast<double>();
   }
 

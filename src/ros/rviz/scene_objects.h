@@ -1,5 +1,6 @@
 #pragma once
 
+#include <OgreCamera.h>
 #include <OgreManualObject.h>
 #include <OgreMaterial.h>
 #include <OgreMaterialManager.h>
@@ -10,6 +11,7 @@
 #include <rviz/default_plugin/markers/marker_base.h>
 #include <rviz/display_context.h>
 #include <rviz/mesh_loader.h>
+#include <rviz/ogre_helpers/movable_text.h>
 #include <rviz/selection/selection_handler.h>
 #include <rviz/selection/selection_manager.h>
 #include <visualization_msgs/Marker.h>
@@ -44,6 +46,9 @@ inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
                           static_cast<float>(q.z));
 }
 
+constexpr const char* kStatus = "text";  ///< the layer of what is held
+constexpr float kStatusHeight = 0.05f;   ///< of its letters, of half the window's
+
 constexpr const char* kGroup = "General";  ///< of OGRE's resources
 
 /// The material of vertices that bring their own light: opaque, or blended by their alpha.
@@ -64,7 +69,8 @@ inline Ogre::MaterialPtr vertex_colour_material(bool blended) {
   return material;
 }
 
-/// Draws the markers that Markers makes as rviz's own displays do, a node for each namespace.
+/// Draws the markers that Markers makes as rviz's own displays do, a node for each namespace; but the status
+/// text in the lower left corner of the window.
 class MarkerScene {
  public:
   /// `selection` gives the handler of a body's shapes, which are below the node.
@@ -80,7 +86,7 @@ class MarkerScene {
 
   void take(const MarkerArray& array) {
     for (const Marker& marker : array.markers) {
-      if (marker.action == Marker::DELETEALL) items_.clear();
+      if (marker.action == Marker::DELETEALL) items_.clear(), status_.reset();
       if (marker.action == Marker::DELETE) items_.erase({marker.ns, marker.id});
       if (marker.action == Marker::ADD) add(marker);
     }
@@ -88,10 +94,21 @@ class MarkerScene {
 
   void clear() {
     items_.clear();
+    status_.reset();
     missing_.clear();
   }
 
   void show_layer(const std::string& name, bool shown) { layer(name)->setVisible(shown); }
+
+  /// Keeps the status text in its corner.
+  void pin_status(const Ogre::Camera& camera) {
+    const Ogre::Matrix4 to_world = (camera.getProjectionMatrix() * camera.getViewMatrix()).inverse();
+    const float near_plane = -0.9f;
+    const Ogre::Vector3 corner = to_world * Ogre::Vector3(-0.98f, -0.96f, near_plane);
+    const Ogre::Vector3 above = to_world * Ogre::Vector3(-0.98f, -0.96f + kStatusHeight, near_plane);
+    layer(kStatus)->_setDerivedPosition(corner);
+    if (status_) status_->setCharacterHeight((above - corner).length());
+  }
 
   /// Meshes that could not be loaded.
   const std::set<std::string>& missing() const { return missing_; }
@@ -120,7 +137,20 @@ class MarkerScene {
     return node;
   }
 
+  void draw_status(const Marker& marker) {
+    if (!status_) {
+      status_ = std::make_unique<rviz::MovableText>(marker.text);
+      status_->setTextAlignment(rviz::MovableText::H_LEFT, rviz::MovableText::V_ABOVE);
+      status_->showOnTop(true);
+      layer(kStatus)->attachObject(status_.get());
+    }
+    const auto& c = marker.color;
+    status_->setCaption(marker.text);
+    status_->setColor(Ogre::ColourValue(c.r, c.g, c.b, c.a));
+  }
+
   void add(const Marker& marker) {
+    if (marker.ns == kStatus) return draw_status(marker);
     if (marker.type == Marker::MESH_RESOURCE && !rviz::loadMeshFromResource(marker.mesh_resource))
       missing_.insert(marker.mesh_resource);
     std::unique_ptr<Item>& item = items_[{marker.ns, marker.id}];
@@ -139,6 +169,7 @@ class MarkerScene {
   SelectionFactory selection_;
   std::map<std::string, Ogre::SceneNode*> layers_;
   std::map<std::pair<std::string, int>, std::unique_ptr<Item>> items_;
+  std::unique_ptr<rviz::MovableText> status_;
   std::set<std::string> missing_;
 };
 
