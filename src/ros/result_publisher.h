@@ -206,11 +206,15 @@ class ResultPublisher {
                                                             })),
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
         picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
-    add(node, "contacts", Moment::response, Shows::hands, contacts_message);
-    add(node, "objects", Moment::response, Shows::objects, objects_message);
-    add(node, "joint_states", Moment::response, Shows::joints, joint_states_message);
-    add(node, "rendered_hands", Moment::picture, Shows::hands, rendered_message);
-    add(node, "tracked_hands", Moment::picture, Shows::hands, tracked_message);
+    add<mr_hand_interaction::ContactArray>(node, "contacts", Moment::response, Shows::hands,
+                                           contacts_message);
+    add<mr_hand_interaction::ObjectStateArray>(node, "objects", Moment::response, Shows::objects,
+                                               objects_message);
+    add<sensor_msgs::JointState>(node, "joint_states", Moment::response, Shows::joints, joint_states_message);
+    add<mr_hand_interaction::HandFrame>(node, "rendered_hands", Moment::picture, Shows::hands,
+                                        rendered_message);
+    add<mr_hand_interaction::HandFrame>(node, "tracked_hands", Moment::picture, Shows::hands,
+                                        tracked_message);
   }
 
   /// From now on the standard messages of StandardOutputs too.
