@@ -39,7 +39,6 @@ using mr_hand_interaction::ObjectStateArray;
 using mr_hand_interaction::SceneDescription;
 
 constexpr std::uint32_t kQueue = 10;
-constexpr double kPassing = 0.5;       // hands and contacts go if nothing comes for so long [s]
 constexpr double kEyeMoved = 1e-4;     // [m]
 const Rgb kSkin(0.91f, 0.73f, 0.62f);  // of which the tone is made
 
