@@ -15,7 +15,7 @@
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "response/contact_step.h"
-#include "response/crowd_problem.h"
+#include "response/large_island_solver.h"
 #include "response/impact_solver.h"
 #include "response/islands.h"
 #include "scenes.h"
@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kStep = 0.001;        // [s]
 constexpr int kReference = 200;        // budgets that the reference may spend
-constexpr std::size_t kMostExact = 4;  // bodies of an island that is no crowd
+constexpr std::size_t kMostExact = 4;  // bodies of an island that is not large
 
 double cpu_time() {
   timespec now{};
@@ -143,7 +143,7 @@ class Falling {
   SimulationState state_;
   std::vector<Event> events_;
   const std::unique_ptr<ContactModel> model_;
-  CrowdProblem problem_;
+  LargeIslandSolver problem_;
   StepChanges changes_;
   std::vector<char> asleep_;
   std::vector<BodyState> bodies_;

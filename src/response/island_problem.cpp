@@ -2,297 +2,456 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "spring_contact.h"
+#include "../collision/god_object.h"
+#include "impact.h"
 
 namespace mrhi {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// A body that is off by less at the step's end has been solved for [m].
+constexpr double kInvisibleDistance = 1e-9;
+/// Momenta are what the forces make of them if less than this is missing; of the forces' impulse.
+constexpr double kNearlyAgrees = 1e-4;
+/// An object that is heavier than this, in masses of the operator who holds it, is solved together with the
+/// operator. A lighter one hardly moves a person: there the operator's velocity of the step's start is stable
+/// at any step.
+constexpr double kMinCoupled = 0.02;
 
-/// K = -df/du of a contact's force f against its relative velocity u, symmetric:
-/// k_n n n' + k_t (1 - n n') - s d d' / d'd. The last is there where friction slips: at its limit it turns
-/// with the stretch d and grows no more along it.
-Matrix3 slope_at_point(const IslandContact& contact) {
-  const SpringResponse& response = contact.response;
-  const Vector3 n = vector(contact.spring.normal);
-  Matrix3 slope = (response.normal_slope - response.tangential_slope) * n * n.transpose();
-  slope.diagonal().array() += response.tangential_slope;
-  if (response.slip > 0.0) {
-    const Vector3 d = vector(response.drawn);
-    slope -= (response.slip / response.drawn_squared * d) * d.transpose();
-  }
-  return slope;
-}
-
-/// The torque that a contact's force has about a body's centre, X = [x]x + t n', with the arm x of friction
-/// and the tilt t.
-struct Moment {
-  Vector3 arm, tilt, normal;
-
-  /// X M.
-  Matrix3 of(const Matrix3& m) const {
-    Matrix3 result = tilt * (normal.transpose() * m);
-    for (int i = 0; i < 3; ++i) result.col(i) += arm.cross(m.col(i));
-    return result;
+/// X S by its columns, with X = [r]x + t n' the torque of a force at the arm r.
+struct TorqueSlope {
+  Triple x, y, z;
+  TorqueSlope(const Symmetric3& s, const Triple& r)
+      : x(r.cross({s.xx, s.xy, s.xz})), y(r.cross({s.xy, s.yy, s.yz})), z(r.cross({s.xz, s.yz, s.zz})) {}
+  void tilt(double normal_slope, const Triple& t, const Triple& n) {
+    x = x + (normal_slope * n.x) * t, y = y + (normal_slope * n.y) * t, z = z + (normal_slope * n.z) * t;
   }
 };
 
-/// Adds J_x' S J_y, by X S and Y S; and the twist's slope. A contact moves by J_x (v, w) = v + X' w.
-///
-///     J_x' S J_y = (  S      S Y'     )   =   (  S      (Y S)'     )      S = S'
-///                  (  X S    X S Y'   )       (  X S    X (Y S)'   )
-void add(double sign, const Matrix3& slope, const Matrix3& x_slope, const Matrix3& y_slope, const Moment& x,
-         const Matrix3& twist, BlockSystem::Matrix6& block) {
-  block.topLeftCorner<3, 3>() += sign * slope;
-  block.bottomLeftCorner<3, 3>() += sign * x_slope;
-  block.topRightCorner<3, 3>() += sign * y_slope.transpose();
-  block.bottomRightCorner<3, 3>() += sign * (x.of(y_slope.transpose()) + twist);
+double lightest_operator(const Scene& scene) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const Operator& op : scene.operators)
+    lightest = std::min(lightest, scene.bodies[static_cast<std::size_t>(op.body)].mass);
+  return lightest;
+}
+
+/// Takes the motion of what carries the hand out of the row's drive: a twist at the centre of its `arm`.
+void leave_carrier(const Twist& carrier, const Triple& arm, SpringContact& row) {
+  const Triple spin = triple(carrier.angular);
+  row.drive = row.drive - triple(carrier.linear) - spin.cross(arm);
+  row.drive_spin = row.drive_spin - row.spring.normal.dot(spin);
 }
 
 }  // namespace
 
-void IslandProblem::begin(ContactStep& step, const Island& island,
+// s_t 1 + (s_n - s_t) n n' - slip d d' / d'd. The last term is there if friction slips: at its limit it turns
+// with the stretch d and grows no more along it.
+Symmetric3 point_slope(const SpringContact& row) {
+  const SpringResponse& response = row.response;
+  const double along = response.tangential_slope;
+  Symmetric3 s{along, 0.0, along, 0.0, 0.0, along};
+  s.add(response.normal_slope - along, row.spring.normal);
+  if (response.slip > 0.0) s.add(-response.slip / std::max(response.drawn_squared, 1e-300), response.drawn);
+  return s;
+}
+
+// The point of the body at the arm r moves by J (v, w) = v - [r]x w, so J' = (1; [r]x) and
+//
+//     J' S J = (  S         .             )      and the twist's s_T n n' is added at the lower right
+//              (  [r]x S    [r]x S [r]x'  )
+//
+// and where the push acts elsewhere, by the tilt t, [r]x becomes X = [r]x + t n': that adds s_n t n' to [r]x
+// S and s_n (m m' - (r x n) (r x n)'), m = r x n + t, to the lower right. A row of A [r]x' is r x that row of
+// A, as [r]x' = -[r]x. What is symmetric is made once.
+void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& r, Lower6& sum) {
+  const SpringResponse& response = row.response;
+  const Triple& n = row.spring.normal;
+  TorqueSlope torque(s, r);
+  const Triple row_x = r.cross({torque.x.x, torque.y.x, torque.z.x}),
+               row_y = r.cross({torque.x.y, torque.y.y, torque.z.y}),
+               row_z = r.cross({torque.x.z, torque.y.z, torque.z.z});
+  Symmetric3 turn{row_x.x, row_x.y, row_y.y, row_x.z, row_y.z, row_z.z};
+  turn.add(response.torque_slope, n);
+  if (row.tilts) {
+    const Triple lever = r.cross(n);
+    turn.add(response.normal_slope, lever + row.tilt);
+    turn.add(-response.normal_slope, lever);
+    torque.tilt(response.normal_slope, row.tilt, n);
+  }
+  const Triple &x = torque.x, &y = torque.y, &z = torque.z;
+  const double entries[] = {s.xx, s.xy, s.yy, s.xz,    s.yz,    s.zz,  //
+                            x.x,  y.x,  z.x,  turn.xx,                 //
+                            x.y,  y.y,  z.y,  turn.xy, turn.yy,        //
+                            x.z,  y.z,  z.z,  turn.xz, turn.yz, turn.zz};
+#pragma GCC unroll 21
+  for (std::size_t i = 0; i < Cholesky6::kEntries; ++i) sum[i] += entries[i];
+}
+
+void IslandProblem::begin(const ContactStep& step, const Island& island,
                           const ContactConfiguration& configuration) {
+  begin_bodies(island.bodies.size(), false);
   step_ = step.step;
+  for (const IslandBody& body : island.bodies) begin_body(step, body.body);
+  make_rows(step, island, configuration);
+  if (several()) {
+    // What settles does so in one or two iterations. What does not is left to the large-island solver.
+    effort_.iterations = 6, effort_.limits = 0, effort_.anew = false;
+  } else if (step.operators != nullptr && island.links.size() == 0) {
+    const Body& body = step.scene.bodies[masses_[0].body];
+    if (body.mass <= kMinCoupled * lightest_operator(step.scene)) return;
+    const int op = sole_operator(step, island);
+    if (op >= 0 && body.mass > kMinCoupled * step.scene.bodies[static_cast<std::size_t>(op)].mass)
+      couple(step, body, step.bodies[masses_[0].body], static_cast<std::size_t>(op));
+  }
+}
+
+void IslandProblem::begin_bodies(std::size_t bodies, bool in_joints) {
+  effort_ = Effort();
+  in_joints_ = in_joints;
+  coupled_ = false;
+  carrier_ = Twist();
+  unseen_ = std::numeric_limits<double>::infinity();
   masses_.clear();
-  const auto count = static_cast<Eigen::Index>(6 * island.bodies.size());
-  for (Eigen::VectorXd* vector : {&start_, &free_, &velocity_, &direction_, &gradient_})
-    vector->resize(count);
-  for (const IslandBody& body : island.bodies)
-    begin_body(step.scene.bodies[body.body], step.bodies[body.body], step.gravity);
-  // Of the lightest body: what it would not be seen to move by, none of the others is.
-  const auto lighter = [](const Mass& x, const Mass& y) { return x.mass < y.mass; };
-  unseen_ = kUnseenWay / step_ * std::min_element(masses_.begin(), masses_.end(), lighter)->mass;
-
-  add_contacts(step, island, configuration);
-  couple();
+  wrenches_.resize(bodies);
+  if (in_joints) return;
+  const auto unknowns = static_cast<Eigen::Index>(6 * bodies);
+  for (Vector* vector :
+       {&start_, &free_, &velocity_, &direction_, &gradient_, &weights_, &change_, &momentum_})
+    vector->resize(unknowns);
 }
 
-void IslandProblem::add_contacts(const ContactStep& step, const Island& island,
-                                 const ContactConfiguration& configuration) {
-  number_.resize(step.bodies.size());
-  for (std::size_t i = 0; i < island.bodies.size(); ++i)
-    number_[island.bodies.first[i].body] = static_cast<int>(i);
-  const auto number = [&](std::size_t body) { return number_[body]; };
-  contacts_.clear();
-  const auto add = [&](const auto& touch, int a, int b) -> IslandContact& {
-    contacts_.emplace_back();
-    make_spring(step, configuration, touch, contacts_.back());
-    contacts_.back().a = a, contacts_.back().b = b;
-    return contacts_.back();
-  };
-  for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (!step.contacts[i].ignored) add(step.contacts[i], IslandContact::kAlone, number(body.body));
-    }
-  }
-  for (const IslandBody& body : island.bodies) {
-    for (const Grip& grip : step.grips) {
-      if (!grip.active || grip.body != body.body) continue;
-      for (int point = 0; point < kGripPoints; ++point) {
-        contacts_.emplace_back();
-        make_grip_spring(step, configuration, grip, point, contacts_.back());
-        contacts_.back().a = IslandContact::kAlone, contacts_.back().b = number(body.body);
-      }
-    }
-  }
-  for (const Link& link : island.links) {
-    const BodyContact& touch = step.body_contacts[link.index];
-    const bool alone = step.scene.bodies[touch.key.a].fixed;
-    add(touch, alone ? IslandContact::kAlone : number(touch.key.a), number(touch.key.b)).arm_a =
-        touch.arm_a + touch.friction_offset;
-  }
+void IslandProblem::make_rows(const ContactStep& step, const Island& island,
+                              const ContactConfiguration& configuration) {
+  make_hand_rows(step, island, configuration, rows_);
+  std::size_t row = rows_.size();
+  rows_.resize(row + island.links.size());
+  for (const Link& link : island.links)
+    make_link_row(step, island, configuration, step.body_contacts[link.index], rows_[row++]);
 }
 
-// u* = (p / m + h g, I^-1 L), and no gyroscopic term: as of BodyProblem.
-void IslandProblem::begin_body(const Body& body, const BodyState& state, const Vector3& gravity) {
-  const Eigen::Index row = 6 * static_cast<Eigen::Index>(masses_.size());
+// No gyroscopic term w x I w is in M (u - u*): it is what the axes' turning does. L itself changes by torques
+// alone, and the flight turns the axes under L afterwards (free_flight.h).
+//
+//     u* = (p / m + h g, I^-1 L)          u_0 = u* + h a,     a = (u - u*) / h of the last step
+//     unseen = m (1 nm) / h, of the lightest body
+void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
+  const Body& body = step.scene.bodies[index];
+  const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  masses_.push_back(
-      {body.mass, body.inertia.trace() / (3.0 * body.mass), rotation * body.inertia * rotation.transpose()});
-  // Newton's method begins where gravity and what acted in the last step would bring the body.
-  const Twist twist = twist_of(body, state);
-  start_.segment<6>(row) << twist.linear, twist.angular;
-  free_.segment<6>(row) << twist.linear + step_ * gravity, twist.angular;
-  velocity_.segment<6>(row) << free_.segment<3>(row) + step_ * state.pushed.linear,
-      free_.segment<3>(row + 3) + step_ * state.pushed.angular;
+  const Eigen::Index at = 6 * static_cast<Eigen::Index>(masses_.size());
+  masses_.push_back({index, body.mass, rotation * body.inertia * rotation.transpose()});
+  unseen_ = std::min(unseen_, kInvisibleDistance / step_ * body.mass);
+  start_.segment<3>(at) = state.linear_momentum / body.mass;
+  start_.segment<3>(at + 3) =
+      rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
+  free_.segment<6>(at) = start_.segment<6>(at);
+  free_.segment<3>(at) += step_ * step.gravity;
+  velocity_.segment<3>(at) = free_.segment<3>(at) + step_ * state.pushed.linear;
+  velocity_.segment<3>(at + 3) = free_.segment<3>(at + 3) + step_ * state.pushed.angular;
+  weights_.segment<3>(at).setOnes();
+  weights_.segment<3>(at + 3).setConstant(3.0 * body.mass / body.inertia.trace());
 }
 
-/// Which blocks of six by six the Hessian has beside its diagonal: one for each pair that touches.
-void IslandProblem::couple() {
-  system_.begin(static_cast<int>(masses_.size()));
-  // The contacts of a pair follow each other, and the pairs' bodies come in order, as the island's do.
-  for (IslandContact& contact : contacts_) {
-    if (contact.a != IslandContact::kAlone) contact.coupling = system_.couple(contact.a, contact.b);
+/// Returns the operator of all hands that act on the body; -1 if there are several.
+int IslandProblem::sole_operator(const ContactStep& step, const Island& island) const {
+  int op = -1;
+  bool several = false;
+  const auto see = [&](std::size_t hand) {
+    several = several || (op >= 0 && op != (*step.operators)[hand]);
+    op = (*step.operators)[hand];
+  };
+  const IslandBody& body = *island.bodies.begin();
+  for (std::size_t i = body.first; i < body.last; ++i) {
+    if (!step.contacts[i].ignored) see(step.contacts[i].key.hand);
+  }
+  for (const Grip& grip : step.grips) {
+    if (grip.active && grip.body == body.body) see(grip.hand);
+  }
+  return several ? -1 : op;
+}
+
+// The wrench of the springs acts on the body and, opposite, on the operator. So the velocity W of the body
+// against the operator, both at the body's centre, is that of one body of the reduced mass:
+//
+//     M_r (W - W*) = h sum J' f(W),     M_r^-1 = M^-1 + X M_p^-1 X'
+//
+// and a heavy object is as stable in the hands of a person as a light one. X M_p^-1 X' has, with d from the
+// operator's centre to the body's, the blocks 1/m - [d]I^-1[d], -[d]I^-1, I^-1[d] and I^-1.
+void IslandProblem::couple(const ContactStep& step, const Body& body, const BodyState& state,
+                           std::size_t op) {
+  const Body& person = step.scene.bodies[op];
+  const BodyState& person_state = step.bodies[op];
+  const Vector3 offset = state.pose.position - person_state.pose.position;
+  const Twist twist = twist_of(person, person_state);
+  carrier_ = {twist.linear + twist.angular.cross(offset), twist.angular};
+  for (SpringContact& row : rows_) leave_carrier(carrier_, row.arm, row);
+  const Matrix3 across = cross_matrix(offset);
+  const Matrix3 inverse_inertia = world_inverse_inertia(person, person_state.pose.orientation);
+  Eigen::Matrix<double, 6, 6> inverse;
+  inverse.topLeftCorner<3, 3>() =
+      collision_matrix(1.0 / person.mass + 1.0 / body.mass, inverse_inertia, offset);
+  inverse.bottomLeftCorner<3, 3>() = inverse_inertia * across;
+  inverse.topRightCorner<3, 3>() = -across * inverse_inertia;
+  inverse.bottomRightCorner<3, 3>() = inverse_inertia + world_inverse_inertia(body, state.pose.orientation);
+  const Eigen::Matrix<double, 6, 6> reduced = inverse.llt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  mass_ = 0.5 * (reduced + reduced.transpose());
+  // Both fall alike, so that gravity has no part in the velocity against each other.
+  start_.head<3>() -= carrier_.linear;
+  start_.tail<3>() -= carrier_.angular;
+  free_ = start_;
+  velocity_.head<3>() = free_.head<3>() + step_ * state.pushed.linear;
+  velocity_.tail<3>() = free_.tail<3>() + step_ * state.pushed.angular;
+  coupled_ = true;
+}
+
+// Body 1 of the rows is the operator, and body 2 a fixture, which has no number: u = u_1 + v + w x r, with
+// u_1 the hand's velocity against the operator.
+void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
+                                   const std::vector<Contact*>& contacts, const Twist& carrier,
+                                   const ContactConfiguration& configuration) {
+  begin_bodies(1, false);
+  step_ = step.step;
+  begin_body(step, body);
+  rows_.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    SpringContact& row = rows_[i];
+    make_spring(step, configuration, *contacts[i], row);
+    row.a = 0, row.b = SpringContact::kNone;
+    row.arm_a = triple(contacts[i]->point - step.bodies[body].pose.position);
+    leave_carrier(carrier, row.arm_a, row);
   }
 }
 
-Effort IslandProblem::effort() {
-  Effort effort;
-  effort.iterations = 6;  // what settles does so in one or two
-  effort.limits = 0;
-  effort.anew = false;
-  return effort;
+//     u = u_1 - (v + w x r) - (w.t) n,     spin = n.(w_1 - w)
+[[gnu::always_inline]] inline void IslandProblem::relative_motion(const SpringContact& row, Triple& velocity,
+                                                                  double& spin) const {
+  const Triple& n = row.spring.normal;
+  velocity = row.drive, spin = row.drive_spin;
+  if (row.b != SpringContact::kNone) {
+    const Triple w = angular_velocity(row.b);
+    velocity = velocity - linear_velocity(row.b) - w.cross(row.arm);
+    if (row.tilts) velocity = velocity - w.dot(row.tilt) * n;
+    spin -= n.dot(w);
+  }
+  if (row.a != SpringContact::kNone) {
+    const Triple w = angular_velocity(row.a);
+    velocity = velocity + linear_velocity(row.a) + w.cross(row.arm_a);
+    if (row.tilts) velocity = velocity + w.dot(row.tilt) * n;
+    spin += n.dot(w);
+  }
 }
 
-Vector3 IslandProblem::relative_velocity(const IslandContact& contact) const {
-  const auto velocity = [&](int body) { return velocity_.segment<3>(6 * body); };
-  const auto spin = [&](int body) { return velocity_.segment<3>(6 * body + 3); };
-  const Vector3 u = vector(contact.relative_velocity(triple(velocity(contact.b)), triple(spin(contact.b))));
-  if (contact.a == IslandContact::kAlone) return u;
-  const Vector3 w = spin(contact.a);
-  return u + velocity(contact.a) + w.cross(contact.arm_a) +
-         w.dot(vector(contact.tilt)) * vector(contact.spring.normal);
-}
-
-double IslandProblem::relative_spin(const IslandContact& contact) const {
-  const Vector3 n = vector(contact.spring.normal);
-  const double of_b = n.dot(velocity_.segment<3>(6 * contact.b + 3));
-  if (contact.a == IslandContact::kAlone) return contact.drive_spin - of_b;
-  return n.dot(velocity_.segment<3>(6 * contact.a + 3)) - of_b;
-}
-
-/// As most contacts of a crowd that may touch do: it then gives nothing, as respond() would find.
-/// d+ = d - tau u.n <= 0, in a form without the spring's other work. Two things forbid the short cut: a
-/// bond, which pulls without any push, and limits that are held, by which friction acts on though the push
-/// is gone.
-bool IslandProblem::stays_apart(IslandContact& contact, const Triple& u, bool renew_limits) {
-  Spring& spring = contact.spring;
-  if (spring.bond > 0.0 || spring.depth > spring.ahead * u.dot(spring.normal)) return false;
+/// True if the contact is open at this velocity: it then gives nothing, as respond() would find.
+/// d+ = d - tau u.n <= 0, without the spring's other work. Two cases need respond(): a bond, which pulls
+/// without any normal force, and limits that are held, by which friction acts on though the normal force is
+/// gone.
+bool IslandProblem::stays_open(SpringContact& row, const Triple& velocity, bool renew_limits) {
+  Spring& spring = row.spring;
+  if (spring.bond > 0.0 || spring.depth > spring.ahead * velocity.dot(spring.normal)) return false;
   if (!renew_limits && (spring.slip_limit > 0.0 || spring.twist_limit > 0.0)) return false;
   spring.slip_limit = spring.twist_limit = 0.0;
-  contact.response = {};
+  row.response = {};
   return true;
 }
 
-/// Backward Euler: M (u - u*) = h sum J' f(J u), where u* is the motion without contacts. The gradient is the
-/// impulse that the two sides differ by. It is that of energy() too, as long as friction's limits are held.
-/// With u_c = J_a U_a - J_b U_b and f on b, -f on a:
+/// Backward Euler: the gradient is the impulse that the two sides of M (u - u*) = h J' f(J u) differ by. It
+/// is that of energy() too, while friction's limits are held. A row gives f to its body 2 and -f to body 1:
 ///
-///     g_b = M_b (U_b - U_b*) - h sum (f, b x f + T n),     g_a = M_a (U_a - U_a*) + h sum (f, a x f + T n)
+///     g = M (u - u*) - h J' (sum f, sum r x f + (f.n) t + T n)
 ///
-/// Contacts between bodies cancel in the sum of g over the bodies, so that finish(), which takes g off M U,
-/// keeps momentum to rounding however large g is.
+/// This is time stepping on velocities as Anitescu & Potra (1997) have it, with springs, which need no
+/// complementarity problem, in place of constraints; convex as Todorov (2014) and, with springs, Castro,
+/// Permenter & Han (2023) have it.
 void IslandProblem::evaluate(bool renew_limits) {
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const Vector6 change = velocity_.segment<6>(row) - free_.segment<6>(row);
-    gradient_.segment<3>(row) = masses_[i].mass * change.head<3>();
-    gradient_.segment<3>(row + 3) = masses_[i].inertia * change.tail<3>();
+  if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  double push = 0.0;
+  for (SpringContact& row : rows_) {
+    Triple velocity;
+    double spin;
+    relative_motion(row, velocity, spin);
+    if (several() && stays_open(row, velocity, renew_limits)) continue;
+    SpringResponse& response = row.response;
+    row.spring.respond(velocity, spin, renew_limits, response);
+    push += response.push + row.spring.bond;
+    Triple torque = response.torque * row.spring.normal;
+    if (row.tilts) torque = torque + response.force.dot(row.spring.normal) * row.tilt;
+    if (row.b != SpringContact::kNone) {
+      Wrench& sum = wrenches_[static_cast<std::size_t>(row.b)];
+      sum.force = sum.force + response.force;
+      sum.torque = sum.torque + (row.arm.cross(response.force) + torque);
+    }
+    if (row.a != SpringContact::kNone) {
+      Wrench& sum = wrenches_[static_cast<std::size_t>(row.a)];
+      sum.force = sum.force - response.force;
+      sum.torque = sum.torque - (row.arm_a.cross(response.force) + torque);
+    }
   }
-  scale_ = 0.0;
-  for (IslandContact& contact : contacts_) {
-    SpringResponse& response = contact.response;
-    const Triple u = triple(relative_velocity(contact));
-    if (stays_apart(contact, u, renew_limits)) continue;
-    contact.spring.respond(u, relative_spin(contact), renew_limits, response);
-    scale_ += step_ * (response.push + contact.spring.bond);
-    const Vector3 force = step_ * vector(response.force);
-    const Vector3 n = vector(contact.spring.normal);
-    const Vector3 torque = (step_ * response.torque) * n + force.dot(n) * vector(contact.tilt);
-    const auto add_force = [&](int body, double sign, const Vector3& arm) {
-      gradient_.segment<3>(6 * body) -= sign * force;
-      gradient_.segment<3>(6 * body + 3) -= sign * (arm.cross(force) + torque);
-    };
-    add_force(contact.b, 1.0, vector(contact.arm));
-    if (contact.a != IslandContact::kAlone) add_force(contact.a, -1.0, contact.arm_a);
+  scale_ = step_ * push;
+  change_ = velocity_ - free_;
+  multiply_mass(change_, gradient_);
+  Vector& impulse = in_joints_ ? body_impulse_ : gradient_;
+  if (in_joints_) impulse.setZero();
+  Eigen::Index at = 0;
+  for (const Wrench& wrench : wrenches_) {
+    impulse.segment<3>(at) -= step_ * vector(wrench.force);
+    impulse.segment<3>(at + 3) -= step_ * vector(wrench.torque);
+    at += 6;
+  }
+  if (in_joints_) add_joint_forces();
+}
+
+void IslandProblem::multiply_mass(const Vector& by, Vector& result) const {
+  if (in_joints_ || coupled_) {
+    result.noalias() = mass_ * by;
+    return;
+  }
+  Eigen::Index at = 0;
+  for (const BodyMass& body : masses_) {
+    result.segment<3>(at) = body.mass * by.segment<3>(at);
+    result.segment<3>(at + 3) = body.inertia * by.segment<3>(at + 3);
+    at += 6;
   }
 }
 
+/// H = M + h sum J' S J: positive definite, as no row's S has a negative eigenvalue.
+/// A row adds to the blocks of its two bodies, and the opposite between them. Of one body, H has factors of
+/// fixed size; of more it is dense, as most bodies of so few touch each other.
 void IslandProblem::factorise() {
-  assemble();
-  system_.factorise();
-}
-
-/// H = M + h sum J' K J: positive definite, as no spring's K has a negative eigenvalue.
-/// M is block diagonal; a contact adds to the blocks of its two bodies, and K's opposite between them.
-void IslandProblem::assemble() {
-  system_.clear();
-  for (int i = 0; i < static_cast<int>(masses_.size()); ++i) {
-    const Mass& mass = masses_[static_cast<std::size_t>(i)];
-    system_.diagonal(i).diagonal().head<3>().setConstant(mass.mass);
-    system_.diagonal(i).bottomRightCorner<3, 3>() = mass.inertia;
+  if (in_joints_) return factorise_joints();
+  slopes_.assign(masses_.size(), Lower6{});
+  if (several()) hessian_.setZero(velocity_.size(), velocity_.size());
+  for (const SpringContact& row : rows_) {
+    if (row.response.normal_slope <= 0.0 && row.response.tangential_slope <= 0.0) continue;
+    const Symmetric3 s = point_slope(row);
+    if (row.b != SpringContact::kNone) add_slope(row, s, row.arm, slopes_[static_cast<std::size_t>(row.b)]);
+    if (row.a == SpringContact::kNone) continue;
+    add_slope(row, s, row.arm_a, slopes_[static_cast<std::size_t>(row.a)]);
+    if (row.b != SpringContact::kNone) couple_slopes(row, s);
   }
-  for (const IslandContact& contact : contacts_) {
-    if (contact.response.normal_slope > 0.0 || contact.response.tangential_slope > 0.0) add_slope(contact);
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    Lower6& slope = slopes_[i];
+    const auto entry = [&slope](int row, int column) -> double& {
+      return slope[static_cast<std::size_t>(Cholesky6::at(row, column))];
+    };
+    for (double& one : slope) one *= step_;
+    for (int row = 0; coupled_ && row < 6; ++row) {
+      for (int column = 0; column <= row; ++column) entry(row, column) += mass_(row, column);
+    }
+    for (int row = 0; !coupled_ && row < 3; ++row) {
+      entry(row, row) += masses_[i].mass;
+      for (int column = 0; column <= row; ++column)
+        entry(3 + row, 3 + column) += masses_[i].inertia(row, column);
+    }
+    if (!several()) continue;
+    auto block = hessian_.block<6, 6>(static_cast<Eigen::Index>(6 * i), static_cast<Eigen::Index>(6 * i));
+#pragma GCC unroll 6
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column <= row; ++column) block(row, column) = entry(row, column);
+    }
+  }
+  if (several())
+    factors_.compute(hessian_);
+  else
+    factors_of_one_.factorise(slopes_[0]);
+}
+
+// H_ba -= h J_b' S J_a, with rows of b, which is the later body, and columns of a:
+//
+//     J_b' S J_a = (  S      (Y S)'            )      X, Y the torques of b and a, S = S'
+//                  (  X S    X S Y' + s_T n n' )
+void IslandProblem::couple_slopes(const SpringContact& row, const Symmetric3& s) {
+  const SpringResponse& response = row.response;
+  const Triple& n = row.spring.normal;
+  TorqueSlope x(s, row.arm), y(s, row.arm_a);
+  if (row.tilts) x.tilt(response.normal_slope, row.tilt, n), y.tilt(response.normal_slope, row.tilt, n);
+  auto block = hessian_.block<6, 6>(6 * row.b, 6 * row.a);
+  block.topLeftCorner<3, 3>() -= step_ * s.matrix();
+  const Triple *const of_b[] = {&x.x, &x.y, &x.z}, *const of_a[] = {&y.x, &y.y, &y.z};
+  for (int k = 0; k < 3; ++k) {
+    block.block<3, 1>(3, k) -= step_ * vector(*of_b[k]);
+    block.block<1, 3>(k, 3) -= step_ * vector(*of_a[k]).transpose();
+  }
+  // X S Y' = X (Y S)', whose column k is b x q + (n.q) t, q the k-th row of Y S.
+  const Triple rows[] = {{y.x.x, y.y.x, y.z.x}, {y.x.y, y.y.y, y.z.y}, {y.x.z, y.y.z, y.z.z}};
+  const double twist[] = {response.torque_slope * n.x, response.torque_slope * n.y,
+                          response.torque_slope * n.z};
+  for (int k = 0; k < 3; ++k) {
+    const Triple turn = row.arm.cross(rows[k]) + n.dot(rows[k]) * row.tilt + twist[k] * n;
+    block.block<3, 1>(3, 3 + k) -= step_ * vector(turn);
   }
 }
 
-void IslandProblem::start_from(const Eigen::VectorXd& start, const Eigen::VectorXd& free) {
-  start_ = start;
-  free_ = free;
-}
-
-void IslandProblem::multiply_hessian(const Eigen::MatrixXd& by, Eigen::MatrixXd& result) {
-  assemble();
-  system_.multiply(by, result);
-}
-
-// H_aa += h J_a' K J_a,  H_bb += h J_b' K J_b,  H_ba -= h J_b' K J_a, of which the system keeps the one
-// below the diagonal: rows of the later body.
-void IslandProblem::add_slope(const IslandContact& contact) {
-  const Matrix3 slope = step_ * slope_at_point(contact);
-  const Vector3 n = vector(contact.spring.normal), tilt = vector(contact.tilt);
-  const Moment b{vector(contact.arm), tilt, n}, a{contact.arm_a, tilt, n};
-  const Matrix3 twist = (step_ * contact.response.torque_slope) * n * n.transpose();
-  const Matrix3 b_slope = b.of(slope);
-  add(1.0, slope, b_slope, b_slope, b, twist, system_.diagonal(contact.b));
-  if (contact.a == IslandContact::kAlone) return;
-  const Matrix3 a_slope = a.of(slope);
-  add(1.0, slope, a_slope, a_slope, a, twist, system_.diagonal(contact.a));
-  add(-1.0, slope, b_slope, a_slope, b, twist, system_.between(contact.coupling));
+void IslandProblem::find_direction() {
+  direction_ = -gradient_;
+  if (several() || in_joints_) {
+    factors_.solveInPlace(direction_);
+  } else {
+    direction_ = factors_of_one_.solve(direction_);
+  }
 }
 
 /// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
-/// k^2 = tr I / 3m, the mean over the axes.
+/// |g_v|^2 + |g_w|^2 / k^2, k^2 = tr I / 3m the mean over the axes.
 double IslandProblem::error_squared() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    sum += gradient_.segment<3>(row).squaredNorm() +
-           gradient_.segment<3>(row + 3).squaredNorm() / masses_[i].gyration_squared;
-  }
-  return sum;
+  return (weights_.array() * gradient_.array().square()).sum();
 }
 
 /// (u - u*)' M (u - u*) / 2 + h sum V(J u), with V the potential whose slope is -f: convex, least at the
-/// step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000).
-double IslandProblem::energy() const {
-  double sum = 0.0;
+/// step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000). Only a line search
+/// needs it.
+double IslandProblem::energy() {
+  if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
+  change_ = velocity_ - free_;
+  multiply_mass(change_, momentum_);
+  double sum = 0.5 * change_.dot(momentum_);
+  for (const SpringContact& row : rows_) {
+    if (row.spring.stiffness <= 0.0) continue;
+    Triple velocity;
+    double spin;
+    relative_motion(row, velocity, spin);
+    sum += step_ * potential(row.spring, velocity, spin);
+  }
+  return in_joints_ ? sum + joint_energy() : sum;
+}
+
+bool IslandProblem::nearly_agrees() const {
+  return error_squared() <= kNearlyAgrees * kNearlyAgrees * scale_ * scale_;
+}
+
+// Momenta that agree with the forces are M u* + h J' f: what one body gains another loses, however far u is
+// solved. Of a body that is solved with an operator no others are known.
+void IslandProblem::finish_bodies(bool agree, ContactStep& step) const {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const Vector6 change = velocity_.segment<6>(row) - free_.segment<6>(row);
-    sum += 0.5 * (masses_[i].mass * change.head<3>().squaredNorm() +
-                  change.tail<3>().dot(masses_[i].inertia * change.tail<3>()));
+    const BodyMass& body = masses_[i];
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    BodyState& state = step.bodies[body.body];
+    state.pushed.linear = (velocity_.segment<3>(at) - free_.segment<3>(at)) / step_;
+    state.pushed.angular = (velocity_.segment<3>(at + 3) - free_.segment<3>(at + 3)) / step_;
+    if (agree || coupled_) {
+      state.linear_momentum += step_ * (vector(wrenches_[i].force) + body.mass * step.gravity);
+      state.angular_momentum += step_ * vector(wrenches_[i].torque);
+    } else {
+      state.linear_momentum = body.mass * velocity_.segment<3>(at);
+      state.angular_momentum = body.inertia * velocity_.segment<3>(at + 3);
+    }
   }
-  for (const IslandContact& contact : contacts_)
-    sum += step_ * potential(contact.spring, triple(relative_velocity(contact)), relative_spin(contact));
-  return sum;
 }
 
-bool IslandProblem::nearly_agree() const {
-  return error_squared() <= kNearlyAgree * kNearlyAgree * scale_ * scale_;
+void IslandProblem::settle_rows(ContactStep& step, const Island& island) const {
+  const SpringContact* row = settle_hand_rows(step, island, rows_.data());
+  for (const Link& link : island.links) settle(step, *row++, step.body_contacts[link.index]);
 }
 
-void IslandProblem::finish(ContactStep& step, const Island& island) {
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < masses_.size(); ++i, row += 6) {
-    BodyState& state = step.bodies[island.bodies.begin()[i].body];
-    state.pushed.linear = (velocity_ - free_).segment<3>(row) / step_;
-    state.pushed.angular = (velocity_ - free_).segment<3>(row + 3) / step_;
-    // M u less the gradient is M u* + h sum J' f: what one body gains another loses, however far u is solved.
-    state.linear_momentum = masses_[i].mass * velocity_.segment<3>(row);
-    state.angular_momentum = masses_[i].inertia * velocity_.segment<3>(row + 3);
-    state.linear_momentum -= gradient_.segment<3>(row);
-    state.angular_momentum -= gradient_.segment<3>(row + 3);
-  }
-  settle_touches(step, island);
+void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) {
+  finish_bodies(agree, step);
+  settle_rows(step, island);
 }
 
-void IslandProblem::settle_touches(ContactStep& step, const Island& island) {
-  auto contact = settle_hands(step, island, contacts_.begin());
-  for (const Link& link : island.links) settle(step, *contact++, step.body_contacts[link.index]);
+void IslandProblem::finish_operator(ContactStep& step, const std::vector<Contact*>& contacts) {
+  finish_bodies(true, step);
+  for (std::size_t i = 0; i < contacts.size(); ++i) settle(step, rows_[i], *contacts[i]);
 }
 
 }  // namespace mrhi

@@ -1,90 +1,191 @@
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <array>
 #include <vector>
 
-#include "block_system.h"
+#include "../joints/joint_law.h"
+#include "../joints/linkage.h"
+#include "cholesky6.h"
 #include "islands.h"
-#include "newton.h"
 #include "spring_contact.h"
 
 namespace mrhi {
 
-/// Of the bodies of an island, which are numbered from 0: body 2 is number `b`, body 1 number `a` or, moving
-/// by itself, none of them.
-struct IslandContact : SpringContact {
-  static constexpr int kAlone = -1;
-  int a, b;
-  Vector3 arm_a;         // of friction, from the centre of a [m]
-  std::size_t coupling;  // of a and b in the system
+/// The lower triangle of a symmetric 6 x 6 matrix, row by row (Cholesky6::at).
+using Lower6 = std::array<double, Cholesky6::kEntries>;
+
+struct Symmetric3 {
+  double xx, xy, yy, xz, yz, zz;
+
+  /// Adds weight v v'.
+  void add(double weight, const Triple& v) {
+    const Triple w = weight * v;
+    xx += w.x * v.x, xy += w.x * v.y, yy += w.y * v.y;
+    xz += w.x * v.z, yz += w.y * v.z, zz += w.z * v.z;
+  }
+  Matrix3 matrix() const { return (Matrix3() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished(); }
 };
 
-/// A few bodies that touch each other, and what presses them: six unknowns a body, solved together. A
-/// Problem for Newton. Keeps its memory from island to island.
+/// Returns S = -d force / d velocity of 2 at the contact point, by the row's last response.
+Symmetric3 point_slope(const SpringContact& row);
+/// Adds J' S J, -d (force, torque) / d (velocity, angular velocity) of a body on which the row acts at `arm`.
+void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& arm, Lower6& sum);
+
+/// The contact problem of one island at the step's end: M (u - u*) = h J' f(J u), with f the springs' forces
+/// and u* what gravity alone makes of the velocities. The unknowns u are six of each body, linear and angular
+/// in world axes; in an island with joints they are the joints' velocities and six of each body without a
+/// joint. Solved by Newton's method. Keeps its memory from island to island.
 class IslandProblem {
  public:
-  static constexpr bool kTrustsLastStep = false;  // momentum is conserved between the bodies
+  /// Bodies without joints.
+  void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
+  /// An island with joints. `linkages`: all of the scene, with their motions placed; `usual`: the step, of
+  /// which frames leave shorter ones over [s].
+  void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+             const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
+             const std::vector<JointState>& joints, double usual);
+  /// The body of an operator whose hands touch fixtures. `carrier` moves the hands.
+  void begin_operator(const ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
+                      const Twist& carrier, const ContactConfiguration& configuration);
 
-  void begin(ContactStep& step, const Island& island, const ContactConfiguration& configuration);
-
-  /// What does not settle by then goes on as a crowd.
-  static Effort effort();
-  void restart() { velocity_ = start_; }
+  /// Returns true if the forces and the velocity found agree.
+  bool solve();
+  /// Evaluates the forces at the velocity, with Coulomb's limits renewed there first or held.
   void evaluate(bool renew_limits);
-  double error_squared() const;
+  /// Impulses that act [N s].
   double scale() const { return scale_; }
-  double unseen() const { return unseen_; }
-  void factorise();
-  void find_direction() {
-    direction_ = -gradient_;
-    system_.solve(direction_);
+  /// True if so little is missing that momenta may be what the forces make of them.
+  bool nearly_agrees() const;
+  /// Velocity of the first body of an island without joints, at the step's end.
+  Twist velocity() const {
+    return {velocity_.head<3>() + carrier_.linear, velocity_.segment<3>(3) + carrier_.angular};
   }
-  void move(double part) { velocity_ += part * direction_; }
-  double energy() const;
-  double descent() const { return gradient_.dot(direction_); }
 
-  // For bodies whose velocities depend on fewer unknowns (linkage_problem.h).
-  /// Starts from these velocities in place of the bodies' own; `free` is what is reached without contact.
-  void start_from(const Eigen::VectorXd& start, const Eigen::VectorXd& free);
-  void set_velocity(const Eigen::VectorXd& velocity) { velocity_ = velocity; }
-  /// Impulse that is missing at the last velocity evaluated, and its slope there.
-  const Eigen::VectorXd& gradient() const { return gradient_; }
-  /// The Hessian times another matrix.
-  void multiply_hessian(const Eigen::MatrixXd& by, Eigen::MatrixXd& result);
-  /// Gives the contacts what they have become.
-  void settle_touches(ContactStep& step, const Island& island);
+  /// Writes contacts, and the bodies' momenta at the step's end: what the forces make of them if these and
+  /// the velocity `agree`.
+  void finish(bool agree, ContactStep& step, const Island& island);
+  void finish_operator(ContactStep& step, const std::vector<Contact*>& contacts);
 
-  /// Whether so little is missing that momenta may be what the forces make of them.
-  bool nearly_agree() const;
-  /// Gives the contacts what they have become, and the bodies their momenta at the step's end: what the
-  /// forces make of them, so that none is lost between bodies.
-  void finish(ContactStep& step, const Island& island);
+  // Of islands with joints.
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+  using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  /// Takes other velocities at the step's start, as impacts have left them.
+  void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
+  const Vector& start() const { return start_; }
+  const Vector& joint_velocity() const { return velocity_; }
+  /// Adds `sign` times the Jacobian of the point of body `number` at `arm`.
+  void add_point_jacobian(int number, const Vector3& arm, double sign, PointJacobian& jacobian) const;
+  /// The joint whose velocity an unknown is, as an index in Scene::joints; -1 of a body without a joint.
+  int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
+  void note_limit_impulse(Eigen::Index joint, double impulse) {
+    laws_[static_cast<std::size_t>(joint)].note_limit_impulse(impulse);
+  }
+  /// Solves the mass matrix for velocities, in place.
+  void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }
+  /// True if anything but gravity acts, or may.
+  bool acts() const { return acts_; }
+  /// Slows a solution that does not agree with its forces down to what springs and hands can have made of it.
+  void keep_to_energy(const ContactStep& step, const Island& island);
+  void finish(bool agree, ContactStep& step, const Island& island, std::vector<JointState>& joints);
 
  private:
-  /// Where less than this is missing, momenta are what the forces make of them; of the forces' impulse.
-  static constexpr double kNearlyAgree = 1e-4;
-
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  struct Mass {
-    double mass;
-    double gyration_squared;  // [m^2]
-    Matrix3 inertia;          // world axes
+  /// What the forces of a body's rows are together.
+  struct Wrench {
+    Triple force, torque;  // [N], [N m]
   };
-  Vector3 relative_velocity(const IslandContact& contact) const;
-  double relative_spin(const IslandContact& contact) const;
-  void begin_body(const Body& body, const BodyState& state, const Vector3& gravity);
-  void add_contacts(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
-  void couple();
-  void add_slope(const IslandContact& contact);
-  void assemble();
-  static bool stays_apart(IslandContact& contact, const Triple& u, bool renew_limits);
+  struct BodyMass {
+    std::size_t body;  // in Scene::bodies
+    double mass;
+    Matrix3 inertia;  // world axes
+  };
+  struct Unknown {
+    int joint;  // index in Scene::joints, or -1 of the six of a body without a joint
+    int body;   // that it moves
+  };
+  /// Limits of the iteration.
+  struct Effort {
+    int iterations = 40;       // with Coulomb's limits renewed in each
+    int limits = 8;            // renewals of held limits after that
+    int held_iterations = 60;  // for each of them
+    int unchecked = 2;        // first iterations without a line search: exact while no contact opens or slips
+    bool anew = true;         // held limits begin at the step's start, not at the last iterate
+    int trials = 20;          // of a line search
+    double converged = 1e-7;  // largest error of a solution; of the forces' impulse
+  };
 
-  std::vector<IslandContact> contacts_;
-  double step_ = 0.0;
-  std::vector<Mass> masses_;
-  Eigen::VectorXd start_, free_, velocity_, direction_, gradient_;
-  BlockSystem system_;
-  double scale_ = 0.0, unseen_ = 0.0;
-  std::vector<int> number_;  // of each of the scene's bodies in the island
+  // Newton's method (newton.cpp).
+  double error_squared() const;
+  bool error_below(double part) const;
+  bool solved() const;
+  void solve_with_held_limits();
+  void advance(bool checked, bool same_hessian);
+  void search_line(double slope_at_start);
+  void factorise();
+  void find_direction();
+  double energy();
+  double descent() const { return gradient_.dot(direction_); }
+
+  void begin_body(const ContactStep& step, std::size_t index);
+  void begin_bodies(std::size_t bodies, bool in_joints);
+  void make_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
+  int sole_operator(const ContactStep& step, const Island& island) const;
+  void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
+  void finish_bodies(bool agree, ContactStep& step) const;
+  void settle_rows(ContactStep& step, const Island& island) const;
+
+  bool several() const { return masses_.size() > 1; }
+  const Vector& body_velocity() const { return in_joints_ ? body_velocity_ : velocity_; }
+  Triple linear_velocity(int number) const { return triple(body_velocity().segment<3>(6 * number)); }
+  Triple angular_velocity(int number) const { return triple(body_velocity().segment<3>(6 * number + 3)); }
+  void relative_motion(const SpringContact& row, Triple& velocity, double& spin) const;
+  static bool stays_open(SpringContact& row, const Triple& velocity, bool renew_limits);
+  void multiply_mass(const Vector& by, Vector& result) const;
+  void couple_slopes(const SpringContact& row, const Symmetric3& s);
+
+  // Joints (island_joints.cpp).
+  Effort effort_in_joints() const;
+  void number_unknowns(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
+                       std::vector<LinkageMotion>& motions);
+  void add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
+                   LinkageMotion& motion);
+  void add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index);
+  void add_joint_forces();
+  double joint_energy() const;
+  void factorise_joints();
+  double kinetic_energy(const Vector& velocity) const { return 0.5 * velocity.dot(mass_ * velocity); }
+
+  Effort effort_;
+  double step_ = 0.0, scale_ = 0.0;
+  double unseen_ = 0.0;                     // an impulse that moves nothing by what could be seen [N s]
+  std::vector<SpringContact> rows_;         // of hands, grips and contacts between bodies, in this order
+  std::vector<BodyMass> masses_;            // by number
+  std::vector<Wrench> wrenches_;            // likewise, of the last iterate
+  Vector start_, free_;                     // u at the step's start, and u*
+  Vector velocity_, direction_, gradient_;  // u of the iterate, its step, and the impulse that is missing
+  Vector weights_;  // by which squared impulses of the gradient count: 1, or 1/k^2 of a torque [1/m^2]
+  Vector change_, momentum_;
+  Cholesky6 factors_of_one_;
+  std::vector<Lower6> slopes_;
+  Matrix hessian_;
+  Eigen::LLT<Matrix> factors_;
+
+  // One body with the operator whose hands act on it: velocities are those against the operator.
+  bool coupled_ = false;
+  Matrix mass_;    // of both against each other; of an island with joints that of the unknowns
+  Twist carrier_;  // velocity of the operator at the body's centre
+
+  bool in_joints_ = false, acts_ = false;
+  double usual_ = 0.0, carried_ = 0.0;
+  const Scene* scene_ = nullptr;
+  std::vector<Unknown> unknowns_;
+  std::vector<JointLaw> laws_;  // by unknown that is a joint's
+  Matrix jacobian_;             // of the bodies by the unknowns
+  PointJacobian point_jacobian_, point_product_;
+  Eigen::RowVectorXd spin_jacobian_;
+  Eigen::LLT<Matrix> mass_factors_;
+  Vector fall_, body_velocity_, body_impulse_;
 };
 
 }  // namespace mrhi

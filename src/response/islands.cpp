@@ -8,13 +8,6 @@
 
 namespace mrhi {
 
-int Island::place_of(int body) const {
-  const auto index = static_cast<std::size_t>(body);
-  const auto found = std::lower_bound(bodies.begin(), bodies.end(), index,
-                                      [](const IslandBody& x, std::size_t y) { return x.body < y; });
-  return found != bodies.end() && found->body == index ? static_cast<int>(found - bodies.begin()) : -1;
-}
-
 namespace {
 
 template <typename Predicate>
@@ -69,7 +62,7 @@ void Islands::build(const ContactStep& step) {
   }
   add_gripped(step);
   if (!step.body_contacts.empty()) link_bodies(step);
-  divide();
+  divide(step.scene.bodies.size());
 }
 
 /// What a hand holds without touching it just now.
@@ -135,7 +128,7 @@ void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>&
     }
   }
   gather();
-  divide();
+  divide(step.scene.bodies.size());
   apart_.clear();
   const auto flies = [&](const Island& island) {
     return std::all_of(island.bodies.begin(), island.bodies.end(),
@@ -146,14 +139,16 @@ void Islands::join(const ContactStep& step, const std::vector<std::vector<int>>&
 }
 
 // Bodies and links are sorted by root, so an island is a run of each.
-void Islands::divide() {
+void Islands::divide(std::size_t bodies) {
   islands_.clear();
+  places_.resize(bodies, -1);
   const Link *link = links_.data(), *const links_end = link + links_.size();
   const IslandBody *body = bodies_.data(), *const bodies_end = body + bodies_.size();
   while (body != bodies_end) {
     const int root = body->root;
-    Island island{{body, body}, {link, link}};
-    while (body != bodies_end && body->root == root) ++body;
+    Island island{{body, body}, {link, link}, places_.data()};
+    for (; body != bodies_end && body->root == root; ++body)
+      places_[body->body] = static_cast<int>(body - island.bodies.first);
     while (link != links_end && link->root == root) ++link;
     island.bodies.last = body;
     island.links.last = link;

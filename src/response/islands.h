@@ -32,9 +32,13 @@ struct Span {
 struct Island {
   Span<IslandBody> bodies;  // by their index
   Span<Link> links;         // likewise
+  const int* places;        // by index in Scene::bodies; of bodies of other islands, any number
 
-  /// Of a body, as an index in Scene::bodies, among the island's; -1 if it is not one of them.
-  int place_of(int body) const;
+  /// Returns the number of a body of Scene::bodies in the island; -1 if it belongs to another one.
+  int place_of(std::size_t body) const {
+    const auto place = static_cast<std::size_t>(places[body]);
+    return place < bodies.size() && bodies.first[place].body == body ? places[body] : -1;
+  }
 };
 
 /// True if anything touches or grips the island.
@@ -57,7 +61,7 @@ class Islands {
   void add_gripped(const ContactStep& step);
   void link_bodies(const ContactStep& step);
   void gather();
-  void divide();
+  void divide(std::size_t bodies);
   int root_of(int body);
   void unite(int a, int b);
 
@@ -65,6 +69,7 @@ class Islands {
   std::vector<Link> links_;
   std::vector<Island> islands_, apart_;
   std::vector<int> parent_;   // by body
+  std::vector<int> places_;   // by body
   std::vector<char> listed_;  // by body: whether it is among them already
 };
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "newton.h"
-
 namespace mrhi {
 namespace {
 
@@ -15,8 +13,7 @@ constexpr double kStill = 1e-6;
 constexpr double kTired = 0.5;
 
 bool has(const Island& island, int body) {
-  return std::any_of(island.bodies.begin(), island.bodies.end(),
-                     [body](const IslandBody& one) { return static_cast<int>(one.body) == body; });
+  return island.place_of(static_cast<std::size_t>(body)) >= 0;
 }
 
 }  // namespace
@@ -28,28 +25,31 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
       state_(state),
       events_(events),
       linkages_(linkages_of(scene)),
-      at_work_(linkages_.size()),
-      solved_(linkages_.size()) {
+      awake_(linkages_.size()),
+      solved_(linkages_.size()),
+      usual_step_(configuration.step) {
   for (const Linkage& linkage : linkages_) {
     groups_.emplace_back();
     for (const LinkageBody& link : linkage.bodies) groups_.back().push_back(link.body);
     motions_.emplace_back(scene, linkage);
     flights_.emplace_back(scene, linkage);
-    problems_.push_back(std::make_unique<LinkageProblem>(configuration.step));
   }
 }
 
-// As ImplicitModel's, for what hangs on joints in their coordinates: blows of what flies, blows of linkages,
-// springs of what flies, springs of linkages. Then the linkages' flight, which is theirs alone: free_flight()
-// moves none of their bodies.
+// As ImplicitModel's, with islands that have joints in their coordinates. Then the linkages' flight, which is
+// theirs alone: free_flight() moves none of their bodies.
 void JointedModel::respond(ContactStep& step) {
-  begin_touches(step);
+  begin_contacts(step);
   islands_.build(step);
   islands_.join(step, groups_);
-  ImplicitModel::strike(step);
-  begin(step);
-  press(step);
-  solve(step);
+  ImplicitModel::resolve_impacts(step);
+  solve_islands(step);
+  std::fill(awake_.begin(), awake_.end(), char(0));
+  std::fill(solved_.begin(), solved_.end(), char(0));
+  for (const Island& island : islands_.apart()) {
+    if (!sleeps(step, island)) respond(step, island);
+  }
+  end_contacts(step);
   fly(step);
 }
 
@@ -82,58 +82,42 @@ void JointedModel::place(const ContactStep& step, std::size_t index) {
   motions_[index].weigh();
 }
 
-// One problem for each island that is awake, each with M of its linkages at the step's start.
-void JointedModel::begin(ContactStep& step) {
-  islands_apart_.clear();
-  std::fill(at_work_.begin(), at_work_.end(), char(0));
-  std::fill(solved_.begin(), solved_.end(), char(0));
-  for (const Island& island : islands_.apart()) {
-    if (sleeps(step, island)) continue;
-    for (std::size_t i = 0; i < linkages_.size(); ++i) {
-      if (!has(island, groups_[i].front())) continue;
-      at_work_[i] = 1;
-      place(step, i);
-    }
-    LinkageProblem& problem = *problems_[islands_apart_.size()];
-    islands_apart_.push_back(&island);
-    problem.begin(step, island, configuration_, linkages_, motions_, state_.joints);
-    strike(step, island, problem);
+// Where nothing acts the island is left to the flight, which has gravity and no forces: that is exact to
+// its order, and keeps what moves freely from being damped by a backward Euler step.
+void JointedModel::respond(ContactStep& step, const Island& island) {
+  for (std::size_t i = 0; i < linkages_.size(); ++i) {
+    if (!has(island, groups_[i].front())) continue;
+    awake_[i] = 1;
+    place(step, i);
+  }
+  problem_.begin(step, island, configuration_, linkages_, motions_, state_.joints, usual_step_);
+  resolve_impacts(step, island);
+  if (!problem_.acts()) return;
+  bool agree = problem_.solve();
+  if (!agree && step.operators == nullptr) problem_.keep_to_energy(step, island);
+  if (!agree && step.operators != nullptr) {
+    problem_.evaluate(true);  // the velocity has moved on since
+    agree = true;
+  }
+  problem_.finish(agree, step, island, state_.joints);
+  for (std::size_t i = 0; i < linkages_.size(); ++i) {
+    if (has(island, groups_[i].front())) solved_[i] = 1;
   }
 }
 
 // A held island is solved once before the impact, as ImplicitModel does, to see what its springs carry away
 // from the hand. The impulses of limits are reported last: start_with() begins the joints' laws anew.
-void JointedModel::strike(ContactStep& step, const Island& island, LinkageProblem& problem) {
-  linkage_impacts_.find(step, island, problem, state_.joints, configuration_.impact_friction);
+void JointedModel::resolve_impacts(ContactStep& step, const Island& island) {
+  linkage_impacts_.find(step, island, problem_, state_.joints, configuration_.impact_friction);
   if (linkage_impacts_.points().empty()) return;
   if (is_held(step, island)) {
-    Newton<LinkageProblem>(problem).solve();
-    linkage_impacts_.drop_separating(step.step, problem.velocity());
+    problem_.solve();
+    linkage_impacts_.drop_separating(step.step, problem_.joint_velocity());
   }
-  // Fingers from opposite directions have no solution by Newton's law: they press.
+  // Fingers from opposite directions have no solution by Newton's law: their springs act.
   if (!impacts_.resolve(step, linkage_impacts_.points())) return;
-  problem.start_with(linkage_impacts_.velocity(), step, state_.joints);
-  linkage_impacts_.note_limits(problem);
-}
-
-// Where nothing acts the island is left to the flight, which has gravity and no forces: that is exact to
-// its order, and keeps what moves freely from being damped by a backward Euler step.
-void JointedModel::solve(ContactStep& step) {
-  for (std::size_t i = 0; i < islands_apart_.size(); ++i) {
-    const Island& island = *islands_apart_[i];
-    LinkageProblem& problem = *problems_[i];
-    if (!problem.acts()) continue;
-    bool agree = Newton<LinkageProblem>(problem).solve();
-    if (!agree && step.operators == nullptr) problem.keep_to_energy(step, island);
-    if (!agree && step.operators != nullptr) {
-      problem.evaluate(true);  // it has moved on since
-      agree = true;
-    }
-    problem.finish(agree, step, island, state_.joints);
-    for (std::size_t l = 0; l < linkages_.size(); ++l) {
-      if (has(island, groups_[l].front())) solved_[l] = 1;
-    }
-  }
+  problem_.start_with(linkage_impacts_.velocity(), step, state_.joints);
+  linkage_impacts_.note_limits(problem_);
 }
 
 void JointedModel::fly(const ContactStep& step) {
@@ -144,7 +128,7 @@ void JointedModel::fly(const ContactStep& step) {
       contact.still = 0.0;
   }
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (!at_work_[i]) continue;
+    if (!awake_[i]) continue;
     // Where the island was solved gravity is in the momenta already; given again it would count twice.
     flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
                     step.bodies);

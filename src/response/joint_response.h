@@ -1,13 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "../joints/linkage.h"
 #include "../joints/linkage_flight.h"
 #include "implicit_model.h"
 #include "linkage_impacts.h"
-#include "linkage_problem.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/simulation_state.h"
 
@@ -26,9 +24,8 @@ class JointedModel : public ImplicitModel {
  private:
   bool sleeps(const ContactStep& step, const Island& island) const;
   void place(const ContactStep& step, std::size_t linkage);
-  void begin(ContactStep& step);
-  void strike(ContactStep& step, const Island& island, LinkageProblem& problem);
-  void solve(ContactStep& step);
+  void respond(ContactStep& step, const Island& island);
+  void resolve_impacts(ContactStep& step, const Island& island);
   void fly(const ContactStep& step);
   void rest(const ContactStep& step, std::size_t linkage);
   void note(std::size_t joint);
@@ -40,9 +37,8 @@ class JointedModel : public ImplicitModel {
   std::vector<std::vector<int>> groups_;  // of bodies, by linkage
   std::vector<LinkageMotion> motions_;
   std::vector<LinkageFlight> flights_;
-  std::vector<std::unique_ptr<LinkageProblem>> problems_;  // as many as there were islands at most
-  std::vector<const Island*> islands_apart_;               // awake, one for each of the first problems
-  std::vector<char> at_work_, solved_;                     // by linkage: awake, and gravity has been given
+  std::vector<char> awake_, solved_;  // by linkage; solved: gravity has been given
+  const double usual_step_;           // [s]
   LinkageImpacts linkage_impacts_;
   Eigen::VectorXd positions_;
 };

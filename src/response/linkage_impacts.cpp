@@ -6,20 +6,6 @@
 #include "impact.h"
 
 namespace mrhi {
-namespace {
-
-/// Adds `sign` times the Jacobian of a body's point.
-///
-///     c' = v + w x r = (J_v - [r]x J_w) u
-void add_point_jacobian(const LinkageProblem& problem, int place, const Vector3& arm, double sign,
-                        Eigen::Matrix<double, 3, Eigen::Dynamic>& jacobian) {
-  const auto linear = problem.jacobian().middleRows<3>(6 * place);
-  const auto angular = problem.jacobian().middleRows<3>(6 * place + 3);
-  jacobian += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
-}
-
-}  // namespace
-
 /// The next point, with a zero Jacobian in `coordinates_`.
 ImpactPoint LinkageImpacts::new_point(const Vector3& normal, double gap, double restitution) {
   if (coordinates_.size() == points_.size()) coordinates_.emplace_back();
@@ -36,7 +22,7 @@ ImpactPoint LinkageImpacts::new_point(const Vector3& normal, double gap, double 
 
 /// Keeps the point if it collides within the step. Gravity is not in the rate: the velocity is that of the
 /// step's start.
-void LinkageImpacts::add(double step, const LinkageProblem& problem, const ImpactPoint& point) {
+void LinkageImpacts::add(double step, const IslandProblem& problem, const ImpactPoint& point) {
   const double rate = point.rate();
   if (classify(rate) != Approach::colliding) return;
   double time = time_to_close(point.gap, rate, 0.0);
@@ -55,11 +41,10 @@ void LinkageImpacts::add(double step, const LinkageProblem& problem, const Impac
 
 // The relative velocity is w = hand_velocity - J_b u: J_b is that of body 2, less that of body 1 if there is
 // one. n points from 2 to 1, so w.n < 0 approaches (Eq. 8).
-void LinkageImpacts::find(ContactStep& step, const Island& island, const LinkageProblem& problem,
+void LinkageImpacts::find(ContactStep& step, const Island& island, const IslandProblem& problem,
                           const std::vector<JointState>& joints, bool friction) {
   points_.clear();
   velocity_ = problem.start();
-  const auto place = [&](std::size_t body) { return island.place_of(static_cast<int>(body)); };
   for (const IslandBody& body : island.bodies) {
     const Material& material = step.scene.bodies[body.body].material;
     for (std::size_t i = body.first; i < body.last; ++i) {
@@ -73,8 +58,9 @@ void LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
       point.a.recoil = recoils_.begin(contact.key);
       if (friction) point.friction = material.static_friction;
       point.total = &contact.impulse, point.struck = &contact.struck;
-      add_point_jacobian(problem, place(body.body), contact.point - step.bodies[body.body].pose.position, 1.0,
-                         coordinates_[points_.size()].jacobian);
+      problem.add_point_jacobian(island.place_of(body.body),
+                                 contact.point - step.bodies[body.body].pose.position, 1.0,
+                                 coordinates_[points_.size()].jacobian);
       add(step.step, problem, point);
       if (!points_.empty() && points_.back().struck == &contact.struck)
         contact.time_of_impact = points_.back().time;
@@ -89,9 +75,9 @@ void LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
     if (friction) point.friction = contact.material.static_friction;
     point.total = &contact.impulse, point.struck = &contact.struck;
     auto& jacobian = coordinates_[points_.size()].jacobian;
-    add_point_jacobian(problem, place(contact.key.b), contact.arm_b, 1.0, jacobian);
+    problem.add_point_jacobian(island.place_of(contact.key.b), contact.arm_b, 1.0, jacobian);
     if (!step.scene.bodies[contact.key.a].fixed)
-      add_point_jacobian(problem, place(contact.key.a), contact.arm_a, -1.0, jacobian);
+      problem.add_point_jacobian(island.place_of(contact.key.a), contact.arm_a, -1.0, jacobian);
     add(step.step, problem, point);
   }
   find_limits(step, problem, joints);
@@ -102,7 +88,7 @@ void LinkageImpacts::find(ContactStep& step, const Island& island, const Linkage
 ///
 ///     room = upper - q for u > 0, q - lower for u < 0;   collides if 0 < room < h |u|
 ///     w = -sign u: < 0 approaches, as of surfaces; the impulse on the joint is -sign j
-void LinkageImpacts::find_limits(const ContactStep& step, const LinkageProblem& problem,
+void LinkageImpacts::find_limits(const ContactStep& step, const IslandProblem& problem,
                                  const std::vector<JointState>& joints) {
   for (Eigen::Index unknown = 0; unknown < velocity_.size(); ++unknown) {
     if (problem.joint_of(unknown) == LinkageBody::kNone) continue;
@@ -117,7 +103,7 @@ void LinkageImpacts::find_limits(const ContactStep& step, const LinkageProblem& 
   }
 }
 
-void LinkageImpacts::drop_separating(double step, const LinkageProblem::Vector& velocity) {
+void LinkageImpacts::drop_separating(double step, const IslandProblem::Vector& velocity) {
   const auto separates = [&](const ImpactPoint& point) {
     const Vector3 relative = point.hand_velocity - point.b.joints->jacobian * velocity;
     return point.by_hand && point.gap + step * point.normal.dot(relative) > 0.0;
@@ -125,7 +111,7 @@ void LinkageImpacts::drop_separating(double step, const LinkageProblem::Vector& 
   points_.erase(std::remove_if(points_.begin(), points_.end(), separates), points_.end());
 }
 
-void LinkageImpacts::note_limits(LinkageProblem& problem) const {
+void LinkageImpacts::note_limits(IslandProblem& problem) const {
   for (const ImpactPoint& point : points_) {
     if (point.total != nullptr) continue;
     Eigen::Index unknown = 0;

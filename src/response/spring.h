@@ -57,28 +57,19 @@ struct Spring {
                                              SpringResponse& response);
 };
 
-/// A spring, and where it acts on body 2. Body 1 is a hand or a fixture and moves by itself, if not said
-/// otherwise.
+/// A row of an island's contact problem: a spring, and where it acts on its two bodies.
 struct SpringContact {
+  /// Of a body that is not solved for: a hand, whose motion is `drive`, or a fixture.
+  static constexpr int kNone = -1;
+
+  int a, b;  ///< bodies 1 and 2 by their number in the island, or kNone
   Spring spring;
   SpringResponse response;  ///< of the last iterate
-  Triple arm;               ///< of friction, from the centre of 2 [m]
-  Triple tilt;              ///< d x n, with d from there to where the push acts: what its torque has more [m]
-  bool tilts;               ///< whether there is any
-  Triple drive;             ///< velocity of 1 at the point [m/s]
-  double drive_spin;        ///< of 1 about n [rad/s]
-
-  /// Velocity of 1 against the body 2 at the contact. Along n it is that where the push acts:
-  /// u = u_1 - (v + w x r) - (w.t) n, with the arm r and the tilt t.
-  Triple relative_velocity(const Triple& velocity, const Triple& spin) const {
-    const Triple u = drive - velocity - spin.cross(arm);
-    return tilts ? u - spin.dot(tilt) * spring.normal : u;
-  }
-  /// Torque of the response about the centre of 2 [N m].
-  Triple torque() const {
-    const Triple result = arm.cross(response.force) + response.torque * spring.normal;
-    return tilts ? result + response.force.dot(spring.normal) * tilt : result;
-  }
+  Triple arm_a, arm;        ///< from the centres of 1 and 2 to where friction acts [m]
+  Triple tilt;              ///< d x n, with d from there to where the normal force acts [m]
+  bool tilts;               ///< true if the tilt is not zero
+  Triple drive;             ///< velocity of 1 at the point, where 1 is not solved for [m/s]
+  double drive_spin;        ///< likewise its angular velocity about n [rad/s]
 };
 
 /// What a finger that gives way still gains in push with depth, of its stiffness.

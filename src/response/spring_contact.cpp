@@ -169,7 +169,7 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   spring.friction = contact.grip * friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
   result.arm = point - triple(step.bodies[contact.key.body].pose.position);
-  result.tilts = false, result.tilt = {0.0, 0.0, 0.0};
+  result.tilts = false, result.tilt = result.arm_a = {0.0, 0.0, 0.0};
   result.drive = triple(contact.hand_velocity);
   result.drive_spin = contact.hand_spin;
 }
@@ -190,6 +190,7 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   spring.twist = spring.twist_stiffness = spring.patch_friction = 0.0;
   spring.pad = spring.half_over_pad = spring.bond = 0.0;
   spring.yields = HandStrength::kUnlimited;
+  result.arm_a = triple(contact.arm_a + contact.friction_offset);
   result.arm = triple(contact.arm_b + contact.friction_offset);
   result.tilt = triple(contact.normal.cross(contact.friction_offset));
   result.tilts = !contact.friction_offset.isZero(0.0);
@@ -306,6 +307,9 @@ void make_grip_spring(const ContactStep& step, const ContactConfiguration& confi
   result.drive = triple(grip.velocity[i]);
 }
 
+namespace {
+
+/// Writes back what the solution made of a grip's point: where it has yielded, its end on the body follows.
 void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip) {
   const Spring& spring = solved.spring;
   const SpringResponse& response = solved.response;
@@ -327,6 +331,55 @@ void settle_grip(const ContactStep& step, const SpringContact& solved, int point
   const Pose& pose = step.bodies[grip.body].pose;
   Vector3& end = grip.in_body[static_cast<std::size_t>(point)];
   end = pose.to_local(pose * end + yielded);
+}
+
+}  // namespace
+
+void make_hand_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+                    std::vector<SpringContact>& rows) {
+  std::size_t count = 0;
+  for (const IslandBody& body : island.bodies) count += body.last - body.first;
+  for (const Grip& grip : step.grips) count += grip.active ? kGripPoints : 0;
+  rows.resize(count);
+  SpringContact* row = rows.data();
+  int number = 0;
+  for (const IslandBody& body : island.bodies) {
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      if (step.contacts[i].ignored) continue;
+      row->a = SpringContact::kNone, row->b = number;
+      make_spring(step, configuration, step.contacts[i], *row++);
+    }
+    ++number;
+  }
+  for (const Grip& grip : step.grips) {
+    const int body = grip.active ? island.place_of(grip.body) : SpringContact::kNone;
+    if (body < 0) continue;
+    for (int point = 0; point < kGripPoints; ++point, ++row) {
+      make_grip_spring(step, configuration, grip, point, *row);
+      row->a = SpringContact::kNone, row->b = body;
+    }
+  }
+  rows.resize(static_cast<std::size_t>(row - rows.data()));
+}
+
+void make_link_row(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+                   const BodyContact& contact, SpringContact& row) {
+  row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.place_of(contact.key.a);
+  row.b = island.place_of(contact.key.b);
+  make_spring(step, configuration, contact, row);
+}
+
+const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, const SpringContact* row) {
+  for (const IslandBody& body : island.bodies) {
+    for (std::size_t i = body.first; i < body.last; ++i) {
+      if (!step.contacts[i].ignored) settle(step, *row++, step.contacts[i]);
+    }
+  }
+  for (Grip& grip : step.grips) {
+    if (!grip.active || island.place_of(grip.body) < 0) continue;
+    for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *row++, point, grip);
+  }
+  return row;
 }
 
 }  // namespace mrhi

@@ -27,25 +27,14 @@ double potential(const Spring& spring, const Triple& u, double spin);
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
                       int point, SpringContact& result);
 
-/// Writes what the solution made of it back: where it has yielded its end on the body is dragged along.
-void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip);
+/// Makes the rows of the hands' contacts with an island, and of its grips.
+void make_hand_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+                    std::vector<SpringContact>& rows);
+/// Makes the row of a contact between bodies of the island, or of one of them with a fixture.
+void make_link_row(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
+                   const BodyContact& contact, SpringContact& row);
 
-/// Writes back to all that hands press an island with, contacts and then grips, what comes from `solved` on
-/// in that order; returns what comes after.
-template <typename Solved>
-Solved settle_hands(ContactStep& step, const Island& island, Solved solved) {
-  for (const IslandBody& body : island.bodies) {
-    for (std::size_t i = body.first; i < body.last; ++i) {
-      if (!step.contacts[i].ignored) settle(step, *solved++, step.contacts[i]);
-    }
-  }
-  for (const IslandBody& body : island.bodies) {
-    for (Grip& grip : step.grips) {
-      if (!grip.active || grip.body != body.body) continue;
-      for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *solved++, point, grip);
-    }
-  }
-  return solved;
-}
+/// Writes back what the solution made of the rows of make_hand_rows(). Returns the row behind them.
+const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, const SpringContact* row);
 
 }  // namespace mrhi

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "../response/impact.h"
-#include "../response/newton.h"
 #include "../response/operator_reaction.h"
 
 namespace mrhi {
@@ -248,9 +247,9 @@ void Operators::touch_fixtures(ContactStep& step, int body) {
   if (on_fixtures_.empty()) return;
   problem_.begin_operator(step, static_cast<std::size_t>(body), on_fixtures_, carriers_[owner].twist,
                           configuration_);
-  const bool agree = Newton<BodyProblem>(problem_).solve();
+  if (!problem_.solve()) problem_.evaluate(true);  // the velocity has moved on since
   if (problem_.scale() <= 0.0) return;
-  problem_.finish_operator(agree, step, static_cast<std::size_t>(body));
+  problem_.finish_operator(step, on_fixtures_);
   step.changes.mark_solved(body);
 }
 

@@ -5,7 +5,7 @@
 
 #include "../collision/moving_hand.h"
 #include "../collision/neighbours.h"
-#include "../response/body_problem.h"
+#include "../response/island_problem.h"
 #include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
@@ -60,7 +60,7 @@ class Operators {
 
   const Scene& scene_;
   const ContactConfiguration configuration_;
-  BodyProblem problem_;
+  IslandProblem problem_;
   std::vector<Contact*> on_fixtures_;
 
   /// A body that hands touch or grasp, before the response.

@@ -25,7 +25,7 @@ constexpr double kTurning = 20.0;
 /// what acts on joints is given as the step begins, and then they swing.
 constexpr double kSwing = 0.25;
 /// Part of what a grip's springs can bear by which what is told of them may be off: where the last step of
-/// the solver is not looked at again (newton.h), forces are those before it. What becomes of bodies is not.
+/// the solver is not looked at again (newton.cpp), forces are those before it. What becomes of bodies is not.
 constexpr double kTold = 1e-4;
 /// What holds a joint (friction, a latch, limits) is a spring so much stiffer than its inertia within a step
 /// (joint_law.cpp); steps of other lengths find it otherwise loaded.

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.dont_write_bytecode = True
@@ -20,7 +21,10 @@ import study.run  # noqa: E402,F401 pylint: disable=unused-import
 LIMIT = 120  # s, far beyond what any takes
 DEEP = 100000
 HEADER = "version: 1\nparticipant: P01\ngroup: beginner\ncondition: implicit\ngravity: [0, 0, -9.81]\n"
-OF_ROS = ("set", "doctor", "training_keys", "run_when")
+PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "check_scene", "compare",
+            "doctor", "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node", "plan_study",
+            "power_study", "replay", "run_when", "set", "simulated_operator_node", "simulated_study", "synthetic_hand_node",
+            "training_keys", "training_node", "web_door")
 PLAN = ("plan_study", "--group", "beginner:2", "--condition", "implicit")
 
 
@@ -194,6 +198,19 @@ class EndsOfRosTest(unittest.TestCase):
                     self.assertEqual(status, 1)
                     self.assertEqual((said + complaint).count("\n"), 1, said + complaint)
                     self.assertIn(why, said + complaint)
+
+    def test_every_program_tells_its_use_without_a_master(self):
+        import roslib.packages
+        for program in PROGRAMS:
+            with self.subTest(program=program), mock.patch.dict(os.environ, ROS_MASTER_URI="http://127.0.0.1:9"):
+                (path,) = roslib.packages.find_node("mr_hand_interaction", program)[:1]
+                with open(path, "rb") as file:
+                    script = file.read(2) == b"#!"
+                done = forked.run(path, "--help") if script else subprocess.run(
+                    [path, "--help"], timeout=LIMIT, check=False, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE, universal_newlines=True)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertGreater(len(done.stdout), 80)
 
     def test_ctrl_c_ends_quietly(self):
         for command in self.COMMANDS:

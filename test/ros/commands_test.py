@@ -2,6 +2,7 @@
 """Every command that README.md and docs/*.md print does what a user may expect of it: it is run as printed, with the
 arguments that a user fills in, or it is in EXCEPTED with the reason why not."""
 import contextlib
+import functools
 import os
 import re
 import shlex
@@ -21,10 +22,9 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from launching import Launch  # noqa: E402
 from printed_commands import COMMANDS, EXCEPTED, NAME, PACKAGE, User, excepted, shortened, to_run  # noqa: E402
 
-PROGRAMS = ("analyse_study", "ask_participant", "ask_ratings", "calibrate_mount", "calibrate_study", "check_scene", "compare",
-            "doctor", "explain", "export", "hand_interaction_node", "hand_tracking_node", "interaction_node",
-            "plan_study", "power_study", "replay", "run_when", "set",
-            "simulated_operator_node", "simulated_study", "synthetic_hand_node", "training_keys", "training_node", "web_door")
+NODES = ("hand_interaction_node", "hand_tracking_node", "interaction_node", "simulated_operator_node", "synthetic_hand_node",
+         "training_node")
+
 
 
 class CommandsTest(unittest.TestCase):
@@ -69,7 +69,8 @@ class CommandsTest(unittest.TestCase):
             with self.each(failures, command):
                 self.user.check_comes_up(command)
             rospy.set_param("/use_sim_time", False)
-            self.user.write_files()  # record.launch has written one of them
+            if "record.launch" in command.text:
+                self.user.write_files()  # it has written one of them
         self.assertEqual(failures, [])
 
     def test_programs_run(self):
@@ -80,13 +81,13 @@ class CommandsTest(unittest.TestCase):
         with Launch("demo.launch", "rviz:=false"):
             rospy.wait_for_service("/interaction_node/set", 60.0)
             for command in to_run("rosrun "):
-                words, options = self.user.words(command), {}
-                if "simulated_study" in words:
+                words, options = self.found(self.user.words(command)), {}
+                if "simulated_study" in command.text:
                     words = shortened(words, ("--model", "implicit"))
-                if "training_keys" in words:
+                if "training_keys" in command.text:
                     options["stdin"] = "q"
                 with self.each(failures, command):
-                    if "doctor" in words:
+                    if "doctor" in command.text:
                         self.assertIn("master", self.user.run(words)[1])
                     else:
                         self.user.check_runs(command, words, **options)
@@ -96,23 +97,19 @@ class CommandsTest(unittest.TestCase):
         status.unregister()
         self.assertEqual(failures, [])
 
+    @classmethod
+    def found(cls, words):
+        """Words of rosrun, without it."""
+        assert words[:2] == ["rosrun", NAME], words
+        return [cls.path_of(words[2])] + words[3:]
+
     @staticmethod
+    @functools.lru_cache(maxsize=None)
     def path_of(program):
         """Where rosrun finds it, without the second that rosrun takes to find it."""
         found = roslib.packages.find_node(NAME, program)
         assert found, "rosrun finds no %s" % program
         return found[0]
-
-    def test_every_program_tells_its_use_without_a_master(self):
-        failures = []
-        environment = dict(self.user.environment, ROS_MASTER_URI="http://127.0.0.1:9")
-        for program in PROGRAMS:
-            done = subprocess.run([self.path_of(program), "--help"], env=environment, timeout=60, check=False,
-                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  universal_newlines=True)
-            if done.returncode != 0 or len(done.stdout) < 80 or done.stderr:
-                failures.append("%s: %d\n%s%s" % (program, done.returncode, done.stdout, done.stderr))
-        self.assertEqual(failures, [])
 
     def test_check_scene_tells_what_became_of_each_scene_and_whether_all_load(self):
         status, said = self.user.run(["rosrun", NAME, "check_scene", "part.urdf", "rack", "--picture", "rack.svg"])
@@ -124,16 +121,17 @@ class CommandsTest(unittest.TestCase):
         with open(os.path.join(self.user.folder, "bare.urdf"), "w", encoding="ascii") as file:
             file.write("<robot name='b'><link name='b.1'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision>"
                        "</link></robot>")
-        status, said = self.user.run(["rosrun", NAME, "check_scene", "none.urdf", "bare.urdf", "--density", "500"])
+        check_scene = self.path_of("check_scene")
+        status, said = self.user.run([check_scene, "none.urdf", "bare.urdf", "--density", "500"])
         self.assertEqual(status, 1)
         self.assertIn("none.urdf", said)
         self.assertRegex(said, r"b_1 +free +500 ")
         self.assertRegex(said, r"warning: masses .*'b_1' 0.5 kg")
         for words in ([], ["cube", "--density", "0"], ["cube", "--colour"]):
-            self.assertEqual(self.user.run(["rosrun", NAME, "check_scene", *words])[0], 2, words)
+            self.assertEqual(self.user.run([check_scene, *words])[0], 2, words)
 
     def test_a_node_refuses_an_argument_that_it_does_not_know(self):
-        for program in [name for name in PROGRAMS if name.endswith("_node")]:
+        for program in NODES:
             status, output = self.user.run([self.path_of(program), "--rate", "3"], timeout=60)
             self.assertNotEqual(status, 0, program)
             self.assertEqual(output.count("\n"), 1, output)

@@ -25,4 +25,7 @@ class Launch:
         return not self.parent.pm.is_alive()
 
     def __exit__(self, *_):
+        node = self.parent.server
+        node.is_shutdown = True
+        node.server.shutdown()  # or its thread would go on to wait, busily, at the closed socket
         self.parent.shutdown()

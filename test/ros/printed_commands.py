@@ -149,11 +149,17 @@ class User:
         self.folder = folder
         self.environment = dict(os.environ, HOME=folder, ROS_HOME=os.path.join(folder, ".ros"))
         os.environ["HOME"] = folder  # training.launch and record.launch look there
+        self.bags = {}
 
     def write_files(self):
         """What the commands name as the user's."""
-        self.write_bag("hand.bag", of_a_live_run=True)
-        self.write_bag("hands.bag", of_a_live_run=False)
+        for name in ("hand.bag", "hands.bag"):
+            if name not in self.bags:
+                self.write_bag(name, of_a_live_run=name == "hand.bag")
+                with open(os.path.join(self.folder, name), "rb") as file:
+                    self.bags[name] = file.read()
+            with open(os.path.join(self.folder, name), "wb") as file:
+                file.write(self.bags[name])
         with open(os.path.join(self.folder, "points.yaml"), "w", encoding="utf-8") as file:
             file.write("points:\n")
             for index, (x, y, z) in enumerate(((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0.2, 0.2, 0.1))):
@@ -238,5 +244,5 @@ class User:
             state = master.getSystemState()
             return names <= {node for topics in state for _, listed in topics for node in listed}
         with Launch(file, *arguments) as launch:
-            wait_until(lambda: up() or launch.has_ended(), "the nodes of %s" % command)
+            wait_until(lambda: up() or launch.has_ended(), "the nodes of %s" % command, period=0.1)
             assert not launch.has_ended(), command

@@ -6,6 +6,7 @@ import functools
 import hashlib
 import io
 import itertools
+import json
 import os
 import re
 import shutil
@@ -23,7 +24,7 @@ from geometry_msgs.msg import Point, Point32, Pose, PoseArray, PoseStamped, Wren
 from sensor_msgs.msg import PointCloud
 from std_msgs.msg import String
 
-from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray
+from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray, SimulationInput
 from mr_hand_interaction.srv import SpawnObject, SpawnObjectRequest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -33,12 +34,13 @@ from tracker_hands import Dropouts, Noise, joints, program, recording  # noqa: E
 from waiting import TIMEOUT, wait_until  # noqa: E402
 
 PACKAGE = rospkg.RosPack().get_path("mr_hand_interaction")
-COUNTS, RATES, NOISES = (21, 25, 26), (30, 60, 120), (0.001, 0.003, 0.005)
+COUNTS, RATES = (21, 25, 26), (30, 60, 120)
+NOISES = {0.001: 1, 0.003: 2, 0.005: 3}  # m: seeds for each count and rate
 # Without noise the hand closes on the cube at 2.7 s and opens at 5.8 s; noise blurs both by the filter's lag.
 GRASPED_BY, HELD_UNTIL, RELEASED_BY = 3.25, 5.5, 6.4  # s; at 30 Hz and 3 mm of noise the latest hand grasps at 3.17 s
-# Of streams of 3 mm and more this share is held without a second grasp: with 12 seeds 105 and 104 of 108. A hand that
-# trembles so may part for a frame or two while it closes.
-SEEDS, AT_ONCE = int(os.environ.get("MR_HAND_TRACKER_SEEDS", "3")), 0.9
+# Of streams of 3 mm and more this ratio is held without a second grasp: with 12 seeds 105 and 104 of 108. A hand that trembles so
+# may part for a frame or two while it closes.
+SEEDS, AT_ONCE = int(os.environ.get("MR_HAND_TRACKER_SEEDS", "0")), 0.9
 CARRIED = 0.06  # m, of 0.08
 
 
@@ -111,6 +113,7 @@ class TrackersTest(unittest.TestCase):
                            for name, kind, take in (("rendered_hands", HandFrame, cls.keeper("hands")),
                                                     ("contacts", ContactArray, cls.keeper("contacts")),
                                                     ("objects", ObjectStateArray, cls.take_objects))]
+        cls.subscribers.append(rospy.Subscriber("simulation_input", SimulationInput, lambda taken: cls.inputs.append(taken)))
         cls.hands = {side: rospy.Publisher("hands/%s/pose_array" % side, PoseArray, queue_size=10)
                      for side in ("left", "right")}
         cls.clouds = rospy.Publisher("hands/right/point_cloud", PointCloud, queue_size=10)
@@ -139,6 +142,7 @@ class TrackersTest(unittest.TestCase):
     def drive(self, motion, *arguments, watch=lambda: None):
         """Gives each frame to the nodes once they have shown the one before, so that none is lost."""
         self.clear()
+        type(self).inputs = []
         with Launch("leap.launch", "scene:=cube", "mount:=none", "rviz:=false", *arguments):
             wait_until(self.connected, "the nodes")
             wait_until(lambda: self.kept["objects"], "the scene")
@@ -152,13 +156,9 @@ class TrackersTest(unittest.TestCase):
         wait_until(lambda: not any(s.get_num_connections() for s in self.subscribers), "the nodes' end")
 
     def lead_in(self, motion):
-        """Frames without a hand until one has come through, as the nodes may not know each other yet, and from there on to
-        the motion's first."""
-        stamp, end = rospy.Time.from_sec(motion.times[0] - 9.0), rospy.Time.from_sec(motion.times[0] - 0.01)
-
+        """Frames without a hand, up to the motion's first. Each is waited for, because a frame far ahead of its stream is left
+        out. The first may be lost, because the nodes may not know each other yet."""
         def comes_through(longest):
-            """Each frame is waited for: of many at once some are lost, and what comes after them is far ahead of its
-            stream, for a clock that stands still, and left out."""
             self.hands["right"].publish(EXAMPLE["hand"]([], "world", stamp))
             try:
                 wait_until(lambda: stamp in self.kept["hands"], "the frame without a hand at %s" % stamp, longest)
@@ -166,12 +166,14 @@ class TrackersTest(unittest.TestCase):
                 return False
             return True
 
-        while not comes_through(0.3):
-            stamp += rospy.Duration(0.01)
-            self.assertLess(stamp, end, "no frame has come through")
+        stamp, end = rospy.Time.from_sec(motion.times[0] - 3.0), rospy.Time.from_sec(motion.times[0] - 0.01)
+        connected = comes_through(1.0)
         while stamp < end:
             stamp = min(stamp + rospy.Duration(0.05), end)
-            self.assertTrue(comes_through(TIMEOUT), "the frame without a hand at %s is lost" % stamp)
+            came = comes_through(TIMEOUT if connected else 1.0)
+            self.assertTrue(came or not connected, "the frame without a hand at %s is lost" % stamp)
+            connected = came
+        self.assertTrue(connected, "no frame has come through")
 
     def digest(self, motion):
         """Of all that was published of its frames, but for counters."""
@@ -187,12 +189,15 @@ class TrackersTest(unittest.TestCase):
 
     def replay(self, motion, topic="/hands/right/pose_array"):
         """The folder with what comes of the messages in a bag."""
+        return self.replay_of(((topic, message, message.header.stamp) for message in motion.messages), "--scene", "cube")
+
+    def replay_of(self, messages, *arguments):
         folder = tempfile.mkdtemp(dir=self.folder)
         bag, output = os.path.join(folder, "hands.bag"), os.path.join(folder, "result")
         with rosbag.Bag(bag, "w") as file:
-            for message in motion.messages:
-                file.write(topic, message, message.header.stamp)
-        subprocess.run([program("replay"), "--scene", "cube", "--input", bag, "--output", output], check=True,
+            for message in messages:
+                file.write(*message)
+        subprocess.run([program("replay"), *arguments, "--input", bag, "--output", output], check=True,
                        stdout=subprocess.DEVNULL)
         return output
 
@@ -222,8 +227,8 @@ class TrackersTest(unittest.TestCase):
             return [fault for fault in pool.map(tried, cases) if fault]
 
     def test_every_tracker_holds_the_cube_in_noise_at_every_rate(self):
-        for noise in NOISES:
-            cases = list(itertools.product(COUNTS, RATES, range(1, SEEDS + 1)))
+        for noise, seeds in NOISES.items():
+            cases = list(itertools.product(COUNTS, RATES, range(1, (SEEDS or seeds) + 1)))
             faults = self.faults(lambda count, rate, seed: Motion(self.folder, count, rate, noise, seed), cases)
             allowed = int((1.0 - AT_ONCE) * len(cases)) if noise >= 0.003 or SEEDS > 3 else 0
             print("%g m: %d of %d" % (noise, len(cases) - len(faults), len(cases)))
@@ -238,21 +243,34 @@ class TrackersTest(unittest.TestCase):
             return Motion(self.folder, count, rate, dropouts=dropouts[name](count))
         self.assertEqual(self.faults(make, itertools.product(COUNTS, RATES, dropouts)), [])
 
-    def check_as_live(self, motion, replayed):
-        """Of each of its frames. What the node shows between them, at the stamp of the one before, is none of them: how
-        often it does hangs on the machine."""
-        self.assertEqual(len(replayed), len(motion.messages))
+    def check_as_live(self, motion, topic="/hands/right/pose_array"):
+        """A replay of the inputs that the node took moves the cube as the node did, on a machine of any speed; a replay of the
+        messages that were sent has the same hands. Gives the folder of the second."""
+        output = self.replay_of(("/simulation_input", taken, rospy.Time(1, i)) for i, taken in enumerate(self.inputs))
+        with open(os.path.join(output, "summary.json"), encoding="utf-8") as file:
+            live = json.load(file)["live_run"]
+        self.assertEqual((live["missing"], live["same"]), (0, live["compared"]))
+        self.assertGreater(live["compared"], len(motion.messages))
+        replayed = self.rows(output, "objects.csv")[-len(motion.messages):]
         for row, message in zip(replayed, motion.messages):
             there = self.kept["objects"][message.header.stamp].objects[0].pose.position
             for axis, value in zip("xyz", (there.x, there.y, there.z)):
                 self.assertAlmostEqual(value, float(row["p" + axis]), delta=1e-9)
+        sent = self.replay(motion, topic)
+        self.assertGreater(len(self.tracked(sent)), 1000)
+        self.assertEqual(self.tracked(sent), self.tracked(output))
+        return sent
+
+    def tracked(self, folder):
+        columns = ("side", "finger", "bone", "sx", "sy", "sz", "ex", "ey", "ez", "radius")
+        return [tuple(map(row.get, columns)) for row in self.rows(folder, "hands.csv") if row["rendered"] == "0"]
 
     def test_one_process_and_two_and_a_replay_give_the_same(self):
         for count in COUNTS:
             motion = Motion(self.folder, count, 60, 0.003, dropouts=Dropouts(share=0.02))
             self.drive(motion, "one_process:=true")
             one = self.digest(motion)
-            self.check_as_live(motion, self.rows(self.replay(motion), "objects.csv"))
+            self.check_as_live(motion)
             if count == COUNTS[0]:
                 self.drive(motion, "one_process:=false")
                 self.assertEqual(one, self.digest(motion))
@@ -260,9 +278,7 @@ class TrackersTest(unittest.TestCase):
     def test_point_clouds_are_hands_too(self):
         motion = Motion(self.folder, 25, 60, 0.001).as_point_clouds()
         self.drive(motion)
-        result = self.replay(motion, "/hands/right/point_cloud")
-        self.assertEqual(self.fault(result), "")
-        self.check_as_live(motion, self.rows(result, "objects.csv"))
+        self.assertEqual(self.fault(self.check_as_live(motion, "/hands/right/point_cloud")), "")
 
     def test_standard_outputs_are_there_when_they_are_asked_for(self):
         motion = Motion(self.folder, 26, 60)

@@ -6,9 +6,9 @@ import rospy
 TIMEOUT = 60.0  # s; far beyond what is needed, so that only a real failure meets it
 
 
-def wait_until(condition, what, timeout=TIMEOUT):
+def wait_until(condition, what, timeout=TIMEOUT, period=0.005):
     end = time.monotonic() + timeout
     while not condition():
         if time.monotonic() > end or rospy.is_shutdown():
             raise AssertionError("waited in vain for " + what)
-        time.sleep(0.005)
+        time.sleep(period)

@@ -1,51 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <vector>
+#include <array>
 
 namespace mrhi {
-
-/// Linear equations A x = b of a few bodies, with six unknowns each and a coupling between some pairs of
-/// them; A is symmetric, positive definite. Keeps its memory.
-class BlockSystem {
- public:
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  /// Begins anew with so many bodies, none of them coupled.
-  void begin(int bodies);
-  /// The number of the block that two bodies share from now on, `a` before `b`. Asked again right away it is
-  /// the same; later it would be another, so that what a pair has is asked for together.
-  std::size_t couple(int a, int b);
-
-  /// All entries zero.
-  void clear();
-  /// Of body `i` with itself.
-  Matrix6& diagonal(int i) { return diagonal_[static_cast<std::size_t>(i)]; }
-  /// Rows of the later body, columns of the earlier.
-  Matrix6& between(std::size_t coupling) { return couplings_[coupling].value; }
-
-  /// A times another matrix.
-  void multiply(const Eigen::MatrixXd& by, Eigen::MatrixXd& result) const;
-
-  /// Call when the entries are there.
-  void factorise();
-  /// Solves in place, to rounding.
-  void solve(Eigen::VectorXd& x) const;
-
- private:
-  struct Coupling {
-    int row, column;  // row > column
-    Matrix6 value;
-  };
-
-  void to_dense(Eigen::MatrixXd& result) const;
-  int bodies() const { return static_cast<int>(diagonal_.size()); }
-
-  std::vector<Matrix6> diagonal_;
-  std::vector<Coupling> couplings_;
-  Eigen::MatrixXd dense_;
-  Eigen::LLT<Eigen::MatrixXd> factors_;
-};
 
 /// Solves A x = b for a symmetric positive definite 6 x 6 matrix by its factors L D L'. Only the lower
 /// triangle is kept, row by row; loops over it are unrolled, which makes it several times as fast as one of
@@ -63,8 +21,8 @@ class Cholesky6 {
   static constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
 
   /// `entries` hold A.
-  void factorise(const double (&entries)[kEntries]) {
-    for (int i = 0; i < kEntries; ++i) lower_[i] = entries[i];
+  void factorise(const std::array<double, kEntries>& entries) {
+    for (std::size_t i = 0; i < kEntries; ++i) lower_[i] = entries[i];
 #pragma GCC unroll 6
     for (int k = 0; k < 6; ++k) {
       inverse_[k] = 1.0 / lower_[at(k, k)];

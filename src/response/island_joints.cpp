@@ -1,0 +1,281 @@
+// The contact problem of an island with joints. Joints have their own coordinates and no multipliers: no
+// constraint is there that could drift and be drawn back (Baumgarte 1972), and M = J' M_b J is positive
+// definite, with M_b the bodies' masses and J their Jacobian. J and M are those of the step's start; that
+// axes turn meanwhile is the flight's (linkage_flight.h).
+#include <algorithm>
+#include <cmath>
+
+#include "../collision/god_object.h"
+#include "island_problem.h"
+
+namespace mrhi {
+namespace {
+
+/// Rounding of the momentum that the island has: a smaller error times Effort::converged is none.
+constexpr double kRounding = 1e-6;
+/// Where more than this is missing, forces are no guess for the next step; of the forces' impulse.
+constexpr double kFarOff = 0.01;
+/// Springs give nothing to what parts faster [m/s].
+constexpr double kReleaseSpeed = 0.1;
+/// An island of more bodies has bounded effort.
+constexpr std::size_t kFewBodies = 4;
+
+constexpr int kNoJoint = -1;
+
+}  // namespace
+
+// u0 = M^-1 sum J_b' p_b: momenta of the bodies as the joints see them. What of them joints do not let
+// through is no error of this step: joints hold it back. u* = u0 + h M^-1 J' m g.
+void IslandProblem::begin(const ContactStep& step, const Island& island,
+                          const ContactConfiguration& configuration, const std::vector<Linkage>& linkages,
+                          std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints,
+                          double usual) {
+  begin_bodies(island.bodies.size(), true);
+  step_ = step.step;
+  usual_ = usual;
+  scene_ = &step.scene;
+  acts_ = is_touched(step, island);
+  effort_ = effort_in_joints();
+  make_rows(step, island, configuration);
+  number_unknowns(step, island, linkages, motions);
+  mass_factors_.compute(mass_);
+  carried_ = std::sqrt(gradient_.squaredNorm());
+  start_ = gradient_;
+  solve_mass(start_);
+  solve_mass(fall_);
+  start_with(start_, step, joints);
+}
+
+/// The effort of many bodies is bounded, and their error what can be seen.
+IslandProblem::Effort IslandProblem::effort_in_joints() const {
+  Effort effort;
+  effort.limits = 2;
+  effort.held_iterations = 20;
+  if (wrenches_.size() <= kFewBodies) return effort;
+  effort.iterations = 12;
+  effort.limits = 1;
+  effort.held_iterations = 16;
+  effort.unchecked = 0;
+  effort.trials = 10;
+  effort.converged = 1e-6;
+  effort.anew = false;
+  return effort;
+}
+
+void IslandProblem::number_unknowns(const ContactStep& step, const Island& island,
+                                    const std::vector<Linkage>& linkages,
+                                    std::vector<LinkageMotion>& motions) {
+  const auto has = [&](const Linkage& linkage) {
+    return island.place_of(static_cast<std::size_t>(linkage.bodies.front().body)) >= 0;
+  };
+  int count = 0;
+  for (const Linkage& linkage : linkages) count += has(linkage) ? linkage.unknowns() : 0;
+  for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
+  const auto rows = static_cast<Eigen::Index>(6 * island.bodies.size());
+  jacobian_.setZero(rows, count);
+  body_impulse_.resize(rows);
+  mass_.setZero(count, count);
+  for (Vector* vector : {&gradient_, &fall_, &weights_}) vector->setZero(count);
+  for (Vector* vector : {&direction_, &change_, &momentum_}) vector->resize(count);
+  unknowns_.clear();
+  for (std::size_t i = 0; i < linkages.size(); ++i) {
+    if (has(linkages[i])) add_linkage(step, island, linkages[i], motions[i]);
+  }
+  for (const IslandBody& body : island.bodies) {
+    if (step.scene.bodies[body.body].flies) add_body_without_joint(step, island, body.body);
+  }
+}
+
+/// The momenta at the step's start are gathered in the gradient, those of gravity in the fall.
+/// A joint's torque is made a force by k^2 = M_ii / m of the body that hangs on it; of one that slides that
+/// has no unit, and is how many times that body it moves.
+void IslandProblem::add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
+                                LinkageMotion& motion) {
+  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+  const Eigen::Index count = linkage.unknowns();
+  mass_.block(first, first, count, count) = motion.mass();
+  auto momenta = gradient_.segment(first, count), fall = fall_.segment(first, count);
+  for (int i = 0; i < motion.size(); ++i) {
+    const LinkageBody& link = linkage.bodies[static_cast<std::size_t>(i)];
+    const Body& body = motion.body(i);
+    const auto index = static_cast<std::size_t>(link.body);
+    motion.push(i, step.bodies[index].linear_momentum, step.bodies[index].angular_momentum, momenta);
+    motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
+    motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
+    if (link.joint == LinkageBody::kNone) {
+      weights_.segment<3>(first).setOnes();
+      weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
+      unknowns_.insert(unknowns_.end(), 6, {kNoJoint, link.body});
+    } else {
+      const Eigen::Index column = first + linkage.column(i);
+      weights_[column] = body.mass / mass_(column, column);
+      unknowns_.push_back({link.joint, link.body});
+    }
+  }
+}
+
+void IslandProblem::add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index) {
+  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+  const Body& body = step.scene.bodies[index];
+  const BodyState& state = step.bodies[index];
+  const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
+  jacobian_.block<6, 6>(6 * island.place_of(index), first).setIdentity();
+  mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
+  mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
+  gradient_.segment<6>(first) << state.linear_momentum, state.angular_momentum;
+  fall_.segment<3>(first) = (step_ * body.mass) * step.gravity;
+  weights_.segment<3>(first).setOnes();
+  weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
+  unknowns_.insert(unknowns_.end(), 6, {kNoJoint, static_cast<int>(index)});
+}
+
+// Bodies without joints have six unknowns each, so the second loop goes by sixes over those.
+void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
+                               const std::vector<JointState>& joints) {
+  start_ = velocity;  // which it may be itself
+  free_ = start_ + fall_;
+  velocity_ = free_;
+  laws_.resize(unknowns_.size());
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (unknowns_[i].joint == kNoJoint) continue;
+    const auto joint = static_cast<std::size_t>(unknowns_[i].joint);
+    laws_[i].begin(scene_->joints[joint], joints[joint], mass_(row, row), step_, usual_);
+    acts_ = acts_ || laws_[i].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
+    velocity_[row] += step_ * joints[joint].pushed;
+  }
+  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
+    if (unknowns_[i].joint != kNoJoint) continue;
+    const Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
+    velocity_.segment<3>(static_cast<Eigen::Index>(i)) += step_ * pushed.linear;
+    velocity_.segment<3>(static_cast<Eigen::Index>(i) + 3) += step_ * pushed.angular;
+  }
+}
+
+/// Brings the bodies' impulses to the joints, and adds what joints give by themselves, t(u).
+///
+///     g = M (u - u*) - h J' f(J u) - h t(u)
+///
+/// scale: what contacts give and joints bear, each as a force, and a little of the momentum: where nothing
+/// acts no ratio of nothing could be reached.
+void IslandProblem::add_joint_forces() {
+  gradient_.noalias() += jacobian_.transpose() * body_impulse_;
+  scale_ += kRounding * carried_;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].joint == kNoJoint) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    gradient_[row] -= step_ * laws_[i].force(velocity_[row]);
+    scale_ += step_ * laws_[i].size(velocity_[row]) * std::sqrt(weights_[row]);
+  }
+}
+
+/// What joints store by themselves: h sum e_i(u_i), de_i/du = -t_i; convex too, as each joint's force falls
+/// as its velocity grows.
+double IslandProblem::joint_energy() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].joint != kNoJoint)
+      sum += step_ * laws_[i].energy(velocity_[static_cast<Eigen::Index>(i)]);
+  }
+  return sum;
+}
+
+/// c' = v + w x r = (J_v - [r]x J_w) u
+void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double sign,
+                                       PointJacobian& jacobian) const {
+  const auto linear = jacobian_.middleRows<3>(6 * number), angular = jacobian_.middleRows<3>(6 * number + 3);
+  jacobian += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
+}
+
+/// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c what the unknowns make of a row's
+/// relative velocity and spin. -dt/du is not negative and each joint's own, on the diagonal.
+void IslandProblem::factorise_joints() {
+  hessian_ = mass_;
+  for (const SpringContact& row : rows_) {
+    const SpringResponse& response = row.response;
+    if (response.normal_slope <= 0.0 && response.tangential_slope <= 0.0) continue;
+    const Vector3 n = vector(row.spring.normal), tilt = vector(row.tilt);
+    point_jacobian_.setZero(3, mass_.cols());
+    spin_jacobian_.setZero(mass_.cols());
+    const auto add = [&](int number, const Triple& arm, double sign) {
+      const auto angular = jacobian_.middleRows<3>(6 * number + 3);
+      add_point_jacobian(number, vector(arm), sign, point_jacobian_);
+      if (row.tilts) point_jacobian_ += (sign * n * tilt.transpose()).lazyProduct(angular);
+      spin_jacobian_ += (sign * n.transpose()).lazyProduct(angular);
+    };
+    add(row.b, row.arm, 1.0);
+    if (row.a != SpringContact::kNone) add(row.a, row.arm_a, -1.0);
+    const Matrix3 slope = step_ * point_slope(row).matrix();
+    point_product_ = slope.lazyProduct(point_jacobian_);
+    hessian_ += point_jacobian_.transpose().lazyProduct(point_product_);
+    if (response.torque_slope > 0.0)
+      hessian_ += (step_ * response.torque_slope * spin_jacobian_.transpose()).lazyProduct(spin_jacobian_);
+  }
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (unknowns_[i].joint != kNoJoint) hessian_(row, row) += step_ * laws_[i].slope(velocity_[row]);
+  }
+  factors_.compute(hessian_);
+}
+
+/// Contacts take energy, and give no more than their release speed has; hands give their own speed. A joint's
+/// springs act on as they were, for what they store is small beside it: where Newton's method has failed a
+/// linkage is in violent motion.
+void IslandProblem::keep_to_energy(const ContactStep& step, const Island& island) {
+  double fastest = kReleaseSpeed, mass = 0.0;
+  for (const IslandBody& body : island.bodies) {
+    mass += step.scene.bodies[body.body].mass;
+    for (std::size_t i = body.first; i < body.last; ++i)
+      fastest = std::max(fastest, step.contacts[i].hand_velocity.norm());
+  }
+  const double allowed =
+      std::max(kinetic_energy(start_), kinetic_energy(free_)) + 0.5 * mass * fastest * fastest;
+  const double found = kinetic_energy(velocity_);
+  if (found <= allowed) return;
+  velocity_ = std::isfinite(found) ? Vector(std::sqrt(allowed / found) * velocity_) : start_;
+  evaluate(true);
+}
+
+// Bodies get M_b J u: what joints do not let through of contacts' impulses, the joints hold, and it does
+// not enter momenta at all. So J' of the bodies' momenta is M u, which the flight goes on from.
+void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
+                           std::vector<JointState>& joints) {
+  settle_rows(step, island);
+  // The next step begins with what acted in this one, unless that is far off.
+  const double far = kFarOff * scale();
+  const bool lasts = agree || error_squared() <= far * far;
+  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (unknowns_[i].joint == kNoJoint) {
+      Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
+      pushed = Twist();
+      if (!lasts) continue;
+      pushed.linear = (velocity_.segment<3>(row) - free_.segment<3>(row)) / step_;
+      pushed.angular = (velocity_.segment<3>(row + 3) - free_.segment<3>(row + 3)) / step_;
+      continue;
+    }
+    JointState& joint = joints[static_cast<std::size_t>(unknowns_[i].joint)];
+    joint.pushed = lasts ? (velocity_[row] - free_[row]) / step_ : 0.0;
+    laws_[i].settle(velocity_[row], joint);
+  }
+  // u less M^-1 times what is missing: momenta are then those that the reported forces have given.
+  if (agree || nearly_agrees()) {
+    direction_ = gradient_;
+    solve_mass(direction_);
+    velocity_ -= direction_;
+  }
+  body_velocity_.noalias() = jacobian_ * velocity_;
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const std::size_t index = island.bodies.begin()[i].body;
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const Body& body = step.scene.bodies[index];
+    BodyState& state = step.bodies[index];
+    const Quaternion& q = state.pose.orientation;
+    state.linear_momentum = body.mass * body_velocity_.segment<3>(row);
+    state.angular_momentum =
+        q * (body.inertia * (q.conjugate() * Vector3(body_velocity_.segment<3>(row + 3))));
+    if (body.flies) step.changes.mark_solved(static_cast<int>(index));
+  }
+}
+
+}  // namespace mrhi

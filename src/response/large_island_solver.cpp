@@ -1,0 +1,588 @@
+#include "large_island_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "impact.h"
+
+namespace mrhi {
+namespace {
+
+/// Number of points that the sweeps of a step relax, and limits of the number of sweeps.
+constexpr int kRelaxationBudget = 1000, kMinSweeps = 8, kMaxSweeps = 30;
+/// An island in which nothing is faster than a fall of so many steps is nearly at rest, and may take more
+/// sweeps, to come to rest.
+constexpr double kNearlyAtRest = 1.0;
+constexpr int kMaxSweepsAtRest = 80;
+/// A sweep that changes velocities by a smaller ratio of what contacts have made of them is the last.
+constexpr double kConverged = 1e-6;
+/// A contact's point is within this ratio of its body's radius, margin included.
+constexpr double kRadiusMargin = 1.2;
+constexpr double kMaxSpeed = 1e300;  // [m/s]
+/// A finger that yields later has a linear normal force.
+constexpr double kMaxYield = 1e6;
+/// The release fade is 0 below this ratio of the speed at which it takes all of the normal force.
+constexpr double kMinFade = 1e-3;
+/// Iterations of Newton's method for one normal impulse.
+constexpr int kMaxIterations = 12;
+/// Largest number of contacts of a patch that are solved together.
+constexpr int kMaxTogether = 4;
+/// A patch that separates in so many sweeps is relaxed contact by contact for the rest of the step.
+constexpr int kMaxSeparations = 3;
+/// Sweeps through the contacts of a patch some of which are open.
+constexpr int kInnerSweeps = 3;
+
+/// True if two contacts are of one pair of shapes, with one normal.
+bool same_patch(const BodyContact& x, const BodyContact& y) {
+  return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
+}
+
+/// Shortens a friction impulse to Coulomb's limit.
+void limit_friction(double limit, Vector3& friction) {
+  const double squared = friction.squaredNorm();
+  if (squared > limit * limit) friction *= limit / std::sqrt(squared);
+}
+
+}  // namespace
+
+// u* = (p / m + h g, I^-1 L) of each body, on which impulses then act at once: unlike in IslandProblem the
+// unknowns are the contacts' impulses, and the velocities, u* + M^-1 J' of them, are kept up with each that
+// changes. Fixtures and hands are the last body, with 1/m and I^-1 of 0.
+void LargeIslandSolver::begin(const ContactStep& step, const Island& island,
+                              const ContactConfiguration& configuration,
+                              const std::vector<Vector3>& last_forces) {
+  step_ = step.step;
+  island_ = &island;
+  configuration_ = &configuration;
+  last_forces_ = &last_forces;
+  bodies_.clear();
+  free_.clear();
+  points_.clear();
+  patches_.clear();
+  linked_.clear();
+  open_.clear();
+  max_arm_ = 0.0;
+  for (const IslandBody& body : island.bodies)
+    add_body(step.scene.bodies[body.body], step.bodies[body.body], step);
+  bodies_.push_back({{Vector3::Zero(), Vector3::Zero()}, 0.0, Matrix3::Zero()});
+  make_hand_rows(step, island, configuration, rows_);
+  for (const SpringContact& row : rows_) {
+    add_point(row);
+    patches_.push_back({points_.size() - 1, 1, 0, {}, {}});
+  }
+  add_links(step, island);
+}
+
+void LargeIslandSolver::add_body(const mrhi::Body& body, const BodyState& state, const ContactStep& step) {
+  const Matrix3 inverse_inertia = world_inverse_inertia(body, state.pose.orientation);
+  free_.push_back(
+      {state.linear_momentum / body.mass + step_ * step.gravity, inverse_inertia * state.angular_momentum});
+  bodies_.push_back({free_.back(), 1.0 / body.mass, inverse_inertia});
+  max_arm_ = std::max(max_arm_, kRadiusMargin * body.bounding_radius);
+}
+
+/// Adds the pairs of shapes that had a force in the last step, or close fast enough for one. Contacts come
+/// sorted, so those of a pair follow each other.
+void LargeIslandSolver::add_links(const ContactStep& step, const Island& island) {
+  for (const Link* link = island.links.begin(); link != island.links.end();) {
+    const BodyContact& first = step.body_contacts[link->index];
+    Range range{link->index, link->index};
+    bool acted = false;
+    for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link)
+      acted = (*last_forces_)[range.last++] != Vector3::Zero() || acted;
+    if (step.body_contacts[range.first].share <= 0.0) continue;  // too narrow a strip for springs
+    if (acted) {
+      add_patch(step, range);
+    } else {
+      open_.push_back(range);
+    }
+  }
+  checked_.clear();
+  min_missing_speed_ = 0.0;
+  admit_closing(step);
+}
+
+// The warm start is the last step's force, f = t - p n, by this step's normal, so p = -n.f. A normal impulse
+// that would pull by now is cut off.
+void LargeIslandSolver::add_patch(const ContactStep& step, const Range& range) {
+  Patch patch{points_.size(), static_cast<int>(range.last - range.first), 0, {}, {}};
+  for (std::size_t index = range.first; index < range.last; ++index) {
+    rows_.emplace_back();
+    make_link_row(step, *island_, *configuration_, step.body_contacts[index], rows_.back());
+    add_point(rows_.back());
+    linked_.push_back(index);
+    const Vector3& force = (*last_forces_)[index];
+    if (force == Vector3::Zero()) continue;
+    Point& point = points_.back();
+    const double along = force.dot(point.normal);
+    point.impulses = {step_ * std::max(0.0, -along), step_ * (force - along * point.normal), 0.0};
+    apply(point, point.impulses.normal, point.impulses.friction);
+  }
+  prepare(patch);
+  patches_.push_back(patch);
+}
+
+/// How much faster the surfaces would have to close for a force [m/s].
+///
+///     missing = n.(c_a' - c_b') - d / e,      e the time that the spring looks ahead
+///
+/// as there is a force if d+ = d - e n.u > 0. e is not the same on both sides of d = 0 (look_ahead in
+/// spring_contact.cpp).
+double LargeIslandSolver::missing_speed(const ContactStep& step, const Range& range) const {
+  double least = kMaxSpeed;
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const BodyContact& contact = step.body_contacts[i];
+    const Motion& b = body(island_->place_of(contact.key.b)).motion;
+    const int number = island_->place_of(contact.key.a);
+    const Motion& a = number < 0 ? bodies_.back().motion : body(number).motion;
+    const Vector3 velocity =
+        a.velocity + a.spin.cross(contact.arm_a) - b.velocity - b.spin.cross(contact.arm_b);
+    const double ahead = contact.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
+    least = std::min(least, contact.normal.dot(velocity) - contact.depth / ahead);
+  }
+  return least;
+}
+
+/// Upper bound of how much faster two surfaces close than when open contacts were checked [m/s].
+/// A point of a body at an arm r changes by |dv + dw x r| <= |dv| + |r| |dw|, and two bodies by twice the
+/// largest of one. While that is below the smallest missing speed of then, no open contact has a force.
+double LargeIslandSolver::max_speed_gain() const {
+  double most = 0.0;
+  for (std::size_t i = 0; i < checked_.size(); ++i) {
+    const Motion change = bodies_[i].motion - checked_[i];
+    most = std::max(most, change.velocity.norm() + max_arm_ * change.spin.norm());
+  }
+  return 2.0 * most;
+}
+
+/// Adds open contacts that now have a force; returns true if there are any.
+/// What is added stays for the rest of the step: if it comes to give nothing, that costs little.
+bool LargeIslandSolver::admit_closing(const ContactStep& step) {
+  if (open_.empty() || max_speed_gain() < min_missing_speed_) return false;
+  checked_.clear();
+  for (const Body& body : bodies_) checked_.push_back(body.motion);
+  min_missing_speed_ = kMaxSpeed;
+  const std::size_t before = points_.size();
+  const auto kept = std::remove_if(open_.begin(), open_.end(), [&](const Range& range) {
+    const double missing = missing_speed(step, range);
+    if (missing < 0.0) {
+      add_patch(step, range);
+      return true;
+    }
+    min_missing_speed_ = std::min(min_missing_speed_, missing);
+    return false;
+  });
+  open_.erase(kept, open_.end());
+  impulses_before_.resize(points_.size());
+  impulse_directions_.resize(points_.size(), {0.0, Vector3::Zero(), 0.0});
+  return points_.size() > before;
+}
+
+void LargeIslandSolver::add_point(const SpringContact& row) {
+  const Spring& spring = row.spring;
+  points_.emplace_back();
+  Point& point = points_.back();  // with impulses in place of forces: stiffness is times the step
+  point.a = row.a == SpringContact::kNone ? static_cast<int>(free_.size()) : row.a, point.b = row.b;
+  point.normal = vector(spring.normal);
+  point.arm_a = vector(row.arm_a), point.arm_b = vector(row.arm);
+  point.drive = vector(row.drive);
+  point.depth = spring.depth, point.ahead = spring.ahead, point.fade = spring.fade;
+  point.stiffness = step_ * spring.stiffness;
+  point.friction = spring.friction;
+  point.bond = step_ * spring.bond;
+  point.nonlinear = spring.pad > 0.0 || spring.yields < kMaxYield;
+  point.twists = spring.twist_stiffness > 0.0;
+  point.impulses = {0.0, Vector3::Zero(), 0.0};
+  prepare(row, point);
+}
+
+/// A spring with the law p = k (d - e u), which looks ahead by e, on bodies that comply by u = u0 + w p,
+/// has p = k / (1 + k e w) * (d - e u0), with u0 the rate without it: `soft_stiffness`. Along the surface the
+/// same with the stretch, for t = k (s + e u) and u = u0 - w t, in terms of the rate u with the last t:
+/// t' = kept t + stretch_impulse + damping u.
+///
+///     along n:   p = k (d - e u),   u = u_0 + w p:     p = k / (1 + k e w) (d - e u_0),   u_0 = u - w p_last
+///     across:    t' = k (s + e (u + w t - w t')):      t' = (1 - give) t + give k (s + e u)
+///                give = 1 / (1 + k e w)
+///
+/// k has the step in it (N s/m). Signs differ because n points from b to a and the normal impulse on b is
+/// -p n, which parts them, while t is along the sliding, which it slows down. Iterating t' = k (s + e u),
+/// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
+void LargeIslandSolver::prepare(const SpringContact& row, Point& point) const {
+  const Body &a = body(point.a), &b = body(point.b);
+  const Matrix3 response = collision_matrix(a.inverse_mass, a.inverse_inertia, point.arm_a) +
+                           collision_matrix(b.inverse_mass, b.inverse_inertia, point.arm_b);
+  const Vector3 &n = point.normal, tilt = vector(row.tilt);
+  point.lever_a = point.arm_a.cross(n) + tilt, point.lever_b = point.arm_b.cross(n) + tilt;
+  point.turned_a = a.inverse_inertia * point.lever_a, point.turned_b = b.inverse_inertia * point.lever_b;
+  point.normal_mobility = (a.inverse_mass + b.inverse_mass) * n.squaredNorm() +
+                          point.lever_a.dot(point.turned_a) + point.lever_b.dot(point.turned_b);
+  // A normal impulse makes the surfaces slide as well, if its arm is not along n.
+  const Vector3 response_to_normal = point.turned_a.cross(point.arm_a) + point.turned_b.cross(point.arm_b);
+  point.sliding_response = response_to_normal - n.dot(response_to_normal) * n;
+  const double tangential_mobility = max_tangential_response(response, point.normal);
+  point.compliance = 1.0 / (point.stiffness * point.ahead);
+  point.soft_stiffness = point.stiffness / (1.0 + point.stiffness * point.ahead * point.normal_mobility);
+  const double give = 1.0 / (1.0 + point.stiffness * point.ahead * tangential_mobility);
+  point.kept = 1.0 - give;
+  point.damping = give * point.stiffness * point.ahead;
+  point.stretch_impulse = (give * point.stiffness) * vector(row.spring.stretch);
+}
+
+/// Normal impulses p of a patch change its rates by W p, and springs bear k (d - e u), k with the step in it:
+///
+///     (W + 1/(k e)) p = d / e - u_0,      W_ij = 1/m_a + 1/m_b + l_ai.I_a^-1 l_aj + l_bi.I_b^-1 l_bj,   l =
+///     r x n
+///
+/// Unused rows are the identity's. 1/(k e) keeps it regular, though four points bear three loads.
+void LargeIslandSolver::prepare(Patch& patch) const {
+  if (patch.count < 2 || patch.count > kMaxTogether) return;
+  Eigen::Matrix4d& system = patch.system;
+  system.setIdentity();
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& x = points_[patch.first + static_cast<std::size_t>(i)];
+    const double inverse_mass = body(x.a).inverse_mass + body(x.b).inverse_mass;
+    for (int j = 0; j <= i; ++j) {
+      const Point& y = points_[patch.first + static_cast<std::size_t>(j)];
+      system(i, j) = system(j, i) = inverse_mass + x.lever_a.dot(y.turned_a) + x.lever_b.dot(y.turned_b);
+    }
+    system(i, i) += x.compliance;
+  }
+  patch.inverse = system.inverse();
+}
+
+[[gnu::always_inline]] inline Vector3 LargeIslandSolver::relative_velocity(const Point& point) const {
+  const Motion &a = body(point.a).motion, &b = body(point.b).motion;
+  return point.drive + a.velocity + a.spin.cross(point.arm_a) - b.velocity - b.spin.cross(point.arm_b);
+}
+
+/// Rate of the gap where the normal force acts.
+[[gnu::always_inline]] inline double LargeIslandSolver::rate_of(const Point& point) const {
+  const Motion &a = body(point.a).motion, &b = body(point.b).motion;
+  return point.normal.dot(point.drive + a.velocity - b.velocity) + point.lever_a.dot(a.spin) -
+         point.lever_b.dot(b.spin);
+}
+
+//     J = t - p n:    v_b += J / m_b,  w_b += I_b^-1 (b x t - p l_b),      v_a and w_a by -J
+[[gnu::always_inline]] inline void LargeIslandSolver::apply(const Point& point, double normal,
+                                                            const Vector3& friction) {
+  Body &a = body(point.a), &b = body(point.b);
+  const Vector3 impulse = friction - normal * point.normal;
+  a.motion.velocity -= a.inverse_mass * impulse;
+  a.motion.spin -= a.inverse_inertia * point.arm_a.cross(friction) - normal * point.turned_a;
+  b.motion.velocity += b.inverse_mass * impulse;
+  b.motion.spin += b.inverse_inertia * point.arm_b.cross(friction) - normal * point.turned_b;
+}
+
+/// Impulse that the spring gives at a rate, and how fast that falls with it: p = k d (1 - (u / u_f)^2) where
+/// the surfaces part at u, so that a released object is not thrown off (docs/contact.md, release).
+///
+///     -dp/du = k (p'(d+) e (1 - r^2) + 2 p(d+) r / u_f),      r = u / u_f, no fading left where r = 1
+double LargeIslandSolver::normal_impulse_at(std::size_t i, double rate, double& slope) const {
+  const Point& point = points_[i];
+  const double deep = std::max(0.0, point.depth - point.ahead * rate);
+  const double parting = std::min(std::max(rate, 0.0) * point.fade, 1.0), kept = 1.0 - parting * parting;
+  double pressed = deep, steepness = deep > 0.0 ? 1.0 : 0.0;
+  if (point.nonlinear) rows_[i].spring.press(deep, pressed, steepness);
+  const double fading = parting < 1.0 ? 2.0 * pressed * parting * point.fade : 0.0;
+  slope = point.stiffness * (steepness * point.ahead * kept + fading);
+  return point.stiffness * pressed * kept;
+}
+
+/// The normal impulse that the contact's own law asks for, if the rate is `rate` without it.
+/// Without fade and pad it is in closed form. The rate with that impulse is the highest there can be; where
+/// even that hardly parts, the fade, which goes by the square, takes a millionth at most.
+[[gnu::always_inline]] inline double LargeIslandSolver::find_normal_impulse(std::size_t i,
+                                                                            double rate) const {
+  const Point& point = points_[i];
+  const double deep = point.depth - point.ahead * rate;
+  if (deep <= 0.0) return 0.0;
+  const double plain = point.soft_stiffness * deep;
+  if (!point.nonlinear && (rate + point.normal_mobility * plain) * point.fade <= kMinFade) return plain;
+  return find_faded_impulse(i, rate, plain);
+}
+
+/// Newton's method, kept between bounds.
+///
+///     g(u) = u - u_0 - w p(u) = 0,     g' = 1 - w dp/du >= 1       in u_0 <= u <= u_0 + w p_plain
+///
+/// g grows, so there is one zero, and p at it follows from p = (u - u_0) / w. The upper end is where the
+/// plain spring has it: pad and fade only give less. A step of Newton's that leaves the bracket is replaced
+/// by halving it: beyond the release speed p is 0, and does not show where it begins.
+double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double plain) const {
+  const double mobility = points_[i].normal_mobility;
+  double low = rate, high = rate + mobility * plain, at = high;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    double slope;
+    const double off = at - rate - mobility * normal_impulse_at(i, at, slope);
+    (off > 0.0 ? high : low) = at;
+    const double next = at - off / (1.0 + mobility * slope);
+    if (std::abs(next - at) <= 1e-9 * (high - rate)) break;
+    at = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return std::max(0.0, (at - rate) / mobility);
+}
+
+/// The friction impulse that would keep the tangential spring from slipping, if the surfaces slide so: t' of
+/// prepare().
+[[gnu::always_inline]] inline Vector3 LargeIslandSolver::wanted_friction(const Point& point,
+                                                                         const Vector3& sliding) {
+  return point.kept * point.impulses.friction + point.stretch_impulse + point.damping * sliding;
+}
+
+/// Gives a contact what it asks for.
+///
+///     p' = find_normal_impulse(u.n - w p),   t' = disc(wanted_friction(P u + (p' - p) P W n), mu p' + bond)
+///
+/// The sliding that the new normal impulse makes is foreseen, so that both are of one iterate. Limits are
+/// those of the new normal impulse, not of the last iterate's: no convex function is behind this, but the
+/// fixed point is Coulomb's law itself.
+[[gnu::always_inline]] inline void LargeIslandSolver::relax(std::size_t i) {
+  Point& point = points_[i];
+  Impulses& impulses = point.impulses;
+  const double rate = rate_of(point);
+  const double wanted = find_normal_impulse(i, rate - point.normal_mobility * impulses.normal);
+  const double limit = point.friction * wanted + point.bond;
+  const bool open =
+      limit == 0.0 && impulses.normal == 0.0 && impulses.friction == Vector3::Zero() && impulses.twist == 0.0;
+  if (open && wanted == 0.0) return;
+  const double more = wanted - impulses.normal;
+  const Vector3 velocity = relative_velocity(point);
+  const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
+  Vector3 friction = wanted_friction(point, sliding + more * point.sliding_response);
+  limit_friction(limit, friction);
+  apply(point, more, friction - impulses.friction);
+  impulses.normal = wanted;
+  impulses.friction = friction;
+  if (point.twists) relax_twist(i);
+}
+
+/// Gives a patch's normal impulses what they ask for together, if none of them pulls and nothing parts;
+/// returns false and changes nothing otherwise.
+///
+///     p' = p + (W + 1/(k e))^-1 (d / e - u - p / (k e)),     u with p in it
+///
+/// So a load on a face turns nothing that it would not turn at the end: points solved one after the other tip
+/// a box back and forth, and against its neighbours.
+bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
+  Point* const points = &points_[patch.first];
+  Body &a = body(points->a), &b = body(points->b);
+  const double along = points->normal.dot(a.motion.velocity - b.motion.velocity);
+  Eigen::Vector4d missing = Eigen::Vector4d::Zero();
+  bool open = true;
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& point = points[i];
+    const double rate = along + point.lever_a.dot(a.motion.spin) - point.lever_b.dot(b.motion.spin);
+    missing[i] = point.depth / point.ahead - rate - point.compliance * point.impulses.normal;
+    open = open && missing[i] <= 0.0 && point.impulses.normal == 0.0;
+  }
+  if (open) return true;
+  Eigen::Vector4d more = patch.inverse * missing;
+  bool pulls = false;
+  for (int i = 0; i < patch.count; ++i) pulls = pulls || points[i].impulses.normal + more[i] < 0.0;
+  if (pulls) {
+    // Some contacts are open: one after the other, none pulling (projected Gauss-Seidel).
+    more.setZero();
+    for (int sweep = 0; sweep < kInnerSweeps; ++sweep) {
+      for (int i = 0; i < patch.count; ++i) {
+        const double change =
+            std::max(missing[i] / patch.system(i, i), -(points[i].impulses.normal + more[i]));
+        more[i] += change;
+        missing -= change * patch.system.col(i);
+      }
+    }
+  }
+  for (int i = 0; i < patch.count; ++i) {
+    const Point& point = points[i];
+    const double normal = point.impulses.normal + more[i];
+    if (normal > 0.0 && (point.depth / point.ahead - point.compliance * normal) * point.fade > kMinFade)
+      return false;
+  }
+  double sum = 0.0;
+  Vector3 turn_a = Vector3::Zero(), turn_b = Vector3::Zero();
+  for (int i = 0; i < patch.count; ++i) {
+    points[i].impulses.normal += more[i];
+    sum += more[i];
+    turn_a += more[i] * points[i].turned_a;
+    turn_b += more[i] * points[i].turned_b;
+  }
+  a.motion.velocity += (sum * a.inverse_mass) * points->normal;
+  a.motion.spin += turn_a;
+  b.motion.velocity -= (sum * b.inverse_mass) * points->normal;
+  b.motion.spin -= turn_b;
+  return true;
+}
+
+/// Gives a contact the friction that it asks for under its normal impulse.
+[[gnu::always_inline]] inline void LargeIslandSolver::relax_friction(Point& point) {
+  const double limit = point.friction * point.impulses.normal + point.bond;
+  if (limit == 0.0 && point.impulses.friction == Vector3::Zero()) return;
+  const Vector3 velocity = relative_velocity(point);
+  Vector3 friction = wanted_friction(point, velocity - point.normal.dot(velocity) * point.normal);
+  limit_friction(limit, friction);
+  apply(point, 0.0, friction - point.impulses.friction);
+  point.impulses.friction = friction;
+}
+
+void LargeIslandSolver::relax(Patch& patch) {
+  const auto count = static_cast<std::size_t>(patch.count);
+  if (patch.count >= 2 && patch.count <= kMaxTogether && patch.separations < kMaxSeparations) {
+    if (relax_normals_together(patch)) {
+      for (std::size_t i = 0; i < count; ++i) relax_friction(points_[patch.first + i]);
+      return;
+    }
+    ++patch.separations;
+  }
+  for (std::size_t i = 0; i < count; ++i) relax(patch.first + i);
+}
+
+// As friction, about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
+// to 2/3 mu a p. Body a is a hand, which nothing turns.
+void LargeIslandSolver::relax_twist(std::size_t i) {
+  Point& point = points_[i];
+  const SpringContact& row = rows_[i];
+  const Spring& spring = row.spring;
+  Body& b = body(point.b);
+  const Vector3 turned = b.inverse_inertia * point.normal;
+  const double spin = row.drive_spin - point.normal.dot(b.motion.spin);
+  const double stiffness = step_ * spring.twist_stiffness;
+  const double limit = spring.patch_friction * point.impulses.normal;
+  const double give = 1.0 / (1.0 + stiffness * spring.ahead * point.normal.dot(turned));
+  const double wanted =
+      point.impulses.twist + give * (stiffness * (spring.twist + spring.ahead * spin) - point.impulses.twist);
+  const double kept = std::max(-limit, std::min(wanted, limit));
+  b.motion.spin += (kept - point.impulses.twist) * turned;
+  point.impulses.twist = kept;
+}
+
+bool LargeIslandSolver::acts() const {
+  return std::any_of(points_.begin(), points_.end(),
+                     [](const Point& point) { return point.impulses.normal > 0.0 || point.bond > 0.0; });
+}
+
+// Symmetric: what a stack bears runs down it in one direction and up it in the other, where sweeps in one
+// direction would carry it by one body a sweep in the other. Conjugate directions too need a symmetric sweep
+// (SSOR).
+void LargeIslandSolver::sweep() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) motions_before_[i] = bodies_[i].motion;
+  for (std::size_t i = 0; i < points_.size(); ++i) impulses_before_[i] = points_[i].impulses;
+  for (Patch& patch : patches_) relax(patch);
+  for (std::size_t i = patches_.size(); i-- > 0;) relax(patches_[i]);
+}
+
+/// Goes on in the direction of the sweeps before, conjugate to this one by Fletcher and Reeves' rule (the
+/// ratio of the squares of what two sweeps have changed; none where that has grown); `last` is the square of
+/// what the sweep before has changed. Returns that of this one.
+///
+///     d_k = x_sweep - x_before,     beta = |d_k|^2 / |d_k-1|^2 < 1, else 0,      s_k = d_k + beta s_k-1
+///     x <- x_sweep + beta s_k-1
+///
+/// of all impulses and of velocities alike, which depend on them linearly. It comes before a sweep and never
+/// after the last: a normal impulse may pull and friction be outside its disc until contacts are relaxed.
+double LargeIslandSolver::accelerate(double last) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Impulses change = points_[i].impulses - impulses_before_[i];
+    square += change.normal * change.normal + change.friction.squaredNorm();
+  }
+  const double ratio = last > 0.0 && square < last ? square / last : 0.0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    Impulses& now = points_[i].impulses;
+    const Impulses on = ratio * impulse_directions_[i];
+    impulse_directions_[i] = on + now - impulses_before_[i];
+    now = now + on;
+  }
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    Motion& now = bodies_[i].motion;
+    const Motion on = ratio * motion_directions_[i];
+    motion_directions_[i] = on + now - motions_before_[i];
+    now = now + on;
+  }
+  return square;
+}
+
+/// True if no body is faster than a fall of a few steps.
+bool LargeIslandSolver::is_nearly_at_rest(const ContactStep& step) const {
+  const double slow = kNearlyAtRest * step_ * step.gravity.norm();
+  return std::all_of(bodies_.begin(), bodies_.end(),
+                     [slow](const Body& body) { return body.motion.velocity.norm() < slow; });
+}
+
+// Ends where a sweep changes no velocity by more than 1e-6 of what contacts have made of them, or with the
+// budget. What is undone then is an impulse that both bodies lack, hence no momentum, and is the next
+// step's.
+void LargeIslandSolver::solve(const ContactStep& step) {
+  impulses_before_.resize(points_.size());
+  impulse_directions_.assign(points_.size(), {0.0, Vector3::Zero(), 0.0});
+  motions_before_.resize(bodies_.size());
+  motion_directions_.assign(bodies_.size(), {Vector3::Zero(), Vector3::Zero()});
+  // Largest change of a body's velocity since then [m/s].
+  const auto max_change = [this](const std::vector<Motion>& then) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      most = std::max(most, (bodies_[i].motion.velocity - then[i].velocity).squaredNorm());
+    return std::sqrt(most);
+  };
+  const auto points = static_cast<int>(points_.size());
+  const int most = std::clamp(kRelaxationBudget / std::max(1, points), kMinSweeps, kMaxSweeps);
+  double last = 0.0;
+  for (int i = 1; i <= most || (i <= kMaxSweepsAtRest && is_nearly_at_rest(step)); ++i) {
+    if (i > 1) last = accelerate(last);
+    sweep();
+    const bool converged = max_change(motions_before_) <= kConverged * max_change(free_);
+    if (!admit_closing(step) && converged) break;
+  }
+}
+
+/// Writes the response that settle() reads.
+/// Impulses over the step are forces. `wanted` is that of wanted_friction(): at the fixed point k q+ where a
+/// contact sticks, and as k q+ beyond the limit where it slips, as t' - t = give (k q+ - t).
+void LargeIslandSolver::fill_response(std::size_t i) {
+  const Point& point = points_[i];
+  const Vector3 velocity = relative_velocity(point);
+  const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
+  SpringContact& row = rows_[i];
+  row.response = {};
+  row.response.force = triple((point.impulses.friction - point.impulses.normal * point.normal) / step_);
+  row.response.push = point.impulses.normal / step_;
+  row.response.torque = point.impulses.twist / step_;
+  row.response.wanted_squared = wanted_friction(point, sliding).squaredNorm() / (step_ * step_);
+  row.response.drawn = triple(vector(row.spring.stretch) + point.ahead * sliding);
+  row.spring.slip_limit = (point.friction * point.impulses.normal + point.bond) / step_;
+}
+
+//     p += h m g + sum +-J,     L += sum +-(r x t - p l + T n)
+//
+// Momenta are summed from the impulses, not taken from the velocities: what b gets a loses to the last bit
+// but rounding of the sums, wherever sweeps have ended.
+void LargeIslandSolver::finish(ContactStep& step, const Island& island) {
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const std::size_t index = island.bodies.begin()[k].body;
+    BodyState& state = step.bodies[index];
+    state.linear_momentum += (step_ * step.scene.bodies[index].mass) * step.gravity;
+    state.pushed.linear = (bodies_[k].motion.velocity - free_[k].velocity) / step_;
+    state.pushed.angular = (bodies_[k].motion.spin - free_[k].spin) / step_;
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    const Impulses& impulses = point.impulses;
+    const Vector3 impulse = impulses.friction - impulses.normal * point.normal;
+    const auto give = [&](int body, double sign, const Vector3& arm, const Vector3& lever) {
+      BodyState& state = step.bodies[island.bodies.begin()[body].body];
+      state.linear_momentum += sign * impulse;
+      state.angular_momentum +=
+          sign * (arm.cross(impulses.friction) - impulses.normal * lever + impulses.twist * point.normal);
+    };
+    give(point.b, 1.0, point.arm_b, point.lever_b);
+    if (point.a != static_cast<int>(free_.size())) give(point.a, -1.0, point.arm_a, point.lever_a);
+    fill_response(i);
+  }
+  const SpringContact* row = settle_hand_rows(step, island, rows_.data());
+  for (const std::size_t index : linked_) settle(step, *row++, step.body_contacts[index]);
+  for (const Range& range : open_) {
+    for (std::size_t i = range.first; i < range.last; ++i)
+      step.body_contacts[i].friction = Friction::sticking;
+  }
+}
+
+}  // namespace mrhi
