@@ -136,7 +136,7 @@ TEST_F(MarkerShapes, a_hand_of_capsules_has_a_ball_at_each_joint_and_a_cylinder_
     EXPECT_LT(marker.id, 200 + kIdsPerHand);
     if (marker.type != Marker::CYLINDER) continue;
     const auto bone = std::find_if(hand.capsules.begin(), hand.capsules.end(), [&](const Capsule& capsule) {
-      return (capsule.centre() - place(marker.pose.position)).norm() < 1e-12;
+      return capsule.radius > 0.0 && (capsule.centre() - place(marker.pose.position)).norm() < 1e-12;
     });
     ASSERT_NE(bone, hand.capsules.end());
     EXPECT_NEAR(marker.scale.z, (bone->end - bone->start).norm(), 1e-12);
