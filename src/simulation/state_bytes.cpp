@@ -76,11 +76,11 @@ struct In {
   void check(Nanoseconds stamp) {
     if (stamp < -StampCheck::kLatest || stamp > StampCheck::kLatest) refuse("has a stamp that is none");
   }
-  /// So many that are `item` bytes each in memory, and a quarter of that here, at least.
+  /// So many that are `item` bytes each in memory, and an eighth of that here, at least.
   std::size_t count(std::size_t, std::size_t item) {
     std::uint64_t number = 0;
     raw(&number, sizeof number);
-    if (number > 4 * static_cast<std::uint64_t>(end - at) / item) refuse("ends early");
+    if (number > 8 * static_cast<std::uint64_t>(end - at) / item) refuse("ends early");
     return static_cast<std::size_t>(number);
   }
 };
