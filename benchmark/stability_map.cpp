@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "mr_hand_interaction/response/contact_model.h"
-#include "nodes/exit_status.h"
 #include "support/stability_map.h"
 #include "text/command_line.h"
 #include "text/files.h"

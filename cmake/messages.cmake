@@ -1,14 +1,8 @@
 # Messages, services and sliders, and what other catkin packages are told.
-add_message_files(FILES
-  Contact.msg ContactArray.msg Hand.msg HandFrame.msg HandHaptics.msg HapticsArray.msg InteractionEvent.msg
-  ObjectState.msg ObjectStateArray.msg Phalanx.msg PhalanxHaptics.msg RecordedFile.msg SceneBody.msg
-  SceneDescription.msg SceneShape.msg SimulationInput.msg TrainingEvent.msg TrainingStatus.msg)
+add_message_files(DIRECTORY msg)
 # leap_motion/Human of the Leap's driver in its four versions, and leap_motion_controller/Hand: an MD5 does not depend on the package's name.
-add_message_files(DIRECTORY msg/leap FILES
-  LeapArm.msg LeapBone.msg LeapControllerBone.msg LeapControllerFinger.msg LeapControllerHand.msg LeapFinger.msg LeapGesture.msg LeapHand.msg LeapHuman.msg
-  LeapAugust2019Hand.msg LeapAugust2019Human.msg LeapFebruary2020Hand.msg LeapFebruary2020Human.msg
-  LeapMelodicHand.msg LeapMelodicHuman.msg)
-add_service_files(FILES DeleteObject.srv SaveWorld.srv SetParameter.srv SpawnObject.srv SpawnUrdf.srv)
+add_message_files(DIRECTORY msg/leap)
+add_service_files(DIRECTORY srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 generate_dynamic_reconfigure_options(cfg/Tune.cfg)
 # Which reads the filters' numbers there.

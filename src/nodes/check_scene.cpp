@@ -7,7 +7,6 @@
 #include "../text/command_line.h"
 #include "../text/files.h"
 #include "../text/text.h"
-#include "exit_status.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/input_error.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -22,17 +21,6 @@ Loads scenes, by name or as URDF files, and prints their bodies with mass, volum
 what was assumed. --picture draws the last scene. Exit status: 0 if all scenes load, 1 if one does not, 2 for
 bad usage.
 )";
-
-Eigen::AlignedBox3d extent_of(const Body& body) {
-  Eigen::AlignedBox3d box;
-  for (const PlacedShape& shape : body.shapes)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
-        box.extend(shape.pose * std::visit([&](const auto& s) { return s.farthest(n); }, shape.shape));
-      }
-  return box;
-}
 
 std::string kind_of(const Scene& scene, std::size_t body) {
   if (scene.bodies[body].fixed) return "fixture";
@@ -49,7 +37,8 @@ void print(const std::string& file, const Scene& scene) {
               "extent x, y, z [mm]", "shapes", "friction", "restitution");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    const Eigen::AlignedBox3d box = extent_of(body);
+    Eigen::AlignedBox3d box;
+    for (const PlacedShape& shape : body.shapes) box.extend(box_around(shape));
     const Vector3 size = body.shapes.empty() ? Vector3::Zero() : Vector3(1e3 * box.sizes());
     char mass[16] = "", extent[40];
     if (!body.fixed) std::snprintf(mass, sizeof mass, "%.4g", 1e3 * body.mass);

@@ -8,8 +8,8 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "../text/command_line.h"
 #include "../text/text.h"
-#include "exit_status.h"
 #include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 

@@ -3,7 +3,6 @@
 
 #include "../text/command_line.h"
 #include "../training/operator_trial.h"
-#include "exit_status.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/package_paths.h"

@@ -14,7 +14,6 @@
 #include "../ros/node.h"
 #include "../text/command_line.h"
 #include "../text/files.h"
-#include "exit_status.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"

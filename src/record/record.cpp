@@ -67,22 +67,15 @@ std::string spawned_file(const ObjectRequest& request) {
   return "spawn/" + name + ".urdf";
 }
 
-YAML::Node numbers_node(const std::vector<double>& values) {
-  YAML::Node node(YAML::NodeType::Sequence);
-  for (const double value : values) node.push_back(text::exact(value));
-  node.SetStyle(YAML::EmitterStyle::Flow);
-  return node;
-}
-
 YAML::Node pose_node(const Pose& pose) {
   const Vector3& p = pose.position;
   const Quaternion& q = pose.orientation;
-  return numbers_node({p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
+  return yaml_list({p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
 YAML::Node twist_node(const Twist& twist) {
   const Vector3 &v = twist.linear, &w = twist.angular;
-  return numbers_node({v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+  return yaml_list({v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
 }
 
 YAML::Node request_node(const ObjectRequest& request) {
@@ -91,7 +84,7 @@ YAML::Node request_node(const ObjectRequest& request) {
   if (!request.urdf.empty()) node["urdf"] = spawned_file(request);
   if (request.urdf.empty()) {
     node["shape"] = request.shape;
-    node["size"] = numbers_node(request.size);
+    node["size"] = yaml_list(request.size);
     node["mass"] = text::exact(request.mass);
   }
   if (request.whole) {
@@ -103,7 +96,7 @@ YAML::Node request_node(const ObjectRequest& request) {
   if (!request.material.empty()) node["material"] = request.material;
   if (request.rgba) {
     const auto& c = *request.rgba;
-    node["rgba"] = numbers_node({double(c[0]), double(c[1]), double(c[2]), double(c[3])});
+    node["rgba"] = yaml_list({double(c[0]), double(c[1]), double(c[2]), double(c[3])});
   }
   return node;
 }

@@ -102,9 +102,7 @@ std::set<std::string> known_point_topics() {
 const std::set<std::string> kTypes = known_types();
 const std::set<std::string> kPointTopics = known_point_topics();
 std::string joined(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
+  return names.empty() ? "none" : text::joined({names.begin(), names.end()});
 }
 
 std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& bag,

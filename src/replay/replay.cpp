@@ -41,6 +41,7 @@ class ScratchFolder {
   std::string path_;
 };
 
+/// Throws UsageError.
 std::string scene_file(const ReplayArguments& arguments) {
   try {
     return find_scene_file(arguments.scene, scene_folders());

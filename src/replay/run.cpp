@@ -40,51 +40,28 @@ std::string first_missing(const std::filesystem::path& folder) {
   return missing.string();
 }
 
-using json::number;
-using json::object;
-using json::quoted;
+using Members = std::vector<std::pair<std::string, Json>>;
 
-/// With what `as_json` makes of each value.
-template <typename Values, typename AsJson>
-std::string object_of(const Values& values, AsJson as_json) {
-  std::vector<std::pair<std::string, std::string>> members;
-  for (const auto& [name, value] : values) members.emplace_back(name, as_json(value));
-  return object(members);
+Json json_of(const std::map<std::string, Material>& materials) {
+  Members all;
+  for (const auto& [name, material] : materials)
+    all.emplace_back(name, Members{{"dynamic_friction", material.dynamic_friction},
+                                   {"restitution", material.restitution},
+                                   {"static_friction", material.static_friction},
+                                   {"stiffness", material.stiffness}});
+  return all;
 }
 
-std::string counts(const std::map<std::string, std::uint64_t>& counts) {
-  return object_of(counts, [](std::uint64_t count) { return std::to_string(count); });
-}
-
-std::string material(const Material& material) {
-  return object({{"dynamic_friction", number(material.dynamic_friction)},
-                 {"restitution", number(material.restitution)},
-                 {"static_friction", number(material.static_friction)},
-                 {"stiffness", number(material.stiffness)}});
-}
-
-std::string list(const std::vector<std::string>& names) {
-  std::vector<std::string> items;
-  for (const std::string& name : names) items.push_back(quoted(name));
-  return json::list(items);
-}
-
-std::string step_times(const DurationHistogram& times) {
-  return object({{"p50", number(times.quantile_us(0.5))},
-                 {"p99", number(times.quantile_us(0.99))},
-                 {"max", number(times.max_us())}});
-}
-
-std::string live_run(const LiveRun& live) {
-  return object({{"version", quoted(live.version)},
-                 {"entries", std::to_string(live.entries)},
-                 {"missing", std::to_string(live.missing)},
-                 {"compared", std::to_string(live.compared)},
-                 {"same", std::to_string(live.same)},
-                 {"parts_at", live.parts_at ? number(*live.parts_at) : "null"},
-                 {"lost_by_queue", std::to_string(live.lost_by_queue)},
-                 {"changes", list(live.changes)},
-                 {"overridden", list(live.overridden)}});
+Json json_of(const LiveRun& live) {
+  return Members{{"version", live.version},
+                 {"entries", live.entries},
+                 {"missing", live.missing},
+                 {"compared", live.compared},
+                 {"same", live.same},
+                 {"parts_at", live.parts_at},
+                 {"lost_by_queue", live.lost_by_queue},
+                 {"changes", live.changes},
+                 {"overridden", live.overridden}};
 }
 
 /// To which relative paths in the arguments are; empty if it is gone.
@@ -94,15 +71,15 @@ std::string working_folder() {
 }
 
 /// By a queue on the way to the live simulation; and by stamps, which this run has judged itself.
-std::string lost(const ReplaySummary& summary) {
+Json lost(const ReplaySummary& summary) {
   const auto count = [&](const char* reason) {
     const auto found = summary.rejected.find(reason);
     return found == summary.rejected.end() ? 0 : found->second;
   };
-  return counts({{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
+  return Members{{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
                  {"by_order", count("stamp not increasing")},
                  {"by_stamp", count("stamp far ahead") + count("stamp out of range") +
-                                  count("first stamp of another clock")}});
+                                  count("first stamp of another clock")}};
 }
 
 }  // namespace
@@ -229,38 +206,36 @@ void ProgressBar::wipe() {
 std::string to_json(const ReplaySummary& summary) {
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, summary.state_hash);
-  std::vector<std::pair<std::string, std::string>> fields{
-      {"scene", quoted(summary.scene)},
-      {"input", quoted(summary.input)},
-      {"topic", quoted(summary.topic)},
-      {"contact_model", quoted(summary.contact_model)},
-      {"version", quoted(summary.version)},
-      {"gravity",
-       json::list({number(summary.gravity.x()), number(summary.gravity.y()), number(summary.gravity.z())})},
-      {"parameters", object_of(summary.parameters, quoted)},
-      {"materials", object_of(summary.materials, material)},
-      {"frames", std::to_string(summary.frames)},
-      {"simulated_seconds", number(summary.simulated_seconds)},
-      {"steps", std::to_string(summary.steps)},
-      {"step_time_us", step_times(summary.step_time)},
-      {"deepest_rendered_penetration_m", number(summary.deepest_rendered)},
-      {"restarts", std::to_string(summary.restarts)},
-      {"rejected", counts(summary.rejected)},
+  const DurationHistogram& times = summary.step_time;
+  Members fields{
+      {"scene", summary.scene},
+      {"input", summary.input},
+      {"topic", summary.topic},
+      {"contact_model", summary.contact_model},
+      {"version", summary.version},
+      {"gravity", summary.gravity},
+      {"parameters", summary.parameters},
+      {"materials", json_of(summary.materials)},
+      {"frames", summary.frames},
+      {"simulated_seconds", summary.simulated_seconds},
+      {"steps", summary.steps},
+      {"step_time_us",
+       Members{{"p50", times.quantile_us(0.5)}, {"p99", times.quantile_us(0.99)}, {"max", times.max_us()}}},
+      {"deepest_rendered_penetration_m", summary.deepest_rendered},
+      {"restarts", summary.restarts},
+      {"rejected", summary.rejected},
       {"frames_lost", lost(summary)},
-      {"corrected", counts(summary.corrected)},
-      {"hands_left_out", std::to_string(summary.hands_left_out)},
-      {"events", counts(summary.events)},
-      {"objects_held_at_end", list(summary.held_at_end)},
-      {"state_hash", quoted(hash)},
-      {"not_known", list(summary.not_known)}};
-  if (summary.live) fields.emplace_back("live_run", live_run(*summary.live));
-  fields.emplace_back("arguments", list(summary.arguments));
-  fields.emplace_back("working_folder", quoted(working_folder()));
-  if (!summary.error.empty()) fields.emplace_back("error", quoted(summary.error));
-  std::string text = "{";
-  for (const auto& [name, value] : fields)
-    text += (text == "{" ? "\n  " : ",\n  ") + quoted(name) + ": " + value;
-  return text + "\n}\n";
+      {"corrected", summary.corrected},
+      {"hands_left_out", summary.hands_left_out},
+      {"events", summary.events},
+      {"objects_held_at_end", summary.held_at_end},
+      {"state_hash", hash},
+      {"not_known", summary.not_known}};
+  if (summary.live) fields.emplace_back("live_run", json_of(*summary.live));
+  fields.emplace_back("arguments", summary.arguments);
+  fields.emplace_back("working_folder", working_folder());
+  if (!summary.error.empty()) fields.emplace_back("error", summary.error);
+  return Json(fields, "\n  ").text + "\n";
 }
 
 }  // namespace mrhi

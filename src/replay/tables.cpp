@@ -45,11 +45,10 @@ std::vector<Table> tables_in(const std::string& text) {
   return tables;
 }
 
-std::string column_json(const Column& column) {
-  std::vector<std::pair<std::string, std::string>> members{{"name", json::quoted(column.name)}};
-  if (!column.unit.empty()) members.emplace_back("unit", json::quoted(column.unit));
-  members.emplace_back("meaning", json::quoted(column.meaning));
-  return json::object(members);
+Json json_of(const Column& column) {
+  std::vector<std::pair<std::string, Json>> members{{"name", column.name}, {"meaning", column.meaning}};
+  if (!column.unit.empty()) members.insert(members.begin() + 1, {"unit", column.unit});
+  return members;
 }
 
 std::string made_folder(const std::string& folder) {
@@ -98,15 +97,13 @@ const Table& table_of(const std::string& file) {
 }
 
 std::string schema_json() {
-  std::string text = "{";
+  std::vector<std::pair<std::string, Json>> schema;
   for (const Table& table : tables()) {
-    text += (text == "{" ? "\n  " : ",\n  ") + json::quoted(table.file) +
-            ": {\"a row for\": " + json::quoted(table.rows) + ", \"columns\": [";
-    for (const Column& column : table.columns)
-      text += (&column == &table.columns.front() ? "\n    " : ",\n    ") + column_json(column);
-    text += "]}";
+    std::vector<Json> columns;
+    for (const Column& column : table.columns) columns.push_back(json_of(column));
+    schema.emplace_back(table.file, Json({{"a row for", table.rows}, {"columns", columns}}, "\n    "));
   }
-  return text + "\n}\n";
+  return Json(schema, "\n  ").text + "\n";
 }
 
 const char* event_name(EventKind kind) {

@@ -4,56 +4,56 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "../text/files.h"
 #include "mr_hand_interaction/simulation.h"
 
-namespace mrhi::json {
-
-/// Twelve digits; what is no number is null.
-inline std::string number(double value) {
-  if (!std::isfinite(value)) return "null";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
-
-inline std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    char escaped[8];
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned char>(c));
-      result += escaped;
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
-/// [a, b]; items are JSON.
-inline std::string list(const std::vector<std::string>& items) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
-  return "[" + text + "]";
-}
-
-/// {"name": value}; values are JSON.
-inline std::string object(const std::vector<std::pair<std::string, std::string>>& members) {
-  std::string text;
-  for (const auto& [name, value] : members) text += (text.empty() ? "" : ", ") + quoted(name) + ": " + value;
-  return "{" + text + "}";
-}
-
-}  // namespace mrhi::json
-
 namespace mrhi {
+
+/// A value as JSON, made of what C++ has for it. Numbers have twelve digits; what is no number is null.
+struct Json {
+  std::string text;
+
+  Json(const std::string& value) : text("\"") {
+    for (const char c : value) {
+      char escaped[8];
+      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned char>(c));
+      if (c == '"' || c == '\\') text += '\\';
+      text += static_cast<unsigned char>(c) < 0x20 ? std::string(escaped) : std::string(1, c);
+    }
+    text += '"';
+  }
+  Json(const char* value) : Json(std::string(value)) {}
+  template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
+  Json(Number value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.12g", static_cast<double>(value));
+    text = std::is_integral<Number>::value ? std::to_string(value) : std::isfinite(value) ? digits : "null";
+  }
+  Json(const Vector3& v) : Json(std::vector<double>{v.x(), v.y(), v.z()}) {}
+  template <class Value>
+  Json(const std::optional<Value>& value) : text(value ? Json(*value).text : "null") {}
+  template <class Value>
+  Json(const std::vector<Value>& values) {
+    for (const Value& value : values) text += (text.empty() ? "" : ", ") + Json(value).text;
+    text = "[" + text + "]";
+  }
+  template <class Value>
+  Json(const std::map<std::string, Value>& members)
+      : Json(std::vector<std::pair<std::string, Json>>(members.begin(), members.end())) {}
+  /// Members in their order, `between` them a comma and what is to stand there.
+  Json(const std::vector<std::pair<std::string, Json>>& members, const std::string& between = " ") {
+    for (const auto& [name, value] : members)
+      text += (text.empty() ? "" : "," + between) + Json(name).text + ": " + value.text;
+    text = "{" + text + "}";
+  }
+};
+
 /// What a column of a table holds.
 struct Column {
   std::string name, unit, meaning;

@@ -45,7 +45,7 @@ Pose on_surface(const Vector3& point, const Vector3& normal) {
 
 /// The rings of one colour. It is also each corner's, or rviz would light them and leave their sides black.
 void add_rings(const std::vector<Contact>& contacts, FrictionState state, const PictureStyle& style,
-               MarkerLayer& layer) {
+               const MarkerLayer& layer) {
   Marker* rings = nullptr;
   for (const Contact& contact : contacts) {
     if (friction_state(contact) != state) continue;
@@ -57,7 +57,8 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, const 
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
 }
 
-void add_force(const Contact& contact, const PictureStyle& style, int id, ContactLayers layers) {
+void add_force(const Contact& contact, const PictureStyle& style, int id, const MarkerLayer& arrows,
+               const MarkerLayer& numbers) {
   const double newtons = contact.force.norm();
   if (newtons < style.least_force) return;
   const double length = kLongest * newtons / (newtons + kHalfOfLongest);
@@ -65,10 +66,10 @@ void add_force(const Contact& contact, const PictureStyle& style, int id, Contac
   const Vector3 direction = contact.force / newtons;
   const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
   const Vector3 begin = end - length * direction;
-  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, style.forces, id, layers.forces);
+  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, style.forces, id, arrows);
   char text[32];
   std::snprintf(text, sizeof text, "%.1f N", newtons);
-  layers.newtons
+  numbers
       .add(id, Marker::TEXT_VIEW_FACING, {Vector3(begin - kLetters * direction), Quaternion::Identity()},
            Vector3::Constant(kLetters), style.forces)
       .text = text;
@@ -83,7 +84,7 @@ std_msgs::ColorRGBA share_color(double share) {
   return color(mixed.x(), mixed.y(), mixed.z());
 }
 
-void add_shares(const Scene& scene, const FrameResult& result, MarkerLayer& layer) {
+void add_shares(const Scene& scene, const FrameResult& result, const MarkerLayer& layer) {
   Marker& balls =
       layer.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(2.0 * kPointSize), color(1.0, 1.0, 1.0));
   for (const Contact& contact : result.contacts) {
@@ -96,16 +97,18 @@ void add_shares(const Scene& scene, const FrameResult& result, MarkerLayer& laye
 }  // namespace
 
 void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
-                  ContactLayers layers) {
+                  const MarkerLayers& layers) {
   if (result.contacts.empty()) return;
-  Marker& points =
-      layers.points.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
+  const MarkerLayer dots = layers.layer("contacts"), friction = layers.layer("friction"),
+                    arrows = layers.layer("forces"), numbers = layers.layer("newtons"),
+                    shares = layers.layer("share");
+  Marker& points = dots.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
   for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
   for (int state = 0; state < kFrictionStates; ++state)
-    add_rings(result.contacts, static_cast<FrictionState>(state), style, layers.friction);
-  add_shares(scene, result, layers.share);
+    add_rings(result.contacts, static_cast<FrictionState>(state), style, friction);
+  add_shares(scene, result, shares);
   int id = 0;
-  for (const Contact& contact : result.contacts) add_force(contact, style, id++, layers);
+  for (const Contact& contact : result.contacts) add_force(contact, style, id++, arrows, numbers);
 }
 
 /// An impact that lasts for more than a frame is one.
@@ -125,7 +128,7 @@ void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& 
   }
 }
 
-void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, MarkerLayer& layer) {
+void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, const MarkerLayer& layer) {
   const auto age = [&](const Impact& impact) { return seconds_between(impact.begin, now); };
   impacts_.erase(
       std::remove_if(impacts_.begin(), impacts_.end(),
@@ -175,7 +178,7 @@ std::array<Vector3, 2> across(const Vector3& along) {
 
 }  // namespace
 
-Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id, MarkerLayer& layer) {
+Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id, const MarkerLayer& layer) {
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), paint);
   const double length = (arrow.tip - arrow.begin).norm(), neck = length - arrow.head_length;
   const Vector3 along = (arrow.tip - arrow.begin) / length;

@@ -51,10 +51,6 @@ Rgb ghost_colour(const Vector3& normal, const PictureStyle& style) {
   return light * Rgb(style.ghost.r, style.ghost.g, style.ghost.b);
 }
 
-void add_simulated(const RenderedHand& rendered, int first_id, MarkerLayer& layer) {
-  add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, layer);
-}
-
 HandMarkers::HandMarkers(const Skin& skin)
     : skin_(skin), outline_(Skin::outline()), paint_(skin_), wrist_(skin_) {
   for (const auto& triangle : wrist_.fading()) sides_[side_of_wrist(triangle)].push_back(triangle);
@@ -67,22 +63,34 @@ std::size_t HandMarkers::side_of_wrist(const SkinWrist::Triangle& triangle) cons
   return static_cast<std::size_t>(std::min(kWristSides - 1, static_cast<int>(kWristSides * turns)));
 }
 
-void HandMarkers::add(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
-                      const SimulationState& state, const PictureStyle& style, int first_id,
-                      HandLayers layers) {
+void HandMarkers::add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
+                      const MarkerLayers& layers) {
+  const MarkerLayer hand = layers.layer("hand"), ghost = layers.layer("ghost"),
+                    capsules = layers.layer("capsules");
+  int first_id = 0;
+  for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
+    const RenderedHand& rendered = result.rendered[i];
+    add_hand(rendered, result.tracked[i], result, state, style, first_id, hand, ghost);
+    add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, capsules);
+  }
+}
+
+void HandMarkers::add_hand(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
+                           const SimulationState& state, const PictureStyle& style, int first_id,
+                           const MarkerLayer& hand, const MarkerLayer& ghost) {
   const bool apart = farthest_apart(rendered.hand, tracked) > style.ghost_from;
   if (!skin_.pose(rendered.hand, surface_)) {
-    add_simulated(rendered, first_id, layers.hand);
-    if (apart) add_capsules(tracked, {}, capsule_ghost_style(), first_id, layers.ghost);
+    add_capsules(rendered.hand, rendered.touching, capsule_style(), first_id, hand);
+    if (apart) add_capsules(tracked, {}, capsule_ghost_style(), first_id, ghost);
     return;
   }
   if (!style.skins) return;
   press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
-  add_skin(rendered, first_id, layers.hand);
-  if (apart) add_ghost(rendered.hand, tracked, style, first_id, layers.ghost);
+  add_skin(rendered, first_id, hand);
+  if (apart) add_ghost(rendered.hand, tracked, style, first_id, ghost);
 }
 
-void HandMarkers::add_skin(const RenderedHand& rendered, int first_id, MarkerLayer& layer) {
+void HandMarkers::add_skin(const RenderedHand& rendered, int first_id, const MarkerLayer& layer) {
   paint_.paint(rendered, surface_, colours_);
   wrist_.add_lid(surface_, colours_);
   const Side side = rendered.hand.side;
@@ -98,7 +106,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, int first_id, MarkerLay
 
 /// Counter-clockwise from outside for either side.
 void HandMarkers::add_part(const Triangles& triangles, Side side, const Vector3& origin, int id,
-                           MarkerLayer& layer) {
+                           const MarkerLayer& layer) {
   Marker& marker = add_triangles(id, layer);
   marker.pose.position = to_message(origin);
   marker.points.resize(3 * triangles.size());
@@ -124,7 +132,7 @@ void HandMarkers::recycle(std::vector<Marker>& markers) {
   if (spare_.size() > kSpare) spare_.erase(spare_.begin(), spare_.end() - kSpare);
 }
 
-Marker& HandMarkers::add_triangles(int id, MarkerLayer& layer) {
+Marker& HandMarkers::add_triangles(int id, const MarkerLayer& layer) {
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
   if (spare_.empty()) return marker;
   marker.points.swap(spare_.back().points);
@@ -134,7 +142,7 @@ Marker& HandMarkers::add_triangles(int id, MarkerLayer& layer) {
 }
 
 void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
-                            MarkerLayer& layer) {
+                            const MarkerLayer& layer) {
   if (!outline_.pose(tracked, ghost_) || !outline_.pose(rendered, beneath_)) return;
   alphas_.resize(outline_.size());
   for (std::size_t v = 0; v < outline_.size(); ++v)
@@ -156,50 +164,12 @@ void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, const Pic
 
 namespace {
 
-constexpr int kIndex = 1, kLittle = 4;
-constexpr double kPlate = 1.02;  // of the metacarpals' radius: not level with their cylinders
-constexpr int kPalmId = 3 * kPhalanges;
-
-const Capsule& capsule(const Hand& hand, int finger, int bone) {
-  return hand.capsules[static_cast<std::size_t>(capsule_index(finger, bone))];
-}
-
 Pose along(const Vector3& start, const Vector3& end) {
   return {0.5 * (start + end), Quaternion::FromTwoVectors(Vector3::UnitZ(), end - start)};
 }
 
-/// Triangles of one marker.
-struct Surface {
-  Marker& marker;
-  double spread;  ///< of a plate about its middle; below 1, it lies inside a plate of 1
-
-  void quad(const std::array<Vector3, 4>& corners, const Vector3& outward) {
-    const Vector3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
-    const bool reversed = normal.dot(outward) < 0.0;
-    for (const int i : {0, 1, 2, 0, 2, 3}) {
-      marker.points.push_back(to_message(corners[static_cast<std::size_t>(reversed ? 3 - i : i)]));
-    }
-  }
-
-  /// A plate with its middle at the corners.
-  void plate(std::array<Vector3, 4> corners, const Vector3& normal, double half_thickness) {
-    const Vector3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    for (Vector3& corner : corners) corner = middle + spread * (corner - middle);
-    const Vector3 up = half_thickness * normal;
-    std::array<Vector3, 4> top = corners, bottom = corners;
-    for (std::size_t i = 0; i < 4; ++i) top[i] += up, bottom[i] -= up;
-    quad(top, normal);
-    quad(bottom, -normal);
-    for (std::size_t a = 0; a < 4; ++a) {
-      const std::size_t b = (a + 1) % 4;
-      if (corners[a] == corners[b]) continue;
-      quad({top[a], top[b], bottom[b], bottom[a]}, 0.5 * (corners[a] + corners[b]) - middle);
-    }
-  }
-};
-
 void add_bone(const Capsule& bone, bool with_start, const HandStyle& style, const std_msgs::ColorRGBA& skin,
-              int id, MarkerLayer& layer) {
+              int id, const MarkerLayer& layer) {
   const double diameter = 2.0 * style.thickness * bone.radius;
   const Vector3 ball = Vector3::Constant(diameter);
   layer.add(id, Marker::SPHERE, {bone.end, Quaternion::Identity()}, ball, skin);
@@ -215,67 +185,16 @@ bool follows_another(const Hand& hand, int index) {
   return (hand.capsules[i].start - hand.capsules[i - 1].end).norm() < 1e-6;
 }
 
-/// The plates of a palm: between the metacarpals, the web of the thumb, and the wrist.
-class Palm {
- public:
-  Palm(const Hand& hand, double thickness, Marker& marker)
-      : hand_(hand),
-        thickness_(thickness),
-        surface_{marker, thickness},
-        normal_(hand.palm.orientation * Vector3::UnitZ()) {}
-
-  void between_metacarpals() {
-    for (int finger = kIndex; finger < kLittle; ++finger) {
-      if (!has(finger) || !has(finger + 1)) continue;
-      const Capsule &a = capsule(hand_, finger, 0), &b = capsule(hand_, finger + 1, 0);
-      surface_.plate({a.start, a.end, b.end, b.start}, normal_, half(a, b));
-      surface_.plate({hand_.wrist, a.start, b.start, hand_.wrist}, normal_, half(a, b));
-    }
-  }
-
-  void thumb() {
-    if (!hand_.has(capsule_index(0, 1)) || !has(kIndex)) return;
-    const Capsule &thumb = capsule(hand_, 0, 1), &index = capsule(hand_, kIndex, 0);
-    Vector3 across = (thumb.end - thumb.start).cross(index.end - index.start);
-    if (across.dot(normal_) < 0.0) across = -across;
-    const Vector3 normal = across.norm() > 1e-9 ? across.normalized() : normal_;
-    surface_.plate({thumb.start, thumb.axis_point(0.9), index.axis_point(0.75), index.start}, normal,
-                   0.8 * half(thumb, index));
-    surface_.plate({hand_.wrist, thumb.start, index.start, hand_.wrist}, normal_, half(thumb, index));
-  }
-
- private:
-  bool has(int finger) const { return hand_.has(capsule_index(finger, 0)); }
-  double half(const Capsule& a, const Capsule& b) const {
-    return kPlate * thickness_ * std::min(a.radius, b.radius);
-  }
-
-  const Hand& hand_;
-  double thickness_;
-  Surface surface_;
-  Vector3 normal_;
-};
-
-void add_palm(const Hand& hand, const HandStyle& style, const std_msgs::ColorRGBA& skin, int id,
-              MarkerLayer& layer) {
-  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), skin);
-  Palm palm(hand, style.thickness, marker);
-  palm.between_metacarpals();
-  palm.thumb();
-  if (marker.points.empty()) marker.action = Marker::DELETE;
-}
-
 }  // namespace
 
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
-                  MarkerLayer& layer) {
-  for (int i = 0; i < kPhalanges; ++i) {
+                  const MarkerLayer& layer) {
+  for (int i = 0; i < kCapsules; ++i) {
     if (!hand.has(i)) continue;
     const auto index = static_cast<std::size_t>(i);
     add_bone(hand.capsules[index], !follows_another(hand, i), style,
              touching[index] ? style.touching : style.skin, first_id + 3 * i, layer);
   }
-  add_palm(hand, style, touching[kPalm] ? style.touching : style.skin, first_id + kPalmId, layer);
 }
 
 }  // namespace mrhi

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "../text/text.h"
-#include "bounded_message.h"
+#include "tracker_reader.h"
 
 namespace mrhi {
 namespace {

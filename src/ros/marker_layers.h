@@ -19,6 +19,9 @@
 
 namespace mrhi {
 
+constexpr double kPassing = 0.5;  ///< lifetime of hands and contacts, which go if the node does [s]
+constexpr double kForEver = 0.0;
+
 /// Adds markers of one layer to an array.
 class MarkerLayer {
  public:
@@ -28,15 +31,23 @@ class MarkerLayer {
 
   /// Valid until the next call.
   visualization_msgs::Marker& add(int id, int type, const Pose& pose, const Vector3& scale,
-                                  const std_msgs::ColorRGBA& color);
-  /// The one that was added last.
-  void take_back() { array_.markers.pop_back(); }
+                                  const std_msgs::ColorRGBA& color) const;
 
  private:
   visualization_msgs::MarkerArray& array_;
   std_msgs::Header header_;
   std::string name_;
   double lifetime_;  ///< [s], 0: for ever
+};
+
+/// The layers of an array, by their names. A layer is what adds it, and the call of that in Markers::update.
+struct MarkerLayers {
+  visualization_msgs::MarkerArray& array;
+  const std_msgs::Header& header;
+
+  MarkerLayer layer(const char* name, double lifetime = kPassing) const {
+    return {array, header, name, lifetime};
+  }
 };
 
 constexpr int kIdsPerHand = 100;
@@ -47,23 +58,14 @@ struct HandStyle {
   double thickness;  ///< share of the phalanges' radii
 };
 
-/// Spheres at the joints, cylinders along the bones, a palm between the metacarpals. Ids from `first_id`,
-/// less than kIdsPerHand.
+/// Spheres at the joints, cylinders along the bones and the palm, as the simulation has them. Ids from
+/// `first_id`, less than kIdsPerHand.
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
-                  MarkerLayer& layer);
+                  const MarkerLayer& layer);
 
 /// A shape as a marker, a box in the light that hands are in; valid until the layer's next call.
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
-                                      int id, MarkerLayer& layer);
-
-/// Where hands are drawn.
-struct HandLayers {
-  MarkerLayer& hand;   ///< the rendered hand's skin, and apart from it the wrist's sides
-  MarkerLayer& ghost;  ///< the tracked hand's skin where it is elsewhere
-};
-
-/// The rendered hand as the simulation has it. Ids from `first_id`, less than kIdsPerHand.
-void add_simulated(const RenderedHand& rendered, int first_id, MarkerLayer& layer);
+                                      int id, const MarkerLayer& layer);
 
 /// Farthest that the ends of two hands' phalanges are apart [m].
 double farthest_apart(const Hand& a, const Hand& b);
@@ -76,22 +78,28 @@ Rgb ghost_colour(const Vector3& normal, const PictureStyle& style);
 class HandMarkers {
  public:
   explicit HandMarkers(const Skin& skin);  ///< keeps a reference
-  /// Ids from `first_id`, less than kIdsPerHand in each layer. Without `style.skins`, only capsules.
-  void add(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
-           const SimulationState& state, const PictureStyle& style, int first_id, HandLayers layers);
+  /// `hand`: skins, and apart from them their wrists' sides; `ghost`: tracked hands' skins where they are
+  /// elsewhere; `capsules`: rendered hands as the simulation has them. kIdsPerHand for each hand. Without
+  /// `style.skins` the first two have only hands that have none.
+  void add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
+           const MarkerLayers& layers);
   /// Takes the memory of markers that are done with, for the next ones.
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
+  void add_hand(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
+                const SimulationState& state, const PictureStyle& style, int first_id,
+                const MarkerLayer& hand, const MarkerLayer& ghost);
   /// What is translucent hides nothing, and is drawn from the farthest marker's place to the nearest: in one
   /// marker the wrist's far side would stand before its near one.
   static constexpr int kWristSides = 6;
   using Triangles = std::vector<SkinWrist::Triangle>;
-  visualization_msgs::Marker& add_triangles(int id, MarkerLayer& layer);
-  void add_part(const Triangles& triangles, Side side, const Vector3& origin, int id, MarkerLayer& layer);
-  void add_skin(const RenderedHand& rendered, int first_id, MarkerLayer& layer);
+  visualization_msgs::Marker& add_triangles(int id, const MarkerLayer& layer);
+  void add_part(const Triangles& triangles, Side side, const Vector3& origin, int id,
+                const MarkerLayer& layer);
+  void add_skin(const RenderedHand& rendered, int first_id, const MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
-                 MarkerLayer& layer);
+                 const MarkerLayer& layer);
   /// On which side of the wrist, as seen along the forearm.
   std::size_t side_of_wrist(const SkinWrist::Triangle& triangle) const;
 
@@ -117,18 +125,14 @@ struct Arrow {
 
 /// Lit as by lit(). Valid until the layer's next call.
 visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id,
-                                      MarkerLayer& layer);
+                                      const MarkerLayer& layer);
 
-/// Where a body is touched, and by what force.
-struct ContactLayers {
-  MarkerLayer& points;    ///< a dot at each contact
-  MarkerLayer& friction;  ///< a ring on the surface around it: green where it sticks, yellow where it slips
-  MarkerLayer& forces;    ///< an arrow behind the finger that presses; its length grows with the force
-  MarkerLayer& newtons;   ///< the force in numbers, at the arrow's end
-  MarkerLayer& share;  ///< a ball: how much of what friction bears is used, from blue (none) to orange (all)
-};
+/// Where a body is touched, and by what force. `contacts`: a dot at each; `friction`: a ring on the surface
+/// around it, green where it sticks, yellow where it slips; `forces`: an arrow behind the finger that
+/// presses, whose length grows with the force; `newtons`: the force in numbers, at the arrow's end; `share`:
+/// a ball, how much of what friction bears is used, from blue (none) to orange (all).
 void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
-                  ContactLayers layers);
+                  const MarkerLayers& layers);
 
 /// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
 /// z, starting at x.
@@ -150,12 +154,12 @@ struct TargetMark {
 
 /// The object's shape there, translucent: blue, and green once it is reached; around it a level ring that
 /// fills with the progress. Ids from `first_id`, one more than the body has shapes to be seen.
-void add_target(const TargetMark& target, int first_id, MarkerLayer& layer);
+void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer);
 double ring_radius(const Body& body);  ///< inner, of a target's ring [m]
 
 /// The object that is to be taken: a translucent yellow shell around it, and an arrow from above. Ids from
 /// `first_id`, one more than the body has shapes to be seen.
-void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer& layer);
+void add_highlight(const Body& body, const Pose& pose, int first_id, const MarkerLayer& layer);
 
 /// Height of what shadows fall on: the highest level top of a wide fixture under all that is free; else
 /// z = 0.1 m, where rviz has its grid, or lower where something is free there.
@@ -167,7 +171,7 @@ class ImpactMarkers {
   static constexpr double kSeen = 0.15;  ///< [s]
   /// Impacts of a frame, at its stamp.
   void note(const std::vector<Contact>& contacts, const ros::Time& stamp);
-  void add(const ros::Time& now, const PictureStyle& style, MarkerLayer& layer);
+  void add(const ros::Time& now, const PictureStyle& style, const MarkerLayer& layer);
 
  private:
   struct Impact {
@@ -186,7 +190,7 @@ class ShadowMarkers {
   /// Keeps a reference. `ground`: height of what they fall on [m].
   ShadowMarkers(const Scene& scene, double ground) : scene_(scene), ground_(ground) {}
   /// Those of what has moved since they were last added, or all; those of hands that are gone are deleted.
-  void add(const SimulationState& state, const FrameResult& result, bool all, MarkerLayer& layer);
+  void add(const SimulationState& state, const FrameResult& result, bool all, const MarkerLayer& layer);
 
  private:
   struct Cast {
@@ -194,7 +198,8 @@ class ShadowMarkers {
     visualization_msgs::Marker marker;
   };
   template <typename Outlines>
-  void add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all, MarkerLayer& layer);
+  void add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all,
+               const MarkerLayer& layer);
 
   const Scene& scene_;
   const double ground_;

@@ -18,9 +18,6 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kPassing = 0.5;  // hands and contacts go if the node does; the rest is sent again [s]
-constexpr double kForEver = 0.0;
-
 /// Under all that is there at the start, where no hand comes between.
 Vector3 below(const Scene& scene) {
   constexpr double kClearance = 0.10;  // [m]
@@ -78,7 +75,7 @@ bool same(const Pose& a, const Pose& b) {
 
 /// A box in the light that hands are in: rviz's leaves the sides that it does not reach almost black.
 Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                MarkerLayer& layer) {
+                const MarkerLayer& layer) {
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, 2.0 * box.half_extents, paint);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-0.5, 0.5}) {
@@ -98,7 +95,7 @@ Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& pai
 /// is one point in all of them, so it serves for what is round.
 template <typename Round>
 Marker& add_round(const Round& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                  MarkerLayer& layer) {
+                  const MarkerLayer& layer) {
   constexpr int kAround = 24, kRows = 13;  // odd: no row of directions lies across z
   constexpr double kPi = 3.141592653589793;
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, Vector3::Ones(), paint);
@@ -124,7 +121,7 @@ struct AddShape {
   const Pose& pose;
   const std_msgs::ColorRGBA& paint;
   int id;
-  MarkerLayer& layer;
+  const MarkerLayer& layer;
 
   Marker& operator()(const Sphere& s) const { return add(Marker::SPHERE, Vector3::Constant(2.0 * s.radius)); }
   Marker& operator()(const Box& b) const { return add_box(b, pose, paint, id, layer); }
@@ -176,7 +173,7 @@ std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint)
 }
 
 Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scale,
-                         const std_msgs::ColorRGBA& paint) {
+                         const std_msgs::ColorRGBA& paint) const {
   array_.markers.emplace_back();
   Marker& marker = array_.markers.back();
   marker.header = header_;
@@ -201,22 +198,21 @@ std::string caption(const std::string& contact_model, const Vector3& gravity) {
 }
 
 Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                  MarkerLayer& layer) {
+                  const MarkerLayer& layer) {
   return std::visit(AddShape{pose, paint, id, layer}, shape);
 }
 
-/// Where bodies are drawn.
-struct BodyLayers {
-  MarkerLayer &objects, &fixtures;
-};
-
-/// Draws the bodies of a scene. One into which a tracked finger has gone lets its ghost be seen.
+/// Draws the bodies of a scene, in layers `objects` and `fixtures`. One into which a tracked finger has gone
+/// lets its ghost be seen.
 class BodyMarkers {
  public:
   explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
 
   /// Bodies that look other than when they were last added, or all.
-  void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all, BodyLayers layers) {
+  void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
+           const MarkerLayers& layers) {
+    const MarkerLayer objects = layers.layer("objects", kForEver),
+                      fixtures = layers.layer("fixtures", kForEver);
     now_.resize(scene_.bodies.size());
     for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
     for (const Contact& contact : contacts) {
@@ -229,7 +225,7 @@ class BodyMarkers {
       const Body& body = scene_.bodies[i];
       int& id = body.fixed ? fixture_id : object_id;
       const bool changed = all || !same(now_[i].pose, added_[i].pose) || now_[i].opacity != added_[i].opacity;
-      if (changed) add_body(body, now_[i], id, body.fixed ? layers.fixtures : layers.objects);
+      if (changed) add_body(body, now_[i], id, body.fixed ? fixtures : objects);
       id += static_cast<int>(body.visuals.empty() ? body.shapes.size() : body.visuals.size());
     }
     added_.swap(now_);
@@ -240,7 +236,7 @@ class BodyMarkers {
     Pose pose;
     double opacity = 1.0;
   };
-  void add_body(const Body& body, const Look& look, int first_id, MarkerLayer& layer) const {
+  void add_body(const Body& body, const Look& look, int first_id, const MarkerLayer& layer) const {
     int id = first_id;
     for (const Visual& visual : body.visuals) {
       const auto& c = visual.rgba;
@@ -293,27 +289,17 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   array.markers.clear();
   const bool all = all_due(header.stamp);
   if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
-  MarkerLayer hands(array, header, "hand", kPassing), ghosts(array, header, "ghost", kPassing),
-      capsules(array, header, "capsules", kPassing);
-  MarkerLayer objects(array, header, "objects", kForEver), fixtures(array, header, "fixtures", kForEver);
-  MarkerLayer points(array, header, "contacts", kPassing), friction(array, header, "friction", kPassing),
-      forces(array, header, "forces", kPassing), newtons(array, header, "newtons", kPassing),
-      share(array, header, "share", kPassing), impacts(array, header, "impacts", kPassing);
-  MarkerLayer shadows(array, header, "shadows", kForEver), texts(array, header, "text", kForEver);
-  int first_id = 0;
-  for (std::size_t i = 0; i < result.rendered.size(); ++i, first_id += kIdsPerHand) {
-    hands_->add(result.rendered[i], result.tracked[i], result, state, style_, first_id, {hands, ghosts});
-    add_simulated(result.rendered[i], first_id, capsules);
-  }
-  add_contacts(scene_, result, style_, {points, friction, forces, newtons, share});
-  impacts_->add(header.stamp, style_, impacts);
+  const MarkerLayers layers{array, header};
+  hands_->add(result, state, style_, layers);
+  add_contacts(scene_, result, style_, layers);
+  impacts_->add(header.stamp, style_, layers.layer("impacts"));
   delete_gone(header, array);
-  bodies_->add(state, result.contacts, all, {objects, fixtures});
-  shadows_->add(state, result, all, shadows);
+  bodies_->add(state, result.contacts, all, layers);
+  shadows_->add(state, result, all, layers.layer("shadows", kForEver));
   std::string text = held_by_hands(scene_, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
   if (!all && text == text_) return;
   text_ = std::move(text);
-  texts
+  layers.layer("text", kForEver)
       .add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
            color(0.9, 0.9, 0.9))
       .text = text_;

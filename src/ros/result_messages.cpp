@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "../scene/shape_kinds.h"
 #include "../simulation/contact_phase.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -100,67 +101,54 @@ void add_finger(const Hand& hand, int finger, geometry_msgs::PoseArray& message)
 using mr_hand_interaction::SceneBody;
 using mr_hand_interaction::SceneShape;
 
-struct WriteShape {
-  SceneShape& message;
-
-  void operator()(const Sphere& s) const { set(SceneShape::SPHERE, {s.radius}); }
-  void operator()(const Box& b) const {
-    const Vector3 size = 2.0 * b.half_extents;
-    set(SceneShape::BOX, {size.x(), size.y(), size.z()});
-  }
-  void operator()(const Cylinder& c) const { set(SceneShape::CYLINDER, {c.radius, 2.0 * c.half_length}); }
-  void operator()(const Pill& p) const { set(SceneShape::CAPSULE, {p.radius, 2.0 * p.half_length}); }
-  void operator()(const Mesh& m) const {
-    set(SceneShape::MESH, {});
-    message.mesh = m.uri;
-    message.scale = vector_message(m.scale);
-    if (!m.triangles) return;
-    for (const Vector3& vertex : m.triangles->vertices) {
-      geometry_msgs::Point32 point;
-      point.x = static_cast<float>(vertex.x());
-      point.y = static_cast<float>(vertex.y());
-      point.z = static_cast<float>(vertex.z());
-      message.vertices.push_back(point);
-    }
-    for (const auto& triangle : m.triangles->triangles)
-      message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
-  }
-
- private:
-  void set(std::uint8_t type, std::vector<double> size) const {
-    message.type = type;
-    message.size = std::move(size);
-  }
-};
-
 SceneShape shape_message(const Shape& shape, const Pose& pose) {
   SceneShape message;
-  std::visit(WriteShape{message}, shape);
   message.pose = to_message(pose);
+  for (std::size_t type = 0; type < kShapeTypes.size(); ++type) {
+    if (const auto size = find_shape_kind(kShapeTypes[type])->sizes_of(shape)) {
+      message.type = static_cast<std::uint8_t>(type);
+      message.size = *size;
+    }
+  }
+  const Mesh* const mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr) return message;
+  message.type = SceneShape::MESH;
+  message.mesh = mesh->uri;
+  message.scale = vector_message(mesh->scale);
+  if (!mesh->triangles) return message;
+  for (const Vector3& vertex : mesh->triangles->vertices) {
+    geometry_msgs::Point32 point;
+    point.x = static_cast<float>(vertex.x());
+    point.y = static_cast<float>(vertex.y());
+    point.z = static_cast<float>(vertex.z());
+    message.vertices.push_back(point);
+  }
+  for (const auto& triangle : mesh->triangles->triangles)
+    message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   return message;
 }
 
 }  // namespace
 
-mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header) {
+mr_hand_interaction::HandFrame tracked_message(const Outcome& outcome, const std_msgs::Header& header) {
   mr_hand_interaction::HandFrame message;
   message.header = header;
-  for (const Hand& hand : result.tracked) message.hands.push_back(to_message(hand));
+  for (const Hand& hand : outcome.result.tracked) message.hands.push_back(to_message(hand));
   return message;
 }
 
-mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header) {
+mr_hand_interaction::HandFrame rendered_message(const Outcome& outcome, const std_msgs::Header& header) {
   mr_hand_interaction::HandFrame message;
   message.header = header;
-  for (const RenderedHand& rendered : result.rendered) {
+  for (const RenderedHand& rendered : outcome.result.rendered) {
     message.hands.push_back(to_message(rendered.hand, rendered.touching));
   }
   return message;
 }
 
-mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const FrameResult& result,
-                                                      const SimulationState& state,
+mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome,
                                                       const std_msgs::Header& header) {
+  const auto& [scene, result, state] = outcome;
   mr_hand_interaction::ObjectStateArray message;
   message.header = header;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -181,9 +169,8 @@ mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const 
   return message;
 }
 
-mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
-                                                   const SimulationState& state,
-                                                   const std_msgs::Header& header) {
+mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Header& header) {
+  const auto& [scene, result, state] = outcome;
   mr_hand_interaction::ContactArray message;
   message.header = header;
   for (const Contact& contact : result.contacts) {
@@ -237,8 +224,8 @@ std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scen
   return transforms;
 }
 
-sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
-                                             const std_msgs::Header& header) {
+sensor_msgs::JointState joint_states_message(const Outcome& outcome, const std_msgs::Header& header) {
+  const auto& [scene, result, state] = outcome;
   sensor_msgs::JointState message;
   message.header = header;
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {

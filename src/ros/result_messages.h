@@ -14,6 +14,7 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Header.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,20 +23,22 @@
 
 namespace mrhi {
 
+/// What messages tell of: a scene, what came of a frame, and where everything is then.
+struct Outcome {
+  const Scene& scene;
+  const FrameResult& result;
+  const SimulationState& state;
+};
+
 /// What has happened, as messages in world (header.frame_id). Tracked hands are those after the filter.
-mr_hand_interaction::HandFrame tracked_message(const FrameResult& result, const std_msgs::Header& header);
-mr_hand_interaction::HandFrame rendered_message(const FrameResult& result, const std_msgs::Header& header);
-mr_hand_interaction::ObjectStateArray objects_message(const Scene& scene, const FrameResult& result,
-                                                      const SimulationState& state,
-                                                      const std_msgs::Header& header);
-mr_hand_interaction::ContactArray contacts_message(const Scene& scene, const FrameResult& result,
-                                                   const SimulationState& state,
-                                                   const std_msgs::Header& header);
+mr_hand_interaction::HandFrame tracked_message(const Outcome& outcome, const std_msgs::Header& header);
+mr_hand_interaction::HandFrame rendered_message(const Outcome& outcome, const std_msgs::Header& header);
+mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome, const std_msgs::Header& header);
+mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Header& header);
+/// The scene's joints, in its order: place, velocity, and what the joint's own forces gave [rad or m].
+sensor_msgs::JointState joint_states_message(const Outcome& outcome, const std_msgs::Header& header);
 mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
                                                     const Event& event, const std_msgs::Header& header);
-/// The scene's joints, in its order: place, velocity, and what the joint's own forces gave [rad or m].
-sensor_msgs::JointState joint_states_message(const Scene& scene, const SimulationState& state,
-                                             const std_msgs::Header& header);
 /// The frame of each object's URDF link, named after the object; fixtures too.
 std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
                                                                const SimulationState& state,
@@ -61,6 +64,10 @@ geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result
 
 /// The names of what is held, in the scene's order, with commas between them.
 std::string held_objects(const Scene& scene, const SimulationState& state);
+
+/// Kinds of shapes by the number that SceneShape.msg gives them; behind them come meshes.
+constexpr std::array<const char*, mr_hand_interaction::SceneShape::MESH> kShapeTypes{
+    {"sphere", "box", "cylinder", "capsule"}};
 
 ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message);
 ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message);

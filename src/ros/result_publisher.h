@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -87,8 +88,8 @@ class HapticsPublisher {
       steps_.push_back(boost::make_shared<mr_hand_interaction::HapticsArray>(
           haptics_message(scene, state, contacts, header)));
     if (!scene.joints.empty() && joint_publisher_.getNumSubscribers() > 0)
-      joint_steps_.push_back(
-          boost::make_shared<sensor_msgs::JointState>(joint_states_message(scene, state, header)));
+      joint_steps_.push_back(boost::make_shared<sensor_msgs::JointState>(
+          joint_states_message({scene, simulation.result(), state}, header)));
   }
 
   HapticsRate rate_;
@@ -188,7 +189,8 @@ class StandardOutputs {
   std::optional<std::string> last_held_;
 };
 
-/// Publishes what comes of a simulation, and only where somebody listens.
+/// Publishes what comes of a simulation, and only where somebody listens. A further topic takes its .msg file
+/// and its add() in the constructor.
 class ResultPublisher {
  public:
   ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
@@ -196,11 +198,6 @@ class ResultPublisher {
       : fixed_frame_(fixed_frame),
         clock_(clock),
         haptics_(node, haptics),
-        rendered_hands_(node.advertise<mr_hand_interaction::HandFrame>("rendered_hands", kQueue)),
-        tracked_hands_(node.advertise<mr_hand_interaction::HandFrame>("tracked_hands", kQueue)),
-        objects_(node.advertise<mr_hand_interaction::ObjectStateArray>("objects", kQueue)),
-        joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", kQueue)),
-        contacts_(node.advertise<mr_hand_interaction::ContactArray>("contacts", kQueue)),
         events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
         marker_publisher_(
             node.advertise<visualization_msgs::MarkerArray>("markers", kQueue,
@@ -208,7 +205,17 @@ class ResultPublisher {
                                                               if (markers_) markers_->send_all();
                                                             })),
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
-        picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {}
+        picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
+    add<mr_hand_interaction::ContactArray>(node, "contacts", Moment::response, Shows::hands,
+                                           contacts_message);
+    add<mr_hand_interaction::ObjectStateArray>(node, "objects", Moment::response, Shows::objects,
+                                               objects_message);
+    add<sensor_msgs::JointState>(node, "joint_states", Moment::response, Shows::joints, joint_states_message);
+    add<mr_hand_interaction::HandFrame>(node, "rendered_hands", Moment::picture, Shows::hands,
+                                        rendered_message);
+    add<mr_hand_interaction::HandFrame>(node, "tracked_hands", Moment::picture, Shows::hands,
+                                        tracked_message);
+  }
 
   /// From now on the standard messages of StandardOutputs too.
   void add_standard_outputs(const ros::NodeHandle& node) { standard_.emplace(node); }
@@ -230,15 +237,15 @@ class ResultPublisher {
     const std_msgs::Header when = header(result);
     publish_scene_description();
     haptics_.publish(*simulation_, result, when);
-    publish_contacts(result, when);
-    publish_objects(when);
+    publish_outputs(Moment::response, result, when);
     if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
   }
 
   /// What eyes wait for: hands, then transforms, events and, at most kMarkerRate times a second, markers.
   void publish_picture(const FrameResult& result) {
     const std_msgs::Header when = header(result);
-    publish_hands(result, when);
+    publish_outputs(Moment::picture, result, when);
+    shown_ = ros::WallTime::now();
     publish_transforms(when);
     if (standard_) standard_->publish_hands(result, when);
     publish_events(result.events);
@@ -254,11 +261,11 @@ class ResultPublisher {
   /// What may be shown again at any time: hands and contacts as they were, markers, objects, transforms.
   void publish_scene(const FrameResult& result, const ros::Time& stamp) {
     publish_scene_description();
-    if (!result.rendered.empty()) {
-      publish_contacts(result, header(result));
-      publish_hands(result, header(result));
+    for (const Output& output : outputs_) {
+      const bool of_hands = output.shows == Shows::hands;
+      if (!of_hands || !result.rendered.empty())
+        output.publish(result, of_hands ? header(result) : header(stamp));
     }
-    publish_objects(header(stamp));
     publish_transforms(header(stamp));
     if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
     publish_markers(result, header(stamp));
@@ -280,15 +287,37 @@ class ResultPublisher {
  private:
   static constexpr int kQueue = 10, kEventQueue = 100;
 
+  /// What a topic is for: robots and gloves first, then eyes.
+  enum class Moment { response, picture };
+  /// Hands are shown again as they were, and joints only where the scene has any.
+  enum class Shows { hands, objects, joints };
+  struct Output {
+    Moment moment;
+    Shows shows;
+    std::function<void(const FrameResult& result, const std_msgs::Header& header)> publish;
+  };
+
+  template <class Message>
+  void add(ros::NodeHandle& node, const char* topic, Moment moment, Shows shows,
+           Message (*make)(const Outcome&, const std_msgs::Header&)) {
+    const ros::Publisher publisher = node.advertise<Message>(topic, kQueue);
+    outputs_.push_back({moment, shows, [=](const FrameResult& result, const std_msgs::Header& header) {
+                          const Scene& scene = simulation_->scene();
+                          if (publisher.getNumSubscribers() == 0) return;
+                          if (shows == Shows::joints && scene.joints.empty()) return;
+                          const Outcome outcome{scene, result, simulation_->state()};
+                          publish_shared(publisher, [&] { return make(outcome, header); });
+                        }});
+  }
+  void publish_outputs(Moment moment, const FrameResult& result, const std_msgs::Header& header) const {
+    for (const Output& output : outputs_)
+      if (output.moment == moment) output.publish(result, header);
+  }
+
   /// Makes a message, shared, so that a subscriber in the same process gets it without a copy.
   template <class Make>
   static void publish_shared(const ros::Publisher& publisher, const Make& make) {
     publisher.publish(boost::make_shared<decltype(make())>(make()));
-  }
-  /// Only where somebody listens.
-  template <class Make>
-  static void publish_to_listeners(const ros::Publisher& publisher, const Make& make) {
-    if (publisher.getNumSubscribers() > 0) publish_shared(publisher, make);
   }
 
   std_msgs::Header header(const ros::Time& stamp) const {
@@ -310,12 +339,6 @@ class ResultPublisher {
                    [&] { return scene_message(simulation_->scene(), simulation_->configuration(), when); });
   }
 
-  void publish_hands(const FrameResult& result, const std_msgs::Header& header) {
-    publish_to_listeners(rendered_hands_, [&] { return rendered_message(result, header); });
-    publish_to_listeners(tracked_hands_, [&] { return tracked_message(result, header); });
-    shown_ = ros::WallTime::now();
-  }
-
   void publish_markers(const FrameResult& result, const std_msgs::Header& header) {
     if (marker_publisher_.getNumSubscribers() == 0) return;
     markers_->note(result, header.stamp);
@@ -326,21 +349,6 @@ class ResultPublisher {
     if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
     markers_->update(result, simulation_->state(), header, *picture_);
     marker_publisher_.publish(picture_);
-  }
-
-  void publish_contacts(const FrameResult& result, const std_msgs::Header& header) {
-    publish_to_listeners(contacts_, [&] {
-      return contacts_message(simulation_->scene(), result, simulation_->state(), header);
-    });
-  }
-
-  void publish_objects(const std_msgs::Header& header) {
-    const Scene& scene = simulation_->scene();
-    const SimulationState& state = simulation_->state();
-    publish_to_listeners(objects_,
-                         [&] { return objects_message(scene, simulation_->result(), state, header); });
-    if (!scene.joints.empty())
-      publish_to_listeners(joint_states_, [&] { return joint_states_message(scene, state, header); });
   }
 
   void publish_transforms(const std_msgs::Header& header) {
@@ -355,8 +363,8 @@ class ResultPublisher {
   std::unique_ptr<Markers> markers_;
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
-  ros::Publisher rendered_hands_, tracked_hands_, objects_, joint_states_, contacts_, events_,
-      marker_publisher_, scene_publisher_;
+  std::vector<Output> outputs_;
+  ros::Publisher events_, marker_publisher_, scene_publisher_;
   bool scene_changed_ = false;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   tf2_ros::TransformBroadcaster transforms_;

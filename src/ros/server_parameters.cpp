@@ -1,6 +1,6 @@
 #include "mr_hand_interaction/ros/server_parameters.h"
 
-#include <array>
+#include <optional>
 
 #include "../text/text.h"
 #include "../text/yaml.h"
@@ -14,15 +14,8 @@ const std::string kTwists = "object_twist/";
 
 std::optional<Twist> twist_in(const std::string& name, const std::string& text) {
   return read_yaml<ParameterError>("parameter '" + name + "'", [&]() -> std::optional<Twist> {
-    const YAML::Node node = load_yaml("parameter '" + name + "'", text);
-    std::array<double, 6> v{};
-    if (!node.IsSequence() || node.size() != v.size()) return std::nullopt;
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const std::optional<double> number = yaml_number(node[i]);
-      if (!number) return std::nullopt;
-      v[i] = *number;
-    }
-    return Twist{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    const auto v = yaml_numbers(load_yaml("parameter '" + name + "'", text), 6);
+    return v ? std::make_optional(Twist{Vector3(v->data()), Vector3(v->data() + 3)}) : std::nullopt;
   });
 }
 

@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "../text/text.h"
-#include "bounded_message.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
 namespace mrhi {

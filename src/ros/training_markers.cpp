@@ -16,7 +16,6 @@ namespace {
 using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
-constexpr double kPassing = 0.5;                       // [s]
 constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
 constexpr double kTimer = 0.02;                        // of the timer's
 constexpr double kMark = 0.014;                        // of a place's number [m]
@@ -44,7 +43,8 @@ Pose upright(const Vector3& position) {
   return {position, Quaternion::Identity()};
 }
 
-void write(MarkerLayer& layer, int id, const Vector3& place, const std::string& text, double height = kText) {
+void write(const MarkerLayer& layer, int id, const Vector3& place, const std::string& text,
+           double height = kText) {
   if (text.empty()) return;
   layer.add(id, Marker::TEXT_VIEW_FACING, upright(place), Vector3::Constant(height), white()).text = text;
 }
@@ -64,7 +64,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// The heading, below it the text's lines, and below them how far it is or what came of the last.
-void write_instruction(MarkerLayer& layer, MarkerLayer& below, const std::string& heading,
+void write_instruction(const MarkerLayer& layer, const MarkerLayer& below, const std::string& heading,
                        const std::string& text, const std::string& result) {
   Vector3 place = kHeadingPlace;
   int id = 0;
@@ -79,7 +79,7 @@ Pose pose_at(const Goal& goal, const Session& session) {
 }
 
 /// Where the object is to be for a goal, if it is to be somewhere.
-void add_goal(const Session& session, const Body& body, const Status& status, MarkerLayer& layer) {
+void add_goal(const Session& session, const Body& body, const Status& status, const MarkerLayer& layer) {
   const Goal& goal = session.task().goals[session.trial().goal()];
   if (goal.kind == GoalKind::nudge_into) {
     layer.add(0, Marker::CUBE, upright(goal.position), goal.size, status.inside ? lit() : waiting());
@@ -93,7 +93,8 @@ Vector3 mark_place(const Goal& goal, const Body& body) {
   return goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
 }
 
-void add_places(const Session& session, const Body& body, MarkerLayer& places, MarkerLayer& path) {
+void add_places(const Session& session, const Body& body, const MarkerLayer& places,
+                const MarkerLayer& path) {
   const Task& task = session.task();
   const bool begun = session.phase() != SessionPhase::ready;
   std::vector<Vector3> way{session.object().start.position};
@@ -199,7 +200,7 @@ std_msgs::ColorRGBA to_take(double alpha) {
 
 /// Returns the id that follows.
 int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& paint, double size, int id,
-             MarkerLayer& layer) {
+             const MarkerLayer& layer) {
   const auto add = [&](const Shape& shape, const Pose& place) {
     Marker& marker = add_shape(shape, pose * place, paint, id++, layer);
     for (double* const scale : {&marker.scale.x, &marker.scale.y, &marker.scale.z}) *scale *= size;
@@ -213,7 +214,7 @@ int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& pain
 
 }  // namespace
 
-void add_target(const TargetMark& target, int first_id, MarkerLayer& layer) {
+void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer) {
   const double form = target.waits ? 0.12 : 0.35, filled = target.waits ? 0.25 : 1.0;
   const auto paint = [&](double alpha) {
     return target.reached ? color(0.000, 0.620, 0.451, alpha) : color(0.337, 0.706, 0.914, alpha);
@@ -232,7 +233,7 @@ double ring_radius(const Body& body) {
   return kRingRoom * body.bounding_radius;
 }
 
-void add_highlight(const Body& body, const Pose& pose, int first_id, MarkerLayer& layer) {
+void add_highlight(const Body& body, const Pose& pose, int first_id, const MarkerLayer& layer) {
   const int id = add_form(body, pose, to_take(0.45), kShell, first_id, layer);
   const Vector3 tip = pose.position + (body.bounding_radius + kGap) * Vector3::UnitZ();
   add_arrow({tip + kShaft * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, to_take(1.0), id, layer);

@@ -59,6 +59,9 @@ struct MaterialField {
 /// All of them; both the scene's YAML and the parameters are read by this table.
 const std::array<MaterialField, 4>& material_fields();
 
+/// A velocity and a spin within body_limits. Throws InputError.
+Twist read_twist(const YamlElement& element);
+
 /// What is wrong with the numbers taken together, or nothing.
 std::optional<std::string> material_conflict(const Material& material);
 

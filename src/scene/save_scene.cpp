@@ -1,7 +1,5 @@
 #include "mr_hand_interaction/scene/save_scene.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "../text/files.h"
 #include "../text/text.h"
+#include "../text/yaml.h"
 #include "limits.h"
 #include "shape_kinds.h"
 
@@ -182,13 +181,9 @@ class Writer {
     }
   }
 
-  static YAML::Node list(const std::vector<double>& values) {
-    YAML::Node node(YAML::NodeType::Sequence);
-    for (const double value : values) node.push_back(text::exact(value));
-    node.SetStyle(YAML::EmitterStyle::Flow);
-    return node;
+  static YAML::Node vector_list(const Vector3& v) {
+    return yaml_list(std::vector<double>{v.x(), v.y(), v.z()});
   }
-  static YAML::Node vector_list(const Vector3& v) { return list(std::vector<double>{v.x(), v.y(), v.z()}); }
 
   std::string yaml() const {
     YAML::Node root;
@@ -219,7 +214,7 @@ class Writer {
   }
 
   static YAML::Node six(const Vector3& a, const Vector3& b) {
-    return list(std::vector<double>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
+    return yaml_list(std::vector<double>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
   }
   const std::string& name_of(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].name; }
 
@@ -259,7 +254,7 @@ class Writer {
       node["spring"]["rest"] = text::exact(joint.spring->rest);
     }
     if (joint.detents) {
-      node["detents"]["at"] = list(joint.detents->at);
+      node["detents"]["at"] = yaml_list(joint.detents->at);
       node["detents"]["force"] = text::exact(joint.detents->force);
     }
     if (joint.latch) {

@@ -238,12 +238,21 @@ void read_twists(const Element& element, Scene& scene) {
   }
   for (const std::string& link : checked_keys(element, links)) {
     scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist =
-        read_six(element.at(link), {-body_limits::kSpeed.max, body_limits::kSpeed.max},
-                 {-body_limits::kSpin.max, body_limits::kSpin.max}, false);
+        read_twist(element.at(link));
   }
 }
 
 }  // namespace
+
+Twist read_twist(const YamlElement& element) {
+  const auto given = yaml_numbers(element.node, 6);
+  const Twist twist = given ? Twist{Vector3(given->data()), Vector3(given->data() + 3)} : Twist{};
+  if (!given || !body_limits::kSpeed.contains(twist.linear.norm()) ||
+      !body_limits::kSpin.contains(twist.angular.norm()))
+    element.refuse("six numbers [vx, vy, vz, wx, wy, wz], at most " + text::number(body_limits::kSpeed.max) +
+                   " m/s and " + text::number(body_limits::kSpin.max) + " rad/s");
+  return twist;
+}
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   read_yaml<SceneError>(yaml_file, [&] {

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Another one for each change of what follows.
-constexpr std::uint64_t kFormat = 0x6d72686900000007ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000008ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -28,16 +28,23 @@ void below(int number, double most) {
   if (number < 0 || number > most) refuse("has a number that is too large");
 }
 
-std::uint64_t checksum(const char* data, std::size_t size) {
+/// FNV-1a.
+struct Checksum {
   std::uint64_t sum = 14695981039346656037ull;
-  for (std::size_t i = 0; i < size; ++i) sum = (sum ^ static_cast<unsigned char>(data[i])) * 1099511628211ull;
-  return sum;
-}
+
+  Checksum& add(const void* data, std::size_t size) {
+    for (const auto *at = static_cast<const unsigned char*>(data), *end = at + size; at != end; ++at)
+      sum = (sum ^ *at) * 1099511628211ull;
+    return *this;
+  }
+};
 
 /// Of numbers in a state, beyond which none has a meaning.
 constexpr double kLargest = 1e30;
 
 struct Out {
+  static constexpr bool kHashes = false;
+
   std::string bytes;
 
   void check(double) {}
@@ -52,6 +59,8 @@ struct Out {
 };
 
 struct In {
+  static constexpr bool kHashes = false;
+
   const char* at;
   const char* end;
 
@@ -67,17 +76,30 @@ struct In {
   void check(Nanoseconds stamp) {
     if (stamp < -StampCheck::kLatest || stamp > StampCheck::kLatest) refuse("has a stamp that is none");
   }
-  /// So many that are `item` bytes each in memory, and a quarter of that here, at least.
+  /// So many that are `item` bytes each in memory, and an eighth of that here, at least.
   std::size_t count(std::size_t, std::size_t item) {
     std::uint64_t number = 0;
     raw(&number, sizeof number);
-    if (number > 4 * static_cast<std::uint64_t>(end - at) / item) refuse("ends early");
+    if (number > 8 * static_cast<std::uint64_t>(end - at) / item) refuse("ends early");
     return static_cast<std::size_t>(number);
   }
 };
 
-/// Every member of every part, in order, out or in. Where members are bound by name, a part that gets a
-/// further one does not compile until it stands here too.
+/// What matters to the future. Stamps count relative to `now`.
+struct Hash {
+  static constexpr bool kHashes = true;
+
+  Nanoseconds now;
+  Checksum checksum = {};
+
+  void check(double) {}
+  void check(Nanoseconds) {}
+  void raw(const void* data, std::size_t size) { checksum.add(data, size); }
+  static std::size_t count(std::size_t size, std::size_t) { return size; }
+};
+
+/// Every member of every part, in order: out, in, or into the hash. Where members are bound by name, a part
+/// that gets a further one does not compile until it stands here too.
 template <class Way>
 class Parts {
  public:
@@ -86,6 +108,20 @@ class Parts {
   template <class... Items>
   void all(Items&... items) {
     (one(items), ...);
+  }
+
+  /// Those of a single step, and those that others follow from: not in the hash.
+  template <class... Items>
+  void aside(Items&... items) {
+    if constexpr (!Way::kHashes) all(items...);
+  }
+  void stamp(Nanoseconds& stamp) {
+    if constexpr (Way::kHashes) {
+      Nanoseconds since = way_.now - stamp;
+      one(since);
+    } else {
+      one(stamp);
+    }
   }
 
   template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
@@ -122,7 +158,7 @@ class Parts {
   template <class Item>
   void one(std::optional<Item>& item) {
     bool there = item.has_value();
-    one(there);
+    aside(there);
     if (!there) item.reset();
     if (there && !item) item.emplace();
     if (there) one(*item);
@@ -158,12 +194,15 @@ class Parts {
     auto& [id, side, confidence, grab, pinch, palm, palm_width, wrist, capsules] = part;
     one(id);
     one_of(side, Side::right);
-    all(confidence, grab, pinch, palm, palm_width, wrist, capsules);
+    aside(confidence, grab, pinch);
+    one(palm);
+    aside(palm_width);
+    all(wrist, capsules);
   }
   void one(SampleHistory& part) {
     auto& [samples, elapsed, size] = part;
-    all(samples, elapsed);
-    up_to(size, kMaxFilterWindow);
+    if constexpr (!Way::kHashes) up_to(size, kMaxFilterWindow);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) all(samples[i], elapsed[i]);
   }
   void one(HandVelocity& part) {
     auto& [points, turn] = part;
@@ -173,19 +212,29 @@ class Parts {
     auto& [position, mixed, speed] = part;
     all(position, mixed, speed);
   }
-  void one(SeenNoise& part) {
+  /// Counts also for a slot that is free: the next hand of its side takes it over.
+  void one(SeenNoise& part, Side side) {
     auto& [variances, size, variance] = part;
-    one(variances);
-    up_to(size, kNoiseWindow);
+    if constexpr (Way::kHashes) {
+      if (size == 0) return;
+      one_of(side, Side::right);
+    } else {
+      up_to(size, kNoiseWindow);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) one(variances[i]);
     one(variance);
   }
   void one(FilterMemory& part) {
     auto& [history, filtered, velocity, variance, noise] = part;
-    all(history, filtered, velocity, variance, noise);
+    all(history, filtered, velocity, variance);
+    one(noise, filtered.side);
   }
   void one(Rejoin& part) {
     auto& [from, begin, duration] = part;
-    all(from, begin, duration);
+    one(duration);
+    if (Way::kHashes && duration <= 0) return;
+    stamp(begin);
+    one(from);
   }
   void one(FilterConfiguration& part) {
     all(part.type, part.as_printed);
@@ -207,34 +256,43 @@ class Parts {
   }
   void one(FilterChange& part) {
     auto& [from, memory, begin] = part;
-    all(from, memory, begin);
+    aside(from);
+    stamp(begin);
+    one(memory);
   }
   void one(HandPath& part) {
     auto& [start_bend, end_bend, longest_bend, velocity, differences, intervals, order, noise, energy,
            extrapolated] = part;
-    all(start_bend, end_bend, longest_bend, velocity, differences, intervals, noise, energy, extrapolated);
+    aside(start_bend, end_bend, longest_bend);  // of the frame that is over
     up_to(order, 3);
+    if (Way::kHashes && order == 0) return;
+    all(velocity, differences, intervals, noise, energy, extrapolated);
   }
   void one(HandTrack& part) {
     auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
            mean_velocity] = part;
-    all(active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
-        mean_velocity);
+    one(active);
+    if (Way::kHashes && !active) return one(filter.noise, current.side);
+    all(held, appeared, emerged);
+    stamp(last_seen);
+    all(previous, current, filter, change, rejoin, path, mean_velocity);
   }
   void one(ContactKey& part) {
     auto& [point, shape, capsule, hand, body] = part;
-    all(point, shape, capsule, hand, body);
+    aside(point, shape, capsule, hand, body);
+    in_order(part);
   }
   void one(ContactMemory& part) {
     auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge,
            depth, twist, compliance, force] = part;
-    one(key);
+    all(key, god_object, entry_normal, touched_from, axis_parameter, depth, twist);
     one_of(friction, Friction::slipping);
-    all(struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge, depth, twist,
-        compliance, force);
+    all(struck, compliance, ignored);
+    aside(at_edge, force);
   }
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
+    if constexpr (Way::kHashes) return;
     all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
         c.grip, c.share, c.inverse_mass, c.carrier_inverse_mass, c.restitution, c.impulse, c.torque);
     // Found anew in each step, and without limits.
@@ -243,53 +301,89 @@ class Parts {
   }
   void one(BodyContactKey& part) {
     auto& [a, b, shape_a, shape_b, feature] = part;
-    all(a, b, shape_a, shape_b, feature);
+    aside(a, b, shape_a, shape_b, feature);
+    in_order(part);
   }
   void one(BodyContact& part) {
     auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, friction_offset,
            stretch, material, depth, share, first_touch, force, impulse] = part;
-    all(key, anchor_a, anchor_b);
+    all(key, anchor_a, anchor_b, depth);
     one_of(friction, Friction::slipping);
-    all(struck, still, point, normal, arm_a, arm_b, friction_offset, stretch, material, depth, share,
-        first_touch, force, impulse);
+    all(struck, still, force);
+    aside(point, normal, arm_a, arm_b, friction_offset, stretch, material, share, first_touch, impulse);
   }
   void one(PalmLag& part) {
     auto& [whole, frame] = part;
-    all(whole, frame);
+    one(whole);
+    if constexpr (Way::kHashes) {
+      Vector3 still = Vector3::Zero();  // keeps the hashes of recorded runs
+      one(still);
+    }
+    one(frame);
   }
   void one(HandOffset& part) {
     auto& [shift, fingers, lag, stamp, left, left_since] = part;
-    all(shift, fingers, lag, stamp, left, left_since);
+    if (Way::kHashes && part.zero()) return;
+    all(shift, lag, fingers);
+    this->stamp(stamp);
+    one(left);
+    if (!Way::kHashes || left > 0.0) this->stamp(left_since);
   }
   void one(MassLag& part) {
     auto& [displacement, velocity, stamp] = part;
-    all(displacement, velocity, stamp);
+    if (Way::kHashes && part.zero()) return;
+    all(displacement, velocity);
+    this->stamp(stamp);
   }
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
            released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
            in_body, force, torque, point, velocity] = part;
-    all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-        released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
-        in_body, force, torque, point, velocity);
+    all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
+    aside(lost);
+    if (!Way::kHashes || lost) one(body_in_palm);
+    all(pads, in_palm, in_hand, in_body);
+    aside(stiffness, closes, opened, opens, in_palm_before, slips, force, torque, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;
     one_of(level, InteractionLevel::grasp);
-    all(agreed, shown_in);
+    one(shown_in);
+    if (!Way::kHashes || level >= InteractionLevel::contact) stamp(agreed);
   }
   void one(JointState& part) {
     auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = part;
-    all(position, anchor, pushed, effort, still, detent, at_limit, latched);
+    all(position, anchor, pushed, still, detent, at_limit, latched);
+    aside(effort);
   }
   void one(SimulationState& part) {
     auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
            body_contacts, sleeping_contacts, offsets, mass_lags, grips, interactions] = part;
-    all(started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts, body_contacts,
-        sleeping_contacts, offsets, mass_lags, grips, interactions);
+    aside(started, time, stamps, asleep);
+    stamp(last_frame);
+    all(bodies, joints, restrained);
+    if constexpr (Way::kHashes) {
+      for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+        one(hands[slot]);
+        if (!hands[slot].active) continue;
+        one(offsets[slot]);
+        one(mass_lags[slot]);
+      }
+    } else {
+      all(hands, offsets, mass_lags);
+    }
+    all(contacts, grips, body_contacts, sleeping_contacts, interactions);
   }
 
  private:
+  template <class Key>
+  void in_order(const Key& key) {
+    if constexpr (Way::kHashes) {
+      std::uint64_t order = key.order();
+      one(order);
+    }
+  }
+
   Way& way_;
 };
 
@@ -361,13 +455,20 @@ class Fit {
 
 }  // namespace
 
+std::uint64_t hash(const SimulationState& state) {
+  SimulationState copy = state;
+  Hash hash{state.time};
+  Parts<Hash>(hash).one(copy);
+  return hash.checksum.sum;
+}
+
 std::string to_bytes(const SimulationState& state) {
   SimulationState copy = state;
   std::uint64_t format = kFormat;
   Out out;
   out.raw(&format, sizeof format);
   Parts<Out>(out).one(copy);
-  std::uint64_t sum = checksum(out.bytes.data(), out.bytes.size());
+  std::uint64_t sum = Checksum().add(out.bytes.data(), out.bytes.size()).sum;
   out.raw(&sum, sizeof sum);
   return out.bytes;
 }
@@ -379,7 +480,7 @@ SimulationState state_from_bytes(const std::string& bytes, const Scene& scene) {
   std::memcpy(&format, bytes.data(), sizeof format);
   std::memcpy(&sum, bytes.data() + size, sizeof sum);
   if (format != kFormat) refuse("is of another version");
-  if (sum != checksum(bytes.data(), size)) refuse("is damaged");
+  if (sum != Checksum().add(bytes.data(), size).sum) refuse("is damaged");
   In in{bytes.data() + sizeof format, bytes.data() + size};
   SimulationState state;
   Parts<In>(in).one(state);

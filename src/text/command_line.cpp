@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <iostream>
 #include <set>
 
 #include "text.h"
@@ -114,6 +116,18 @@ std::string CommandLine::names() const {
   std::vector<std::string> names{"--help"};
   for (const Option& option : options_) names.push_back(option.name);
   return text::joined(names);
+}
+
+int exit_status(const std::string& program, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    std::cerr << program << ": " << error.what() << std::endl;
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << program << ": " << error.what() << std::endl;
+    return 1;
+  }
 }
 
 }  // namespace mrhi

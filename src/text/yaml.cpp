@@ -122,6 +122,13 @@ std::optional<Vector3> yaml_vector(const YAML::Node& node) {
   return numbers ? std::make_optional<Vector3>(numbers->data()) : std::nullopt;
 }
 
+YAML::Node yaml_list(const std::vector<double>& values) {
+  YAML::Node node(YAML::NodeType::Sequence);
+  for (const double value : values) node.push_back(text::exact(value));
+  node.SetStyle(YAML::EmitterStyle::Flow);
+  return node;
+}
+
 std::string yaml_text(const YAML::Node& node) {
   if (node.IsNull()) return "nothing";
   return text::one_line(node.IsScalar() ? node.Scalar() : YAML::Dump(node), 60);

@@ -59,6 +59,9 @@ std::optional<Vector3> yaml_vector(const YAML::Node& node);
 /// A sequence of so many numbers.
 std::optional<std::vector<double>> yaml_numbers(const YAML::Node& node, std::size_t size);
 
+/// Numbers on one line, that keep their bits.
+YAML::Node yaml_list(const std::vector<double>& values);
+
 /// The node as one line of YAML, for messages.
 std::string yaml_text(const YAML::Node& node);
 

@@ -128,7 +128,7 @@ constexpr double kFarthestHand =
     980.0;                           // in world, on each axis [m]; HandFrame.msg has room for its joints too
 constexpr float kWidestPalm = 0.3f;  // [m]
 constexpr float kWidestFinger = 0.1f;  // [m]
-constexpr float kWidestBone = 0.2f;    // [m]
+constexpr float kWidestBone = 0.19f;   // [m]
 
 const char* const kFingerNames[kFingers] = {"thumb", "index", "middle", "ring", "little"};
 const char* const kJointNames[5] = {"metacarpal base", "metacarpal end", "proximal end", "intermediate end",

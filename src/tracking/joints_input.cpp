@@ -10,9 +10,7 @@
 #include "../text/text.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/tracking/hand_merger.h"
-#include "mr_hand_interaction/tracking/hand_pairs.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
-#include "mr_hand_interaction/tracking/joint_gaps.h"
 
 namespace mrhi {
 namespace {

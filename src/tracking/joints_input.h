@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/math.h"
-#include "mr_hand_interaction/tracking/hand_pairs.h"
-#include "mr_hand_interaction/tracking/joint_gaps.h"
+#include "mr_hand_interaction/tracking/hand_merger.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {

@@ -110,16 +110,6 @@ Quaternion quaternion(const Element& element) {
   return Quaternion(numbers.normalized());
 }
 
-Twist twist(const Element& element) {
-  const auto given = yaml_numbers(element.node, 6);
-  const Twist twist = given ? Twist{Vector3(given->data()), Vector3(given->data() + 3)} : Twist{};
-  if (!given || !body_limits::kSpeed.contains(twist.linear.norm()) ||
-      !body_limits::kSpin.contains(twist.angular.norm()))
-    element.refuse("six numbers [vx, vy, vz, wx, wy, wz], at most " + text::number(body_limits::kSpeed.max) +
-                   " m/s and " + text::number(body_limits::kSpin.max) + " rad/s");
-  return twist;
-}
-
 void check_has(const Element& element, const std::vector<std::string>& needed) {
   for (const std::string& key : needed) {
     if (!element.node[key]) element.fail("no key '" + key + "'; needed: " + text::joined(needed));
@@ -296,7 +286,7 @@ TaskObject read_placed(const Element& element, const std::vector<std::string>& k
     if (key == "file") object.file = body_file(value);
     if (key == "position") object.start.position = read_vector(value);
     if (key == "orientation") object.start.orientation = quaternion(value);
-    if (key == "twist") object.twist = twist(value);
+    if (key == "twist") object.twist = read_twist(value);
   }
   return object;
 }

@@ -17,7 +17,7 @@ NUMBERS = re.compile(r"(u?int(8|16|32|64)|float(32|64)|bool)$")
 def published():
     """Message class by topic, as the node has it."""
     with open(PUBLISHER, encoding="utf-8") as file:
-        found = re.findall(r'advertise<mr_hand_interaction::(\w+)>\(\s*"(\w+)"', file.read())
+        found = re.findall(r'(?:advertise|add)<mr_hand_interaction::(\w+)>\((?:node,)?\s*"(\w+)"', file.read())
     return {"/" + topic: getattr(messages, name) for name, topic in found}
 
 

@@ -24,7 +24,7 @@ class RosTimeTest(unittest.TestCase):
     def test_no_arithmetic_that_throws_is_left(self):
         files = [file for folder in ("src/ros", "src/nodes", "src/replay", "src/record") for file in (PACKAGE / folder).rglob("*")
                  if file.suffix in (".cpp", ".h") and str(file.relative_to(PACKAGE)) not in ALLOWED]
-        self.assertGreater(len(files), 50)
+        self.assertGreater(len(files), 40)
         found = {str(file.relative_to(PACKAGE)): offences(file.read_text(encoding="utf-8")) for file in files}
         self.assertEqual({file: lines for file, lines in found.items() if lines}, {})
 

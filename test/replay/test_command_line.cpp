@@ -1,7 +1,5 @@
 #include "../../src/text/command_line.h"
 
-#include "../../src/nodes/exit_status.h"
-
 #include <gtest/gtest.h>
 
 namespace mrhi {

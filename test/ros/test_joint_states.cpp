@@ -11,7 +11,7 @@ TEST(JointStates, tell_names_places_and_velocities_in_the_scenes_order) {
   Simulation simulation(testing::pendulum(2, 0.3, 9.81), Configuration());
   const auto at = [&](int milliseconds) {
     simulation.advance({testing::at(1e-3 * milliseconds), {}});
-    return joint_states_message(simulation.scene(), simulation.state(), {});
+    return joint_states_message({simulation.scene(), simulation.result(), simulation.state()}, {});
   };
   const auto first = at(0);
   ASSERT_EQ(first.name, (std::vector<std::string>{"joint_0", "joint_1"}));

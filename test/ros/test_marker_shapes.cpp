@@ -136,7 +136,7 @@ TEST_F(MarkerShapes, a_hand_of_capsules_has_a_ball_at_each_joint_and_a_cylinder_
     EXPECT_LT(marker.id, 200 + kIdsPerHand);
     if (marker.type != Marker::CYLINDER) continue;
     const auto bone = std::find_if(hand.capsules.begin(), hand.capsules.end(), [&](const Capsule& capsule) {
-      return (capsule.centre() - place(marker.pose.position)).norm() < 1e-12;
+      return capsule.radius > 0.0 && (capsule.centre() - place(marker.pose.position)).norm() < 1e-12;
     });
     ASSERT_NE(bone, hand.capsules.end());
     EXPECT_NEAR(marker.scale.z, (bone->end - bone->start).norm(), 1e-12);
@@ -146,9 +146,8 @@ TEST_F(MarkerShapes, a_hand_of_capsules_has_a_ball_at_each_joint_and_a_cylinder_
     const Vector3 z = Quaternion(q.w, q.x, q.y, q.z) * Vector3::UnitZ();
     EXPECT_LT(z.cross(bone->end - bone->start).norm(), 1e-9);
   }
-  EXPECT_EQ(drawn.count(Marker::TRIANGLE_LIST), 1);
   int bones = 0;
-  for (int i = 0; i < kPhalanges; ++i) {
+  for (int i = 0; i < kCapsules; ++i) {
     const Capsule& capsule = hand.capsules[std::size_t(i)];
     bones += hand.has(i) && (capsule.end - capsule.start).norm() > 1e-6;
   }
@@ -177,22 +176,6 @@ TEST_F(MarkerShapes, what_touches_has_its_colour) {
     EXPECT_EQ((marker.id - 200) / 3, capsule_index(1, 3));
   }
   EXPECT_EQ(red, 2);  // its cylinder and its end
-}
-
-TEST_F(MarkerShapes, the_palm_of_a_hand_that_is_moved_is_moved_along) {
-  const Pose moved{{0.3, -0.1, 0.2}, Quaternion(Eigen::AngleAxisd(1.2, Vector3(1, -1, 2).normalized()))};
-  const auto palm = [](const Pose& pose) {
-    const DrawnHand drawn(complete_hand(adult_hand(Side::right), pose));
-    for (const Marker& marker : drawn.array.markers)
-      if (marker.type == Marker::TRIANGLE_LIST) return marker.points;
-    return std::vector<geometry_msgs::Point>();
-  };
-  const auto here = palm({}), there = palm(moved);
-  ASSERT_EQ(here.size(), there.size());
-  ASSERT_GT(here.size(), 100u);
-  for (std::size_t i = 0; i < here.size(); ++i)
-    EXPECT_LT((moved * place(here[i]) - place(there[i])).norm(), 1e-6);  // the wrist is of float32
-  EXPECT_GT(Solid(here).volume, 0.0);
 }
 
 }  // namespace

@@ -34,9 +34,8 @@ class ResultMessages : public ::testing::TestWithParam<ContactModelKind> {
   ResultMessages() : pinched_(GetParam(), kGravity) { pinched_.hold(0.3); }
 
   const Simulation& simulation() const { return pinched_.simulation(); }
-  mr_hand_interaction::ContactArray contacts() const {
-    return contacts_message(simulation().scene(), simulation().result(), simulation().state(), world());
-  }
+  Outcome outcome() const { return {simulation().scene(), simulation().result(), simulation().state()}; }
+  mr_hand_interaction::ContactArray contacts() const { return contacts_message(outcome(), world()); }
 
   testing::PinchedCube pinched_;
 };
@@ -93,8 +92,8 @@ TEST_P(ResultMessages, the_wrench_is_the_sum_of_the_forces_about_the_centre_of_m
 }
 
 TEST_P(ResultMessages, phalanges_that_touch_are_marked_in_the_rendered_hand_alone) {
-  const auto rendered = rendered_message(simulation().result(), world());
-  const auto tracked = tracked_message(simulation().result(), world());
+  const auto rendered = rendered_message(outcome(), world());
+  const auto tracked = tracked_message(outcome(), world());
   ASSERT_EQ(rendered.hands.size(), 1u);
   ASSERT_EQ(tracked.hands.size(), 1u);
   EXPECT_EQ(rendered.hands[0].id, tracked.hands[0].id);
@@ -140,7 +139,7 @@ struct Things {
 TEST(ObjectMessages, tell_pose_twist_and_mass_of_what_is_no_fixture) {
   Things things;
   things.state.interactions[2].level = InteractionLevel::grasp;
-  const auto message = objects_message(things.scene, FrameResult(), things.state, world());
+  const auto message = objects_message({things.scene, FrameResult(), things.state}, world());
   ASSERT_EQ(message.objects.size(), 3u);
   EXPECT_EQ(message.objects[0].name, "rod_0");
   const auto& object = message.objects[2];
@@ -306,7 +305,8 @@ TEST(JointMessages, tell_what_moves_a_pendulum) {
   things.state.bodies[0].angular_momentum =
       pose.orientation * (rod.inertia * (pose.orientation.conjugate() * w));
   things.state.bodies[0].linear_momentum = rod.mass * w.cross(arm);
-  const sensor_msgs::JointState message = joint_states_message(things.scene, things.state, world());
+  const sensor_msgs::JointState message =
+      joint_states_message({things.scene, FrameResult(), things.state}, world());
   ASSERT_EQ(message.name.size(), 2u);
   EXPECT_EQ(message.name[1], "joint_1");
   EXPECT_EQ(message.position[1], 0.4);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/tracking/hand_pairs.h"
+#include "mr_hand_interaction/tracking/hand_merger.h"
 
 namespace mrhi {
 namespace {

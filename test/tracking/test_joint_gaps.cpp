@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "adult_hand.h"
-#include "mr_hand_interaction/tracking/joint_gaps.h"
+#include "mr_hand_interaction/tracking/hand_merger.h"
 #include "support/fixtures.h"
 
 namespace mrhi {

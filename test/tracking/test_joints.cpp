@@ -206,6 +206,19 @@ TEST(CompleteFrame, DropsTheBadHandAndKeepsTheGood) {
   EXPECT_EQ(defects[0], "hand 3: palm centre is not finite");
 }
 
+TEST(CompleteFrame, LeavesOutWhatAMessageHasNoRoomFor) {
+  JointsFrame frame{42, {adult_hand(Side::left)}};
+  std::vector<std::string> defects;
+  EXPECT_TRUE(complete_frame(frame, Pose{{0.0, 979.0, 0.0}, Quaternion::Identity()}, defects));
+  EXPECT_FALSE(complete_frame(frame, Pose{{0.0, 981.0, 0.0}, Quaternion::Identity()}, defects));
+  EXPECT_NE(defects.at(0).find("palm is farther than 980 m"), std::string::npos) << defects[0];
+  frame.hands[0].bone_width[1][2] = 0.19f;
+  EXPECT_TRUE(complete_frame(frame, Pose(), defects));
+  frame.hands[0].bone_width[1][2] = 0.2f;
+  EXPECT_FALSE(complete_frame(frame, Pose(), defects));
+  EXPECT_NE(defects.at(1).find("index intermediate width"), std::string::npos) << defects[1];
+}
+
 TEST(CompleteFrame, IsNothingIfNoHandIsUsable) {
   JointsFrame frame{42, {adult_hand(Side::left)}};
   frame.hands[0].palm_centre = Vector3(kNaN, 0.0, 0.0);

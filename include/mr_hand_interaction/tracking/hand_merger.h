@@ -8,6 +8,7 @@
 
 #include "mr_hand_interaction/tracking/hand.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
+#include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
 
@@ -59,6 +60,56 @@ class HandMerger {
   Nanoseconds newest_ = 0;
   std::optional<Nanoseconds> merged_;  ///< stamp of the last merged frame
   std::array<FusedSide, 2> sides_;
+};
+
+/// Left and right hands that come in streams of their own, brought together in frames by their stamps alone,
+/// so that a replay does as the live node. Of two streams that go on, a frame waits for the other side's:
+/// they belong together if they are no farther apart than half the interval of the faster stream, whose
+/// frames that find no partner are left out. A stream has ended when two of its intervals, or 0.1 s, have
+/// gone by without a frame.
+class HandPairs {
+ public:
+  /// The frame that is complete with this one of a side, if one is.
+  std::optional<HandFrame> take(Side side, const HandFrame& frame);
+  /// What still waits, at the end of a recording.
+  std::optional<HandFrame> rest();
+
+ private:
+  struct Stream {
+    Nanoseconds last = 0, interval = 0;  ///< interval 0: not known
+    void note(Nanoseconds stamp);
+    bool goes_on(Nanoseconds stamp) const;
+  };
+  bool is_partner(Side side, Nanoseconds stamp) const;
+
+  std::array<Stream, 2> streams_;
+  std::optional<HandFrame> waiting_;
+  Side waiting_side_ = Side::left;
+};
+
+/// Joints that a tracker loses for moments stay with their hand: each is moved on as those that are seen
+/// before and after have moved together (three, not in one line, must be). For trackers that report at most
+/// one hand of a side. By stamps alone, so that a replay does as the live node.
+class JointGaps {
+ public:
+  static constexpr Nanoseconds kLongest = 200'000'000;  ///< as tracking/hold_time ships
+
+  /// Puts in what was seen no longer ago than kLongest.
+  void fill(JointsFrame& frame);
+
+ private:
+  static constexpr std::size_t kJoints = 1 + 5 * kFingers;  // the wrist, then finger by finger
+  using Points = std::array<std::optional<Vector3>, kJoints>;
+  struct Memory {
+    Nanoseconds stamp = 0;
+    Points points;                            ///< with what was put in
+    std::array<Nanoseconds, kJoints> seen{};  ///< when each was last
+
+    void move_on(const Points& now);
+    void take(HandJoints& hand, Nanoseconds at);
+  };
+
+  std::array<Memory, 2> sides_;
 };
 
 }  // namespace mrhi

@@ -39,7 +39,6 @@ using mr_hand_interaction::ObjectStateArray;
 using mr_hand_interaction::SceneDescription;
 
 constexpr std::uint32_t kQueue = 10;
-constexpr double kPassing = 0.5;       // hands and contacts go if nothing comes for so long [s]
 constexpr double kEyeMoved = 1e-4;     // [m]
 const Rgb kSkin(0.91f, 0.73f, 0.62f);  // of which the tone is made
 
@@ -98,9 +97,10 @@ class InteractionDisplay : public rviz::Display {
 
  protected:
   void onInitialize() override {
-    scene_ = std::make_unique<MarkerScene>(scene_manager_, scene_node_, [this](const std::string& body) {
-      return rviz::SelectionHandlerPtr(new ObjectSelection(context_, body, *this));
-    });
+    scene_ = std::make_unique<MarkerScene>(
+        context_, scene_node_, [this](const std::string& body, const Ogre::SceneNode* node) {
+          return rviz::SelectionHandlerPtr(new ObjectSelection(context_, body, node, *this));
+        });
   }
 
   void onEnable() override { subscribe(); }
@@ -114,8 +114,13 @@ class InteractionDisplay : public rviz::Display {
   /// What rviz's Selection panel says of an object.
   class ObjectSelection : public rviz::SelectionHandler {
    public:
-    ObjectSelection(rviz::DisplayContext* context, std::string name, InteractionDisplay& display)
-        : rviz::SelectionHandler(context), name_(std::move(name)), display_(display) {}
+    ObjectSelection(rviz::DisplayContext* context, std::string name, const Ogre::SceneNode* node,
+                    InteractionDisplay& display)
+        : rviz::SelectionHandler(context), name_(std::move(name)), node_(node), display_(display) {}
+
+    void getAABBs(const rviz::Picked&, rviz::V_AABB& boxes) override {
+      boxes.push_back(node_->_getWorldAABB());
+    }
 
     void createProperties(const rviz::Picked&, rviz::Property* parent) override {
       auto* group = new rviz::Property("Object " + QString::fromStdString(name_), QVariant(), "", parent);
@@ -154,6 +159,7 @@ class InteractionDisplay : public rviz::Display {
 
    private:
     const std::string name_;
+    const Ogre::SceneNode* const node_;
     InteractionDisplay& display_;
     rviz::BoolProperty* held_ = nullptr;
     rviz::StringProperty* touched_ = nullptr;
@@ -315,6 +321,7 @@ class InteractionDisplay : public rviz::Display {
     const FrameResult& result = view_.result();
     if (markers_) {
       std_msgs::Header header;
+      header.frame_id = fixed_frame_.toStdString();  // scene_node_ is where frame_ is in it
       header.stamp = stamp_;
       markers_->update(result, view_.state(), header, array_);
       scene_->take(array_);
