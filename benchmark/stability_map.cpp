@@ -135,5 +135,10 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace mrhi::testing;
-  return mrhi::exit_status("stability_map", [&] { return run(arguments_of({argv + 1, argv + argc})); });
+  return mrhi::exit_status(
+      "stability_map",
+      [&] {
+        return run(arguments_of({argv + 1, argv + argc}));
+      },
+      std::cerr);
 }

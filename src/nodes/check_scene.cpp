@@ -149,5 +149,10 @@ int check(const std::vector<std::string>& words) {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status("check_scene", [&] { return mrhi::check({argv + 1, argv + argc}); });
+  return mrhi::exit_status(
+      "check_scene",
+      [&] {
+        return mrhi::check({argv + 1, argv + argc});
+      },
+      std::cerr);
 }

@@ -60,14 +60,17 @@ int report(const ReplayArguments& arguments) {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status("replay", [&] {
-    const mrhi::ReplayArguments arguments = mrhi::parse_replay_arguments({argv + 1, argv + argc});
-    if (arguments.help) {
-      std::cout << mrhi::replay_help();
-      return 0;
-    }
-    if (!arguments.compare.empty()) return mrhi::run_script("compare", arguments.compare);
-    mrhi::replay(arguments);
-    return mrhi::report(arguments);
-  });
+  return mrhi::exit_status(
+      "replay",
+      [&] {
+        const mrhi::ReplayArguments arguments = mrhi::parse_replay_arguments({argv + 1, argv + argc});
+        if (arguments.help) {
+          std::cout << mrhi::replay_help();
+          return 0;
+        }
+        if (!arguments.compare.empty()) return mrhi::run_script("compare", arguments.compare);
+        mrhi::replay(arguments);
+        return mrhi::report(arguments);
+      },
+      std::cerr);
 }

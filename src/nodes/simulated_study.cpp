@@ -139,13 +139,16 @@ void play(Study study) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status("simulated_study", [&] {
-    const Study study = read_arguments({argv + 1, argv + argc});
-    if (study.help) {
-      std::cout << kHelp;
-    } else {
-      play(study);
-    }
-    return 0;
-  });
+  return mrhi::exit_status(
+      "simulated_study",
+      [&] {
+        const Study study = read_arguments({argv + 1, argv + argc});
+        if (study.help) {
+          std::cout << kHelp;
+        } else {
+          play(study);
+        }
+        return 0;
+      },
+      std::cerr);
 }

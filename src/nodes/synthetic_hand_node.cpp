@@ -169,9 +169,12 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
   if (arguments.size() > 1) {
-    return mrhi::exit_status("synthetic_hand_node", [&] {
-      return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
-    });
+    return mrhi::exit_status(
+        "synthetic_hand_node",
+        [&] {
+          return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
+        },
+        std::cerr);
   }
   return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
     mrhi::SyntheticHandPublisher(node, mrhi::Parameters(private_node)).run();

@@ -17,7 +17,8 @@ constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a fram
 constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
 constexpr double kAnyway = 1.0;        // no bound [m]
 constexpr double kPace = 0.0018;       // that a joint may go beyond what the farthest tracked one does [m]
-constexpr double kSmallStep = 0.0003;  // a pass that moves no joint farther is not looked at again [m]
+/// A pass that moves no joint farther is not looked at again: what is met anew is no deeper than that [m].
+constexpr double kSmallStep = 1e-4;
 
 constexpr std::uint16_t kNoBody = std::numeric_limits<std::uint16_t>::max();
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <iostream>
+#include <ostream>
 #include <set>
 
 #include "text.h"
@@ -118,14 +118,14 @@ std::string CommandLine::names() const {
   return text::joined(names);
 }
 
-int exit_status(const std::string& program, const std::function<int()>& work) {
+int exit_status(const std::string& program, const std::function<int()>& work, std::ostream& errors) {
   try {
     return work();
   } catch (const UsageError& error) {
-    std::cerr << program << ": " << error.what() << std::endl;
+    errors << program << ": " << error.what() << std::endl;
     return 2;
   } catch (const std::exception& error) {
-    std::cerr << program << ": " << error.what() << std::endl;
+    errors << program << ": " << error.what() << std::endl;
     return 1;
   }
 }

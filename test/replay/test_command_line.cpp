@@ -91,9 +91,9 @@ TEST(CommandLine, a_value_is_told_with_what_is_allowed) {
 
 TEST(CommandLine, a_program_ends_with_2_for_bad_usage_and_1_for_bad_data) {
   const auto ended = [](const std::function<int()>& work) {
-    ::testing::internal::CaptureStderr();
-    const int status = exit_status("tool", work);
-    return std::to_string(status) + " " + ::testing::internal::GetCapturedStderr();
+    std::ostringstream errors;
+    const int status = exit_status("tool", work, errors);
+    return std::to_string(status) + " " + errors.str();
   };
   EXPECT_EQ(ended([]() -> int { throw UsageError("so not"); }), "2 tool: so not\n");
   EXPECT_EQ(ended([]() -> int { throw std::runtime_error("broken"); }), "1 tool: broken\n");

@@ -225,7 +225,9 @@ TEST_F(Tracker, joint_speed_limits_the_turn_of_bones_in_the_palm_and_keeps_them_
     EXPECT_NEAR((far.start - near.end).norm(), 0.0, 1e-12);
     for (const int c : {capsule_index(1, 1), capsule_index(1, 2)})
       EXPECT_LE(angle_between(last.capsules[c], now.capsules[c]), kSpeed * kFrame + 1e-6) << i;
-    if (i == 20) EXPECT_GT(angle_between(far, bent(1.0).capsules[capsule_index(1, 2)]), 1.0);
+    if (i == 20) {
+      EXPECT_GT(angle_between(far, bent(1.0).capsules[capsule_index(1, 2)]), 1.0);
+    }
     last = now;
   }
   EXPECT_LT((last.capsules[capsule_index(1, 2)].end - bent(1.0).capsules[capsule_index(1, 2)].end).norm(),
