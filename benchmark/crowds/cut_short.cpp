@@ -15,9 +15,9 @@
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "response/contact_step.h"
-#include "response/large_island_solver.h"
 #include "response/impact_solver.h"
 #include "response/islands.h"
+#include "response/large_island_solver.h"
 #include "scenes.h"
 #include "support/fixtures.h"
 

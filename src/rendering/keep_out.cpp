@@ -11,12 +11,12 @@ namespace {
 enum class Stays { offset, palm, axes };
 
 constexpr int kMaxPasses = 12;
-constexpr int kMostInVain = 2;         // passes on end that bring a hand no better into step
-constexpr double kBetter = 0.9;        // a gap of this share of the best one is better
-constexpr double kSwing = 0.0005;      // that a fingertip may turn by in a frame, and this share of what hand
-constexpr double kSwingShare = 0.8;    // and bodies move: the rest is the whole hand's to give way [m]
-constexpr double kAnyway = 1.0;        // no bound [m]
-constexpr double kPace = 0.0018;       // that a joint may go beyond what the farthest tracked one does [m]
+constexpr int kMostInVain = 2;       // passes on end that bring a hand no better into step
+constexpr double kBetter = 0.9;      // a gap of this share of the best one is better
+constexpr double kSwing = 0.0005;    // that a fingertip may turn by in a frame, and this share of what hand
+constexpr double kSwingShare = 0.8;  // and bodies move: the rest is the whole hand's to give way [m]
+constexpr double kAnyway = 1.0;      // no bound [m]
+constexpr double kPace = 0.0018;     // that a joint may go beyond what the farthest tracked one does [m]
 /// A pass that moves no joint farther is not looked at again: what is met anew is no deeper than that [m].
 constexpr double kSmallStep = 1e-4;
 
