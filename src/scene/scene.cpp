@@ -240,6 +240,7 @@ std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
 void remove_body(std::size_t body, Scene& scene) {
   const std::vector<char> goes = those_that_go(body, scene);
   std::vector<int> place;  // of each body among those that stay; -1: it goes
+  place.reserve(goes.size());
   int staying = 0;
   for (const char gone : goes) place.push_back(gone != 0 ? -1 : staying++);
   std::size_t b = 0;

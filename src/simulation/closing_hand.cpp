@@ -30,11 +30,6 @@ bool has_tip(const Hand& hand, int finger) {
   return hand.has(capsule_index(finger, 3));
 }
 
-bool is_base(bool by_palm, int capsule) {
-  if (by_palm) return capsule == kPalm || bone_of(capsule) == 0;
-  return finger_of(capsule) == 0;
-}
-
 double ClosingHand::closing_speed(const HandTrack& track, bool by_palm, int finger) {
   const Vector3 across = tip_of(track.current, finger) - base_of(track.current, by_palm);
   const auto& points = track.mean_velocity.points;

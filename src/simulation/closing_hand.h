@@ -11,7 +11,10 @@ namespace mrhi {
 
 bool has_tip(const Hand& hand, int finger);
 /// True for what fingers close against: the palm with its metacarpals, or the thumb.
-bool is_base(bool by_palm, int capsule);
+inline bool is_base(bool by_palm, int capsule) {
+  if (by_palm) return capsule == kPalm || bone_of(capsule) == 0;
+  return finger_of(capsule) == 0;
+}
 
 /// What fingers do about an object, from a frame to the next. An object is one body, or all bodies of a
 /// floating linkage. Bodies as they are when the frame begins, the hand as when it ends.

@@ -1,7 +1,7 @@
 #include "frame_report.h"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 #include "../collision/neighbours.h"
 #include "../rendering/mass_lag.h"
@@ -113,7 +113,7 @@ namespace {
 
 /// The hand of the slot as it lags behind what it accelerates, in `lagging`; the track itself without lag.
 const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, const FrameResult& result,
-                               std::optional<HandTrack>& lagging) {
+                               std::unique_ptr<HandTrack>& lagging) {
   MassLag& lag = rendering.state.mass_lags[slot];
   const HandTrack& track = rendering.operators.in_world(slot, rendering.state);
   if (track.appeared || rendering.control_display_ratio <= 1.0) lag = MassLag();
@@ -126,7 +126,8 @@ const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, con
                        rendering.gravity, result);
   advance_mass_lag(rendering.control_display_ratio, moved, now, lag);
   if (before.zero() && lag.zero()) return track;
-  lag_behind(before, lag, track, lagging ? *lagging : lagging.emplace());
+  if (!lagging) lagging = std::make_unique<HandTrack>();
+  lag_behind(before, lag, track, *lagging);
   return *lagging;
 }
 
@@ -134,7 +135,7 @@ const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, con
 
 void render_hands(const Rendering& rendering, FrameResult& result) {
   SimulationState& state = rendering.state;
-  std::optional<HandTrack> lagging;  // large: made only when a hand lags
+  std::unique_ptr<HandTrack> lagging;  // large: made only when a hand lags
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active) continue;
     const HandTrack& track = lagging_track(slot, rendering, result, lagging);

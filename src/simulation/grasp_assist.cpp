@@ -129,7 +129,16 @@ GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const 
     }
     objects_[index].push_back(body);
     object_index_.push_back(index);
+    friction_angle_.push_back(std::atan(scene.bodies[b].material.static_friction));
   }
+}
+
+bool GraspAssist::only_fingers_of(const Grip& grip, const std::vector<Contact>& contacts) const {
+  return std::none_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.depth > 0.0 && is_in(grip, contact.key.hand, contact.key.body) &&
+           !is_base(grip.by_palm, contact.key.capsule) && !is_base(true, contact.key.capsule) &&
+           !grip.takes_part(finger_of(contact.key.capsule));
+  });
 }
 
 GraspAssist::TouchingSides GraspAssist::touching_sides(const Grip& grip,
@@ -300,36 +309,52 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
 }
 
 /// Two contacts hold a body if the friction cones of both contain the other (Nguyen 1988): their normals are
-/// then at most two friction angles from opposite.
-std::optional<GraspAssist::Opposed> GraspAssist::opposed(std::size_t slot, std::size_t body, bool by_palm,
-                                                         const std::vector<Contact>& contacts) const {
+/// then at most two friction angles from opposite. see(base, other, n.n'), until it returns false.
+template <typename See>
+void GraspAssist::each_opposed(std::size_t slot, std::size_t body, bool by_palm,
+                               const std::vector<Contact>& contacts, const See& see) const {
   const auto touches = [&](const Contact& contact) {
     return contact.depth > 0.0 && contact.key.hand == slot &&
            object_index_[contact.key.body] == object_index_[body];
   };
-  const auto friction_angle = [this](const Contact& contact) {
-    return std::atan(scene_.bodies[contact.key.body].material.static_friction);
-  };
-  Opposed result;
-  double most = 1.0;
   for (const Contact& base : contacts) {
     if (!touches(base) || !is_base(by_palm, base.key.capsule)) continue;
+    const double angle = friction_angle_[base.key.body];
     for (const Contact& other : contacts) {
       if (!touches(other) || (base.ignored && other.ignored) || is_base(true, other.key.capsule) ||
           is_base(by_palm, other.key.capsule))
         continue;
       const double across = base.normal.dot(other.normal);
-      if (across > -std::cos(std::min(friction_angle(base) + friction_angle(other), kWidest))) continue;
-      const int bit = 1 << finger_of(other.key.capsule);
-      result.taking_part = static_cast<std::uint8_t>(result.taking_part | bit);
-      result.depth = std::max({result.depth, base.depth, other.depth});
-      if (across >= most) continue;
-      most = across;
-      result.squeeze = base.depth + other.depth;
-      result.base = base.point, result.fingers = other.point;
-      result.body = base.key.body;
+      if (across >= 0.0) continue;  // before the cosine, which is dear
+      if (across > -std::cos(std::min(angle + friction_angle_[other.key.body], kWidest))) continue;
+      if (!see(base, other, across)) return;
     }
   }
+}
+
+bool GraspAssist::is_opposed(std::size_t slot, std::size_t body, bool by_palm,
+                             const std::vector<Contact>& contacts) const {
+  bool found = false;
+  each_opposed(slot, body, by_palm, contacts,
+               [&](const Contact&, const Contact&, double) { return !(found = true); });
+  return found;
+}
+
+std::optional<GraspAssist::Opposed> GraspAssist::opposed(std::size_t slot, std::size_t body, bool by_palm,
+                                                         const std::vector<Contact>& contacts) const {
+  Opposed result;
+  double most = 1.0;
+  each_opposed(slot, body, by_palm, contacts, [&](const Contact& base, const Contact& other, double across) {
+    const int bit = 1 << finger_of(other.key.capsule);
+    result.taking_part = static_cast<std::uint8_t>(result.taking_part | bit);
+    result.depth = std::max({result.depth, base.depth, other.depth});
+    if (across >= most) return true;
+    most = across;
+    result.squeeze = base.depth + other.depth;
+    result.base = base.point, result.fingers = other.point;
+    result.body = base.key.body;
+    return true;
+  });
   result.by_palm = by_palm;
   return result.taking_part != 0 ? std::optional<Opposed>(result) : std::nullopt;
 }
@@ -341,6 +366,9 @@ void GraspAssist::take_what_is_held(double fraction, SimulationState& state) con
   for (auto one = contacts.begin(); one != contacts.end(); ++one) {
     const std::size_t slot = one->key.hand, body = one->key.body;
     if (one->depth <= 0.0 || mode_of(body) == GraspMode::free) continue;
+    if (one != contacts.begin() && (one - 1)->depth > 0.0 && (one - 1)->key.hand == slot &&
+        (one - 1)->key.body == body)
+      continue;  // the same body: looked at
     const bool looked_at = std::any_of(contacts.begin(), one, [&](const Contact& before) {
       return before.depth > 0.0 && before.key.hand == slot &&
              object_index_[before.key.body] == object_index_[body];
@@ -350,6 +378,10 @@ void GraspAssist::take_what_is_held(double fraction, SimulationState& state) con
                                     [&](const Grip& grip) { return is_in(grip, slot, body); });
     const bool is_new = known == state.grips.end();
     if (!is_new && (known->active || known->released || known->lost)) continue;
+    // In most steps no finger has come to it.
+    if (!is_new && !known->by_palm && only_fingers_of(*known, contacts) &&
+        is_opposed(slot, body, false, contacts))
+      continue;
     if (is_buried(slot, state) || is_shown_in(slot, body, state)) continue;
     auto found = opposed(slot, body, false, contacts);
     if (!found) found = opposed(slot, body, true, contacts);
@@ -501,9 +533,9 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = touching_sides(grip, state.contacts).both();
-    const bool lost =
-        touching ? slips(state.contacts, grip) || !opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
-                 : grip.opened <= kMinOpening;
+    const bool lost = touching ? slips(state.contacts, grip) ||
+                                     !is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
+                               : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     leave_joints_free(step, state, grip);

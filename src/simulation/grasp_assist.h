@@ -60,6 +60,13 @@ class GraspAssist {
     std::size_t body = 0;          ///< that the base touches
     std::uint8_t taking_part = 0;  ///< fingers, a bit each
   };
+  template <typename See>
+  void each_opposed(std::size_t slot, std::size_t body, bool by_palm, const std::vector<Contact>& contacts,
+                    const See& see) const;
+  bool is_opposed(std::size_t slot, std::size_t body, bool by_palm,
+                  const std::vector<Contact>& contacts) const;
+  /// Whether all fingers that touch the object take part in the grip.
+  bool only_fingers_of(const Grip& grip, const std::vector<Contact>& contacts) const;
   std::optional<Opposed> opposed(std::size_t slot, std::size_t body, bool by_palm,
                                  const std::vector<Contact>& contacts) const;
   /// Whether the base, and the fingers, of a grip touch the object.
@@ -87,6 +94,7 @@ class GraspAssist {
   const ContactConfiguration configuration_;
   std::vector<Object> objects_;
   std::vector<std::size_t> object_index_;  // by body, in objects_
+  std::vector<double> friction_angle_;     // by body [rad]
   std::vector<GraspMode> modes_;           // of objects: free, assist or never
   bool acts_ = false;                      // there is an object that is not free
   mutable std::vector<Pose> poses_;        // of poses_of()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -25,7 +26,8 @@ std::string joined(const std::vector<std::string>& names);
 template <typename Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
-  for (const auto& item : items) names.emplace_back(item.name);
+  std::transform(std::begin(items), std::end(items), std::back_inserter(names),
+                 [](const auto& item) { return std::string(item.name); });
   return names;
 }
 
