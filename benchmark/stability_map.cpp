@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/response/contact_model.h"
+#include "nodes/exit_status.h"
 #include "support/stability_map.h"
 #include "text/command_line.h"
 #include "text/files.h"
@@ -135,10 +136,5 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace mrhi::testing;
-  return mrhi::exit_status(
-      "stability_map",
-      [&] {
-        return run(arguments_of({argv + 1, argv + argc}));
-      },
-      std::cerr);
+  return mrhi::exit_status("stability_map", [&] { return run(arguments_of({argv + 1, argv + argc})); });
 }

@@ -7,6 +7,7 @@
 #include "../text/command_line.h"
 #include "../text/files.h"
 #include "../text/text.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/input_error.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -149,10 +150,5 @@ int check(const std::vector<std::string>& words) {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status(
-      "check_scene",
-      [&] {
-        return mrhi::check({argv + 1, argv + argc});
-      },
-      std::cerr);
+  return mrhi::exit_status("check_scene", [&] { return mrhi::check({argv + 1, argv + argc}); });
 }

@@ -10,6 +10,7 @@
 
 #include "../text/command_line.h"
 #include "../text/text.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 
@@ -60,17 +61,14 @@ int report(const ReplayArguments& arguments) {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status(
-      "replay",
-      [&] {
-        const mrhi::ReplayArguments arguments = mrhi::parse_replay_arguments({argv + 1, argv + argc});
-        if (arguments.help) {
-          std::cout << mrhi::replay_help();
-          return 0;
-        }
-        if (!arguments.compare.empty()) return mrhi::run_script("compare", arguments.compare);
-        mrhi::replay(arguments);
-        return mrhi::report(arguments);
-      },
-      std::cerr);
+  return mrhi::exit_status("replay", [&] {
+    const mrhi::ReplayArguments arguments = mrhi::parse_replay_arguments({argv + 1, argv + argc});
+    if (arguments.help) {
+      std::cout << mrhi::replay_help();
+      return 0;
+    }
+    if (!arguments.compare.empty()) return mrhi::run_script("compare", arguments.compare);
+    mrhi::replay(arguments);
+    return mrhi::report(arguments);
+  });
 }

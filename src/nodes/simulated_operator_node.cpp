@@ -95,8 +95,8 @@ class OperatorPublisher {
             [this](const mr_hand_interaction::ContactArray::ConstPtr& message) { contacts_ = *message; },
             nullptr, hints),
         node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
-    timer_ =
-        node.createWallTimer(ros::WallDuration(1.0 / rate_), [this](const ros::WallTimerEvent&) { tick(); });
+    timer_ = node.createSteadyTimer(ros::WallDuration(1.0 / rate_),
+                                    [this](const ros::SteadyTimerEvent&) { tick(); });
   }
 
   void take(const mr_hand_interaction::ObjectStateArray& message) {
@@ -183,7 +183,7 @@ class OperatorPublisher {
 
   LeapHumanPublisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace mrhi

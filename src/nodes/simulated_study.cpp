@@ -3,6 +3,7 @@
 
 #include "../text/command_line.h"
 #include "../training/operator_trial.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -139,16 +140,13 @@ void play(Study study) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return mrhi::exit_status(
-      "simulated_study",
-      [&] {
-        const Study study = read_arguments({argv + 1, argv + argc});
-        if (study.help) {
-          std::cout << kHelp;
-        } else {
-          play(study);
-        }
-        return 0;
-      },
-      std::cerr);
+  return mrhi::exit_status("simulated_study", [&] {
+    const Study study = read_arguments({argv + 1, argv + argc});
+    if (study.help) {
+      std::cout << kHelp;
+    } else {
+      play(study);
+    }
+    return 0;
+  });
 }

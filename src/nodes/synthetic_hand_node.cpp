@@ -14,6 +14,7 @@
 #include "../ros/node.h"
 #include "../text/command_line.h"
 #include "../text/files.h"
+#include "exit_status.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
@@ -126,8 +127,8 @@ class SyntheticHandPublisher {
 
  private:
   void wait_for_listener() const {
-    const ros::WallTime latest = ros::WallTime::now() + ros::WallDuration(5.0);
-    while (node_.ok() && !publisher_.has_listener() && ros::WallTime::now() < latest) {
+    const ros::SteadyTime latest = ros::SteadyTime::now() + ros::WallDuration(5.0);
+    while (node_.ok() && !publisher_.has_listener() && ros::SteadyTime::now() < latest) {
       ros::WallDuration(0.005).sleep();
       ros::spinOnce();
     }
@@ -169,12 +170,9 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
   if (arguments.size() > 1) {
-    return mrhi::exit_status(
-        "synthetic_hand_node",
-        [&] {
-          return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
-        },
-        std::cerr);
+    return mrhi::exit_status("synthetic_hand_node", [&] {
+      return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
+    });
   }
   return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
     mrhi::SyntheticHandPublisher(node, mrhi::Parameters(private_node)).run();

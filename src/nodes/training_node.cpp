@@ -89,7 +89,7 @@ class TrainingServer {
         participant_(parameters.header.participant),
         auto_next_(parameters.auto_next) {
     for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
-    if (parameters.auto_start) next_ = ros::WallTime::now();
+    if (parameters.auto_start) next_ = ros::SteadyTime::now();
     status_ = node.advertise<mr_hand_interaction::TrainingStatus>("training/status", kQueue, true);
     markers_ = node.advertise<visualization_msgs::MarkerArray>("training/markers", 10);
     advertise_services(private_node);
@@ -102,7 +102,7 @@ class TrainingServer {
         node.subscribe("joint_states", kQueue, &TrainingServer::take_joints, this, hints),
         node.subscribe("hand_frame", kQueue, &TrainingServer::take_hands, this, hints),
         node.subscribe("tracked_hands", kQueue, &TrainingServer::take_filtered_hands, this, hints)};
-    timer_ = node.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { tick(); });
+    timer_ = node.createSteadyTimer(kPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
   }
 
   void advertise_services(ros::NodeHandle& private_node) {
@@ -283,11 +283,11 @@ class TrainingServer {
   void tick() {
     if (!failed_.empty()) throw SessionError(failed_);
     if (session_.phase() != SessionPhase::finished) session_.folder().check_there();
-    const ros::WallTime time = ros::WallTime::now();
+    const ros::SteadyTime time = ros::SteadyTime::now();
     if (session_.phase() == SessionPhase::ready && !paused_ && !next_.isZero() && time >= next_) {
       const std::string wrong = begin_trial();
       if (!wrong.empty()) ROS_WARN_DELAYED_THROTTLE(10.0, "the trial cannot begin yet: %s", wrong.c_str());
-      next_ = wrong.empty() ? ros::WallTime() : time + kRetry;
+      next_ = wrong.empty() ? ros::SteadyTime() : time + kRetry;
     }
     publish();
   }
@@ -327,13 +327,13 @@ class TrainingServer {
     if (paused_) return "the session is paused; allowed: pause with false, then next";
     if (session_.phase() == SessionPhase::running) return "a trial is running; allowed: pause, skip, repeat";
     if (session_.phase() == SessionPhase::finished) return "all trials are done; allowed: repeat";
-    next_ = ros::WallTime::now();
+    next_ = ros::SteadyTime::now();
     return "";
   }
 
   void note_end() {
     at_start_ = false;
-    next_ = auto_next_ < 0.0 ? ros::WallTime() : ros::WallTime::now() + ros::WallDuration(auto_next_);
+    next_ = auto_next_ < 0.0 ? ros::SteadyTime() : ros::SteadyTime::now() + ros::WallDuration(auto_next_);
     const std::optional<TrialRow>& last = session_.last();
     if (last)
       ROS_INFO("trial %d, %s: %s after %.1f s, grasped %d times, dropped %d times", last->trial,
@@ -400,8 +400,8 @@ class TrainingServer {
   ParameterWatch parameters_;
   std::string participant_, fixed_frame_ = "world";
   double auto_next_;
-  ros::WallTime next_;  ///< when the next trial begins by itself; zero: when told to
-  std::string failed_;  ///< why the session cannot go on
+  ros::SteadyTime next_;  ///< when the next trial begins by itself; zero: when told to
+  std::string failed_;    ///< why the session cannot go on
   bool paused_ = false;
   bool at_start_ = false;  ///< the running trial's object has been seen where it starts
 
@@ -416,7 +416,7 @@ class TrainingServer {
   ros::Publisher status_, markers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace mrhi

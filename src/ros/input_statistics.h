@@ -22,7 +22,7 @@ class InputStatistics {
   /// Reasons and corrections that are listed from the start; others are added as they occur.
   explicit InputStatistics(const std::vector<std::string>& reasons,
                            const std::vector<std::string>& corrections = {})
-      : period_start_(ros::WallTime::now()) {
+      : period_start_(ros::SteadyTime::now()) {
     for (const std::string& reason : reasons) rejected_[reason];
     for (const std::string& kind : corrections) corrected_[kind];
   }
@@ -39,7 +39,7 @@ class InputStatistics {
     Refusals& refusals = rejected_[reason];
     ++refusals.count;
     refusals.last = detail;
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (!refusals.logged.isZero() && now - refusals.logged < kQuiet) return;
     refusals.logged = now;
     ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
@@ -59,7 +59,7 @@ class InputStatistics {
   /// Counts since the start; rate and latency since the last report.
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     using diagnostic_msgs::DiagnosticStatus;
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     const double frames = static_cast<double>(taken_in_period_);
     const ros::WallDuration period = now - period_start_;
     status.summary(DiagnosticStatus::OK, taken_in_period_ > 0 ? "frames are coming" : "no frames");
@@ -95,7 +95,7 @@ class InputStatistics {
     std::uint64_t count = 0;
     std::uint64_t reported = 0;
     std::string last;
-    ros::WallTime logged;
+    ros::SteadyTime logged;
   };
 
   std::uint64_t taken_ = 0;
@@ -105,7 +105,7 @@ class InputStatistics {
   std::map<std::string, std::uint64_t> corrected_;
   std::uint64_t taken_in_period_ = 0;
   double latency_sum_ = 0.0, latency_max_ = 0.0;
-  ros::WallTime period_start_;
+  ros::SteadyTime period_start_;
 };
 
 /// These, and what else a node reports, on /diagnostics once a second.
@@ -122,7 +122,7 @@ class NodeDiagnostics : public InputStatistics {
       report(status);
       if (more) more(status);
     });
-    timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    timer_ = node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
       // The updater adds its period to the clock, which throws where stamps end.
       if (from_ros_time(ros::Time::now()) <= StampCheck::kLatest) updater_.force_update();
       if (each_second_) each_second_();
@@ -135,7 +135,7 @@ class NodeDiagnostics : public InputStatistics {
  private:
   diagnostic_updater::Updater updater_;
   std::function<void()> each_second_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 /// Counts messages that have not arrived (a queue was full, or the way was), by the numbers that ROS gives

@@ -112,7 +112,7 @@ struct InteractionServer::Impl {
     placing_.turn(parameters.place_by_mouse, live_.simulation());
     advertise_services(private_node);
     between_frames_.start();
-    idle_timer_ = node.createWallTimer(kIdlePeriod, [this](const ros::WallTimerEvent&) { idle(); });
+    idle_timer_ = node.createSteadyTimer(kIdlePeriod, [this](const ros::SteadyTimerEvent&) { idle(); });
   }
 
   void subscribe(ros::NodeHandle& node) {
@@ -157,9 +157,8 @@ struct InteractionServer::Impl {
     place_dragged();
     for (const std::string& what : result.not_finite) diagnostics_.rejected("not finite", what);
     results_.publish_picture(result);
-    if (ros::Time::isSystemTime())
-      picture_latency_.add(static_cast<Nanoseconds>(1e9 * (results_.shown().toSec() - arrival.toSec())));
     const ros::Time now = ros::Time::now();
+    if (ros::Time::isSystemTime()) picture_latency_.add(from_ros_time(now) - from_ros_time(arrival));
     diagnostics_.waited(seconds_between(arrival, now));
     diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
     clock_.take(stamp, now);
@@ -245,7 +244,7 @@ struct InteractionServer::Impl {
       log_.without_hands(until);
       place_dragged();
       results_.publish(live_.simulation().result());
-    } else if (ros::WallTime::now() - results_.shown() > kIdlePeriod * 0.5) {
+    } else if (ros::SteadyTime::now() - results_.shown() > kIdlePeriod * 0.5) {
       place_dragged();
       results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
     }
@@ -336,7 +335,7 @@ struct InteractionServer::Impl {
   /// scene of many objects costs more to show than to change.
   void show_change() {
     results_.show(live_.simulation());
-    if (ros::WallTime::now() - results_.shown() > kIdlePeriod)
+    if (ros::SteadyTime::now() - results_.shown() > kIdlePeriod)
       results_.publish_scene(live_.simulation().result(), to_ros_time(clock_.stamp(ros::Time::now())));
     placing_.renew(live_.simulation());
   }
@@ -367,7 +366,7 @@ struct InteractionServer::Impl {
   SequenceWatch sequences_;
   ros::Subscriber hands_;
   std::vector<ros::ServiceServer> services_;
-  ros::WallTimer idle_timer_;
+  ros::SteadyTimer idle_timer_;
   BetweenFrames between_frames_;  ///< last, so that nothing runs beside the end of the others
 };
 

@@ -144,7 +144,7 @@ class Placing {
   std::map<std::string, Pose> dragged() {
     std::map<std::string, Pose> poses;
     if (!server_) return poses;
-    const ros::WallTime silent_since = ros::WallTime::now() - ros::WallDuration(kSilence);
+    const ros::SteadyTime silent_since = ros::SteadyTime::now() - ros::WallDuration(kSilence);
     for (auto drag = drags_.begin(); drag != drags_.end();) {
       if (drag->second.heard < silent_since) {
         drag = drags_.erase(drag);
@@ -196,18 +196,18 @@ class Placing {
 
   struct Drag {
     Pose pose;
-    ros::WallTime heard;
+    ros::SteadyTime heard;
   };
   void take(const Feedback& feedback) {
     const auto drag = drags_.find(feedback.marker_name);
     if (feedback.event_type == Feedback::MOUSE_UP && drag != drags_.end()) drags_.erase(drag);
     if (feedback.event_type == Feedback::KEEP_ALIVE && drag != drags_.end())
-      drag->second.heard = ros::WallTime::now();
+      drag->second.heard = ros::SteadyTime::now();
     Pose pose = from_message(feedback.pose);
     pose.orientation.normalize();
     const bool usable = pose.position.allFinite() && pose.orientation.coeffs().allFinite();
     if (feedback.event_type == Feedback::POSE_UPDATE && usable)
-      drags_[feedback.marker_name] = {pose, ros::WallTime::now()};
+      drags_[feedback.marker_name] = {pose, ros::SteadyTime::now()};
   }
 
   std::string topic_, fixed_frame_;

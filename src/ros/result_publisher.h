@@ -224,7 +224,7 @@ class ResultPublisher {
   void show(const Simulation& simulation) {
     simulation_ = &simulation;
     markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
-    markers_shown_ = ros::WallTime();
+    markers_shown_ = ros::SteadyTime();
     scene_changed_ = true;
   }
 
@@ -245,7 +245,7 @@ class ResultPublisher {
   void publish_picture(const FrameResult& result) {
     const std_msgs::Header when = header(result);
     publish_outputs(Moment::picture, result, when);
-    shown_ = ros::WallTime::now();
+    shown_ = ros::SteadyTime::now();
     publish_transforms(when);
     if (standard_) standard_->publish_hands(result, when);
     publish_events(result.events);
@@ -269,7 +269,7 @@ class ResultPublisher {
     publish_transforms(header(stamp));
     if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
     publish_markers(result, header(stamp));
-    shown_ = ros::WallTime::now();
+    shown_ = ros::SteadyTime::now();
   }
 
   void publish_events(const std::vector<Event>& events) {
@@ -280,8 +280,8 @@ class ResultPublisher {
     }
   }
 
-  /// When something was last shown.
-  ros::WallTime shown() const { return shown_; }
+  /// When something was last shown, by a clock that nobody sets.
+  ros::SteadyTime shown() const { return shown_; }
   static constexpr double kMarkerRate = 60.0;  ///< [Hz]
 
  private:
@@ -342,7 +342,7 @@ class ResultPublisher {
   void publish_markers(const FrameResult& result, const std_msgs::Header& header) {
     if (marker_publisher_.getNumSubscribers() == 0) return;
     markers_->note(result, header.stamp);
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (ros::WallDuration(now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
     markers_shown_ = now;
     // Nobody in this process still has the one before: its memory serves again.
@@ -369,7 +369,7 @@ class ResultPublisher {
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   tf2_ros::TransformBroadcaster transforms_;
   ros::Time transforms_stamp_;
-  ros::WallTime shown_, markers_shown_;
+  ros::SteadyTime shown_, markers_shown_;
 };
 
 }  // namespace mrhi

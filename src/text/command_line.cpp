@@ -118,16 +118,4 @@ std::string CommandLine::names() const {
   return text::joined(names);
 }
 
-int exit_status(const std::string& program, const std::function<int()>& work, std::ostream& errors) {
-  try {
-    return work();
-  } catch (const UsageError& error) {
-    errors << program << ": " << error.what() << std::endl;
-    return 2;
-  } catch (const std::exception& error) {
-    errors << program << ": " << error.what() << std::endl;
-    return 1;
-  }
-}
-
 }  // namespace mrhi

@@ -57,8 +57,4 @@ class CommandLine {
   Take words_;
 };
 
-/// Runs a program's work. Its status: 0; or, with one line on `errors`, 2 for a UsageError and 1 for another
-/// std::exception.
-int exit_status(const std::string& program, const std::function<int()>& work, std::ostream& errors);
-
 }  // namespace mrhi

@@ -1,5 +1,7 @@
 #include "../../src/text/command_line.h"
 
+#include "../../src/nodes/exit_status.h"
+
 #include <gtest/gtest.h>
 
 namespace mrhi {
@@ -91,9 +93,9 @@ TEST(CommandLine, a_value_is_told_with_what_is_allowed) {
 
 TEST(CommandLine, a_program_ends_with_2_for_bad_usage_and_1_for_bad_data) {
   const auto ended = [](const std::function<int()>& work) {
-    std::ostringstream errors;
-    const int status = exit_status("tool", work, errors);
-    return std::to_string(status) + " " + errors.str();
+    ::testing::internal::CaptureStderr();
+    const int status = exit_status("tool", work);
+    return std::to_string(status) + " " + ::testing::internal::GetCapturedStderr();
   };
   EXPECT_EQ(ended([]() -> int { throw UsageError("so not"); }), "2 tool: so not\n");
   EXPECT_EQ(ended([]() -> int { throw std::runtime_error("broken"); }), "1 tool: broken\n");

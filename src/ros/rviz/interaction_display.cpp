@@ -73,10 +73,10 @@ class InteractionDisplay : public rviz::Display {
   void update(float, float) override {
     read_properties();
     if (frame_.empty() || !place_in_fixed_frame()) return;
-    if (hands_came_ != ros::WallTime() && (ros::WallTime::now() - hands_came_).toSec() > kPassing) {
+    if (hands_came_ != ros::SteadyTime() && (ros::SteadyTime::now() - hands_came_).toSec() > kPassing) {
       view_.take_rendered(Hands());
       view_.take(ContactArray());
-      hands_came_ = ros::WallTime();
+      hands_came_ = ros::SteadyTime();
       changed_ = true;
     }
     if ((eye() - drawn_from_).norm() > kEyeMoved) changed_ = true;
@@ -236,7 +236,7 @@ class InteractionDisplay : public rviz::Display {
     listen<Hands>("rendered_hands", [this](const Hands& message) {
       view_.take_rendered(message);
       stamp_ = message.header.stamp;
-      hands_came_ = ros::WallTime::now();
+      hands_came_ = ros::SteadyTime::now();
     });
     listen<Hands>("tracked_hands", [this](const Hands& message) { view_.take_tracked(message); });
     listen<ObjectStateArray>("objects", [this](const ObjectStateArray& message) {
@@ -374,8 +374,8 @@ class InteractionDisplay : public rviz::Display {
   bool subscribed_unreliable_ = false;
   std::vector<ros::Subscriber> subscribers_;
   std::string frame_;
-  ros::Time stamp_;           ///< of the last frame
-  ros::WallTime hands_came_;  ///< when hands last came
+  ros::Time stamp_;             ///< of the last frame
+  ros::SteadyTime hands_came_;  ///< when hands last came
   std::map<std::string, mr_hand_interaction::ObjectState> objects_;
   SceneView view_;
   std::unique_ptr<Markers> markers_;

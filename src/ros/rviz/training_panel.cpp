@@ -39,8 +39,8 @@ const char* stage_name(std::uint8_t stage) {
   return stage < 3 ? names[stage] : "?";
 }
 
-bool is_old(const ros::WallTime& time) {
-  return time.isZero() || (ros::WallTime::now() - time).toSec() > kOld;
+bool is_old(const ros::SteadyTime& time) {
+  return time.isZero() || (ros::SteadyTime::now() - time).toSec() > kOld;
 }
 
 /// Empty, or what went wrong.
@@ -83,7 +83,7 @@ class TrainingPanel : public rviz::Panel {
     subscribers_ = {node.subscribe("training/status", 10, &TrainingPanel::take, this),
                     node.subscribe("contacts", 1, &TrainingPanel::take_contacts, this),
                     node.subscribe("hand_frame", 10, &TrainingPanel::take_hands, this)};
-    counted_ = ros::WallTime::now();
+    counted_ = ros::SteadyTime::now();
     connect(timer_, &QTimer::timeout, this, [this] { refresh(); });
     timer_->start(kRefresh);
     refresh();
@@ -109,7 +109,7 @@ class TrainingPanel : public rviz::Panel {
 
   void take(const Status& status) {
     status_ = status;
-    told_ = ros::WallTime::now();
+    told_ = ros::SteadyTime::now();
   }
 
   void take_contacts(const mr_hand_interaction::ContactArray& message) {
@@ -120,7 +120,7 @@ class TrainingPanel : public rviz::Panel {
       pressing += std::max(0.0, -(n.x * f.x + n.y * f.y + n.z * f.z));
     }
     grip_ = 0.5 * pressing;
-    touched_ = ros::WallTime::now();
+    touched_ = ros::SteadyTime::now();
   }
 
   void take_hands(const mr_hand_interaction::HandFrame& frame) {
@@ -128,11 +128,11 @@ class TrainingPanel : public rviz::Panel {
     if (frame.hands.empty()) return;
     confidence_ = 0.0;
     for (const auto& hand : frame.hands) confidence_ = std::max<double>(confidence_, hand.confidence);
-    seen_ = ros::WallTime::now();
+    seen_ = ros::SteadyTime::now();
   }
 
   void refresh() {
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (const double passed = (now - counted_).toSec(); passed > kOld) {
       rate_ = frames_ / passed;
       frames_ = 0;
@@ -189,12 +189,12 @@ class TrainingPanel : public rviz::Panel {
   std::map<std::string, QLabel*> lines_;
   std::map<std::string, QPushButton*> buttons_;
   mr_hand_interaction::TrainingStatus status_;
-  ros::WallTime told_, touched_, seen_;  ///< when the last message came
-  double grip_ = 0.0;                    ///< on the trial's object: half of what presses on it [N]
-  double confidence_ = 0.0;              ///< of the hand that is seen best
-  int frames_ = 0;                       ///< of hands since the last refresh
-  double rate_ = 0.0;                    ///< of them [Hz]
-  ros::WallTime counted_;
+  ros::SteadyTime told_, touched_, seen_;  ///< when the last message came
+  double grip_ = 0.0;                      ///< on the trial's object: half of what presses on it [N]
+  double confidence_ = 0.0;                ///< of the hand that is seen best
+  int frames_ = 0;                         ///< of hands since the last refresh
+  double rate_ = 0.0;                      ///< of them [Hz]
+  ros::SteadyTime counted_;
   std::vector<ros::Subscriber> subscribers_;
   std::thread calling_;
   QTimer* timer_;
