@@ -155,9 +155,21 @@ void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Qua
   turn += gain.velocity * innovation;
 }
 
+/// Estimates the noise. Where it was underestimated so far, so was the filter's own variance: without the
+/// correction a hand that appears would keep the velocity that its first samples' noise feigned.
+///
+///     P <- P (r / r_before)^2   for r > r_before, as P of a given a / r is proportional to r^2
+void observe_noise(FilterMemory& memory) {
+  const double before = filter_noise(memory.noise);
+  mrhi::observe_noise(memory.history, memory.noise);
+  const double ratio = std::max(1.0, filter_noise(memory.noise) / before), factor = ratio * ratio;
+  MotionVariance& variance = memory.variance;
+  variance = {factor * variance.position, factor * variance.mixed, factor * variance.speed};
+}
+
 /// Prediction x + T v, innovation z - prediction; a point that comes or goes begins at rest where it is seen.
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
-  if (!filter.noise) observe_noise(memory.history, memory.noise);
+  if (!filter.noise) observe_noise(memory);
   const double noise = filter.noise.value_or(filter_noise(memory.noise));
   Hand hand = memory.history.samples[0];
   const double speed = true_speed(memory, noise);
