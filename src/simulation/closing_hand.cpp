@@ -10,13 +10,13 @@ namespace {
 constexpr double kMinClosingSpeed = 0.03;
 /// and than this fraction of its own and its base's speed: a hand that slaps or nudges does not close.
 constexpr double kMinClosingRatio = 0.25;
-/// Of a body from the line between a finger and what it closes against, at most [m].
-constexpr double kBeside = 0.01;
-/// Beyond this a body is not looked at [m].
-constexpr double kFar = 0.1;
-/// The normals under both are as far from each other (cosine). A fingertip that taps on a cube has the thumb
-/// beside the next face.
-constexpr double kOpposite = -0.3;
+/// Largest distance of a body from the line between a finger and its base [m].
+constexpr double kMaxLineDistance = 0.01;
+/// Largest distance at which the faces under finger and base are searched [m].
+constexpr double kSearchDistance = 0.1;
+/// Largest cosine between the normals of these faces. A fingertip that taps a cube has the thumb beside the
+/// adjacent face.
+constexpr double kMaxOpposingCosine = -0.3;
 
 double distance_from_axis(const Vector3& point, const Capsule& capsule) {
   const Vector3 along = capsule.end - capsule.start;
@@ -72,10 +72,10 @@ double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Obje
 bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
                                     const Poses& poses) const {
   const auto under = [&](int capsule) {
-    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, poses, kFar);
+    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, poses, kSearchDistance);
   };
   const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
-  return tip && base && tip->features.normal.dot(base->features.normal) < kOpposite;
+  return tip && base && tip->features.normal.dot(base->features.normal) < kMaxOpposingCosine;
 }
 
 bool ClosingHand::closes_on(const HandTrack& track, bool by_palm, int finger, const Object& object,
@@ -86,9 +86,9 @@ bool ClosingHand::closes_on(const HandTrack& track, bool by_palm, int finger, co
   bool is_far = true;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const Body& body = scene_.bodies[static_cast<std::size_t>(object[i])];
-    is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kBeside;
+    is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kMaxLineDistance;
   }
-  return !is_far && nearest(line, object, poses, kBeside) &&
+  return !is_far && nearest(line, object, poses, kMaxLineDistance) &&
          on_opposite_faces(hand, by_palm, finger, object, poses);
 }
 

@@ -4,33 +4,33 @@
 #include <vector>
 
 #include "../collision/contact_finder.h"
+#include "grasp_objects.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
 bool has_tip(const Hand& hand, int finger);
-/// True for what fingers close against: the palm with its metacarpals, or the thumb.
+/// True for the capsules that fingers close against: the palm with its metacarpals, or the thumb.
 inline bool is_base(bool by_palm, int capsule) {
   if (by_palm) return capsule == kPalm || bone_of(capsule) == 0;
   return finger_of(capsule) == 0;
 }
 
-/// What fingers do about an object, from a frame to the next. An object is one body, or all bodies of a
-/// floating linkage. Bodies as they are when the frame begins, the hand as when it ends.
+/// Motion of the fingers about an object within a frame. Bodies are where the frame begins, the hand where it
+/// ends.
 class ClosingHand {
  public:
-  /// Indices in Scene::bodies.
-  using Object = std::vector<int>;
+  using Object = GraspObjects::Object;
   using Poses = std::vector<Pose>;
 
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  /// True if a finger closes on the object, which is between it and its base.
+  /// True if a finger closes on the object, which lies between it and its base.
   bool closes_on(const HandTrack& track, const Object& object, const Poses& poses) const;
-  /// Distance of a side of a grip, its base or its fingers, from the object; negative inside; at most `limit`
-  /// [m].
+  /// Distance from the object to one side of a grip, its base or its fingers: negative inside, at most
+  /// `limit` [m].
   double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses,
              double limit) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because

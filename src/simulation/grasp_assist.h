@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "closing_hand.h"
+#include "grasp_objects.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "operators.h"
 
@@ -13,13 +14,12 @@ namespace mrhi {
 /// Compliance: a finger that closes on a body touches it without force until another part of the hand touches
 /// an opposite face. The first finger then does not knock the body away.
 ///
-/// Support: a hand that has a body between two opposed sides, deeper than a fingertip pad, takes it (Grip).
-/// Contacts act as ever. Only if the body slips, or its contacts no longer oppose each other, and it is off
-/// its place in the hand, the grip becomes active: springs of bounded force add what the contacts lack, until
-/// the hand opens.
+/// Support: a hand that has a body between two opposing sides, deeper than a fingertip pad, takes it (Grip).
+/// Contacts act as ever. The grip becomes active only if the body slips, or its contacts no longer oppose
+/// each other, and it has left its place in the hand: springs of bounded force then add what the contacts
+/// lack, until the hand opens.
 ///
-/// All bodies of a floating linkage are one object: a thumb on its base and a finger on its lid are two
-/// sides. An object may be without assist, or not to be grasped at all (GraspMode).
+/// GraspObjects has the objects. An object may be without assist, or not to be grasped at all (GraspMode).
 class GraspAssist {
  public:
   /// Keeps references.
@@ -39,50 +39,18 @@ class GraspAssist {
   struct ClosingPair {
     std::size_t hand, body;
   };
-  using Object = ClosingHand::Object;
-  const Object& object_of(std::size_t body) const { return objects_[object_index_[body]]; }
-  GraspMode mode_of(std::size_t body) const { return modes_[object_index_[body]]; }
-  /// True if the hand has the body in this grip, or another part of the same object.
-  bool is_in(const Grip& grip, std::size_t hand, std::size_t body) const {
-    return grip.hand == hand && object_index_[grip.body] == object_index_[body];
-  }
+  using Object = GraspObjects::Object;
   const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
-  bool is_opposed(const Contact& contact, const std::vector<Contact>& contacts) const;
-  bool slips(const std::vector<Contact>& contacts, const Grip& grip) const;
   bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_buried(std::size_t slot, const SimulationState& state) const;
-  /// Opposing contacts of a hand that could hold an object between them. World.
-  struct Opposed {
-    double depth = 0.0;     ///< of the deeper contact [m]
-    double squeeze = 0.0;   ///< of both contacts together [m]
-    Vector3 base, fingers;  ///< where they touch
-    bool by_palm = false;
-    std::size_t body = 0;          ///< that the base touches
-    std::uint8_t taking_part = 0;  ///< fingers, a bit each
-  };
-  template <typename See>
-  void each_opposed(std::size_t slot, std::size_t body, bool by_palm, const std::vector<Contact>& contacts,
-                    const See& see) const;
-  bool is_opposed(std::size_t slot, std::size_t body, bool by_palm,
-                  const std::vector<Contact>& contacts) const;
-  /// Whether all fingers that touch the object take part in the grip.
-  bool only_fingers_of(const Grip& grip, const std::vector<Contact>& contacts) const;
-  std::optional<Opposed> opposed(std::size_t slot, std::size_t body, bool by_palm,
-                                 const std::vector<Contact>& contacts) const;
-  /// Whether the base, and the fingers, of a grip touch the object.
-  struct TouchingSides {
-    bool base = false, fingers = false;
-
-    bool both() const { return base && fingers; }
-    bool none() const { return !base && !fingers; }
-  };
-  TouchingSides touching_sides(const Grip& grip, const std::vector<Contact>& contacts) const;
   bool ends(const SimulationState& state, Grip& grip) const;
-  bool holds_again(const SimulationState& state, Grip& grip) const;
+  bool resumes(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
-  void take_what_is_held(double fraction, SimulationState& state) const;
-  void take(std::size_t slot, const Opposed& opposed, double fraction, SimulationState& state) const;
+  std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
+  void take_held_objects(double fraction, SimulationState& state) const;
+  void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
+            SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
   void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
@@ -92,14 +60,10 @@ class GraspAssist {
   const Operators& operators_;
   ClosingHand closing_hand_;
   const ContactConfiguration configuration_;
-  std::vector<Object> objects_;
-  std::vector<std::size_t> object_index_;  // by body, in objects_
-  std::vector<double> friction_angle_;     // by body [rad]
-  std::vector<GraspMode> modes_;           // of objects: free, assist or never
-  bool acts_ = false;                      // there is an object that is not free
-  mutable std::vector<Pose> poses_;        // of poses_of()
-  double seconds_ = 0.0;                   // of the frame
-  std::vector<ClosingPair> closing_;       // in this frame
+  const GraspObjects objects_;
+  mutable std::vector<Pose> poses_;   // of poses_of()
+  double seconds_ = 0.0;              // of the frame
+  std::vector<ClosingPair> closing_;  // in this frame
 };
 
 }  // namespace mrhi

@@ -8,7 +8,6 @@
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "../tracking/hand_filter.h"
@@ -16,7 +15,7 @@
 namespace mrhi {
 namespace {
 
-/// Another one for each change of what follows.
+/// Format version. Changes whenever the order or meaning of the bytes does.
 constexpr std::uint64_t kFormat = 0x6d72686900000008ull;
 
 [[noreturn]] void refuse(const char* what) {
@@ -24,8 +23,8 @@ constexpr std::uint64_t kFormat = 0x6d72686900000008ull;
                               "; allowed: a whole one of this version");
 }
 
-void below(int number, double most) {
-  if (number < 0 || number > most) refuse("has a number that is too large");
+void check_limit(int number, double max) {
+  if (number < 0 || number > max) refuse("has a number that is too large");
 }
 
 /// FNV-1a.
@@ -39,8 +38,8 @@ struct Checksum {
   }
 };
 
-/// Of numbers in a state, beyond which none has a meaning.
-constexpr double kLargest = 1e30;
+/// Largest plausible magnitude of a number in a state.
+constexpr double kMaxNumber = 1e30;
 
 struct Out {
   static constexpr bool kHashes = false;
@@ -70,13 +69,13 @@ struct In {
     at += size;
   }
   void check(double number) {
-    if (!(std::abs(number) <= kLargest)) refuse("has a number that is too large, or none");
+    if (!(std::abs(number) <= kMaxNumber)) refuse("has a number that is too large, or none");
   }
-  /// The difference of any two of them can be taken.
+  /// Limits stamps so that the difference of any two does not overflow.
   void check(Nanoseconds stamp) {
     if (stamp < -StampCheck::kLatest || stamp > StampCheck::kLatest) refuse("has a stamp that is none");
   }
-  /// So many that are `item` bytes each in memory, and an eighth of that here, at least.
+  /// Reads a count of items of `item` bytes in memory, each of which takes at least an eighth of that here.
   std::size_t count(std::size_t, std::size_t item) {
     std::uint64_t number = 0;
     raw(&number, sizeof number);
@@ -85,7 +84,7 @@ struct In {
   }
 };
 
-/// What matters to the future. Stamps count relative to `now`.
+/// Hashes the members that determine the future. Stamps are relative to `now`.
 struct Hash {
   static constexpr bool kHashes = true;
 
@@ -98,26 +97,26 @@ struct Hash {
   static std::size_t count(std::size_t size, std::size_t) { return size; }
 };
 
-/// Every member of every part, in order: out, in, or into the hash. Where members are bound by name, a part
-/// that gets a further one does not compile until it stands here too.
-template <class Way>
+/// Visits every member of every part, in order, to write, read or hash it. A part that gains a member does
+/// not compile until the member is listed here, because members are bound by name.
+template <class Visitor>
 class Parts {
  public:
-  explicit Parts(Way& way) : way_(way) {}
+  explicit Parts(Visitor& visitor) : visitor_(visitor) {}
 
   template <class... Items>
   void all(Items&... items) {
     (one(items), ...);
   }
 
-  /// Those of a single step, and those that others follow from: not in the hash.
+  /// Members that the hash omits: of a single step, or derived from others.
   template <class... Items>
   void aside(Items&... items) {
-    if constexpr (!Way::kHashes) all(items...);
+    if constexpr (!Visitor::kHashes) all(items...);
   }
   void stamp(Nanoseconds& stamp) {
-    if constexpr (Way::kHashes) {
-      Nanoseconds since = way_.now - stamp;
+    if constexpr (Visitor::kHashes) {
+      Nanoseconds since = visitor_.now - stamp;
       one(since);
     } else {
       one(stamp);
@@ -126,9 +125,9 @@ class Parts {
 
   template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
   void one(Number& number) {
-    way_.raw(&number, sizeof number);
-    if constexpr (std::is_floating_point<Number>::value) way_.check(static_cast<double>(number));
-    if constexpr (std::is_same<Number, Nanoseconds>::value) way_.check(number);
+    visitor_.raw(&number, sizeof number);
+    if constexpr (std::is_floating_point<Number>::value) visitor_.check(static_cast<double>(number));
+    if constexpr (std::is_same<Number, Nanoseconds>::value) visitor_.check(number);
   }
   void one(bool& truth) {
     std::uint8_t number = truth ? 1 : 0;
@@ -142,13 +141,13 @@ class Parts {
     if (number > static_cast<std::uint8_t>(last)) refuse("has a value of no meaning");
     value = static_cast<Enum>(number);
   }
-  void up_to(int& number, int most) {
+  void up_to(int& number, int max) {
     one(number);
-    below(number, most);
+    check_limit(number, max);
   }
   template <class Item>
   void one(std::vector<Item>& items) {
-    items.resize(way_.count(items.size(), sizeof(Item)));
+    items.resize(visitor_.count(items.size(), sizeof(Item)));
     for (Item& item : items) one(item);
   }
   template <class Item, std::size_t size>
@@ -157,11 +156,11 @@ class Parts {
   }
   template <class Item>
   void one(std::optional<Item>& item) {
-    bool there = item.has_value();
-    aside(there);
-    if (!there) item.reset();
-    if (there && !item) item.emplace();
-    if (there) one(*item);
+    bool has_value = item.has_value();
+    aside(has_value);
+    if (!has_value) item.reset();
+    if (has_value && !item) item.emplace();
+    if (has_value) one(*item);
   }
   void one(Vector3& v) { all(v[0], v[1], v[2]); }
   void one(FingerOffset& a) { all(a[0], a[1], a[2], a[3]); }
@@ -201,7 +200,7 @@ class Parts {
   }
   void one(SampleHistory& part) {
     auto& [samples, elapsed, size] = part;
-    if constexpr (!Way::kHashes) up_to(size, kMaxFilterWindow);
+    if constexpr (!Visitor::kHashes) up_to(size, kMaxFilterWindow);
     for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) all(samples[i], elapsed[i]);
   }
   void one(HandVelocity& part) {
@@ -212,10 +211,10 @@ class Parts {
     auto& [position, mixed, speed] = part;
     all(position, mixed, speed);
   }
-  /// Counts also for a slot that is free: the next hand of its side takes it over.
+  /// Also hashed for a free slot: the next hand of its side inherits it.
   void one(SeenNoise& part, Side side) {
     auto& [variances, size, variance] = part;
-    if constexpr (Way::kHashes) {
+    if constexpr (Visitor::kHashes) {
       if (size == 0) return;
       one_of(side, Side::right);
     } else {
@@ -232,7 +231,7 @@ class Parts {
   void one(Rejoin& part) {
     auto& [from, begin, duration] = part;
     one(duration);
-    if (Way::kHashes && duration <= 0) return;
+    if (Visitor::kHashes && duration <= 0) return;
     stamp(begin);
     one(from);
   }
@@ -241,18 +240,18 @@ class Parts {
     for (const FilterSetting& setting : filter_settings()) {
       std::visit([&](auto value) { one(part.*value); }, setting.value);
       if (const auto* whole = std::get_if<int FilterConfiguration::*>(&setting.value))
-        below(part.**whole, setting.range.max);
+        check_limit(part.**whole, setting.range.max);
     }
   }
-  /// By its place.
+  /// As its index in hand_filters().
   void one(FilterKind& kind) {
     const auto& filters = hand_filters();
     const auto at = std::find_if(filters.begin(), filters.end(),
                                  [&](const HandFilter* filter) { return filter->name == kind.name; });
-    auto place = static_cast<std::uint8_t>(at - filters.begin());
-    one(place);
-    if (place >= filters.size()) refuse("has a value of no meaning");
-    kind.name = filters[place]->name;
+    auto index = static_cast<std::uint8_t>(at - filters.begin());
+    one(index);
+    if (index >= filters.size()) refuse("has a value of no meaning");
+    kind.name = filters[index]->name;
   }
   void one(FilterChange& part) {
     auto& [from, memory, begin] = part;
@@ -263,16 +262,16 @@ class Parts {
   void one(HandPath& part) {
     auto& [start_bend, end_bend, longest_bend, velocity, differences, intervals, order, noise, energy,
            extrapolated] = part;
-    aside(start_bend, end_bend, longest_bend);  // of the frame that is over
+    aside(start_bend, end_bend, longest_bend);  // of the previous frame
     up_to(order, 3);
-    if (Way::kHashes && order == 0) return;
+    if (Visitor::kHashes && order == 0) return;
     all(velocity, differences, intervals, noise, energy, extrapolated);
   }
   void one(HandTrack& part) {
     auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
            mean_velocity] = part;
     one(active);
-    if (Way::kHashes && !active) return one(filter.noise, current.side);
+    if (Visitor::kHashes && !active) return one(filter.noise, current.side);
     all(held, appeared, emerged);
     stamp(last_seen);
     all(previous, current, filter, change, rejoin, path, mean_velocity);
@@ -292,12 +291,12 @@ class Parts {
   }
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
-    if constexpr (Way::kHashes) return;
+    if constexpr (Visitor::kHashes) return;
     all(c.point, c.normal, c.hand_point, c.lever, c.hand_velocity, c.hand_spin, c.axis, c.radius, c.patch,
         c.grip, c.share, c.inverse_mass, c.carrier_inverse_mass, c.restitution, c.impulse, c.torque);
-    // Found anew in each step, and without limits.
-    way_.raw(&c.strength, sizeof c.strength);
-    way_.raw(&c.time_of_impact, sizeof c.time_of_impact);
+    // Recomputed in each step; may be infinite.
+    visitor_.raw(&c.strength, sizeof c.strength);
+    visitor_.raw(&c.time_of_impact, sizeof c.time_of_impact);
   }
   void one(BodyContactKey& part) {
     auto& [a, b, shape_a, shape_b, feature] = part;
@@ -315,7 +314,7 @@ class Parts {
   void one(PalmLag& part) {
     auto& [whole, frame] = part;
     one(whole);
-    if constexpr (Way::kHashes) {
+    if constexpr (Visitor::kHashes) {
       Vector3 still = Vector3::Zero();  // keeps the hashes of recorded runs
       one(still);
     }
@@ -323,15 +322,15 @@ class Parts {
   }
   void one(HandOffset& part) {
     auto& [shift, fingers, lag, stamp, left, left_since] = part;
-    if (Way::kHashes && part.zero()) return;
+    if (Visitor::kHashes && part.zero()) return;
     all(shift, lag, fingers);
     this->stamp(stamp);
     one(left);
-    if (!Way::kHashes || left > 0.0) this->stamp(left_since);
+    if (!Visitor::kHashes || left > 0.0) this->stamp(left_since);
   }
   void one(MassLag& part) {
     auto& [displacement, velocity, stamp] = part;
-    if (Way::kHashes && part.zero()) return;
+    if (Visitor::kHashes && part.zero()) return;
     all(displacement, velocity);
     this->stamp(stamp);
   }
@@ -341,7 +340,7 @@ class Parts {
            in_body, force, torque, point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
     aside(lost);
-    if (!Way::kHashes || lost) one(body_in_palm);
+    if (!Visitor::kHashes || lost) one(body_in_palm);
     all(pads, in_palm, in_hand, in_body);
     aside(stiffness, closes, opened, opens, in_palm_before, slips, force, torque, point, velocity);
   }
@@ -349,7 +348,7 @@ class Parts {
     auto& [level, agreed, shown_in] = part;
     one_of(level, InteractionLevel::grasp);
     one(shown_in);
-    if (!Way::kHashes || level >= InteractionLevel::contact) stamp(agreed);
+    if (!Visitor::kHashes || level >= InteractionLevel::contact) stamp(agreed);
   }
   void one(JointState& part) {
     auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = part;
@@ -362,7 +361,7 @@ class Parts {
     aside(started, time, stamps, asleep);
     stamp(last_frame);
     all(bodies, joints, restrained);
-    if constexpr (Way::kHashes) {
+    if constexpr (Visitor::kHashes) {
       for (std::size_t slot = 0; slot < hands.size(); ++slot) {
         one(hands[slot]);
         if (!hands[slot].active) continue;
@@ -378,79 +377,13 @@ class Parts {
  private:
   template <class Key>
   void in_order(const Key& key) {
-    if constexpr (Way::kHashes) {
+    if constexpr (Visitor::kHashes) {
       std::uint64_t order = key.order();
       one(order);
     }
   }
 
-  Way& way_;
-};
-
-bool is_unit(const Quaternion& q) {
-  constexpr double kRounding = 1e-3;  // of trackers that send 32 bits
-  return std::abs(q.norm() - 1.0) <= kRounding;
-}
-
-/// Whether what a state names is in its scene.
-class Fit {
- public:
-  explicit Fit(const Scene& scene) : scene_(scene) {}
-
-  bool operator()(const SimulationState& state) const {
-    return sizes(state) && all(state.bodies) && all(state.joints) && all(state.hands) && all(state.offsets) &&
-           all(state.contacts) && sorted(state.contacts) && all(state.body_contacts) &&
-           sorted(state.body_contacts) && all(state.sleeping_contacts) && all(state.grips) &&
-           std::is_sorted(state.grips.begin(), state.grips.end(), [](const Grip& a, const Grip& b) {
-             return std::make_pair(a.hand, a.body) < std::make_pair(b.hand, b.body);
-           });
-  }
-
- private:
-  template <class Items>
-  bool all(const Items& items) const {
-    for (const auto& item : items) {
-      if (!one(item)) return false;
-    }
-    return true;
-  }
-  template <class Contacts>
-  static bool sorted(const Contacts& contacts) {
-    return std::adjacent_find(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
-             return !(a.key < b.key);
-           }) == contacts.end();
-  }
-  bool sizes(const SimulationState& state) const {
-    const std::size_t bodies = scene_.bodies.size(), hands = kMaxHands;
-    return state.bodies.size() == bodies && state.asleep.size() == bodies && state.hands.size() == hands &&
-           state.offsets.size() == hands && state.mass_lags.size() == hands &&
-           state.interactions.size() == hands * bodies && state.joints.size() == scene_.joints.size() &&
-           state.restrained.size() == scene_.operators.size();
-  }
-  bool is_shape(std::size_t body, std::size_t shape) const {
-    return body < scene_.bodies.size() && shape < scene_.bodies[body].shapes.size();
-  }
-  bool moves(std::size_t body) const { return body < scene_.bodies.size() && !scene_.bodies[body].fixed; }
-  static bool one(const BodyState& body) { return is_unit(body.pose.orientation); }
-  static bool one(const JointState& joint) { return joint.at_limit >= -1 && joint.at_limit <= 1; }
-  static bool one(const HandTrack& track) {
-    return !track.active ||
-           (is_unit(track.previous.palm.orientation) && is_unit(track.current.palm.orientation));
-  }
-  static bool one(const HandOffset& offset) { return is_unit(offset.lag.whole) && is_unit(offset.lag.frame); }
-  bool one(const Contact& contact) const {
-    const ContactKey& key = contact.key;
-    return is_shape(key.body, key.shape) && key.hand < kMaxHands && key.capsule < kCapsules;
-  }
-  bool one(const BodyContact& contact) const {
-    const BodyContactKey& key = contact.key;
-    return is_shape(key.a, key.shape_a) && is_shape(key.b, key.shape_b) && moves(key.b) && key.a != key.b;
-  }
-  bool one(const Grip& grip) const {
-    return moves(grip.body) && grip.hand < kMaxHands && grip.fingers != 0 && grip.fingers < 1 << kFingers;
-  }
-
-  const Scene& scene_;
+  Visitor& visitor_;
 };
 
 }  // namespace
@@ -485,7 +418,7 @@ SimulationState state_from_bytes(const std::string& bytes, const Scene& scene) {
   SimulationState state;
   Parts<In>(in).one(state);
   if (in.at != in.end) refuse("is too long");
-  if (!Fit(scene)(state)) refuse("does not fit the scene");
+  if (!fits(state, scene)) refuse("does not fit the scene");
   return state;
 }
 

@@ -1,19 +1,20 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
 
-/// A state as bytes that hold every bit of it, for a recording that begins while a simulation runs. They are
-/// those of this version and of machines of the same byte order.
+/// All bits of a state, for a recording that begins while a simulation runs. Bytes can be read by the same
+/// format version, on machines of the same byte order.
 std::string to_bytes(const SimulationState& state);
 
-/// Throws std::invalid_argument for bytes that are not whole, of another version, or of another scene, as far
-/// as they show it. What is taken can be gone on from, whoever has written it: all that it names is there,
-/// and no number is none.
+/// Reads a state that a simulation of the scene can continue from. Throws std::invalid_argument for bytes
+/// that are incomplete, of another format version, or do not fit the scene.
 SimulationState state_from_bytes(const std::string& bytes, const Scene& scene);
+
+/// True if the state's sizes, indices and unit quaternions are valid for the scene.
+bool fits(const SimulationState& state, const Scene& scene);
 
 }  // namespace mrhi

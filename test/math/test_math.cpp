@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "math/duration_histogram.h"
+#include "math/minimum_jerk.h"
 #include "math/registration.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/synthetic/random.h"
@@ -153,6 +155,76 @@ TEST(Registration, needs_a_millimetre_across_its_line) {
   };
   EXPECT_FALSE(registered(strip(0.0009), strip(0.0009)));
   EXPECT_TRUE(registered(strip(0.0011), strip(0.0011)));
+}
+
+TEST(MinimumJerk, goes_from_rest_to_rest_with_its_greatest_speed_in_the_middle) {
+  constexpr double kStep = 1e-5;  // central differences: error about 1e-9
+  const auto speed = [](double t) {
+    return (minimum_jerk(t + kStep) - minimum_jerk(t - kStep)) / (2.0 * kStep);
+  };
+  EXPECT_EQ(minimum_jerk(0.0), 0.0);
+  EXPECT_EQ(minimum_jerk(1.0), 1.0);
+  EXPECT_NEAR(speed(0.0), 0.0, 1e-8);
+  EXPECT_NEAR(speed(1.0), 0.0, 1e-8);
+  EXPECT_NEAR(speed(0.5), 1.875, 1e-8);
+}
+
+TEST(MinimumJerk, stays_at_the_ends_outside_its_duration) {
+  EXPECT_EQ(minimum_jerk(-1.0), 0.0);
+  EXPECT_EQ(minimum_jerk(2.0), 1.0);
+}
+
+TEST(MinimumJerk, has_the_velocities_that_were_asked_for_at_its_ends) {
+  const Vector3 from(1, 2, 3), to(4, 3, 2), v0(0.5, -1, 0), v1(0, 2, 1);
+  const double duration = 0.8, step = 1e-6;
+  const auto at = [&](double t) { return minimum_jerk(from, v0, to, v1, duration, t); };
+  EXPECT_EQ(at(0.0), from);
+  EXPECT_LT((at(1.0) - to).norm(), 1e-12);
+  // One-sided differences; the acceleration is zero there, so their error is of second order.
+  EXPECT_LT(((at(step) - from) / (step * duration) - v0).norm(), 1e-6);
+  EXPECT_LT(((to - at(1.0 - step)) / (step * duration) - v1).norm(), 1e-6);
+}
+
+TEST(MinimumJerk, is_straight_and_even_when_the_ends_have_the_mean_velocity) {
+  const Vector3 from(0, 0, 0), velocity(0.1, -0.3, 0.2);
+  for (const double t : {0.1, 0.35, 0.8}) {
+    const Vector3 p = minimum_jerk(from, velocity, 2.0 * velocity, velocity, 2.0, t);
+    EXPECT_LT((p - 2.0 * t * velocity).norm(), 1e-12);
+  }
+}
+
+constexpr double kRelative = 0.0101;  // half a bin of 2 %
+
+TEST(DurationHistogram, nothing_added_has_quantiles_of_zero) {
+  const DurationHistogram histogram;
+  EXPECT_EQ(histogram.count(), 0u);
+  EXPECT_EQ(histogram.quantile_us(0.5), 0.0);
+  EXPECT_EQ(histogram.max_us(), 0.0);
+}
+
+TEST(DurationHistogram, quantiles_are_within_one_percent) {
+  DurationHistogram histogram;
+  for (int microseconds = 1; microseconds <= 1000; ++microseconds) histogram.add(1000 * microseconds);
+  EXPECT_NEAR(histogram.quantile_us(0.5), 500.0, kRelative * 500.0);
+  EXPECT_NEAR(histogram.quantile_us(0.99), 990.0, kRelative * 990.0);
+  EXPECT_NEAR(histogram.quantile_us(1.0), 1000.0, kRelative * 1000.0);
+  EXPECT_EQ(histogram.max_us(), 1000.0);
+}
+
+TEST(DurationHistogram, no_quantile_exceeds_the_maximum) {
+  DurationHistogram histogram;
+  histogram.add(12345);
+  EXPECT_LE(histogram.quantile_us(0.99), histogram.max_us());
+}
+
+TEST(DurationHistogram, extremes_are_counted) {
+  DurationHistogram histogram;
+  for (const Nanoseconds duration : {Nanoseconds{0}, Nanoseconds{1}, Nanoseconds{3'600'000'000'000}}) {
+    histogram.add(duration);
+  }
+  EXPECT_EQ(histogram.count(), 3u);
+  EXPECT_EQ(histogram.max_us(), 3.6e9);
+  EXPECT_LT(histogram.quantile_us(0.5), 0.011);
 }
 
 }  // namespace

@@ -5,11 +5,10 @@
 #include <cstdlib>
 #include <map>
 
+#include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "replay/replay_files.h"
-#include "replay/run.h"
-#include "text/text.h"
 
 namespace mrhi {
 namespace {

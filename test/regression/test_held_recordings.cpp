@@ -5,10 +5,8 @@
 
 #include "mr_hand_interaction/replay/replay.h"
 #include "regression/grip.h"
-#include "replay/inputs.h"
 #include "replay/replay_files.h"
 #include "support/recordings.h"
-#include "text/text.h"
 
 namespace mrhi {
 namespace {
@@ -193,8 +191,10 @@ TEST_P(HeldRecording, holds_the_object_against_1_g) {
 
 /// time, name, then the position.
 Vector3 last_position(const std::string& objects_csv) {
-  const std::vector<std::string> row = text::split(test::lines_of(objects_csv).back());
-  return {std::stod(row.at(2)), std::stod(row.at(3)), std::stod(row.at(4))};
+  std::istringstream row(test::lines_of(objects_csv).back());
+  std::vector<std::string> cells;
+  for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+  return {std::stod(cells.at(2)), std::stod(cells.at(3)), std::stod(cells.at(4))};
 }
 
 // The tolerance is the tables' twelve digits; joints are recorded to the micrometre, so that nothing is lost

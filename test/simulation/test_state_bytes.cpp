@@ -31,10 +31,19 @@ Scene scene_of(const testing::PinchScene& pinch) {
   ball.name = "ball";
   ball.start.position = {0.2, 0.0, 0.0};
   scene.bodies.push_back(ball);
+  Body person;
+  person.name = "operator";
+  person.is_operator = true;
+  person.mass = 80.0;
+  person.inertia = Vector3(11, 12, 1.5).asDiagonal();
+  person.start.position = Vector3(0, -0.4, 0);
+  person.link_in_body.position = -person.start.position;
+  scene.operators.push_back({static_cast<int>(scene.bodies.size()), {}, 1.5});
+  scene.bodies.push_back(person);
   return scene;
 }
 
-/// A cube held and swung, with a filter that has a memory.
+/// A cube held and swung by an operator who floats, with a filter that has a memory.
 std::unique_ptr<Simulation> held(int frames) {
   const testing::PinchScene pinch;
   auto simulation = std::make_unique<Simulation>(scene_of(pinch), Configuration());
@@ -103,12 +112,12 @@ TEST(StateBytes, that_name_what_is_not_there_are_refused) {
   for (Vector3& pad : grip.pads) pad.setZero();
   ASSERT_EQ(spoiled([&](auto& state) { state.grips.push_back(grip); }), "");
   const std::vector<std::function<void(SimulationState&)>> ways{
-      [](auto& state) { state.contacts.front().key.body = 2; },
+      [](auto& state) { state.contacts.front().key.body = 3; },
       [](auto& state) { state.contacts.front().key.shape = 1; },
       [](auto& state) { state.contacts.front().key.hand = kMaxHands; },
       [](auto& state) { state.contacts.front().key.capsule = kCapsules; },
       [](auto& state) { state.contacts.push_back(state.contacts.front()); },
-      [](auto& state) { state.body_contacts.emplace_back().key.a = 2; },
+      [](auto& state) { state.body_contacts.emplace_back().key.a = 3; },
       [](auto& state) { state.sleeping_contacts.emplace_back().key.shape_b = 1; },
       [](auto& state) { state.bodies.pop_back(); },
       [](auto& state) { state.joints.emplace_back(); },
@@ -120,7 +129,7 @@ TEST(StateBytes, that_name_what_is_not_there_are_refused) {
       [](auto& state) { state.offsets[0].lag.whole.coeffs().setZero(); },
       [](auto& state) { state.hands[0].last_seen = std::numeric_limits<Nanoseconds>::min(); },
       [](auto& state) { state.grips.emplace_back(); },
-      [&](auto& state) { state.grips.push_back(grip), state.grips.back().body = 2; },
+      [&](auto& state) { state.grips.push_back(grip), state.grips.back().body = 3; },
       [&](auto& state) { state.grips.push_back(grip), state.grips.back().hand = kMaxHands; }};
   for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_NE(spoiled(ways[i]), "") << "way " << i;
 }

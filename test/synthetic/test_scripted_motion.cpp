@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "collision/closest_features.h"
+#include "collision/brute_force.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 
 namespace mrhi {
@@ -20,14 +20,26 @@ Hand hand_in_world(const ScriptedMotion& motion, double time) {
   return complete_hand(frame.hands.at(0), default_device_mount());
 }
 
+/// Distance of a place from a box about the origin, negative inside [m].
+double box_distance(const Vector3& place, const Vector3& half) {
+  const Vector3 beyond = place.cwiseAbs() - half;
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+/// Gap between a capsule and a box about the origin [m].
+double box_gap(const Capsule& capsule, const Vector3& half) {
+  const auto distance = [&](double s) { return box_distance(capsule.axis_point(s), half); };
+  return distance(golden_section(distance)) - capsule.radius;
+}
+
 /// Gap between a capsule of the hand and where the scene's object would be had nobody touched it [m].
 double gap(const ScriptedMotion& motion, double time, const Capsule& in_world) {
   const Vector3 centre = Vector3(0.0, 0.0, 0.22) + time * motion.object_twist.linear;
   const Capsule capsule{in_world.start - centre, in_world.end - centre, in_world.radius};
-  if (motion.scene == "ball") return capsule_sphere(capsule, {0.03}).distance;
-  if (motion.scene == "long_cuboid") return capsule_box(capsule, {{0.01, 0.01, 0.1}}).distance;
-  if (motion.scene == "flat_cuboid") return capsule_box(capsule, {{0.05, 0.035, 0.006}}).distance;
-  return capsule_box(capsule, {Vector3::Constant(0.025)}).distance;
+  if (motion.scene == "ball") return box_gap(capsule, Vector3::Zero()) - 0.03;
+  if (motion.scene == "long_cuboid") return box_gap(capsule, {0.01, 0.01, 0.1});
+  if (motion.scene == "flat_cuboid") return box_gap(capsule, {0.05, 0.035, 0.006});
+  return box_gap(capsule, Vector3::Constant(0.025));
 }
 
 /// When each capsule first touches, up to `until`; negative: never.

@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "mr_hand_interaction/response/contact_model.h"
-#include "synthetic/motions.h"
 #include "synthetic/performance.h"
 #include "training/trials.h"
 
@@ -11,6 +10,8 @@ namespace mrhi {
 namespace {
 
 using test::shipped_task;
+
+const Vector3 kObject(0.0, 0.0, 0.22);  // centre of the object in the shipped scenes of one [m]
 
 /// A hand does a task's trial with one of its objects, among what is there in a session; nothing: no hand in
 /// view.
@@ -87,13 +88,13 @@ std::vector<Keyframe> nudge_and_stop(const Goal& goal, const Vector3& start) {
   };
   const Pose about{start, turn(-90.0, Vector3::UnitZ())};  // the script pushes along y
   const auto turned = [&](const Pose& wrist) {
-    return about * Pose{wrist.position - scene_object(), wrist.orientation};
+    return about * Pose{wrist.position - kObject, wrist.orientation};
   };
   const Pose ready = turned(nudge[1].wrist), pushed = turned(nudge[3].wrist);
   way.front().wrist = turned(nudge.front().wrist);
   // Half way from drawn to through, the palm meets the cube.
   Pose stop = slap[1].wrist;
-  stop.position = 0.5 * (slap[1].wrist.position + slap[3].wrist.position) + goal.position - scene_object();
+  stop.position = 0.5 * (slap[1].wrist.position + slap[3].wrist.position) + goal.position - kObject;
   const Vector3 up(0.0, 0.0, 0.2), aside(0.05, 0.0, 0.2), ahead(0.02, 0.0, 0.0);
   then(1.0, ready, Vector3::Zero(), pointing_posture());
   then(6.0, pushed, Vector3::Zero(), pointing_posture());
