@@ -447,9 +447,9 @@ bool LargeIslandSolver::acts() const {
                      [](const Point& point) { return point.impulses.normal > 0.0 || point.bond > 0.0; });
 }
 
-// Symmetric sweep: the load of a stack spreads through it in one direction, whatever the order of its bodies.
-// Sweeps in one direction would spread it by one body a sweep in the other. Conjugate directions also need a
-// symmetric sweep (SSOR).
+// Symmetric sweep: a stack's load spreads through it in either direction within one sweep. Sweeps in one
+// direction only would spread it by one body a sweep in the other. Conjugate directions also need a symmetric
+// sweep (SSOR).
 void LargeIslandSolver::sweep() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) motions_before_[i] = bodies_[i].motion;
   for (std::size_t i = 0; i < points_.size(); ++i) impulses_before_[i] = points_[i].impulses;
