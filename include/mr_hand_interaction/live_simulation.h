@@ -10,41 +10,42 @@
 
 namespace mrhi {
 
-/// The object of a parameter "grasp/OBJECT", or nothing for a name of parameters.h.
+/// The object of a parameter "grasp/OBJECT"; empty for a name of parameters.h.
 std::optional<std::string> grasp_parameter(const std::string& name);
 
-/// A simulation whose scene and configuration change while it runs, between frames: each change builds a
-/// simulation of the new ones, which goes on from where the old one was. What is held stays held, what flies
-/// flies on. A change that is refused changes nothing.
+/// A simulation whose scene and configuration may change between frames. Each change builds a new simulation
+/// that continues from the state of the old one: held objects stay held, moving ones move on. A rejected
+/// change has no effect.
 class LiveSimulation {
  public:
-  /// `scene`: without the configuration's gravity, which overrides it. Throws as Simulation does.
+  /// `scene`: without the configuration's gravity, which overrides its own. Throws as Simulation does.
   LiveSimulation(Scene scene, const Configuration& configuration);
 
-  /// Until the next change.
+  /// Valid until the next change.
   Simulation& simulation() { return *simulation_; }
   const Simulation& simulation() const { return *simulation_; }
 
-  /// Names of parameters.h, or "grasp/OBJECT", and their values in YAML: all or none. Throws ParameterError.
+  /// Names of parameters.h, or "grasp/OBJECT", and their values in YAML: sets all or none. Throws
+  /// ParameterError.
   void set_parameters(const std::vector<std::pair<std::string, std::string>>& values);
-  /// What such a value is now, as YAML. Throws ParameterError for an unknown name.
+  /// Present value of such a parameter, as YAML. Throws ParameterError for an unknown name.
   std::string parameter(const std::string& name) const;
-  /// Throws std::invalid_argument for a name that is taken, and a place out of bounds or in another body.
+  /// Throws std::invalid_argument if the name is in use, or the place is out of bounds or inside another
+  /// body.
   void add(const Body& body);
-  /// The same for all bodies of `part` and its joints; what else is in it does not count.
+  /// Adds all bodies and joints of `part`, and nothing else of it. Throws likewise.
   void add(const Scene& part);
-  /// With what hangs on it by joints. Both throw std::invalid_argument for a name that is not known.
+  /// Removes a body with its descendants by joints. Throws std::invalid_argument for an unknown name.
   void remove(const std::string& name);
-  /// The events with which hands would leave a body, and what hangs on it, if it were removed now.
+  /// Events by which hands would leave a body and its descendants if it were removed now. Throws likewise.
   std::vector<Event> events_if_removed(const std::string& name) const;
-  /// Puts a free body somewhere, at rest. Throws std::invalid_argument for a name that is not known and a
-  /// place out of bounds.
+  /// Places a free body, at rest. Throws std::invalid_argument for an unknown name or a place out of bounds.
   void place(const std::string& name, const Pose& pose);
-  /// Lets restraints hold the operators who have one, or releases them. Throws std::invalid_argument if none
-  /// has one, or if an operator is out of its reach.
+  /// Engages or releases the operators' restraints. Throws std::invalid_argument if there are none, or if an
+  /// operator is out of its restraint's range.
   void restrain(bool on);
-  /// Everything back to its start. Hands are found anew; of one that a free body comes back in neither is
-  /// pushed aside until they have separated.
+  /// Resets everything to its start. Hands are re-acquired. A hand and a free body that overlap then do not
+  /// act on each other until they have separated.
   void reset();
 
  private:

@@ -10,7 +10,7 @@ using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 
-/// Stamps and durations [ns]. Time is data: nothing in the core reads a clock.
+/// Stamps and durations [ns]. Time is input: the core reads no clock.
 using Nanoseconds = std::int64_t;
 inline double to_seconds(Nanoseconds time) {
   return 1e-9 * static_cast<double>(time);
@@ -25,7 +25,7 @@ struct Pose {
   Pose operator*(const Pose& local) const {
     return {*this * local.position, orientation * local.orientation};
   }
-  /// A point of the parent frame in the local frame.
+  /// Maps a point of the parent frame to the local frame.
   Vector3 to_local(const Vector3& point) const { return orientation.conjugate() * (point - position); }
   Pose inverse() const { return {-(orientation.conjugate() * position), orientation.conjugate()}; }
 };

@@ -9,35 +9,35 @@
 
 namespace mrhi {
 
-/// A parameter that cannot be taken. what() is one line: its name, the value, and what is allowed.
+/// Error of an invalid parameter. what() is one line: its name, the value, and what is allowed.
 class ParameterError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Sets one parameter by its public name ("filter/window") from YAML text ("3", "[0, 0, -9.81]").
-/// Throws ParameterError for an unknown name, a wrong type or a value out of range; configuration is
+/// Sets one parameter by its public name ("filter/window") from YAML text ("3", "[0, 0, -9.81]"). Throws
+/// ParameterError for an unknown name, a wrong type or a value out of range; the configuration is then
 /// unchanged.
 void set_parameter(Configuration& configuration, const std::string& name, const std::string& yaml_value);
 
 /// Sets every parameter of a YAML file; nested maps and slashes both work. Throws ParameterError.
 void load_parameters(Configuration& configuration, const std::string& yaml_file);
 
-/// Checks every value against its limits, for those that were set in code, and what only shows when all are
-/// set (dynamic friction at most static). Throws ParameterError.
+/// Checks every value against its limits, also those set in code, and conditions between values (dynamic
+/// friction at most static). Throws ParameterError.
 void validate(const Configuration& configuration);
 
-/// What a parameter is now, as YAML that set_parameter takes. Throws ParameterError for an unknown name.
+/// Present value of a parameter, as YAML for set_parameter(). Throws ParameterError for an unknown name.
 std::string parameter_text(const Configuration& configuration, const std::string& name);
 
-/// Ends of what a number may be, and of the part of it that a slider spans.
+/// Limits of a number, and of a slider for it.
 struct ParameterLimits {
   double min, max;  ///< both allowed
   double slider_min, slider_max;
 };
 
-/// Limits of a number, of each number of a vector; nothing for other parameters. Throws ParameterError for an
-/// unknown name.
+/// Limits of a number, or of each number of a vector; empty for other parameters. Throws ParameterError for
+/// an unknown name.
 std::optional<ParameterLimits> parameter_limits(const std::string& name);
 
 /// All public names, sorted.

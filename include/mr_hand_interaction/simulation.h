@@ -15,94 +15,90 @@
 
 namespace mrhi {
 
-/// What a frame of input led to. `none` means that it was taken. See StampCheck.
+/// Reason why a frame of input was rejected; `none` if it was accepted. See StampCheck.
 enum class Rejection : std::uint8_t {
   none,
-  stamp_not_increasing,  ///< repeats or goes back; a stream that has really restarted is taken from its third
-                         ///< frame
-  stamp_ahead,           ///< far ahead of its stream; after a real gap, frames are taken from the second
-  no_stamp               ///< beyond what a stamp can be
+  stamp_not_increasing,  ///< repeats or goes back; a restarted stream is accepted from its third frame
+  stamp_ahead,           ///< far ahead of its stream; after a real gap, frames are accepted from the second
+  no_stamp               ///< outside the range of a stamp
 };
 const char* to_string(Rejection rejection);
 
-/// What grasp assist adds to the contacts of a hand with a body.
+/// Force that grasp assist adds to a hand's contacts with a body.
 struct GraspSupport {
   std::uint8_t hand = 0;            ///< index of the hand's track
   std::uint16_t body = 0;           ///< index in Scene::bodies
-  Vector3 force = Vector3::Zero();  ///< on the body, mean over the time since the frame before, world [N]
+  Vector3 force = Vector3::Zero();  ///< on the body, mean since the last frame, world [N]
 };
 
-/// What one frame led to. Valid until the next frame.
+/// Results of one frame. Valid until the next frame.
 struct FrameResult {
   Nanoseconds stamp = 0;
   std::vector<Hand> tracked;           ///< filtered
-  std::vector<RenderedHand> rendered;  ///< same order
-  /// Touching at the frame's end, or since the frame before. Their forces are means over the time since then:
-  /// the momentum transferred by it. Those that have ended have no depth.
+  std::vector<RenderedHand> rendered;  ///< in the same order
+  /// Contacts at the end of the frame, and those that have ended since the last frame, with a depth of 0.
+  /// Forces are means over the time since the last frame: the transferred momentum over that time.
   std::vector<Contact> contacts;
   std::vector<GraspSupport> assists;  ///< of all active grips, by hand and body
   std::vector<Event> events;
-  /// What came out as no number, and was left out or put back at its start: "object 'cube'". Empty, if all is
-  /// well.
+  /// Items with a value that was not finite, and that were left out or reset: "object 'cube'". Normally
+  /// empty.
   std::vector<std::string> not_finite;
-  bool restarted = false;  ///< time went back (a looping bag): everything is at its start
+  bool restarted = false;  ///< time went back (a looping bag): everything was reset
 };
 
-/// The stages of a step, in their order.
+/// Stages of a step, in order.
 enum class Stage : std::uint8_t { neighbours, hand_contacts, body_contacts, response, flight };
 constexpr int kStages = 5;
 const char* to_string(Stage stage);
 
-/// Hands and objects through time. One call per frame:
+/// Simulates hands and objects. One call per frame:
 ///   if (simulation.begin(frame) == Rejection::none) { while (simulation.step()) {} use(simulation.end()); }
-/// or advance(), which does just that. Who waits for forces rather than for the picture calls report() before
-/// end(). Copyable by copying state().
+/// or advance(), which does the same. For forces before rendering, call report() before end(). Copy state()
+/// to copy a simulation.
 class Simulation {
  public:
-  /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)), or for a step
-  /// that is not from a microsecond to a second.
+  /// Throws std::invalid_argument if a body of the scene is invalid (see complete(Body&)), or if the step is
+  /// not from a microsecond to a second.
   Simulation(Scene scene, const Configuration& configuration);
   ~Simulation();
 
-  /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one. `expected`: the
-  /// stamp that a frame of now should have, where a clock of the input tells; so a gap is known from a stray
-  /// stamp.
+  /// Takes the hands at the frame's stamp and plans their paths since the last one. `expected`: stamp of a
+  /// frame sent now, by a clock of the input, if there is one; it distinguishes a gap from a stray stamp.
   Rejection begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected = {});
-  /// Advances by one step of at most Configuration::step, or over the whole of a short frame in which nothing
-  /// comes near anything; false, without a step, once the frame's stamp is reached.
+  /// Advances by one step of at most Configuration::step, or by a whole short frame in which no two bodies
+  /// come near each other. Returns false, without a step, once the frame's stamp is reached.
   bool step();
-  /// Contacts with their forces, events and tracked hands of the frame, whose rendered hands are still to
-  /// come. Call after step() has returned false.
+  /// Contacts with their forces, events and tracked hands of the frame; rendered hands are not available yet.
+  /// Call after step() has returned false.
   const FrameResult& report();
-  /// All that the frame led to: renders the hands, after report() if that was not called.
+  /// All results of the frame. Renders the hands, and calls report() if that was not done.
   const FrameResult& end();
 
   Rejection advance(const HandFrame& frame);
   const FrameResult& result() const;
-  /// Deepest penetration of a rendered capsule in any body, fixtures too, as the frame ended [m], >= 0. Left
-  /// out are bodies that have appeared in the hand, until it is clear of them.
+  /// Deepest penetration of a rendered capsule in any body, fixtures included, at the end of the frame [m],
+  /// >= 0. Bodies spawned in the hand are left out until it is clear of them.
   double deepest_rendered() const;
 
-  /// With no frames coming: moves on to `time`, which the next frame then continues from with the same bits
-  /// as if this had not been called. Does nothing until hold_time after the last frame. True if a new result
-  /// is there.
+  /// Advances to `time` without frames. The next frame continues with the same bits as without this call.
+  /// Does nothing until hold_time after the last frame. Returns true if there is a new result.
   bool advance_without_hands(Nanoseconds time);
 
-  /// Everything back to its start; the next frame may have any stamp.
+  /// Resets everything to its start. The next frame may have any stamp.
   void reset();
 
-  /// For those who measure: `ended` is called at the end of each stage of a step. The simulation itself reads
-  /// no clock.
+  /// Calls `ended` at the end of each stage of a step, for measurements. The simulation reads no clock.
   void watch(std::function<void(Stage)> ended);
 
   const Scene& scene() const;
   const Configuration& configuration() const;
-  /// Between the steps of a frame, bodies that nothing may reach within it are still where it began.
+  /// Between the steps of a frame, bodies that nothing can reach within it are still at its start.
   const SimulationState& state() const;
-  /// Stamp up to which bodies have been advanced, between the steps of a frame too.
+  /// Stamp up to which bodies have been advanced, also between the steps of a frame.
   Nanoseconds time() const;
   void set_state(const SimulationState& state);
-  /// Takes over where a simulation of another scene or configuration is, by the names of bodies; see
+  /// Continues from a simulation of another scene or configuration, by the names of bodies; see
   /// scene_change.h. Call between frames.
   void go_on_from(const Simulation& other);
 

@@ -21,18 +21,18 @@ namespace {
 using body_limits::kGravity;
 constexpr Range kGravitySlider{-10, 10};  // [m/s^2]
 
-/// One public parameter: all that setting, listing and refusing it needs.
+/// One public parameter: functions to set, list and reject it.
 struct ParameterEntry {
   std::string name;
-  std::string allowed;  ///< what it may be, for messages
-  /// False, and nothing changed, if the value is of a wrong type or out of range.
+  std::string allowed;  ///< allowed values, for messages
+  /// Returns false without a change if the value has a wrong type or is out of range.
   std::function<bool(Configuration&, const YAML::Node&)> assign;
-  /// What it is now, as YAML that `assign` takes.
+  /// Present value, as YAML for `assign`.
   std::function<std::string(const Configuration&)> text;
   std::optional<ParameterLimits> limits;  ///< of a number, or of each of several
 };
 
-// The values that a number may be: the number, or nothing for the word that stands for its absence.
+// Value of a number: the number, or empty for the word that stands for its absence.
 std::optional<double> number_in(double value) {
   return std::isinf(value) ? std::nullopt : std::make_optional(value);
 }
@@ -52,7 +52,7 @@ void set_number(const std::optional<double>& number, std::optional<double>& valu
   value = number;
 }
 
-/// Gives what a parameter is set in: a member of a configuration, of a part of it, or of a part's part.
+/// Accessor of a parameter's storage: a member of a configuration, of its part, or of a part's part.
 template <class... Members>
 auto of(Members... members) {
   return [=](auto& configuration) -> auto& {
@@ -60,14 +60,13 @@ auto of(Members... members) {
   };
 }
 
-/// What a parameter is that is not a number, and what that means.
+/// A parameter's value that is not a number, with its meaning.
 struct Word {
   std::string word, meaning;
 };
 
-/// A number in `range`, both ends of which are allowed, or a word; a slider spans `slider`, which is all of
-/// it or a part. `access` gives the member of a configuration: a double, an int, or a number that may be
-/// absent.
+/// A number in `range`, ends included, or a word; a slider spans `slider`, all or a part of it. `access`
+/// returns the member of a configuration: a double, an int, or an optional number.
 template <class Access>
 ParameterEntry number(const std::string& name, const std::string& unit, const Range& range,
                       const Range& slider, Access access, const Word& otherwise = {}) {
@@ -249,7 +248,7 @@ void assign(Configuration& configuration, const std::string& name, const YAML::N
                        " is not allowed; allowed: " + entry.allowed);
 }
 
-/// Sets what a map holds; maps in it are name spaces.
+/// Sets the parameters of a map; nested maps are name spaces.
 class FileReader {
  public:
   FileReader(const std::string& file, Configuration& configuration)

@@ -15,10 +15,8 @@ Matrix3 world_inverse_inertia(const Body& body, const Quaternion& orientation) {
   return rotation * body.inverse_inertia * rotation.transpose();
 }
 
-// w = R I^-1 R' L. Momenta are what is kept, since nothing changes them in flight; velocities follow from
-// them.
-// By the quaternion rather than R: a body's momentum is turned into its axes and the result back, two turns
-// of a vector where I_w^-1 takes two products of matrices.
+// w = R I^-1 R' L. Momenta are the state, as flight conserves them; velocities follow from them. Uses the
+// quaternion instead of R: two rotations of a vector, where I_w^-1 needs two matrix products.
 Twist twist_of(const Body& body, const BodyState& state) {
   if (body.fixed) return {};
   const Quaternion& q = state.pose.orientation;
@@ -45,20 +43,20 @@ double kinetic_energy(const Body& body, const BodyState& state) {
 
 namespace {
 
-/// Within this, S is its series to the ninth order, to rounding [rad].
+/// Largest angle at which the series of S to ninth order is exact to rounding [rad].
 constexpr double kSeries = 1.0 / 32.0;
 
 using Array = Eigen::Array4d;
 
-/// S at times of which none is beyond a quarter of a period.
+/// S at times of at most a quarter of a period.
 ///
 ///     S = t - s t^3/3! + (s^2 + 12 p) t^5/5! - s (s^2 + 132 p) t^7/7!
 ///           + (s^2 (s^2 + 1224 p) + 3024 p^2) t^9/9!
 ///     s = A + B,  p = A B:      sn's series (Abramowitz & Stegun 16.22.1), for A = 1 and B = k^2
 ///     S(2t) = 2 S c d / (1 - p S^4)
 ///
-/// The time is halved until the series suffices and S doubled as often. With roots of c^2 and d^2 in it
-/// this knows S, c, d > 0 alone: hence no more than a quarter of a period.
+/// The time is halved until the series suffices, and S doubled as often. The doubling uses roots of c^2 and
+/// d^2, so it needs S, c, d > 0: hence the limit of a quarter of a period.
 Array elliptic(double a, double b, Array times, double longest) {
   double part = 1.0;
   for (double angle = std::sqrt(std::max(a, b)) * longest; part * angle > kSeries;) part *= 0.5;
@@ -75,11 +73,11 @@ Array elliptic(double a, double b, Array times, double longest) {
   return result;
 }
 
-/// Lobatto's rule on 0 to 1. The point 0 is left out; its weight is that of 1, which comes last.
+/// Nodes of Lobatto's rule on [0, 1], without 0; the weight of 0 is that of 1, the last node.
 Array points() {
   return {0.17267316464601142810, 0.5, 0.82732683535398857190, 1.0};
 }
-/// Exact for polynomials of the seventh degree, by four values beside that at 0, which is known.
+/// Weights, exact for polynomials of degree seven, of four values besides the known one at 0.
 Array weights() {
   return {49.0 / 180.0, 64.0 / 180.0, 49.0 / 180.0, 9.0 / 180.0};
 }
@@ -96,7 +94,7 @@ std::pair<double, double> cosine_and_sine(double x) {
   return {cosine, sine};
 }
 
-/// How far the momentum goes in the body, and by what the body turns about it.
+/// Displacement of the momentum in the body, and rotation of the body about the momentum.
 struct Travel {
   Vector3 of_momentum;
   double angle;  // [rad]
@@ -106,9 +104,9 @@ struct Travel {
 //
 //     1 - c(2t) = 2 A S^2 d^2 / (1 - p S^4),     1 - d(2t) = 2 B S^2 c^2 / (1 - p S^4)         S, c, d at t
 //
-// m1 is put as (m1 (c - D) + ...) / D, c - D = (1 - D) - (1 - c): what is small is summed of small parts. A
-// and B are not negative, as j1 and j3 have one sign and j2 the other; two equal moments (a j of 0) and the
-// separatrix (A = B) are no cases of their own.
+// m1 is written as (m1 (c - D) + ...) / D, c - D = (1 - D) - (1 - c): small terms are sums of small terms. A
+// and B are not negative, as j1 and j3 have one sign and j2 the other. Two equal moments (a j of 0) and the
+// separatrix (A = B) need no special cases.
 Travel travel_of(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double m1 = momentum[0], m2 = momentum[1], m3 = momentum[2];
   const double j1 = inverse_moments[2] - inverse_moments[1], j2 = inverse_moments[0] - inverse_moments[2],
@@ -116,8 +114,8 @@ Travel travel_of(const Vector3& inverse_moments, const Vector3& momentum, double
   const double both = j1 * j3 * m2 * m2;
   const double a = both - j1 * j2 * m3 * m3, b = both - j2 * j3 * m1 * m1;
 
-  // 1 - c and 1 - d from half the time, and how far the momentum goes, not where: nothing cancels, and what
-  // is rounded is small.
+  // 1 - c and 1 - d from half the time, and the momentum's displacement instead of its value, avoid
+  // cancellation, so rounding errors are relatively small.
   const Array half = elliptic(a, b, (0.5 * step) * points(), 0.5 * step);
   const Array q = half * half, c_squared = 1.0 - a * q, d_squared = 1.0 - b * q;
   const Array over = 1.0 / (1.0 - (a * b) * q * q);
@@ -141,63 +139,65 @@ Travel travel_of(const Vector3& inverse_moments, const Vector3& momentum, double
   return travel;
 }
 
-/// Rate at which `momentum` turns in the body, at most, times the step, in one free_rotation [rad].
+/// Largest rotation of `momentum` in the body in one free_rotation() [rad].
 constexpr double kFreeTurn = 0.25;
 
-/// How a body that nothing twists has turned after `step` seconds: body axes, as it ends against as it began.
-/// `inverse_moments` are 1/I along its principal axes [1/(kg m^2)], which are the axes here, the second
-/// between the others; `momentum` is its angular momentum [kg m^2/s] in them as the step begins, not zero.
+/// Rotation of a torque-free body in `step` seconds: final body axes relative to the initial ones.
+/// `inverse_moments` are 1/I along its principal axes [1/(kg m^2)], which are the axes here, the second one
+/// intermediate. `momentum` is its angular momentum in them at the start of the step [kg m^2/s], not zero.
 ///
-/// Not unit: the caller has to divide by its norm. Exact to rounding for turns of up to about kFreeTurn.
+/// The result is not normalised: the caller divides by its norm. Exact to rounding for rotations of up to
+/// about kFreeTurn.
 ///
-/// The momentum goes by the addition theorem of Jacobi's elliptic functions, written so that it knows no
-/// amplitudes: with J = 1/I, j = (J3 - J2, J1 - J3, J2 - J1), 2 the intermediate axis, and S, c, d the
-/// functions of A = -j1 (j2 m3^2 - j3 m2^2) and B = -j3 (j2 m1^2 - j1 m2^2) with S' = c d, c^2 = 1 - A S^2,
-/// d^2 = 1 - B S^2 (sn, cn and dn, but for scale),
+/// The momentum follows the addition theorem of Jacobi's elliptic functions, written without amplitudes: with
+/// J = 1/I, j = (J3 - J2, J1 - J3, J2 - J1), 2 the intermediate axis, and S, c, d the functions of A = -j1
+/// (j2 m3^2 - j3 m2^2) and B = -j3 (j2 m1^2 - j1 m2^2) with S' = c d, c^2 = 1 - A S^2, d^2 = 1 - B S^2 (sn,
+/// cn and dn, up to scale),
 ///
 ///     m1(t) = (m1 c + j1 m2 m3 S d) / D      D = 1 - j1 j3 m2^2 S^2
 ///     m2(t) = (m2 c d + j2 m1 m3 S) / D
 ///     m3(t) = (m3 d + j3 m1 m2 S c) / D
 ///
-/// which holds for tops, symmetric bodies and on the separatrix alike. About the momentum the body turns by
-/// (Montgomery 1991: 2 E t / L less the area between the path of m and its chord)
+/// This holds for asymmetric and symmetric bodies and on the separatrix. The body rotates about the momentum
+/// by (Montgomery 1991: 2 E t / L less the area between the path of m and its chord)
 ///
 ///     L * integral of (2 E + m(0) . J m(t)) / (L^2 + m(0) . m(t)) dt,
 ///
-/// by Lobatto's five points, which are exact to rounding as far as a step goes. Short turns have a way of
-/// their own (turn_shortly).
+/// evaluated by Lobatto's five nodes, which are exact to rounding within a step. Short rotations have their
+/// own algorithm (turn_shortly).
 ///
 ///     turn by `angle` about m,  after  (m(0).m(t) + L^2, m(t) x m(0)):  the shortest from m(t) to m(0)
 ///
-/// With n = m(t) - m(0), m(t) x m(0) = n x m and the scalar part 2 L^2 + m.n, which is not small: m(t) is
-/// near m.
+/// With n = m(t) - m(0), m(t) x m(0) = n x m, and the scalar part 2 L^2 + m.n is not small, as m(t) is near
+/// m.
 Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum, double step) {
   const double squared = momentum.squaredNorm(), size = std::sqrt(squared);
   const bool equal = inverse_moments.maxCoeff() == inverse_moments.minCoeff();
   const Travel travel = equal ? Travel{Vector3::Zero(), inverse_moments[0] * size * step}
                               : travel_of(inverse_moments, momentum, step);
-  // Takes the momentum's new place in the body to its old one the shortest travel, and turns about it.
+  // The shortest rotation from the momentum's new direction in the body to its old one, then the rotation
+  // about it.
   const Vector3 cross = travel.of_momentum.cross(momentum);
   const double dot = 2.0 * squared + momentum.dot(travel.of_momentum);
   const auto [cosine, sine] = cosine_and_sine(0.5 * travel.angle);
   Quaternion turned;
-  turned.w() = cosine * dot;  // the cross product is across the momentum
+  turned.w() = cosine * dot;  // the cross product is perpendicular to the momentum
   turned.vec() = cosine * cross + (sine / size) * (dot * momentum + momentum.cross(cross));
   return turned;
 }
 
-/// More parts than this no step is divided into: spins that need it are beyond what can be seen.
+/// Maximum number of parts of a step: spins that need more cannot be seen.
 constexpr double kMostParts = 1000.0;
-/// Square of an angular momentum that turns nothing in a year [kg^2 m^4/s^2].
+/// Square of an angular momentum that causes no visible rotation in a year [kg^2 m^4/s^2].
 constexpr double kNoSpin = 1e-200;
 
-/// Turns `orientation` on by `by`, which need not be unit. What is added is rounded but once: were the
-/// product divided by its norm, slow turns would be rounded the same way in every step and drift.
+/// Rotates `orientation` by `by`, which need not be unit. The increment is rounded once. Dividing the product
+/// by its norm would round slow rotations alike in every step, and they would drift.
 ///
 ///     q <- q + q (b - 1),      b - 1 = ((1 + s) cos - 1, (1 + s) sin),      s = (1 - |q|^2) / 2
 ///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: what is small is made small
 ///
-/// s takes back what |q| is off by in the first order, so q is never divided by its norm.
+/// s corrects the error of |q| to first order, so q is never divided by its norm.
 void turn_on(const Quaternion& by, Quaternion& orientation) {
   const double scale = 1.0 / by.norm();
   Quaternion change(scale * by.w(), scale * by.x(), scale * by.y(), scale * by.z());
@@ -209,14 +209,15 @@ void turn_on(const Quaternion& by, Quaternion& orientation) {
   orientation.coeffs() += (orientation * change).coeffs();
 }
 
-// 1/I_min - 1/I_max: |w x L| is at most that times |L|^2, and 0 of a ball.
+// 1/I_min - 1/I_max: |w x L| is at most this times |L|^2; 0 for a ball.
 double spread(const Body& body) {
   return body.inverse_moments.maxCoeff() - body.inverse_moments.minCoeff();
 }
 
-/// The momentum turns in the body by at most this in a short turn [rad]: series end below rounding.
+/// Largest rotation of the momentum in the body in a short rotation [rad]: the series' remainders are below
+/// rounding.
 constexpr double kShortWay = 0.025;
-/// And the body turns by at most this [rad].
+/// Largest rotation of the body in a short rotation [rad].
 constexpr double kShortAngle = 0.25;
 
 double series(double, double last) {
@@ -228,8 +229,8 @@ double series(double x, double first, Others... others) {
   return first + x * series(x, others...);
 }
 
-/// Euler's equations from the principal momentum m on, as in free_rotation().
-/// Series as in elliptic(), without halving: a short turn's S needs none.
+/// Solution of Euler's equations from the principal momentum m, as in free_rotation(). Series as in
+/// elliptic(), but without halving, which short rotations do not need.
 class Way {
  public:
   Way(const Triple& m, const Triple& moments)
@@ -247,7 +248,7 @@ class Way {
           product * (1224.0 / 362880.0 * squared + 3024.0 / 362880.0 * product);
   }
 
-  /// By how much the momentum differs from m after the time t.
+  /// Displacement of the momentum after the time t.
   Triple after(double t) const {
     const double t2 = t * t;
     const double s = t + t * (t2 * (s3_ + t2 * (s5_ + t2 * (s7_ + t2 * s9_)))), q = s * s;
@@ -256,19 +257,19 @@ class Way {
               zb * series(zb, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0, 5.0 / 128.0, 7.0 / 256.0), less,
               1.0 / (1.0 - less));
   }
-  /// Where 1e-12 of it is enough, and t half a short turn.
+  /// The same to a relative error of 1e-12, for t of at most half a short rotation.
   Triple nearly_after(double t) const {
     const double t2 = t * t, s = t + t * (t2 * (s3_ + t2 * (s5_ + t2 * s7_))), q = s * s;
     const double za = a_ * q, zb = b_ * q, less = both_ * q;
     return at(s, za * series(za, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0),
               zb * series(zb, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0), less, series(less, 1.0, 1.0, 1.0, 1.0));
   }
-  /// Rate at which a principal momentum changes.
+  /// Rate of a principal momentum.
   Triple slope(const Triple& m) const { return {j_.x * (m.y * m.z), j_.y * (m.x * m.z), j_.z * (m.x * m.y)}; }
 
  private:
-  /// With 1 - c, 1 - d, 1 - D and 1 / D. Whatever the error of `s`, it is on the momentum's way: energy
-  /// holds.
+  /// From 1 - c, 1 - d, 1 - D and 1 / D. An error of `s` moves the result along the path, so energy is
+  /// conserved.
   Triple at(double s, double c_less, double d_less, double less, double scale) const {
     return {scale * (m_.x * (less - c_less) + slope_.x * s * (1.0 - d_less)),
             scale * (m_.y * (less - c_less - d_less + c_less * d_less) + slope_.y * s),
@@ -283,27 +284,28 @@ Triple each(const Triple& a, const Triple& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// A turn about the momentum by twice an angle: its cosine, and its sine by the size of the momentum.
+/// Rotation about the momentum, by twice an angle: the angle's cosine, and its sine over the momentum's size.
 struct About {
   double cosine, sine;
 };
 
-/// `by_momentum` times the size of the momentum is the angle. Series for short turns.
+/// `by_momentum` times the size of the momentum is the angle. Series for short rotations.
 About about(double by_momentum, double squared_momentum) {
-  const double x = by_momentum * by_momentum * squared_momentum;  // the angle's square
+  const double x = by_momentum * by_momentum * squared_momentum;  // square of the angle
   return {series(x, 1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0),
           by_momentum * series(x, 1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0)};
 }
 
-/// With n the way of m, e = n^2 / (4 L^2) and k = 2 E / L^2 - J, the whole angle is
+/// With n the momentum's displacement, e = n^2 / (4 L^2) and k = 2 E / L^2 - J, the whole angle is
 ///
 ///     (2 E t + integral of n . k n / (4 (1 - e)) dt) / L,
 ///
-/// of which the integral is small. Simpson's rule with the slopes at the ends is exact for it, to rounding.
-/// It comes of free_rotation()'s integrand by what the motion keeps. |m + n| = |m| makes m.n = -n^2 / 2, so
-/// L^2 + m.m(t) = 2 L^2 (1 - e); the same energy makes m.J n = -n.J n / 2, so what is above is 2 (2 E) -
-/// n.J n / 2; and 2 E / L^2 taken off leaves n.k n / (4 L^2 (1 - e)). With f that integrand, f and f' are 0
-/// at the start, and
+/// whose integral is small. Simpson's rule with the slopes at the ends is exact for it, to rounding.
+///
+/// It follows from free_rotation()'s integrand and the conserved quantities. |m + n| = |m| gives m.n = -n^2 /
+/// 2, so L^2 + m.m(t) = 2 L^2 (1 - e). Equal energy gives m.J n = -n.J n / 2, so the numerator is 2 (2 E) -
+/// n.J n / 2. Subtracting 2 E / L^2 leaves n.k n / (4 L^2 (1 - e)). With f this integrand, f and f' are 0 at
+/// the start, and
 ///
 ///     integral of f = t / 30 (16 f(t/2) + 7 f(t)) - t^2 / 60 f'(t)
 About about(const Way& way, const Triple& m, const Triple& n, const Triple& moments, double over, double t) {
@@ -323,8 +325,8 @@ About about(const Way& way, const Triple& m, const Triple& n, const Triple& mome
   return about(0.5 * (t * twice_energy + integral) * over, m.dot(m));
 }
 
-/// Turns the orientation on by a unit quaternion, as turn_on() above. A short turn's cosine is near 1, so
-/// that there is no other case.
+/// Rotates the orientation by a unit quaternion, as turn_on() above. A short rotation's cosine is near 1, so
+/// no other case exists.
 void turn_on(double cosine, const Triple& sine, Quaternion& q) {
   const double w = q.w();
   const Triple u{q.x(), q.y(), q.z()};
@@ -335,21 +337,21 @@ void turn_on(double cosine, const Triple& sine, Quaternion& q) {
   q = Quaternion(w + (w_more * w - u.dot(vector)), u.x + more.x, u.y + more.y, u.z + more.z);
 }
 
-/// What free_rotation() has, for short turns: without roots and with few divisions. The momentum's shortest
-/// way and the turn about it make a quaternion of norm sqrt(1 - e) if the scalar part of the one is 1 - e and
-/// the vector of the other along m + n / 2.
+/// free_rotation() for short rotations, without roots and with few divisions. The shortest rotation of the
+/// momentum and the rotation about it have a product of norm sqrt(1 - e) if the first has the scalar part 1 -
+/// e and the second has its vector along m + n / 2.
 ///
 ///     (2 L^2 (1 - e), n x m)  then  (cos, sin m / L),  over 2 L^2:
 ///     scalar  cos (1 - e),     vector  cos n x m / 2 L^2 + sin / L (m + n / 2)
 ///
 /// as m x (n x m) = n L^2 - m (m.n) = n L^2 + m n^2 / 2. cos and sin are those of half the angle; `sine`
-/// has the 1 / L in it, so that no root of L^2 is needed.
+/// includes 1 / L, so no root of L^2 is needed.
 void turn_shortly(const Body& body, const Vector3& angular_momentum, double step, Quaternion& q) {
   const Triple momentum = triple(angular_momentum);
   const Triple u{q.x(), q.y(), q.z()}, across = momentum.cross(u), twice = across + across;
   const Triple local = momentum + q.w() * twice + twice.cross(u);
   if (spread(body) == 0.0) {
-    // The momentum keeps its place in a body of equal moments, which turns about it at L / I.
+    // In a body with equal moments the momentum is constant; the body rotates about it at L / I.
     const About turn = about(0.5 * step * body.inverse_moments.x(), local.dot(local));
     return turn_on(turn.cosine, turn.sine * local, q);
   }
@@ -369,8 +371,8 @@ void turn_shortly(const Body& body, const Vector3& angular_momentum, double step
   turn_on(cosine - cosine * e, v.x * axes[0] + v.y * axes[1] + v.z * axes[2], q);
 }
 
-// x += h p / m + h^2 g / 2 with the p of the step's start, then p += m h g. Where contacts have been solved
-// implicitly the caller gives g = 0: p is the end's already, and x += h v(h) is backward Euler's.
+// x += h p / m + h^2 g / 2 with p at the start of the step, then p += m h g. If contacts were solved
+// implicitly, the caller passes g = 0: p is then that of the end, and x += h v(h) is backward Euler's.
 void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
   const Vector3 velocity = state.linear_momentum / mass;
   state.pose.position += step * velocity + (0.5 * step * step) * gravity;
@@ -379,8 +381,8 @@ void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) 
 
 }  // namespace
 
-// Exact for any step: a parabola, and Euler's equations in their closed form. The angular momentum in world
-// axes stays as it is to the bit; only the axes turn under it.
+// Exact for any step: a parabola, and Euler's equations in closed form. The angular momentum in world axes is
+// unchanged; only the axes rotate.
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
   fly_on(body.mass, gravity, step, state);
@@ -391,9 +393,8 @@ void free_flight(const Body& body, const Vector3& gravity, double step, BodyStat
 
 //     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortWay, (1/I_min) / kShortAngle)^2
 //
-// which is that the momentum goes by no more than kShortWay in the body and the body turns by no more than
-// kShortAngle, in squares, since a root of |L|^2 would cost more than the rest. The form !(x > y) is also
-// true of what is not a number.
+// So the momentum rotates by at most kShortWay in the body, and the body by at most kShortAngle. Squares are
+// compared, as a root of |L|^2 would cost more than all else. The form !(x > y) is also true for NaN.
 Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
   const double squared = angular_momentum.squaredNorm();
   if (!(squared > kNoSpin)) return Turn::none;
@@ -405,11 +406,12 @@ double quickness(const Body& body) {
   return most * most;
 }
 
-// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
-// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
+// Divides the step into parts in which the momentum rotates by at most kFreeTurn in the body: |dL/dt| <= |L|
+// (1/I_min - 1/I_max) |L|. A ball's momentum does not rotate, so one part suffices at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double way = spread(body) * angular_momentum.norm() * step;
-  const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none
+  const double enough = std::min(kMostParts, way / kFreeTurn);  // this order gives a number even if `way` is
+                                                                // NaN
   const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;

@@ -8,17 +8,17 @@
 namespace mrhi {
 namespace {
 
-/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step:
-/// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
-/// With K = 1e4 I / h^2 the Hessian I + h^2 K has 1e4 times the joint's own entry. It is a penalty that
-/// goes with step and inertia, no stiffness of the scene's, so that it costs H no more of its condition at
-/// short steps and heavy doors.
+/// Stiffness of limits, friction and latch, over the joint's inertia per squared step: a displacement of a
+/// millimetre in a step becomes a tenth of a micrometre.
+///
+/// With K = 1e4 I / h^2 the Hessian I + h^2 K has 1e4 times the joint's own entry. The penalty scales with
+/// step and inertia, not with the scene, so short steps and heavy doors do not worsen H's condition.
 constexpr double kStopOverInertia = 1e4;
 
-/// Half-way to its nearest neighbour a detent gives way, and there its spring has the force that it is known
-/// by.
-/// k_d = force / (gap / 2), gap the least between neighbours: the spring draws to one place, x_d, and there
-/// is a jump from -force to force where the next one's takes over.
+/// Stiffness of a detent's spring: it reaches the detent's force halfway to its nearest neighbour.
+///
+/// k_d = force / (gap / 2), with gap the smallest between neighbours. The spring pulls towards one position,
+/// x_d. The force jumps from -force to force where the next detent takes over.
 double detent_stiffness(const Detents& detents) {
   double least = detents.at.back() - detents.at.front();
   for (std::size_t i = 1; i < detents.at.size(); ++i)
@@ -30,9 +30,9 @@ double place_of(const Detents& detents, std::size_t index) {
   return detents.at[std::min(index, detents.at.size() - 1)];
 }
 
-/// At a limit is what is so near it; what has been there has left when this far off [rad, m].
-/// Two thresholds: a joint that presses on its limit moves by what holds it gives, and with one would be
-/// told to arrive again and again.
+/// Distances at which a joint arrives at a limit, and at which it has left it again [rad, m]. A joint that
+/// loads its limit yields by the limit's compliance. With one threshold it would report arrival again and
+/// again.
 constexpr double kAtLimit = 1e-5, kOffLimit = 1e-3;
 
 std::size_t nearest(const std::vector<double>& places, double to) {
@@ -62,8 +62,8 @@ JointState start_state(const Joint& joint) {
 //     turns:   q' = a.(w_child - w_parent)
 //     slides:  q' = a.(v_child - v_parent - w_parent x (c_child - c_parent))
 //
-// a = the joint's axis in world, fixed in the parent. Bodies' momenta are the state, so a joint's velocity
-// is read from them.
+// with a the joint's axis in world, fixed in the parent. The state is the bodies' momenta, so a joint's
+// velocity follows from them.
 double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
   const Joint& joint = scene.joints[index];
   const auto motion = [&](int body) {
@@ -81,8 +81,7 @@ double joint_velocity(const Scene& scene, std::size_t index, const std::vector<B
   return axis.dot(own.linear - carried);
 }
 
-// From the place alone, after the flight: what has passed a place within the step and come back is not
-// told.
+// Uses the position after the flight: a position passed and left within a step is not reported.
 JointChange note_place(const Joint& joint, JointState& state) {
   JointChange change;
   const double below = joint.upper - state.position, above = state.position - joint.lower;
@@ -103,43 +102,44 @@ JointChange note_place(const Joint& joint, JointState& state) {
 
 //     F = clamp(K (s - h v), -+most),     -dF/d(h v) = K within it, 0 at it
 //
-// s is the anchor's distance. The spring that slips is dry friction as a god object's: it sticks to an
-// anchor, where a law of sign(v) would creep or chatter at rest.
+// s is the anchor's distance. The spring with a force limit is dry friction like a god object's: it sticks to
+// an anchor, where a law of sign(v) would creep or chatter at rest.
 double JointLaw::Hold::force(double way) const {
   return std::clamp(wanted(way), -most, most);
 }
 double JointLaw::Hold::slope(double way) const {
   return std::abs(wanted(way)) < most ? stiffness : 0.0;
 }
-// A spring that slips at `most`: a parabola, and a straight line from there on (Huber's function).
+// Potential of a spring that slips at `most`: a parabola, continued by a straight line (Huber's function).
 // E(q) = K q^2 / 2 up to most / K, and most (q - most / 2K) beyond; dE/d(h v) = -F.
 double JointLaw::Hold::energy(double way) const {
   if (stiffness <= 0.0) return 0.0;
   const double size = std::abs(wanted(way));
   return (size < most ? 0.5 * size * size : most * (size - 0.5 * most)) / stiffness;
 }
-// How far x+ is beyond the limit: max(0, +-h v - room). K times it pushes back, and never draws.
+// Distance of x+ beyond the limit: max(0, +-h v - room). K times this pushes the joint back, and never pulls.
 double JointLaw::Stop::over(double way) const {
   return std::max(0.0, sign * way - room);
 }
 
-// With x the place, v the velocity at the step's end and x+ = x + h v:
+// With x the position, v the velocity at the end of the step and x+ = x + h v:
 //
 //     t(v) = k (rest - x+) + k_d (detent - x+) - b v + clamp(K (anchor - x+), -+friction)
 //            + clamp(K (latch - x+), -+force) + K (how far x+ is below the lower limit, or above the upper
 //            one)
 //
-// each term at the step's end, as contacts are: k and K add h k and h K to the slope, so that no stiffness
-// asks for a shorter step. K = kStopOverInertia * inertia / h^2.
-// Of what is beyond a limit already only h / h_usual is put right in a step, as Baumgarte (1972) has it
-// with a rate and not at once: all of it within a short step is a velocity of depth / h. The detent and the
-// latch are those of the step's start.
+// Each term is evaluated at the end of the step, as contacts are: k and K add h k and h K to the slope, so no
+// stiffness requires a shorter step. K = kStopOverInertia * inertia / h^2.
+//
+// Of an existing violation of a limit, a step corrects only the fraction h / h_usual, at a rate as
+// Baumgarte's (1972) method does. Correcting all of it in a short step would cause the velocity depth / h.
+// Detent and latch are those at the start of the step.
 void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
   blow_ = 0.0;
   constant_ = 0.0;
   linear_ = joint.damping;
-  // At the step's end, as contacts are: k (to - x - h v).
+  // Evaluated at the end of the step, as contacts are: k (to - x - h v).
   const auto spring = [&](double stiffness, double to) {
     constant_ += stiffness * (to - state.position);
     linear_ += stiffness * step;
@@ -150,8 +150,8 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   friction_ = latch_ = {};
   if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
   if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
-  // What has swung beyond a limit comes back as fast as in a usual step: all the way within a far shorter one
-  // would be a throw.
+  // A violated limit is corrected as fast as in a regular step: correction within a much shorter one would
+  // throw the joint.
   const auto room = [part = std::min(1.0, step / usual)](double left) {
     return left < 0.0 ? part * left : left;
   };
@@ -159,7 +159,7 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   upper_ = {room(joint.upper - state.position), 1.0};
 }
 
-// Who says no is left to its flight, which knows no forces. A limit counts from twice a step's way on.
+// If false, the flight advances the joint without forces. A limit counts within twice the step's motion.
 bool JointLaw::acts(double speed) const {
   constexpr double kNear = 1e-6;
   const double near = 2.0 * step_ * speed + kNear;
@@ -173,15 +173,15 @@ double JointLaw::force(double velocity) const {
          stop_ * (lower_.over(way) - upper_.over(way));
 }
 
-// -dt/dv = b + h (k + k_d) + h K for each that holds and does not slip.
+// -dt/dv = b + h (k + k_d) + h K for each hold that does not slip.
 double JointLaw::slope(double velocity) const {
   const double way = step_ * velocity;
   const double stops = (lower_.over(way) > 0.0 ? stop_ : 0.0) + (upper_.over(way) > 0.0 ? stop_ : 0.0);
   return linear_ + step_ * (friction_.slope(way) + latch_.slope(way) + stops);
 }
 
-// e(v) = (b + h k) v^2 / 2 - k (rest - x) v + (E_friction + E_latch + K over^2 / 2) / h; the last by h v,
-// so that de/dv = -t.
+// e(v) = (b + h k) v^2 / 2 - k (rest - x) v + (E_friction + E_latch + K over^2 / 2) / h. The last is a
+// function of h v, so de/dv = -t.
 double JointLaw::energy(double velocity) const {
   const double way = step_ * velocity, lower = lower_.over(way), upper = upper_.over(way);
   const double held =
@@ -189,18 +189,18 @@ double JointLaw::energy(double velocity) const {
   return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
 }
 
-// Not of the sum: a spring and a stop that bear against each other both act, and errors are measured by them.
+// Sums magnitudes: a spring and a stop may oppose each other, and errors are relative to both.
 double JointLaw::size(double velocity) const {
   const double way = step_ * velocity;
   return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(way)) +
          std::abs(latch_.force(way)) + stop_ * (lower_.over(way) + upper_.over(way));
 }
 
-// effort = t(v) + blow / h: what the joint's own forces gave in the mean over the step.
+// effort = t(v) + blow / h: mean of the joint's own forces over the step.
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
   state.effort = force(velocity) + blow_ / step_;
-  // Dry friction holds by a spring to an anchor, which follows where the force at the limit holds it no more.
+  // The anchor of dry friction follows where the force is at its limit.
   if (friction_.stiffness > 0.0)
     state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
 }

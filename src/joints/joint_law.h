@@ -5,32 +5,32 @@
 
 namespace mrhi {
 
-/// What a joint's own forces give, as functions of its velocity at the step's end: spring, detents, latch,
-/// damping, friction, limits. Each of them falls as the velocity grows, so that the step's problem stays
-/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as
-/// the joint's inertia within a step, the last two up to their force: what they hold does not creep.
+/// Forces of a joint as functions of its velocity at the end of the step: spring, detents, latch, damping,
+/// friction, limits. Each decreases as the velocity grows, so the step's problem stays convex. Limits,
+/// friction and latch are springs ten thousand times as stiff as the joint's inertia per squared step, the
+/// last two up to their force limit. So a held joint does not creep.
 class JointLaw {
  public:
-  /// `inertia`: of the joint alone, its entry of the mass matrix; `usual`: step, of which frames leave
-  /// shorter ones over [s].
+  /// `inertia`: the joint's diagonal entry of the mass matrix; `usual`: regular step, as the last one of a
+  /// frame may be shorter [s].
   void begin(const Joint& joint, const JointState& state, double inertia, double step, double usual);
-  /// Takes down what a limit has given within this step already, when it was struck [N m s].
+  /// Records the impulse of a limit in an impact of this step [N m s].
   void note_limit_impulse(double impulse) { blow_ += impulse; }
 
-  /// Whether it gives anything up to this speed either way.
+  /// True if any force acts at speeds up to this one, in either direction.
   bool acts(double speed) const;
 
   double force(double velocity) const;   ///< [N m]
   double slope(double velocity) const;   ///< -d force / d velocity, >= 0
-  double energy(double velocity) const;  ///< whose slope is -force [W]
-  /// What limits and holds bear, and springs draw: the size of what acts [N m].
+  double energy(double velocity) const;  ///< its slope is -force [W]
+  /// Sum of the magnitudes of limits, holds and springs [N m].
   double size(double velocity) const;
 
-  /// What lasts of it once the joint moves at `velocity` to the step's end.
+  /// Updates the joint's state for the velocity at the end of the step.
   void settle(double velocity, JointState& state) const;
 
  private:
-  /// A spring that bears at most `most`, whose end moves with the joint: stiffness * (stretch - step *
+  /// A spring with the force limit `most`, whose end moves with the joint: stiffness * (stretch - step *
   /// velocity).
   struct Hold {
     double stiffness = 0.0, stretch = 0.0, most = 0.0;
@@ -39,27 +39,27 @@ class JointLaw {
     double slope(double way) const;
     double energy(double way) const;
   };
-  /// The joint may not go further than `room`.
+  /// A limit at the distance `room`.
   struct Stop {
     double room = Joint::kUnlimited, sign = 1.0;
     double over(double way) const;
   };
 
-  double constant_ = 0.0, linear_ = 0.0;  // force = constant - linear * velocity, of springs and damping
+  double constant_ = 0.0, linear_ = 0.0;  // force of springs and damping = constant - linear * velocity
   Hold friction_, latch_;
   Stop lower_, upper_;
-  double stop_ = 0.0;  // stiffness of what holds
+  double stop_ = 0.0;  // stiffness of limits and holds
   double blow_ = 0.0;
   double step_ = 0.0;
 };
 
-/// What a joint has come to in a step.
+/// Changes of a joint's position that cause events.
 struct JointChange {
   bool reached_limit = false, entered_detent = false, opened_latch = false;
 };
 JointChange note_place(const Joint& joint, JointState& state);
 
-/// Where a joint begins, at rest.
+/// Start position, at rest.
 JointState start_state(const Joint& joint);
 
 }  // namespace mrhi

@@ -15,7 +15,7 @@ int place_of(const Linkage& linkage, int body) {
                                        : static_cast<int>(found - linkage.bodies.begin());
 }
 
-/// The linkage that the body is of; a new one for one that is free.
+/// Returns the linkage of the body; a new one for a free body.
 Linkage& linkage_of(const Scene& scene, int body, std::vector<Linkage>& linkages) {
   for (Linkage& linkage : linkages) {
     if (body >= 0 && place_of(linkage, body) != LinkageBody::kNone) return linkage;
@@ -28,9 +28,8 @@ Linkage& linkage_of(const Scene& scene, int body, std::vector<Linkage>& linkages
 
 }  // namespace
 
-// Joints come in an order in which a body's own is before those of what hangs on it (arrange_joints), so
-// that parents are found in the list. Each joint on a fixture or the world begins a linkage of its own:
-// fixtures pass nothing on.
+// Joints are sorted so that a body's own precedes those of its children (arrange_joints), so parents are
+// already in the list. Each joint on a fixture or the world begins a new linkage: fixtures transmit nothing.
 std::vector<Linkage> linkages_of(const Scene& scene) {
   std::vector<Linkage> linkages;
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
@@ -56,9 +55,9 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
   for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
 }
 
-/// From the root outwards: X_child = X_parent X_joint_in_parent X_joint(q) X_joint_in_child^-1.
-/// X is a pose, and q the only thing in it that moves: links stay together to rounding at any q, which no
-/// step's error can touch. Quaternions are normalised as their product is rounded on the way out.
+/// From the root outwards: X_child = X_parent X_joint_in_parent X_joint(q) X_joint_in_child^-1. X is a pose,
+/// and only q varies: links stay connected to rounding at any q, whatever the error of a step. Quaternions
+/// are normalised against accumulated rounding.
 void LinkageMotion::place(const Pose& root, const Vector& positions) {
   for (int i = 0; i < size(); ++i) {
     Placed& placed = placed_[static_cast<std::size_t>(i)];
@@ -83,10 +82,9 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
   }
 }
 
-/// p += J' (impulse, moment): what a joint lets through of an impulse at the body's centre and of a moment,
-/// up the tree to the root. Along an axis a that slides it is a.P; about one that turns, at o, a.(L + (c - o)
-/// x P).
-/// A free root at r has (P, L + (c - r) x P): the unknowns' momenta are about its own centre.
+/// p += J' (impulse, moment): projects an impulse at the body's centre and a moment onto the joints, up the
+/// tree to the root. The component along a sliding axis a is a.P; about a turning one, at o, a.(L + (c - o) x
+/// P). A free root at r has (P, L + (c - r) x P): momenta of the unknowns are about its own centre.
 void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
                          Eigen::Ref<Vector> momenta) const {
   const Vector3& centre = at(body).pose.position;
@@ -102,13 +100,13 @@ void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment
   }
 }
 
-/// J of a body: the velocity of its centre and its angular velocity when one unknown alone moves by one.
+/// J of a body: the velocity of its centre and its angular velocity for unit velocity of one unknown.
 ///
 ///     root      v = v_r + w x (c - r)  = v_r - [c - r]x w        w
 ///     slides    v = a q'                                         0
 ///     turns     v = a x (c - o) q'                               a q'
 ///
-/// Only joints between the body and the root move it, all others' columns are 0. push() is its transpose.
+/// Only joints between the body and the root move it; all other columns are 0. push() is the transpose.
 void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   const Vector3& centre = at(body).pose.position;
   for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
@@ -125,14 +123,14 @@ void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   }
 }
 
-/// M = sum J_b' diag(m_b, I_b) J_b, column by column: the momenta that go with the motion of each unknown
-/// alone (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
+/// M = sum J_b' diag(m_b, I_b) J_b, column by column: the momenta for unit velocity of each unknown
+/// (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
 ///
 ///     M_ij = sum over b of m_b v_bi.v_bj + w_bi.I_b w_bj            v_bi, w_bi: column i of J_b
 ///
-/// The sum over bodies costs a factor of their number more than the composite rigid body algorithm of the
-/// same chapter, and is as plain as the law. M is positive definite: no unknown is without mass, and joints
-/// make a tree. Entries above the diagonal are copies, so that M is symmetric to the bit.
+/// The sum over bodies costs their number times more than that chapter's composite rigid body algorithm, but
+/// is as plain as the law. M is positive definite: every unknown moves mass, and joints form a tree. Entries
+/// above the diagonal are copies, so M is exactly symmetric.
 void LinkageMotion::weigh() {
   mass_.setZero();
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 + 256> rows(6, mass_.cols());
@@ -153,7 +151,7 @@ void LinkageMotion::weigh() {
   factors_.compute(mass_);
 }
 
-/// From the root outwards: each body moves as a part of the one before it, and by its joint.
+/// From the root outwards: each body moves with its parent, and by its joint.
 ///
 ///     w = w_p + q' a,     v = v_p + w_p x (c - c_p) + q' a x (c - o)            turns
 ///     w = w_p,            v = v_p + w_p x (c - c_p) + q' a                      slides
@@ -182,16 +180,16 @@ void LinkageMotion::move(const Vector& velocity) {
   }
 }
 
-/// Newton's and Euler's laws of all that a joint carries, along or about the joint: forces that hold it
-/// together drop out. About a point o of the parent, dH/dt = moment - v_o x P.
+/// Newton's and Euler's laws of a joint's subtree, along or about the joint, from which reaction forces drop
+/// out. About a point o of the parent, dH/dt = moment - v_o x P.
 ///
 ///     turns    p = a.H,   H = sum L_b + (c_b - o) x P_b   p' = a'.H + a.(sum (c_b - o) x m_b g - v_o x P)
 ///     slides   p = a.P,   P = sum P_b                     p' = a'.P + m a.g
 ///
-/// over all that the joint carries, with a' = w_parent x a and v_o the velocity of the joint's point in the
-/// parent. What the joint passes on has no part along a. This is -dH/dq of Hamilton's equations without
-/// derivatives of M. Sums are about the world's origin, so that a subtree's is added to its parent's as it
-/// is, and brought to o by H_o = H_0 - o x P.
+/// over the subtree, with a' = w_parent x a and v_o the velocity of the joint's point in the parent. The
+/// joint's reaction has no component along a. This is -dH/dq of Hamilton's equations without derivatives of
+/// M. Sums are about the world's origin, so a subtree's is added to its parent's unchanged; H_o = H_0 - o x P
+/// moves it to o.
 void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
   for (int i = size() - 1; i >= 0; --i) {
     const auto at_i = static_cast<std::size_t>(i);

@@ -13,28 +13,28 @@ namespace mrhi {
 struct LinkageBody {
   static constexpr int kNone = -1;
   int body;             ///< index in Scene::bodies
-  int joint = kNone;    ///< index in Scene::joints of the one it hangs on; none of a root that is free
+  int joint = kNone;    ///< index in Scene::joints of its own; none for a free root
   int parent = kNone;   ///< index in Linkage::bodies; none on a fixture or the world
   int fixture = kNone;  ///< index in Scene::bodies of that fixture
 };
 
-/// Bodies that hang together on joints: on a fixture or the world, or on a root that is free. Its unknowns
-/// are the velocities of its joints in their order, after the six of a free root: of its centre of mass, and
-/// angular, in world axes.
+/// Bodies connected by joints, to a fixture, the world or a free root. The unknowns are the joints'
+/// velocities in their order, after six of a free root: its centre's velocity and its angular velocity, in
+/// world axes.
 struct Linkage {
   std::vector<LinkageBody> bodies;  ///< parents first, so that a free root is the first
 
   bool floats() const { return bodies.front().joint == LinkageBody::kNone; }
   int joints() const { return static_cast<int>(bodies.size()) - (floats() ? 1 : 0); }
   int unknowns() const { return joints() + (floats() ? 6 : 0); }
-  /// Of the joint that body `i` hangs on.
+  /// Column of the joint of body `i`.
   int column(int i) const { return floats() ? i + 5 : i; }
 };
 
-/// All there are, by their first joints.
+/// All linkages of a scene, by their first joints.
 std::vector<Linkage> linkages_of(const Scene& scene);
 
-/// A linkage at one place: where its bodies are, how its unknowns move them, and how it resists.
+/// Kinematics and inertia of a linkage in one configuration.
 class LinkageMotion {
  public:
   using Matrix = Eigen::MatrixXd;
@@ -48,20 +48,20 @@ class LinkageMotion {
 
   LinkageMotion(const Scene& scene, const Linkage& linkage);
 
-  /// Puts all bodies where joints at `positions`, and a free root at `root`, have them.
+  /// Computes all poses from the joints' positions and a free root's pose.
   void place(const Pose& root, const Vector& positions);
-  /// Finds the mass matrix there.
+  /// Computes the mass matrix.
   void weigh();
-  /// Solves it: velocities of the unknowns for these momenta, in place.
+  /// Multiplies by its inverse, in place: momenta of the unknowns become their velocities.
   void solve(Vector& momenta) const { factors_.solveInPlace(momenta); }
-  /// The bodies' velocities for those of the unknowns.
+  /// Computes the bodies' velocities from those of the unknowns.
   void move(const Vector& velocity);
-  /// Momenta of the unknowns that an impulse and its moment about the centre give, added.
+  /// Adds the momenta of the unknowns for an impulse and its moment about the body's centre.
   void push(int body, const Vector3& impulse, const Vector3& moment, Eigen::Ref<Vector> momenta) const;
-  /// How the unknowns move a body: velocity of its centre, and angular, a column each. Rows that are zero
-  /// before: columns of those that do not move it are left alone.
+  /// Writes a body's Jacobian: velocity of its centre and angular velocity, a column for each unknown. Rows
+  /// must be zero before.
   void add_jacobian(int body, Eigen::Ref<Matrix> six_rows) const;
-  /// What changes the joints' momenta by themselves: gravity [m/s^2], and that their axes move.
+  /// Rates of the joints' momenta by gravity [m/s^2] and by the motion of their axes.
   void find_rates(const Vector3& gravity, Vector& rates);
 
   const Placed& at(int body) const { return placed_[static_cast<std::size_t>(body)]; }
@@ -90,7 +90,7 @@ class LinkageMotion {
   std::vector<Carried> carried_;
 };
 
-/// Puts a body where it started, with all that hangs together with it by joints.
+/// Resets a body to its start, with the whole linkage that contains it.
 void put_back(std::size_t body, const Scene& scene, SimulationState& state);
 
 }  // namespace mrhi

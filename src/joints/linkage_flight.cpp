@@ -6,41 +6,41 @@
 namespace mrhi {
 namespace {
 
-/// No joint turns, or falls, by more than this in one part of a step [rad].
-/// The error of one part goes with the fifth power of it (fourth order).
+/// Largest rotation of a joint, or fall, in one part of a step [rad]. The error of a part goes with its fifth
+/// power (fourth order).
 constexpr double kPart = 0.03;
 constexpr double kMostParts = 1000.0;
-/// Budget of a step, so that it takes no more than about 5 ms: places at which the motion of a linkage of n
-/// bodies is found, times n^2; and how many a part usually takes.
+/// Budget of a step, about 5 ms: evaluations of the motion of a linkage of n bodies, times n^2; and the usual
+/// number of evaluations of a part.
 constexpr double kMaxWork = 60'000.0, kUsualWork = 24.0;
 constexpr int kMinRounds = 4;
-/// Energy that a step may gain by its own error, as a part of the kinetic energy at its end.
+/// Largest energy gain of a step by its error, over the kinetic energy at its end.
 constexpr double kMaxGain = 0.01;
-/// What falls from rest turns as a pendulum of this length does, at most [m].
-/// w = sqrt(g / l): by its rate alone what is let go from rest would be taken in one part.
+/// Length of the pendulum that bounds the rate of a fall from rest, w = sqrt(g / l) [m]. By its present rate
+/// alone, a linkage released from rest would take one part.
 constexpr double kFallLength = 0.1;
 constexpr int kMostRounds = 60;
-/// The stages are found when a round changes them by less than this, of their size.
+/// Relative change of the stages at which the iteration has converged.
 constexpr double kFound = 1e-16;
 
 const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
   return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
 }
 
-/// exp of a rotation vector: about it, by its length.
+/// Exponential map of a rotation vector.
 Quaternion turned(const Vector3& turn) {
   const double angle = turn.norm();
   if (angle == 0.0) return Quaternion::Identity();
   return Quaternion(Eigen::AngleAxisd(angle, turn / angle));
 }
 
-/// Rate of a turn from its angular velocity, which is in the frame that is not turned (Iserles et al.,
-/// Lie-group methods, Acta Numerica 2000, B.10).
+/// Rate of a rotation vector from the angular velocity in the fixed frame (Iserles et al., Lie-group methods,
+/// Acta Numerica 2000, B.10).
 ///
 ///     theta' = w - 1/2 theta x w + (1/12 + |theta|^2 / 720) theta x (theta x w) + ...
 ///
-/// the series of dexp^-1 with Bernoulli's numbers, and theta x four times = -|theta|^2 theta x twice. What
-/// is left off is of the sixth power in theta, and a part turns by about kPart at most.
+/// This is the series of dexp^-1 with Bernoulli's numbers; four times theta x equals -|theta|^2 times two of
+/// them. The remainder is of sixth order in theta, and a part rotates by about kPart at most.
 Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
   const Vector3 once = turn.cross(spin);
   return spin - 0.5 * once + (1.0 / 12.0 + turn.squaredNorm() / 720.0) * turn.cross(once);
@@ -66,13 +66,13 @@ void LinkageFlight::read(const std::vector<JointState>& joints, const std::vecto
   root_ = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose.orientation;
 }
 
-/// Of the unknowns, in the frame of the centre of mass if it floats.
+/// Computes the unknowns' velocities; those of a floating linkage in the frame of its centre of mass.
 ///
 ///     M(q) u = p,      p = (0, L, p_joints) of one that floats
 ///
-/// In the frame of the centre of mass the momentum is 0 and L about it stays what it is, so neither is
-/// integrated and neither can drift. The root's row of M is about its own centre: with no momentum the
-/// angular momentum is the same about any point.
+/// In that frame the momentum is 0 and L about the centre is constant, so neither is integrated and neither
+/// can drift. The root's row of M is about its own centre: without momentum the angular momentum is the same
+/// about any point.
 void LinkageFlight::find_velocity(const Point& point) {
   motion_.place({Vector3::Zero(), turned(point.turn) * root_}, point.positions);
   motion_.weigh();
@@ -82,9 +82,9 @@ void LinkageFlight::find_velocity(const Point& point) {
   motion_.move(velocity_);
 }
 
-/// Hamilton's equations: q' = M(q)^-1 p, p' = -dH/dq.
-/// H = p' M^-1 p / 2 - sum m g.c. Momenta and not velocities are integrated: forces of inertia then are in
-/// M(q) and in how axes move (find_rates), and no derivative of M is needed.
+/// Hamilton's equations: q' = M(q)^-1 p, p' = -dH/dq, H = p' M^-1 p / 2 - sum m g.c. Momenta are integrated
+/// instead of velocities. Inertial forces are then in M(q) and in the motion of axes (find_rates), and no
+/// derivative of M is needed.
 void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point& rate) {
   find_velocity(point);
   motion_.find_rates(gravity, rate.momenta);
@@ -92,7 +92,7 @@ void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point&
   if (linkage_.floats()) rate.turn = turn_rate(point.turn, velocity_.segment<3>(3));
 }
 
-/// Of all bodies: the rate at which axes and arms turn.
+/// Largest angular speed of the bodies: the rate at which axes and arms rotate.
 double LinkageFlight::fastest() const {
   double rate = 0.0;
   for (int i = 0; i < motion_.size(); ++i) rate = std::max(rate, motion_.at(i).angular.norm());
@@ -106,7 +106,7 @@ void LinkageFlight::go(const Point& from, double a, const Point& first, double b
   to.turn = from.turn + (a * first.turn + b * second.turn);
 }
 
-/// Largest difference, each against its own size.
+/// Largest relative difference.
 double LinkageFlight::distance(const Point& a, const Point& b) {
   const auto of = [](const auto& x, const auto& y) {
     return (x - y).template lpNorm<Eigen::Infinity>() / (x.template lpNorm<Eigen::Infinity>() + 1e-300);
@@ -114,20 +114,20 @@ double LinkageFlight::distance(const Point& a, const Point& b) {
   return std::max({of(a.positions, b.positions), of(a.momenta, b.momenta), of(a.turn, b.turn)});
 }
 
-/// Gauss's method of two stages, of fourth order and symplectic (Hairer, Lubich & Wanner, Geometric Numerical
-/// Integration, 2006, II.1.3): stages at 1/2 -+ sqrt(3)/6 of the way, by fixed-point rounds. It has no drift
-/// of energy, and keeps the momenta that the motion keeps.
+/// Gauss's method of two stages, fourth order and symplectic (Hairer, Lubich & Wanner, Geometric Numerical
+/// Integration, 2006, II.1.3). Stages are at the fractions 1/2 -+ sqrt(3)/6, by fixed-point iteration. It has
+/// no energy drift, and conserves the momenta that the motion conserves.
 ///
 ///     Y_1 = y + h (1/4 f_1 + (1/4 - s) f_2),     Y_2 = y + h ((1/4 + s) f_1 + 1/4 f_2),     s = sqrt(3) / 6
 ///     y' = y + h (f_1 + f_2) / 2,                f_i = f(Y_i)
 ///
-/// The method is symplectic at the stages' fixed point only: rounds go on to rounding, or until they change
-/// it no less. A round takes off a factor of the order of the part's turn. The root's turn is counted from
-/// the part's start, so it stays small, and goes into the quaternion at the end.
+/// The method is symplectic only at the stages' fixed point. So iterations continue to rounding, or until the
+/// change no longer decreases. Each reduces the error by about the part's rotation. The root's rotation
+/// counts from the start of the part, so it stays small, and updates the quaternion at the end.
 void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) {
   static const double kThird = std::sqrt(3.0) / 6.0;
   Stage &one = stages_[0], &two = stages_[1];
-  two.rate = one.rate;  // that of the part's start
+  two.rate = one.rate;  // at the start of the part
   double last = 1.0;
   for (int round = 0; round < rounds; ++round) {
     guess_ = two.point;
@@ -145,11 +145,11 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) 
   std::swap(now_, next_);
 }
 
-/// Always by the same sums of what is in the state, so that rounding does not add up over the steps.
+/// Always the same sums over the state, so that rounding does not accumulate over the steps.
 ///
 ///     C = sum m c / m,     P = sum p,     L = sum (l + (c - C) x (p - m v)),      v = P / m
 ///
-/// The drift taken off p is a matter of rounding alone: sum m (c - C) x v = 0.
+/// Subtracting the drift from p only affects rounding: sum m (c - C) x v = 0.
 LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) const {
   Whole whole{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   for (int i = 0; i < motion_.size(); ++i) {
@@ -167,8 +167,8 @@ LinkageFlight::Whole LinkageFlight::whole(const std::vector<BodyState>& bodies) 
   return whole;
 }
 
-/// The joints' momenta; `drift` is that of the frame in which they count.
-/// p_joints = J' (p - m drift, l), by the poses of the step's start.
+/// Computes the joints' momenta in a frame with the velocity `drift`: p_joints = J' (p - m drift, l), by the
+/// poses at the start of the step.
 void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& bodies) {
   motion_.place(of(linkage_, 0, bodies).pose, now_.positions);
   velocity_.setZero();
@@ -179,7 +179,7 @@ void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& b
   now_.momenta = velocity_.tail(now_.momenta.size());
 }
 
-/// Of the joints and what turns, after find_velocity() at the point [J].
+/// Energy of the joints and the rotation, after find_velocity() at the point [J].
 ///
 ///     H = p.u / 2 - sum m g.c,      p.u with L.w of one that floats
 double LinkageFlight::energy(const Point& point, const Vector3& gravity) const {
@@ -188,17 +188,17 @@ double LinkageFlight::energy(const Point& point, const Vector3& gravity) const {
   return 0.5 * twice - motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
 }
 
-/// Call after find_velocity(now_). What turns by too much in a part for its budget may gain energy, or not
-/// come to a finite place at all. Then joints are slowed until nothing is gained. Without a finite place they
-/// stop where the step began.
+/// Call after find_velocity(now_). A rotation too fast for its budget of parts may gain energy, or have no
+/// finite result. Joints are then slowed until no energy is gained. Without a finite result they stop where
+/// the step began.
 ///
 ///     T(s) = T_locked + s^2 (T - T_locked)      of momenta p_locked + s (p - p_locked)
 ///
-/// with p_locked those of joints that are locked and the same angular momentum: no motion has less energy.
+/// with p_locked the momenta of locked joints at the same angular momentum: no motion has less energy.
 void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
   const double weight = motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
   const double after = energy(now_, gravity), moving = after + weight;
-  if (after - before <= kMaxGain * moving) return;  // what is no number fails here as well
+  if (after - before <= kMaxGain * moving) return;  // false for NaN too
   const bool lost = !std::isfinite(after) || !now_.positions.allFinite() || !root_.coeffs().allFinite();
   if (lost) {
     now_ = start_;
@@ -220,8 +220,7 @@ void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
   find_velocity(now_);
 }
 
-// parts = 1 + h max(w, sqrt(g / l)) / kPart, w the fastest of any body at the start, as far as the budget
-// allows.
+// parts = 1 + h max(w, sqrt(g / l)) / kPart within the budget, with w the fastest of any body at the start.
 void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   start_ = now_;
   start_root_ = root_;
@@ -248,8 +247,8 @@ void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointSt
   write(Vector3::Zero(), Vector3::Zero(), joints, bodies);
 }
 
-/// What floats: its centre falls, its total angular momentum about it stays, and only shape and orientation
-/// are integrated, in the frame of the centre of mass. Rounding is put right at the root.
+/// A floating linkage: its centre falls and its angular momentum about it is constant. Only shape and
+/// orientation are integrated, in the frame of the centre of mass. The root takes the rounding errors.
 ///
 ///     C(h) = C + h v + h^2 g / 2,     P(h) = P + m h g,      L about C stays
 void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,

@@ -7,22 +7,22 @@
 
 namespace mrhi {
 
-/// Moves what hangs together on joints under gravity alone: joints and a free root are the unknowns, so that
-/// no joint can come apart. Their momenta and places go on by Gauss's method of two stages (Hairer, Lubich,
-/// Wanner, Geometric Numerical Integration, II.1.3: symplectic, symmetric, of fourth order). A linkage that
-/// floats keeps its momentum and its angular momentum about its centre of mass to rounding, which flies as a
-/// body's does.
+/// Advances a linkage under gravity alone. The unknowns are its joints and a free root, so joints cannot
+/// separate. Positions and momenta are integrated by Gauss's method of two stages (Hairer, Lubich, Wanner,
+/// Geometric Numerical Integration, II.1.3: symplectic, symmetric, of fourth order). A floating linkage
+/// conserves its momentum, and its angular momentum about its centre of mass, to rounding; the centre moves
+/// as a body's does.
 class LinkageFlight {
  public:
   LinkageFlight(const Scene& scene, const Linkage& linkage);
 
-  /// By `step` seconds. Joints' positions and bodies' momenta are taken and given back; poses follow.
+  /// Advances by `step` seconds. Joints' positions and bodies' momenta are input and output; poses follow.
   void fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
            std::vector<BodyState>& bodies);
 
  private:
   using Vector = Eigen::VectorXd;
-  /// Joints' places and momenta, and how far the root has turned since the part began.
+  /// Joints' positions and momenta, and the root's rotation since the start of the part.
   struct Point {
     Vector positions, momenta;
     Vector3 turn;
@@ -30,7 +30,7 @@ class LinkageFlight {
   struct Stage {
     Point point, rate;
   };
-  /// Of all bodies: the centre of mass, momentum, and angular momentum about that centre.
+  /// Of all bodies: centre of mass, momentum, and angular momentum about that centre.
   struct Whole {
     Vector3 centre, linear, angular;
   };
@@ -56,7 +56,7 @@ class LinkageFlight {
   LinkageMotion motion_;
   Vector velocity_;
   Quaternion root_ = Quaternion::Identity(), start_root_ = root_;
-  Vector3 angular_momentum_ = Vector3::Zero();  // about the centre of mass, of a linkage that floats
+  Vector3 angular_momentum_ = Vector3::Zero();  // of a floating linkage, about its centre of mass
   Point now_, next_, guess_, start_;
   Stage stages_[2];
 };

@@ -16,7 +16,7 @@ class DurationHistogram {
   void clear() { *this = DurationHistogram(); }
 
   std::uint64_t count() const { return count_; }
-  /// Duration that the share `q` (0..1) of all does not exceed [us]; 0 if there are none.
+  /// Quantile `q` (0..1) of the durations [us]; 0 if there are none.
   double quantile_us(double q) const;
   double max_us() const { return 1e-3 * static_cast<double>(max_); }
 

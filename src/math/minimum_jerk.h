@@ -4,14 +4,14 @@
 
 namespace mrhi {
 
-/// Share 0..1 of the way done at the share `time` 0..1 of the duration, from rest to rest (Flash & Hogan
-/// 1985, Eq. 4). Greatest speed 1.875 at the middle.
+/// Fraction 0..1 of the path at the fraction `time` 0..1 of the duration, from rest to rest (Flash & Hogan
+/// 1985, Eq. 4). Its speed peaks at 1.875 in the middle.
 inline double minimum_jerk(double time) {
   const double t = time <= 0.0 ? 0.0 : (time >= 1.0 ? 1.0 : time);
   return t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
 }
 
-/// The same with velocities at the ends: position after the share `time` 0..1 of `duration` seconds; no
+/// The same with given end velocities: position at the fraction `time` 0..1 of `duration` seconds; no
 /// acceleration at either end.
 inline Vector3 minimum_jerk(const Vector3& from, const Vector3& from_velocity, const Vector3& to,
                             const Vector3& to_velocity, double duration, double time) {

@@ -8,17 +8,17 @@
 
 namespace mrhi {
 
-/// What brings points closest to others: each goes to `to + scale rotation (point - from)`.
+/// Similarity transform between two point sets: each point maps to `to + scale rotation (point - from)`.
 struct Registration {
   Matrix3 rotation = Matrix3::Identity();
   double scale = 1.0;
-  Vector3 from = Vector3::Zero(), to = Vector3::Zero();  ///< means of both [m]
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();  ///< means of both point sets [m]
 };
 
-/// Least squares (Umeyama 1991) over `size` pairs of points of a hand. Nothing if they do not fix it: fewer
-/// than three, or in one line.
+/// Least-squares fit (Umeyama 1991) of `size` pairs of points of a hand. Empty if they do not determine it:
+/// fewer than three, or collinear.
 inline std::optional<Registration> registered(const Vector3* from, const Vector3* to, std::size_t size) {
-  constexpr double kLeastSpread = 1e-6;  // of the second principal direction [m^2]
+  constexpr double kLeastSpread = 1e-6;  // along the second principal direction [m^2]
   if (size < 3) return std::nullopt;
   const auto mean = [size](const Vector3* points) -> Vector3 {
     Vector3 sum = Vector3::Zero();

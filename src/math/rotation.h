@@ -8,20 +8,20 @@ namespace mrhi {
 
 constexpr double kDegree = M_PI / 180.0;  ///< [rad]
 
-/// The turn by |vector| [rad] about the vector.
+/// Rotation by |vector| [rad] about the vector.
 inline Quaternion rotation_by(const Vector3& vector) {
   const double angle = vector.norm();
   if (angle == 0.0) return Quaternion::Identity();
   return Quaternion(Eigen::AngleAxisd(angle, vector / angle));
 }
 
-/// Its inverse, by the shorter way round.
+/// Inverse of rotation_by(): the shorter rotation.
 inline Vector3 rotation_vector(const Quaternion& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
 }
 
-/// The matrix of a turn about a unit axis [rad].
+/// Matrix of a rotation about a unit axis [rad].
 inline Matrix3 turn_about(const Vector3& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }

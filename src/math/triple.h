@@ -4,8 +4,8 @@
 
 namespace mrhi {
 
-/// A vector whose sums have one order, x then y then z. Eigen's differs with its version and the compiler's
-/// vector instructions, and with it the last bit.
+/// A vector whose sums have a fixed order, x then y then z. Eigen's order, and with it the last bit, varies
+/// with its version and the compiler's vector instructions.
 struct Triple {
   double x, y, z;
 

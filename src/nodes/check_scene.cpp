@@ -94,7 +94,7 @@ class Picture {
     double depth, shade;
   };
   void add(const TriangleMesh& mesh, double light) {
-    Matrix3 view;  // rows: to the right, up and towards the viewer, all unit
+    Matrix3 view;  // rows: unit vectors to the right, up and towards the viewer
     const Vector3 towards = Vector3(1.0, -2.0, 1.0).normalized(), right = Vector3(2.0, 1.0, 0.0).normalized();
     view << right.transpose(), towards.cross(right).transpose(), towards.transpose();
     for (const auto& t : mesh.triangles) {

@@ -9,7 +9,7 @@
 
 namespace mrhi {
 
-/// Runs a program's work. Its status: 0; or, with one line on stderr, 2 for a UsageError and 1 for another
+/// Runs a program. Returns 0; or, with one line on stderr, 2 for a UsageError and 1 for another
 /// std::exception.
 inline int exit_status(const std::string& program, const std::function<int()>& work) {
   try {

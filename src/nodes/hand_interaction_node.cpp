@@ -19,13 +19,13 @@ parameters of both. The parameters of hand_tracking_node are in ~hand_tracking. 
 
 }  // namespace
 
-/// hand_tracking_node and interaction_node in one process and one thread: a frame goes from one to the other
-/// by a call. Parameters of tracking are in ~hand_tracking.
+/// hand_tracking_node and interaction_node in one process and one thread: a call passes each frame on.
+/// Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
   const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
     mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
     mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
-    std::uint64_t lost = 0;  // that the server has been told of
+    std::uint64_t lost = 0;  // number already reported to the server
     tracking.pass_to([&](mrhi::HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
       server.note_lost(tracking.lost() - std::exchange(lost, tracking.lost()));
       server.take(std::move(frame), frame_id, arrival);

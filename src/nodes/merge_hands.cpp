@@ -49,7 +49,7 @@ struct Parameters {
 
 }  // namespace
 
-/// Merges the hand_frame topics of several hand_tracking_nodes into one. Throws ParameterError for a bad
+/// Merges the hand_frame topics of several hand_tracking_nodes into one. Throws ParameterError for an invalid
 /// parameter.
 class HandMerging {
  public:

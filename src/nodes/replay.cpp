@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside this program where it is installed, else in the package's scripts.
+/// Next to this program if installed, else in the package's scripts.
 std::string script_file(const std::string& name) {
   std::error_code error;
   std::vector<fs::path> files{fs::read_symlink("/proc/self/exe", error).parent_path() / name};
@@ -29,7 +29,7 @@ std::string script_file(const std::string& name) {
   throw std::runtime_error("the script '" + name + "' is not found; allowed: a built or installed package");
 }
 
-/// Runs a script of this package, no shell between, and waits for it. Returns its exit status.
+/// Runs a script of this package without a shell, and waits for it. Returns its exit status.
 int run_script(const std::string& name, const std::vector<std::string>& arguments) {
   const std::string file = script_file(name);
   std::vector<char*> words{const_cast<char*>(file.c_str())};
@@ -44,7 +44,7 @@ int run_script(const std::string& name, const std::vector<std::string>& argument
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// What is made of the tables. The first exit status that is not 0.
+/// Runs the scripts that use the tables. Returns the first exit status that is not 0.
 int report(const ReplayArguments& arguments) {
   int status = 0;
   if (arguments.export_rate) {

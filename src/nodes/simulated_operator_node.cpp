@@ -34,7 +34,7 @@ simulated operator on /leap_motion/leap_device.
 
 using Status = mr_hand_interaction::TrainingStatus;
 
-/// A person whom the machine has kept waiting goes on from where he was [periods].
+/// Longest catch-up after a late timer tick [periods].
 constexpr double kLongestMove = 2.0;
 
 Body body_of(const TaskObject& object) {
@@ -47,7 +47,7 @@ Body body_of(const TaskObject& object) {
   return body;
 }
 
-/// What the node is told on the parameter server.
+/// Parameters of the node on the parameter server.
 struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
     NodeParameters known;
@@ -62,17 +62,19 @@ struct Parameters {
 
 Task checked_task(const std::string& name) {
   Task task = load_task(find_task_file(name, task_folders()));
-  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // or says why not
+  for (const TaskObject& object : task.objects)
+    make_person({}, task, body_of(object), 0);  // or throws the
+                                                // reason
   return task;
 }
 
 }  // namespace
 
-/// A simulated operator does the trials of a running training_node: sees `objects` and `training/status`, and
-/// its hand is on /leap_motion/leap_device, at default_device_mount(), as long as a trial runs.
+/// A simulated operator performs the trials of a running training_node. It sees `objects` and
+/// `training/status`. During a trial its hand is on /leap_motion/leap_device, at default_device_mount().
 class OperatorPublisher {
  public:
-  /// Throws an exception that names what is wrong and what is allowed.
+  /// Throws an exception with the fault and what is allowed.
   OperatorPublisher(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
       : OperatorPublisher(node, Parameters(private_node)) {}
 
@@ -156,7 +158,7 @@ class OperatorPublisher {
     hands_.front().id = trial_;
   }
 
-  /// As observe() has it.
+  /// Grip force as observe() computes it.
   double grip() const {
     double pressing = 0.0;
     for (const auto& contact : contacts_.contacts) {
@@ -173,12 +175,13 @@ class OperatorPublisher {
   TrackingNoise noise_;
   mr_hand_interaction::TrainingStatus status_;
   mr_hand_interaction::ObjectState object_;  ///< of the trial; without a name: not seen yet
-  std::map<std::string, Pose> fixed_;        ///< what no message has: devices, by name
+  std::map<std::string, Pose> fixed_;        ///< devices, which no message has, by name
   mr_hand_interaction::ContactArray contacts_;
   std::unique_ptr<Person> person_;
   std::uint32_t trial_ = 0;
   ros::Time ticked_;
-  double time_ = 0.0;  ///< that the person has moved since the trial's begin, by the frames' stamps [s]
+  double time_ = 0.0;  ///< time of the person's motion since the start of the trial, by the frames' stamps
+                       ///< [s]
   std::vector<HandJoints> hands_;
 
   LeapHumanPublisher publisher_;

@@ -27,7 +27,7 @@ const char* const kHelp =
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
     "  --seed N                 a whole number; default 1\n";
 
-constexpr long kMost = 1000000;               // of whole numbers
+constexpr long kMost = 1000000;               // of integers
 constexpr double kStandardGravity = 9.80665;  // [m/s^2]
 
 struct Study {
@@ -84,7 +84,7 @@ Configuration configuration_of(const Study& study, const std::string& model) {
   return configuration;
 }
 
-/// What one simulated operator did under one condition.
+/// Runs one simulated operator's session under one condition.
 void play_session(const Study& study, int person, const std::string& model, double gravity, Task task) {
   char name[16], strength[16];
   std::snprintf(name, sizeof name, "P%02d", person);
@@ -96,7 +96,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
   stage.scene_folders = scene_folders();
   stage.scene_options = scene_options(stage.configuration);
 
-  // The same person, with the same hand and noise, under every condition.
+  // The same person, hand and noise under every condition.
   Random seeds(study.seed * 1000003u + static_cast<std::uint64_t>(person));
   SessionHeader header;
   header.participant = name;
@@ -125,7 +125,9 @@ void play_session(const Study& study, int person, const std::string& model, doub
 
 void play(Study study) {
   study.task = find_task_file(study.task, task_folders());
-  for (const std::string& model : study.models) configuration_of(study, model);  // before anything is played
+  for (const std::string& model : study.models)
+    configuration_of(study, model);  // checked before the first
+                                     // session
   const Task task = load_task(study.task);
   OperatorStage stage;
   stage.scene_folders = scene_folders();

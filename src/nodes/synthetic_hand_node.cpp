@@ -42,8 +42,8 @@ a recording instead and needs no ROS master.
   ~reset    service that is called before each run; default none
 )";
 
-/// The motion of that name; grasp_object's is made for the scene, a name or a URDF's path. Throws
-/// std::invalid_argument, or SceneError.
+/// The motion of that name; grasp_object's is for the scene, a name or a URDF's path. Throws
+/// std::invalid_argument or SceneError.
 ScriptedMotion motion_for(const std::string& motion, const std::string& scene) {
   if (motion != "grasp_object") return make_motion(motion);
   return grasp_object(load_scene(find_scene_file(scene, scene_folders()), scene_options({})));
@@ -75,7 +75,7 @@ int write_recording(const std::vector<std::string>& arguments) {
   return 0;
 }
 
-/// What the node is told on the parameter server.
+/// Parameters of the node on the parameter server.
 struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
     NodeParameters known;
@@ -91,11 +91,11 @@ struct Parameters {
 
 }  // namespace
 
-/// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on a schedule of its own.
-/// Before each run but the first it calls the std_srvs/Trigger service that ~reset names.
+/// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on its own schedule.
+/// Before each run but the first it calls the std_srvs/Trigger service ~reset.
 class SyntheticHandPublisher {
  public:
-  /// Throws std::invalid_argument naming what is wrong and what is allowed.
+  /// Throws std::invalid_argument with the fault and what is allowed.
   SyntheticHandPublisher(const ros::NodeHandle& node, const Parameters& parameters)
       : node_(node),
         hand_(parameters.options, motion_for(parameters.options.motion, parameters.scene)),
@@ -103,8 +103,8 @@ class SyntheticHandPublisher {
         reset_service_(parameters.reset_service),
         publisher_(node_, parameters.options.rate) {}
 
-  /// Returns at shutdown, or after the first run if not looping. Begins once somebody listens, or after five
-  /// seconds.
+  /// Returns at shutdown, or after the first run if not looping. Starts with the first subscriber, or after
+  /// five seconds.
   void run() {
     wait_for_listener();
     if (!ros::Time::waitForValid()) return;
@@ -134,8 +134,7 @@ class SyntheticHandPublisher {
     }
   }
 
-  /// The run moves along with a clock that leaps, either way: it neither makes up for the time nor waits for
-  /// it.
+  /// The run follows jumps of the clock in both directions: it neither catches up nor waits.
   void wait_for_next() {
     constexpr Nanoseconds kLeap = 1'000'000'000, kLongestSleep = 50'000'000, kLookAtClock = 1'000'000;
     const Nanoseconds longest = ros::Time::isSimTime() ? kLookAtClock : kLongestSleep;
@@ -159,7 +158,7 @@ class SyntheticHandPublisher {
   ros::NodeHandle node_;
   SyntheticHand hand_;
   bool loop_;
-  Nanoseconds start_ = 0, looked_ = 0;  // ROS time of the first run, and of the last look at the clock
+  Nanoseconds start_ = 0, looked_ = 0;  // ROS times of the first run, and of the last look at the clock
   std::string reset_service_;
   LeapHumanPublisher publisher_;
 };

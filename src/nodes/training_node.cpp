@@ -44,10 +44,10 @@ all nodes that it needs. Publishes training/status and training/markers. Service
 )";
 
 constexpr int kQueue = 100;
-constexpr double kFresh = 0.1;       // contacts that are older say nothing [s]
-constexpr double kStartRoom = 0.02;  // an object this near its start has been put there [m]
-constexpr double kStartDelay = 0.5;  // it may have moved this long before it is first seen [s]
-constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than messages are ever late
+constexpr double kFresh = 0.1;       // older contacts are ignored [s]
+constexpr double kStartRoom = 0.02;  // distance from its start at which an object counts as placed [m]
+constexpr double kStartDelay = 0.5;  // time for which it may have moved before it is first seen [s]
+constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than any delay of a message
 const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Nanoseconds now() {
@@ -64,11 +64,11 @@ std::optional<mr_hand_interaction::ObjectState> object_of(
 
 }  // namespace
 
-/// Runs a session with the objects of an interaction_node, and shows how far it is. One thread.
+/// Runs a session with the objects of an interaction_node, and shows its progress. One thread.
 class TrainingServer {
  public:
   /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
-  /// operator cannot do, SessionError for a folder that cannot be used.
+  /// operator cannot perform, SessionError for an unusable folder.
   TrainingServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
       : TrainingServer(node, private_node, TrainingParameters(private_node)) {}
 
@@ -76,7 +76,7 @@ class TrainingServer {
     try {
       session_.abort(now());
     } catch (const std::exception& error) {
-      if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that is told
+      if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that exception is reported
     }
   }
 
@@ -108,7 +108,7 @@ class TrainingServer {
   void advertise_services(ros::NodeHandle& private_node) {
     using Trigger = std_srvs::Trigger;
     using SetBool = std_srvs::SetBool;
-    // roscpp goes on after an exception of a service; what cannot be written any more ends the node.
+    // roscpp continues after an exception in a service; a session that cannot be written must end the node.
     const auto answer = [this](const auto& action, auto& response) {
       std::string wrong = failed_;
       try {
@@ -156,10 +156,10 @@ class TrainingServer {
     tracking_losses_ = touches_ = 0;
     put_back_ = false;
     if (session_.phase() != SessionPhase::running) note_end();
-    if (!session_.trial().events().empty()) publish();  // it may be so for less than a period
+    if (!session_.trial().events().empty()) publish();  // the state may last for less than a period
   }
 
-  /// Where a trial has it begin; from messages that came before it was put there it may be elsewhere.
+  /// True if the object is at the trial's start; messages sent before it was placed show it elsewhere.
   bool starts(const Observation& seen) const {
     const ObjectModel& model = scene_.model(session_.object().name);
     const Body& body = model.scene.bodies[model.body];
@@ -174,7 +174,7 @@ class TrainingServer {
     });
   }
 
-  /// What the participant is to look at: of a device what the goal's joint moves.
+  /// The body that the participant watches: in a device the one that the goal's joint moves.
   const Body& watched() const {
     const ObjectModel& model = scene_.model(session_.object().name);
     const Goal& goal = session_.task().goals[session_.trial().goal()];
@@ -191,7 +191,7 @@ class TrainingServer {
                  find_body(scene_.model(session_.object().name).scene, event.object).has_value();
   }
 
-  /// Who changes the system while a session runs is not stopped, but it is written down.
+  /// Changes of the system during a session are allowed, but logged.
   void take_input(const mr_hand_interaction::SimulationInput& message) {
     try {
       for (const ParameterWatch::Difference& parameter : parameters_.take(message)) {
@@ -229,14 +229,14 @@ class TrainingServer {
     }
   }
 
-  /// Stamps are those of the machine that the hands come from, whose clock may be another one.
+  /// Converts a stamp of the machine with the hands, whose clock may differ.
   Nanoseconds on_our_clock(const ros::Time& stamp) {
     const Nanoseconds apart = now() - from_ros_time(stamp);
     if (std::abs(apart - clocks_apart_) > kClocksApart) clocks_apart_ = apart;
     return from_ros_time(stamp) + clocks_apart_;
   }
 
-  /// Of the object and what hangs on it; nothing while it is not there.
+  /// Observes the object and its descendants by joints; empty while it is absent.
   std::optional<Observation> observed(const mr_hand_interaction::ObjectStateArray& message) {
     const ObjectModel& model = scene_.model(session_.object().name);
     Observation seen;
@@ -267,7 +267,7 @@ class TrainingServer {
     return seen;
   }
 
-  /// What hands do to it.
+  /// Adds the hands' contacts with the object.
   void feel(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const {
     const Nanoseconds apart = from_ros_time(stamp) - from_ros_time(contacts_.header.stamp);
     if (std::abs(to_seconds(apart)) > kFresh) return;
@@ -292,7 +292,7 @@ class TrainingServer {
     publish();
   }
 
-  /// Empty, or what went wrong.
+  /// Returns an error, or an empty string.
   std::string begin_trial() {
     const std::string wrong = scene_.prepare(session_.object());
     if (!wrong.empty()) return wrong;
@@ -394,21 +394,21 @@ class TrainingServer {
     event_.publish(event);
   }
 
-  ros::Publisher event_;  ///< before the session, which has events as it begins
+  ros::Publisher event_;  ///< constructed before the session, which publishes events from its start
   Session session_;
   TrainingScene scene_;
   ParameterWatch parameters_;
   std::string participant_, fixed_frame_ = "world";
   double auto_next_;
-  ros::SteadyTime next_;  ///< when the next trial begins by itself; zero: when told to
-  std::string failed_;    ///< why the session cannot go on
+  ros::SteadyTime next_;  ///< time at which the next trial starts automatically; zero: on request
+  std::string failed_;    ///< reason why the session cannot continue
   bool paused_ = false;
-  bool at_start_ = false;  ///< the running trial's object has been seen where it starts
+  bool at_start_ = false;  ///< the running trial's object has been seen at its start
 
-  Nanoseconds clocks_apart_ = 0;  ///< this machine's ahead of that of the hands' stamps
+  Nanoseconds clocks_apart_ = 0;  ///< this machine's clock minus that of the hands' stamps
   mr_hand_interaction::ContactArray contacts_;
   sensor_msgs::JointState joints_;
-  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< what is to be looked at, if it is there
+  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< state of the watched body, if present
   int tracking_losses_ = 0, touches_ = 0;
   std::optional<OperatorMotion> person_;
   bool put_back_ = false;

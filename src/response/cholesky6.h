@@ -5,22 +5,20 @@
 
 namespace mrhi {
 
-/// Solves A x = b for a symmetric positive definite 6 x 6 matrix by its factors L D L'. Only the lower
-/// triangle is kept, row by row; loops over it are unrolled, which makes it several times as fast as one of
-/// any size.
+/// Solves A x = b for a symmetric positive definite 6 x 6 matrix by the factors L D L'. Only the lower
+/// triangle is stored, row by row. Loops are unrolled, which is several times as fast as code for any size.
 ///
 ///     A = L D L',   d_k = a_kk,   l_ik = a_ik / d_k,   a_ij -= l_ik a_jk for i >= j > k      (k = 0 to 5)
 ///     L y = b,   D z = y,   L' x = z
 ///
-/// By columns, each taking its part off all that is to the right of it (Golub & Van Loan, Matrix
-/// Computations, 4.1). No roots, as L L' would need, and divisions six in all; no pivots, as A is positive
-/// definite.
+/// Right-looking, column by column (Golub & Van Loan, Matrix Computations, 4.1). Unlike L L' it needs no
+/// roots, and only six divisions. Pivots are not needed, as A is positive definite.
 class Cholesky6 {
  public:
   static constexpr int kEntries = 21;
   static constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
 
-  /// `entries` hold A.
+  /// `entries`: the lower triangle of A.
   void factorise(const std::array<double, kEntries>& entries) {
     for (std::size_t i = 0; i < kEntries; ++i) lower_[i] = entries[i];
 #pragma GCC unroll 6
@@ -56,7 +54,7 @@ class Cholesky6 {
   }
 
  private:
-  double lower_[kEntries];  // L, which has ones on its diagonal, where D stands instead
+  double lower_[kEntries];  // L without its diagonal of ones, where D is stored
   double inverse_[6];       // of D
 };
 

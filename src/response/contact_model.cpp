@@ -14,9 +14,8 @@ MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
 
-/// A model of what hands do to objects, followed by `implicit` for what is left: joints, and contacts between
-/// objects unless the first model has them. A hand does not feel in the same step what lies behind the object
-/// that it pushes.
+/// A model of contacts with hands, followed by `implicit` for joints, and for contacts between objects unless
+/// the first model has them. A hand feels what is behind a pushed object one step later.
 class HandsThenRest : public ContactModel {
  public:
   HandsThenRest(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> rest)

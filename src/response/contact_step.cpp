@@ -21,8 +21,8 @@ StepChanges::Struck& StepChanges::struck(int body, const BodyState& after) {
   return struck_[static_cast<std::size_t>(place)];
 }
 
-// Of each body: J, r x J, and both times the time t at which they fell. An impact that comes on top of others
-// of the same step finds the momenta with those already in, so what was before is noted with the first.
+// For each body: J, r x J, and both times their time t. The momenta already include the impulses, so those
+// before the impacts are computed at a body's first impact.
 void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies) {
   const std::size_t known = struck_.size();
   for (const BodyImpact& impact : impacts) {
@@ -41,7 +41,7 @@ void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std
   }
 }
 
-// Without a moment delay_impacts() passes it over.
+// delay_impacts() skips a body without a moment.
 void StepChanges::forget(int body) {
   const int place = places_[static_cast<std::size_t>(body)];
   if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
@@ -54,15 +54,15 @@ double StepChanges::mean_impact_time(std::size_t body) const {
   return struck.size_moment > 0.0 ? struck.size_moment / struck.size : 0.0;
 }
 
-// Flight has moved the body by h times the velocity of the step's end, as if J had been there from its start.
-// It had h - t: so x -= sum t J / m, and the same of the turn. Springs answer the blow within the same solve;
-// what they gave (all that is neither J nor gravity) is taken to begin at the blows' mean time.
+// Flight has moved the body by h times the velocity at the end of the step, as if J had acted from the start.
+// It acted for h - t, so x -= sum t J / m, and the rotation likewise. Springs respond to the impact in the
+// same solve. Their impulse, all that is neither J nor gravity, counts from the mean time of the impacts.
 //
 //     x -= (sum t J + T dp) / m,      turn by -I^-1 (sum t r x J + T dL),      T = sum t |J| / sum |J|
 //     dp = p - p_before - sum J - m h g,     dL = L - L_before - sum r x J
 //
-// The turn is taken back about the axes of the end, by I of the end: of second order in what a blow turns
-// in a step. Only poses are changed, so momenta and energy stay what they are.
+// The rotation is removed about the axes, and by I, at the end of the step; the error is of second order in
+// the impact's rotation. Only poses change, so momenta and energy stay.
 void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
                                 std::vector<BodyState>& bodies) const {
   for (const Struck& struck : struck_) {

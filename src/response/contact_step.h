@@ -22,31 +22,32 @@ struct BodyImpact {
   int body;         ///< index in Scene::bodies
   Vector3 impulse;  ///< [N s]
   Vector3 arm;      ///< from the centre of mass to where it acts [m]
-  double time;      ///< from the step's start [s]
+  double time;      ///< from the start of the step [s]
 };
 
-/// What a step's response has done to the bodies, as far as their motion through the step depends on it.
+/// Changes of the bodies by a step's response that affect their motion through the step.
 class StepChanges {
  public:
   void reset(std::size_t bodies);
 
-  /// The body's momenta are those of the step's end, gravity included.
+  /// The body's momenta are those at the end of the step, gravity included.
   void mark_solved(int body) { solved_[static_cast<std::size_t>(body)] = true; }
   bool solved(std::size_t body) const { return solved_[body]; }
 
-  /// Impacts whose impulses `bodies` have just been given.
+  /// Adds impacts whose impulses `bodies` already have.
   void note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies);
 
-  /// A body that something else has moved on through the step, impacts and all.
+  /// Excludes a body whose motion through the step, impacts included, is computed elsewhere.
   void forget(int body);
 
-  /// When what springs do to the body begins to act, from the step's start: 0, or the mean time of impacts
-  /// [s].
+  /// Time at which springs begin to act on the body, from the start of the step: 0, or the mean time of its
+  /// impacts [s].
   double mean_impact_time(std::size_t body) const;
 
-  /// Call when free flight has moved the bodies by `step` seconds: takes back what the impacts' changes of
-  /// velocity did before their times, so that an object is not pushed ahead of the hand. What springs did
-  /// about the impacts counts with them: an object that is held and struck stays where it is held.
+  /// Delays the effect of impacts to their times. Call after free flight has moved the bodies by `step`
+  /// seconds. Removes the displacement by an impact's velocity change before the impact, so that an object
+  /// does not move ahead of the hand. The springs' response to impacts is delayed with them: a held object
+  /// that is hit stays in place.
   void delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
                      std::vector<BodyState>& bodies) const;
 
@@ -54,54 +55,53 @@ class StepChanges {
   struct Struck {
     int body;
     Vector3 linear_before, angular_before;  // momenta before the impacts
-    Vector3 linear, angular;                // of all impulses together [N s], [N m s]
-    Vector3 linear_moment, angular_moment;  // each times its time
-    double size, size_moment;               // magnitudes, and each times its time
+    Vector3 linear, angular;                // sum of all impulses [N s], [N m s]
+    Vector3 linear_moment, angular_moment;  // sum of each impulse times its time
+    double size, size_moment;               // sum of magnitudes, and of each times its time
   };
   Struck& struck(int body, const BodyState& after);
 
   std::vector<char> solved_;
-  std::vector<int> places_;  // by body: in struck_, or -1
+  std::vector<int> places_;  // by body: index in struck_, or -1
   std::vector<Struck> struck_;
 };
 
-/// What a contact model works on in one step.
-/// In a step: contacts are found at the poses of its start; respond() changes momenta, by h g too where it
-/// says so (mark_solved); free flight moves the poses on; delay_impacts() takes back what blows moved
-/// before their time.
+/// Input and output of a contact model in one step. Contacts are found at the poses of its start. respond()
+/// changes momenta, also by h g where it calls mark_solved(). Free flight then advances the poses, and
+/// delay_impacts() removes displacements before impacts.
 struct ContactStep {
   const Scene& scene;
   const Vector3& gravity;                   ///< [m/s^2]
   double step;                              ///< [s]
-  std::vector<Contact>& contacts;           ///< with hands, sorted by key; the model fills what acts
-  std::vector<BodyContact>& body_contacts;  ///< of bodies with each other, sorted by key; likewise
+  std::vector<Contact>& contacts;           ///< with hands, sorted by key; the model writes forces and
+                                            ///< impulses
+  std::vector<BodyContact>& body_contacts;  ///< between bodies, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
   StepChanges& changes;
-  std::vector<Grip>& grips;  ///< what hands hold, by hand and body; `implicit` alone knows them
-  /// The bodies of the operators whom hands push back, by hand; null where hands are of the world. Contacts
-  /// and grips then tell the forces that momenta are made of.
+  std::vector<Grip>& grips;  ///< of the grasp assist, by hand and body; used by `implicit` only
+  /// Bodies of the operators on whom the hands react, by hand; null if hands are fixed to the world. If set,
+  /// momenta change by exactly the forces of contacts and grips.
   const std::array<int, kMaxHands>* operators = nullptr;
 };
 
-/// True if all that changes a body's momenta in the response is the hands of the only operator, from the
-/// step's start on: the operator then receives the opposite of that change, whatever the contacts' forces.
+/// True if the hands of the only operator are all that changes the body's momenta in the response, and act
+/// from the start of the step. The operator then receives the opposite of that change, whatever the contacts'
+/// forces.
 inline bool reacts_by_momentum(const ContactStep& step, std::size_t body) {
   return step.scene.operators.size() == 1 && step.scene.joints.empty() && step.body_contacts.empty() &&
          step.changes.mean_impact_time(body) == 0.0;
 }
 
-/// How an object responds to contacts. All memory is in the contacts: a model keeps nothing but scratch
-/// space.
+/// Response of objects to contacts. All state is in the contacts: a model keeps only scratch memory.
 class ContactModel {
  public:
   virtual ~ContactModel() = default;
   virtual void respond(ContactStep& step) = 0;
 };
 
-/// Objects touch each other by the law of `implicit` under every model. Throws std::invalid_argument for a
-/// name that is not known.
-/// The model of a scene with joints keeps references: to the state for what joints remember, and to the
-/// events, to which it adds those of joints.
+/// Contacts between objects follow the law of `implicit` under every model. Throws std::invalid_argument for
+/// an unknown name. The model of a scene with joints keeps references to the state, for the joints' state,
+/// and to the events, to which it adds those of joints.
 std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration, const Scene& scene,
                                                  SimulationState& state, std::vector<Event>& events);
 

@@ -9,27 +9,27 @@
 namespace mrhi {
 namespace {
 
-/// The pad that laps over a face bears at most this multiple of what it bears when pushed along the normal:
-/// where hardly anything laps over, that face adds hardly anything.
+/// Largest load of a face, as a multiple of its load under a force along the normal. A face on which little
+/// of the pad rests adds little.
 constexpr double kMostOnAFace = 2.5;
 /// A shorter stretch is rounding and has no direction [m].
 constexpr double kMinStretch = 1e-9;
-/// More than any edge gives with these: tangential force over the push.
+/// Upper bound of friction over normal force at any edge of these parameters.
 constexpr double kMostFriction = 4.0;
 
-/// The faces that meet at an edge or corner, as their normals: at right angles to each other.
+/// Normals of the perpendicular faces that meet at an edge or corner.
 struct MeetingFaces {
   std::array<Vector3, 3> normals;
   std::size_t count = 0;
 
   void add(const Vector3& normal) { normals[count++] = normal; }
 
-  /// Whether friction on these faces can bear the force F = normal + drag, which the object gives the finger:
-  /// what points out of a face presses, N_i = max(0, n_i.F), and all else is friction, |F - sum N_i n_i| <=
-  /// mu sum N_i.
-  /// A cone about n alone, 30 to 45 degrees off the faces, would let the edge be squeezed out like a pip.
-  /// Where N_i would be more than kMostOnAFace n_i.n, the part of a unit push along n that the face has by
-  /// itself, it is not borne.
+  /// True if friction on these faces supports the object's force on the finger, F = normal + drag. Components
+  /// out of a face are its normal load, N_i = max(0, n_i.F); the rest is friction, |F - sum N_i n_i| <= mu
+  /// sum N_i.
+  ///
+  /// A single cone about n, 30 to 45 degrees from the faces, would let the pad squeeze the edge out. A load
+  /// N_i above kMostOnAFace n_i.n, with n_i.n its part of a unit force along n, is not supported.
   bool bear(const Vector3& normal, const Vector3& drag, double friction) const {
     const Vector3 force = normal + drag;
     Vector3 rest = force;
@@ -44,8 +44,8 @@ struct MeetingFaces {
   }
 };
 
-// Of a box the three on n's side, of a cylinder the end and the side at n's azimuth. One that n lies in has
-// no part of the push and is none of them.
+// Of a box, the three faces whose normals are on the side of n; of a cylinder, the end and the side at n's
+// azimuth. A face parallel to n carries none of the normal force and is left out.
 MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
   constexpr double kSameNormal = 1e-6;
   MeetingFaces faces;
@@ -64,8 +64,9 @@ MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
 
 }  // namespace
 
-// The largest f for which the faces bear normal + f along, by halving; 20 times leave 4e-6 of the push.
-// Halving takes it that they bear every f up to the largest. The least is what a face has by itself.
+// Largest f for which the faces support normal + f along, by bisection; 20 halvings leave 4e-6 of the normal
+// force. Bisection assumes that they support every f below the largest. The lower bound is the friction of a
+// single face.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction) {
   const MeetingFaces faces = faces_at(shape, normal);
   double lowest = friction, highest = std::max(friction, kMostFriction);
@@ -77,9 +78,9 @@ double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3
   return lowest;
 }
 
-// grip = f_edge / mu (phi of a contact that slips), by which the spring's limit is multiplied. It is found
-// for the way in which the contact is drawn at the step's start, and held through the step, so that the
-// step's problem stays convex.
+// grip = f_edge / mu (phi if the contact slips) multiplies the spring's friction limit. It is found for the
+// direction of the stretch at the start of the step, and held through the step, so that the step's problem
+// stays convex.
 void grip_edges(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     if (!contact.at_edge || !contact.touching()) continue;
@@ -91,8 +92,7 @@ void grip_edges(ContactStep& step) {
     const PlacedShape& placed = body.shapes[contact.key.shape];
     const Quaternion to_shape =
         (step.bodies[contact.key.body].pose.orientation * placed.pose.orientation).conjugate();
-    // The object holds the finger back against the way in which it is drawn: the trap is the sign, as
-    // stretch is p - c, and friction on the object is along it.
+    // Friction on the finger opposes the stretch: stretch is p - c, and friction on the object is along it.
     const Vector3 normal = to_shape * contact.normal, along = to_shape * (stretch / -length);
     const double friction = contact.friction == Friction::sticking ? body.material.static_friction
                                                                    : body.material.dynamic_friction;
@@ -102,7 +102,7 @@ void grip_edges(ContactStep& step) {
 
 namespace {
 
-constexpr int kHandParts = kFingers + 1;  // of a hand: its fingers and the palm
+constexpr int kHandParts = kFingers + 1;  // fingers and palm
 
 bool is_palm(const ContactKey& key) {
   return key.capsule == kPalm;
@@ -113,13 +113,13 @@ double pressed_by(const Contact& contact) {
 
 }  // namespace
 
-// A finger gives way once its contacts together push with its strength: each has the part of it that it has
-// of the depths, as equal springs side by side.
+// A finger complies once the sum of its contacts' normal forces reaches its strength. Each contact has a
+// fraction of the strength by its depth, like equal springs in parallel:
 //
 //     S_i = S d_i / sum d,     d_i = share max(0, depth - compliance)
 //
-// of all points of the finger on all bodies. A point that does not press has all of S, should it come to
-// press within the step.
+// The sum is over all points of the finger on all bodies. An unloaded point has the whole S, in case it is
+// loaded within the step.
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
   std::array<std::array<double, kHandParts>, kMaxHands> depths{};
   const auto of = [&depths](const ContactKey& key) -> double& {

@@ -18,12 +18,12 @@ Vector3 mean_tip(const Grip& grip, const Hand& hand) {
   return sum / count;
 }
 
-/// The palm's turn counts as that of pads which are so far from the middle [m]. Objects turn in hands: over
-/// 0.2 s in the median ARCTIC's turn by 16 degrees against the palm, and by 9 against the pads that hold
-/// them.
+/// Weight of the palm's rotation, as the radius of pads around its centre [m]. Objects rotate in the hand:
+/// within 0.2 s the median ARCTIC object rotates by 16 degrees against the palm, and by 9 against the pads
+/// that hold it.
 constexpr double kPalmTurns = 0.008;
 
-/// Of each end of a distal phalanx: both sides of the grip count alike, one of 1/2 in the sum.
+/// Weight of each end of a distal phalanx. The opposing contact groups weigh 1/2 each.
 std::array<double, kFingers> weights_of(const Grip& grip) {
   std::array<double, kFingers> result{};
   int count = 0;
@@ -34,12 +34,12 @@ std::array<double, kFingers> weights_of(const Grip& grip) {
   return result;
 }
 
-/// Of a matrix that is nearly flat, or mirrors.
+/// Nearest rotation to a matrix that may be nearly singular or a reflection.
 ///
 ///     A = U S V',    R = U diag(1, 1, det U det V) V'
 ///
-/// of all rotations that with the largest tr(R'A) (Kabsch 1976; Umeyama 1991). The sign is on the least
-/// singular value, which Eigen has last: without it the nearest orthogonal matrix may be a mirror.
+/// R has the largest tr(R'A) of all rotations (Kabsch 1976; Umeyama 1991). The sign belongs to the smallest
+/// singular value, Eigen's last: without it the nearest orthogonal matrix may be a reflection.
 Quaternion nearest_turn_of_any(const Matrix3& matrix) {
   const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3 &u = svd.matrixU(), &v = svd.matrixV();
@@ -47,16 +47,17 @@ Quaternion nearest_turn_of_any(const Matrix3& matrix) {
   return Quaternion(Matrix3(u * signs.asDiagonal() * v.transpose())).normalized();
 }
 
-/// The rotation that is nearest to a matrix: what is left of it in the limit of Newton's iteration for the
-/// polar decomposition (Higham 1986, scaled), in a twentieth of a singular value decomposition's time.
+/// Nearest rotation to a matrix: the limit of Newton's iteration for the polar decomposition (Higham 1986,
+/// scaled), at a twentieth of the cost of a singular value decomposition.
 ///
 ///     X <- (z X + X^-T / z) / 2,     z = sqrt(|X^-T| / |X|)
 ///
-/// X = Q H has X^-T = Q H^-1: the turn Q stays, and each singular value s becomes (s + 1/s) / 2, which goes
-/// to 1 by squares. Scaling spares the first steps, which halve a large s only. A determinant <= 0 would
-/// lead to a mirror, and a small one to an inverse that is rounding: these go the other way.
+/// X = Q H has X^-T = Q H^-1: the rotation Q stays, and each singular value s becomes (s + 1/s) / 2, which
+/// converges to 1 quadratically. Scaling avoids the first iterations, which only halve a large s. A
+/// determinant <= 0 would converge to a reflection, and a small one has an inverse of rounding errors: both
+/// take nearest_turn_of_any().
 Quaternion nearest_turn(const Matrix3& matrix) {
-  constexpr double kFlat = 1e-4, kSettled = 1e-28;  // of the size to its power
+  constexpr double kFlat = 1e-4, kSettled = 1e-28;  // relative to the matrix's norm, to its power
   constexpr int kMostSteps = 12;
   const double size = matrix.norm();
   if (!(matrix.determinant() > kFlat * size * size * size)) return nearest_turn_of_any(matrix);
@@ -101,9 +102,9 @@ DistalEnds distal_ends(const Hand& hand) {
   return result;
 }
 
-// Kabsch (1976): of rigid motions x -> R x + t the one with the least sum w_i |y_i - R x_i - t|^2 has R the
+// Kabsch (1976): the rigid motion x -> R x + t that minimises sum w_i |y_i - R x_i - t|^2 has as R the
 // rotation nearest to H = sum w_i (y_i - y)(x_i - x)', and t = y - R x, with x, y the weighted means. The
-// palm adds r^2 1 to H, as if it had pads all round at a distance r that have not moved in its frame.
+// palm adds r^2 1 to H, like pads around it at the distance r that have not moved in its frame.
 Pose moved_in_palm(const Grip& grip, const Hand& hand) {
   const DistalEnds pads = distal_ends(hand);
   const std::array<double, kFingers> weights = weights_of(grip);
@@ -115,7 +116,7 @@ Pose moved_in_palm(const Grip& grip, const Hand& hand) {
   Matrix3 spread = kPalmTurns * kPalmTurns * Matrix3::Identity();
   for (std::size_t i = 0; i < pads.size(); ++i)
     spread += weights[i / 2] * (pads[i] - to) * (grip.pads[i] - from).transpose();
-  // The palm's middle is one side of the grip, of weight 1/2: it is the origin, x_i = y_i = 0.
+  // The palm's centre is one opposing group, of weight 1/2, at the origin: x_i = y_i = 0.
   if (grip.by_palm) spread += 0.5 * to * from.transpose();
   const Quaternion turn = nearest_turn(spread);
   return {to - turn * from, turn};

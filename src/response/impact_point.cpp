@@ -11,9 +11,10 @@ namespace mrhi {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// When two points `apart` that part by `velocity` are `distance` from each other for the first time [s].
+/// First time at which two points `apart`, with the relative velocity `velocity`, are `distance` from each
+/// other [s].
 double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
-  // |apart + t velocity| = distance has two roots: the first, in the form that does not cancel.
+  // |apart + t velocity| = distance has two roots; this is the first, in the form without cancellation.
   //
   //     v^2 t^2 - 2 c t + o = 0,    o = x^2 - d^2,  c = -x.v:    t = (c - root) / v^2 = o / (c + root)
   const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
@@ -30,7 +31,7 @@ Vector3 ImpactPoint::Partner::velocity_of_centre() const {
   return inverse_mass * state->linear_momentum;
 }
 
-// v + w x r (Eq. 7), or J u. The hand's own velocity is in `hand_velocity`.
+// v + w x r (Eq. 7), or J u. The hand's own velocity is `hand_velocity`.
 Vector3 ImpactPoint::Partner::velocity() const {
   if (joints != nullptr) return joints->jacobian * *joints->velocity;
   if (recoil != nullptr) return *recoil;
@@ -49,15 +50,15 @@ void ImpactPoint::Partner::apply(const Vector3& impulse) {
   state->angular_momentum += arm.cross(impulse);
 }
 
-// A capsule of the hand is a point mass; 1/m is 0 of the paper's hand and of fixtures.
+// A capsule of the hand is a point mass. 1/m is 0 for the paper's hand and for fixtures.
 Matrix3 ImpactPoint::Partner::inverse_effective_mass() const {
   if (joints != nullptr) return joints->jacobian.lazyProduct(joints->response);
   if (state == nullptr) return inverse_mass * Matrix3::Identity();
   return collision_matrix(inverse_mass, inverse_inertia, arm);
 }
 
-// The gap closes at t + wait. Surfaces that part again by then, or only rest on each other, do not collide
-// (Eq. 8's cases).
+// The gap closes at t + wait. Surfaces that have separated by then, or are at rest on each other, do not
+// collide (Eq. 8's cases).
 double ImpactPoint::collision_time() const {
   const double wait =
       is_of_balls()
@@ -74,14 +75,15 @@ void ImpactPoint::advance_to(double later) {
   const double wait = later - time;
   time = later;
   if (!is_of_balls()) {
-    // rate() is the step's start's: gravity has added a t, on the mean over the wait a (t - wait / 2).
+    // rate() is that at the start of the step. Gravity has added a t, on average over the wait a (t - wait /
+    // 2).
     const double closed = -wait * (rate() + acceleration * (time - 0.5 * wait));
     gap -= closed;
     advance_arms(wait, closed);
     return;
   }
   // Balls: the line of centres is followed exactly, whatever their spin, and the point divides it by the
-  // radii. With the normal of the step's start a later impact would turn smooth balls.
+  // radii. The normal at the start of the step would make a later impact spin smooth balls.
   const Vector3 apart = b.arm - a.arm + wait * (a.velocity_of_centre() - b.velocity_of_centre());
   const double distance = apart.norm(), radii = radius_a + radius_b;
   gap = distance - radii;
@@ -90,8 +92,8 @@ void ImpactPoint::advance_to(double later) {
   b.arm = (radius_b / radii) * apart;
 }
 
-// r += t (c' - v), the rate of an arm from a moving centre to a moving point c. Both arms end at the same
-// c, so that the impact keeps angular momentum: two points would turn the pair by (c_b - c_a) x J.
+// r += t (c' - v), the rate of an arm from a moving centre to a moving point c. Both arms end at the same c,
+// so the impact conserves angular momentum. Two points would rotate the pair by (c_b - c_a) x J.
 void ImpactPoint::advance_arms(double seconds, double closed) {
   if (radius_a > 0.0 || radius_b > 0.0) {
     // The point of a ball moves with its centre, and from the middle of the gap to its surface as the gap
@@ -112,14 +114,14 @@ void ImpactPoint::advance_arms(double seconds, double closed) {
 
 //     m_n = 1 / n'Kn  (Eq. 14's denominator),     m_t = 1 / lambda_max(T'KT),     K = K_a + K_b
 //
-// One number serves both tangential directions, though K is not isotropic: with a matrix the fixed point of
-// relax() would not oppose the sliding. The largest eigenvalue keeps it from overshooting. Joints
-// may leave a point no direction: it then has an effective mass of 0.
+// A single effective mass serves both tangential directions, though K is not isotropic: with a matrix the
+// fixed point of relax() would not oppose the sliding. The largest eigenvalue avoids overshoot. Joints may
+// leave a point no direction of motion; its effective mass is then 0.
 void ImpactPoint::begin() {
   normal_impulse = 0.0;
   friction_impulse.setZero();
   if (a.recoil != nullptr) a.recoil->setZero();
-  // Eq. 12 of both: an impulse p parts the points by (K_a + K_b) p.
+  // Eq. 12 of both bodies: an impulse p changes the relative velocity by (K_a + K_b) p.
   const Matrix3 k = a.inverse_effective_mass() + b.inverse_effective_mass();
   const auto mass = [](double response) { return response > 0.0 ? 1.0 / response : 0.0; };
   normal_response = k * normal;
@@ -127,16 +129,16 @@ void ImpactPoint::begin() {
   if (friction > 0.0) tangential_mass = mass(max_tangential_response(k, normal));
 }
 
-// A row of projected Gauss-Seidel (Catto 2005): the sum of the normal impulses must not pull, a single one
+// A row of projected Gauss-Seidel (Catto 2005): the accumulated normal impulse must not pull, a single change
 // may.
 //
 //     j <- max(0, j + m_n (target - u)),                 u = n.w with all impulses so far
 //     d <- disc(d + m_t (w - n n.w)),    |d| <= mu j,    on b, along the sliding of a over it
 //
-// The first is for a single point Eq. 14 at once. At the end 0 <= j, target <= u, and one of them with =:
-// Newton's law for many points as Moreau (1988) has it. Friction takes j and w of after the normal impulse,
-// w + (j' - j) K n, and both directions at once: limited one by one they would make a square, and friction at
-// its corners would be 1.4 times too strong. Impacts use static friction, the limit of Coulomb's law.
+// For a single point the first is Eq. 14 at once. On convergence 0 <= j, target <= u, and one of them is an
+// equality: Newton's law for many points in Moreau's (1988) form. Friction uses j and w after the normal
+// impulse, w + (j' - j) K n, and both directions at once. Limited separately they would form a square, with
+// friction 1.4 times too strong at its corners. Impacts use static friction, the limit of Coulomb's law.
 double ImpactPoint::relax() {
   Vector3 velocity = relative_velocity();
   const double change =

@@ -10,17 +10,17 @@
 
 namespace mrhi {
 
-/// How the joint velocities of an island move one contact point, and how an impulse there changes them.
+/// Effect of joint velocities on one contact point of an island, and of an impulse there on them.
 struct JointCoordinates {
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  ///< velocity of the point for unit joint velocities
   Eigen::Matrix<double, Eigen::Dynamic, 3> response;  ///< M^-1 J': joint velocities for a unit impulse
-  Eigen::VectorXd* velocity;                          ///< of the island's joints, which the impulses change
+  Eigen::VectorXd* velocity;                          ///< of the island's joints; impulses change it
 };
 
-/// How far impacts have slowed each capsule of the hands [m/s]: the points of a capsule share its mass.
+/// Velocity that impacts have given each capsule of the hands [m/s]. The points of a capsule share its mass.
 class HandRecoils {
  public:
-  /// Returns that of the contact's capsule, at rest.
+  /// Returns the recoil of the contact's capsule, set to zero.
   Vector3* begin(const ContactKey& key) {
     Vector3& recoil = recoils_[std::size_t(key.hand) * kCapsules + key.capsule];
     recoil.setZero();
@@ -31,10 +31,10 @@ class HandRecoils {
   std::array<Vector3, kMaxHands * kCapsules> recoils_;
 };
 
-/// One contact point of an impact: two surfaces that collide, or may, within a step.
+/// A contact point of an impact: two surfaces that collide or may collide within a step.
 struct ImpactPoint {
-  /// One of the two sides. A fixture has nothing set, and no impulse moves it. A hand has its inverse mass
-  /// and its capsule's recoil; the tracked hand itself moves on. A body on joints has its coordinates.
+  /// One of the two bodies. A fixture has no members set, and impulses have no effect. A hand has its inverse
+  /// mass and its capsule's recoil; the tracked hand itself moves on. A jointed body has joint coordinates.
   struct Partner {
     BodyState* state = nullptr;
     const JointCoordinates* joints = nullptr;
@@ -48,57 +48,60 @@ struct ImpactPoint {
     void apply(const Vector3& impulse);  // [N s]
     Matrix3 inverse_effective_mass() const;
   };
-  /// The second surface is that of b. On joints, b stands for the motion of both against each other.
+  /// The second surface is that of b. With joints, b stands for the relative motion of both.
   Partner a, b;
   bool by_hand = false;
-  Vector3 hand_velocity = Vector3::Zero();  // of the hand's point, which takes the place of a [m/s]
+  Vector3 hand_velocity = Vector3::Zero();  // velocity of the hand's point, in place of a's [m/s]
   double restitution = 0.0;
   double friction = 0.0;           // Coulomb's coefficient
-  double acceleration = 0.0;       // of the rate n.(c1' - c2'), by gravity [m/s^2]
+  double acceleration = 0.0;       // gravity's contribution to the rate n.(c1' - c2') [m/s^2]
   double radius_a = 0.0;           // of a free ball; 0 for others [m]
   double radius_b = 0.0;           // likewise
-  BodyContact* between = nullptr;  // the contact, if it is one of two bodies
-  Vector3* total = nullptr;        // sum of impulses that the contact reports, if there is a contact
-  bool* struck = nullptr;          // the contact's mark that its approach is over
+  BodyContact* between = nullptr;  // the contact, if it is between two bodies
+  Vector3* total = nullptr;        // the contact's reported sum of impulses; null without a contact
+  bool* struck = nullptr;          // the contact's flag that its approach has ended
 
-  // Where the surfaces are at `time`.
-  double time = 0.0;  // from the step's start; finally the time of impact [s]
+  // State at `time`.
+  double time = 0.0;  // from the start of the step; finally the time of impact [s]
   double gap = 0.0;   // [m]
   Vector3 normal;     // from b to a
 
-  // The impact.
-  Vector3 approach;                            // relative velocity before it [m/s]
-  double target = 0.0;                         // rate after it, as it would be at the step's start [m/s]
-  Vector3 normal_response;                     // of the relative velocity to a unit impulse along n [1/kg]
+  // Impact.
+  Vector3 approach;                            // relative velocity before the impact [m/s]
+  double target = 0.0;                         // rate after the impact, extrapolated to the start of the step
+                                               // [m/s]
+  Vector3 normal_response;                     // change of the relative velocity by a unit impulse along n
+                                               // [1/kg]
   double normal_mass = 0.0;                    // effective [kg]
   double normal_impulse = 0.0;                 // accumulated [N s]
-  double tangential_mass = 0.0;                // likewise, of any tangential direction at least [kg]
+  double tangential_mass = 0.0;                // lower bound of the effective mass over all tangential
+                                               // directions [kg]
   Vector3 friction_impulse = Vector3::Zero();  // accumulated, on b [N s]
 
   Vector3 relative_velocity() const { return hand_velocity + a.velocity() - b.velocity(); }
-  /// The same at the time of impact, with gravity's part along n.
+  /// Relative velocity at the time of impact, with gravity's contribution along n [m/s].
   Vector3 velocity_on_impact() const { return relative_velocity() + time * acceleration * normal; }
-  /// Rate of the gap, without gravity's part since the step's start [m/s].
+  /// Rate of the gap, without gravity's contribution since the start of the step [m/s].
   double rate() const { return normal.dot(relative_velocity()); }
-  /// The normal of two balls turns as they pass each other.
+  /// True if both are balls: their normal rotates as they pass each other.
   bool is_of_balls() const { return radius_a > 0.0 && radius_b > 0.0; }
   bool same_pair(const ImpactPoint& other) const {
     return a.state == other.a.state && b.state == other.b.state;
   }
 
-  /// When the surfaces collide as the bodies move now, from the step's start; infinite if never [s].
+  /// Time of collision under the present motion, from the start of the step; infinite if never [s].
   double collision_time() const;
-  /// Moves on to a time as the bodies move now.
+  /// Advances to a time under the present motion.
   void advance_to(double later);
 
-  /// Finds the effective masses. No impulse has been accumulated yet.
+  /// Computes the effective masses and clears the accumulated impulse.
   void begin();
-  /// Moves the rate towards its target by impulses that only push, and stops the sliding within Coulomb's
+  /// Moves the rate towards its target by impulses that never pull, and reduces sliding within Coulomb's
   /// disc. Returns the largest change of an impulse over the normal's effective mass [m/s].
   double relax();
   /// Accumulated impulse on b; a has received the opposite [N s].
   Vector3 impulse() const { return friction_impulse - normal_impulse * normal; }
-  /// Takes the accumulated impulse back.
+  /// Removes the accumulated impulse from the bodies.
   void undo();
   /// Sets the accumulated impulse on b, and applies the difference.
   void set_impulse(const Vector3& impulse);

@@ -9,28 +9,30 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kUsualPoints = 64;          // in one step; memory grows for more
+constexpr std::size_t kUsualPoints = 64;          // capacity for one step; grows if needed
 constexpr double kSameTime = 1e-12;               // impacts closer in time are simultaneous [s]
-constexpr std::size_t kMaxImpactsPerContact = 4;  // of an island in one step, on average; then springs act
-/// After so many relaxed points of an island, no further impact of the step is sought.
+constexpr std::size_t kMaxImpactsPerContact = 4;  // limit for an island in one step, on average; then springs
+                                                  // act
+/// Limit of relaxed points of an island, beyond which no further impact of the step is sought.
 constexpr std::size_t kMaxWork = 1500;
-/// An island of more contacts between bodies is large.
+/// Largest number of contacts between bodies of an island that is not large.
 constexpr std::size_t kFewLinks = 16;
-/// Number of points that the sweeps of a large island's impact relax, and their minimum.
+/// Number of points that all sweeps of a large island's impact relax together, and the least number of
+/// sweeps.
 constexpr int kLargeIslandWork = 1500, kMinSweeps = 8;
-/// Slower approaches are no impacts in a large island [m/s].
+/// Slowest approach that is an impact in a large island [m/s].
 constexpr double kSlow = 1e-3;
-/// Impulses whose sum exceeds this multiple of the largest sum that the impacts can need diverge.
-/// Each point needs at most (1 + epsilon) m |u|, as n'Kn >= 1/m. Between fingers that close from opposite
-/// directions each impulse turns the body into the other finger, and they grow from sweep to sweep.
+/// Impulses diverge if their sum exceeds this multiple of the largest sum that the impacts can need. Each
+/// point needs at most (1 + epsilon) m |u|, as n'Kn >= 1/m. Between fingers that close from opposite
+/// directions each impulse drives the body into the other finger, and impulses grow from sweep to sweep.
 constexpr double kDiverged = 4.0;
 
 bool is_large(const Island& island) {
   return island.links.size() > kFewLinks;
 }
 
-/// Approaches that gravity alone makes in a step are slow too [m/s].
-/// slow = 1 mm/s + h g.
+/// Returns the slowest approach that is an impact: kSlow plus the speed that gravity adds in a step, h g
+/// [m/s].
 double slow_in(const ContactStep& step) {
   return kSlow + step.step * step.gravity.norm();
 }
@@ -46,22 +48,22 @@ ImpactPoint::Partner partner(ContactStep& step, std::size_t index, const Vector3
   return partner;
 }
 
-/// Returns the radius of a body that is a ball about its centre of mass; 0 for others.
+/// Returns the radius of a body that is a ball centred on its centre of mass; 0 for others.
 double radius_of_ball(const Body& body) {
   if (body.fixed || body.shapes.size() != 1 || !body.shapes[0].pose.position.isZero(0.0)) return 0.0;
   const Sphere* ball = std::get_if<Sphere>(&body.shapes[0].shape);
   return ball == nullptr ? 0.0 : ball->radius;
 }
 
-/// Returns the point of a contact between two bodies at the step's start.
-/// n.(c_a' - c_b') < 0 approaches. A pair that is swept through the step comes with the time of its first
-/// touch, when its gap is closed.
+/// Returns the point of a contact between two bodies at the start of the step; n.(c_a' - c_b') < 0
+/// approaches. A contact found by continuous detection has the time of its first touch, when its gap is
+/// closed.
 ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
   ImpactPoint point;
   point.a = partner(step, contact.key.a, contact.arm_a);
   point.b = partner(step, contact.key.b, contact.arm_b);
   point.normal = contact.normal;
-  // Free bodies fall together.
+  // Gravity accelerates free bodies alike.
   point.acceleration = point.a.state == nullptr ? -contact.normal.dot(step.gravity) : 0.0;
   point.gap = -contact.depth;
   point.between = &contact;
@@ -81,13 +83,13 @@ ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
   return point;
 }
 
-/// Sets the depth from which the springs' constant velocity leads to the gap at the step's end: an impact
-/// within the step changes the velocity under way.
+/// Sets the depth so that at constant velocity the springs find the actual gap at the end of the step,
+/// although an impact has changed the velocity within it.
 ///
 ///     d+ = d - h u = -gap(h)      so      d = h u - gap(h)
 ///
-/// at the end's velocity u. A late impact drives a body at its neighbour for the rest of the step only: with
-/// the depth of the step's start, d - h u would be an overlap that does not exist.
+/// at the velocity u of the end. A late impact moves a body towards its neighbour for the rest of the step
+/// only. With the depth at the start of the step, d - h u would be an overlap that does not exist.
 void widen(ImpactPoint point, double step) {
   point.advance_to(step);
   BodyContact& contact = *point.between;
@@ -110,8 +112,8 @@ ImpactSolver::ImpactSolver() : precision_(kExact) {
   laws_.reserve(kUsualPoints);
 }
 
-// A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone give it
-// at the step's end: backward Euler's gap, as the springs see it.
+// A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone cause at the
+// end of the step: backward Euler's gap.
 template <typename VelocityOf>
 void ImpactSolver::drop_separating(const ContactStep& step, VelocityOf velocity_of) {
   const auto separates = [&](const ImpactPoint& point) {
@@ -121,9 +123,9 @@ void ImpactSolver::drop_separating(const ContactStep& step, VelocityOf velocity_
   points_.erase(std::remove_if(points_.begin(), points_.end(), separates), points_.end());
 }
 
-// Impacts by a hand are simultaneous, those between bodies sequential: elastic bodies pass momentum on only
-// if each impact starts from the result of the one before (in Newton's cradle, solved simultaneously, the
-// first ball would bounce back and the others move on as one). A large island has no time for that.
+// Impacts by a hand are simultaneous, those between bodies sequential. Elastic bodies transmit momentum only
+// if each impact starts from the result of the previous one. Newton's cradle, solved simultaneously, would
+// return the first ball and move the others as one. Large islands are solved simultaneously to save time.
 void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                            const SpringMotion& springs) {
   friction_ = friction;
@@ -154,8 +156,8 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   }
 }
 
-// A held island is solved once before the impact, as a held body is, to see what its springs carry away from
-// the hand. The impulses of limits are reported last: start_with() begins the joints' laws anew.
+// A held island is solved once before the impact, like a held body, to find the points that its springs carry
+// away from the hand. Impulses of limits are reported last, as start_with() resets the joints' laws.
 void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFriction friction,
                            IslandProblem& problem, const std::vector<JointState>& joints) {
   friction_ = friction;
@@ -172,7 +174,7 @@ void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFricti
   }
   impact_.clear();
   for (ImpactPoint& point : points_) impact_.push_back(&point);
-  // Fingers from opposite directions have no solution by Newton's law: their springs act.
+  // Newton's law has no solution for fingers from opposite directions; the springs act instead.
   if (!resolve_impact(step)) return;
   problem.start_with(velocity_, step, joints);
   for (const ImpactPoint& point : points_) {
@@ -183,8 +185,9 @@ void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFricti
   }
 }
 
-/// Joints that reach a limit within the step are contacts along their coordinate. Springs and gravity, which
-/// act through the step, then find the joint on its way back and give it no further energy.
+/// Collects contacts, and joints that reach a limit within the step as contacts along their coordinate.
+/// Springs and gravity, which act through the step, then find the joint moving back, and add no further
+/// energy.
 ///
 ///     w = hand_velocity - J u, with J of body 2 less that of body 1: w.n < 0 approaches (Eq. 8)
 ///     a limit:   room = upper - q for u > 0, q - lower for u < 0;   collides if 0 < room < h |u|
@@ -233,7 +236,7 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
   }
 }
 
-/// Returns the next point, with a zero Jacobian in `coordinates_`.
+/// Returns the next point and clears its Jacobian in `coordinates_`.
 ImpactPoint ImpactSolver::point_in_joints(const Vector3& normal, double gap) {
   if (coordinates_.size() == points_.size()) coordinates_.emplace_back();
   JointCoordinates& coordinates = coordinates_[points_.size()];
@@ -246,8 +249,8 @@ ImpactPoint ImpactSolver::point_in_joints(const Vector3& normal, double gap) {
   return point;
 }
 
-/// Adds the point if it collides within the step. Gravity is not in the rate: the velocity is that of the
-/// step's start.
+/// Adds the point if it collides within the step. The rate excludes gravity: the velocity is that at the
+/// start of the step.
 bool ImpactSolver::add_in_joints(double step, ImpactPoint point, const Material& material) {
   const double rate = point.rate();
   if (classify(rate) != Approach::colliding) return false;
@@ -265,7 +268,7 @@ bool ImpactSolver::add_in_joints(double step, ImpactPoint point, const Material&
   return true;
 }
 
-/// Sets what a point with a hand has: the capsule's mass and recoil.
+/// Sets a hand's part of a point: velocity, mass and recoil of the capsule.
 void ImpactSolver::set_hand(Contact& contact, ImpactPoint& point) {
   point.by_hand = true;
   point.hand_velocity = contact.hand_velocity;
@@ -309,8 +312,8 @@ bool ImpactSolver::is_slow(const ContactStep& step, const BodyContact& contact) 
   return contact.normal.dot(velocity) > -slow_in(step);
 }
 
-// A hand's points keep their velocity through the step; the object falls, which changes the gap by g t^2 / 2.
-// A gap that closes after the step's end is left to its own step.
+// A hand's points keep their velocity through the step. The object falls, which changes the gap by g t^2 / 2.
+// A gap that closes after the end of the step is left to a later step.
 void ImpactSolver::add(ContactStep& step, Contact& contact) {
   const Body& body = step.scene.bodies[contact.key.body];
   const BodyState& state = step.bodies[contact.key.body];
@@ -360,9 +363,9 @@ void ImpactSolver::resolve_simultaneously(ContactStep& step) {
   resolve_impact(step);
 }
 
-// All links take part, also those that do not approach now: an impact may make them. The number of impacts
-// and the work are bounded as the series may be infinite (a ball that bounces to rest between two others
-// within a step: Zeno).
+// All links take part: an impact may make any of them approach. The number of impacts and the work are
+// bounded, as the series may be infinite (Zeno: a ball that bounces to rest between two others within a
+// step).
 void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island) {
   points_.clear();
   for (const Link& link : island.links) {
@@ -384,8 +387,8 @@ bool ImpactSolver::find_next_impact(double end) {
   const double first = *std::min_element(times_.begin(), times_.end());
   if (first >= end) return false;
   impact_.clear();
-  // An impact has all points that collide in this step of each pair that has a point that collides now:
-  // resolved one after the other they would tip a box that lands flat.
+  // An impact includes all points that collide in this step of each pair with a point that collides now.
+  // Resolved one after the other they would tip a box that lands flat.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto now = [&](std::size_t other) {
       return times_[other] <= first + kSameTime && points_[i].same_pair(points_[other]);
@@ -399,14 +402,15 @@ bool ImpactSolver::find_next_impact(double end) {
   return true;
 }
 
-/// Resolves the points of one impact; false if no impulses that only push satisfy Newton's law.
+/// Resolves the points of one impact. Returns false if no impulses without pull satisfy Newton's law.
 bool ImpactSolver::resolve_impact(ContactStep& step) {
-  double max_impulse = 0.0;  // sum of normal impulses that these approaches can need [N s]
+  double max_impulse = 0.0;  // upper bound of the sum of normal impulses for these approaches [N s]
   const auto separates = [&max_impulse](ImpactPoint* point) {
     point->begin();
     point->approach = point->velocity_on_impact();
-    // Eqs. 10, 11 at the time of impact, u' = -epsilon u with u = rate + t a, in terms of the momenta's rate:
-    // rate' = u' - t a = rate - (1 + epsilon) u. So the step's gravity is neither lost nor applied twice.
+    // Eqs. 10, 11 at the time of impact, u' = -epsilon u with u = rate + t a. In terms of the rate by the
+    // momenta: rate' = u' - t a = rate - (1 + epsilon) u. So the step's gravity is neither lost nor applied
+    // twice.
     point->target = point->rate();
     const double speed = point->target + point->time * point->acceleration;
     if (classify(speed) != Approach::colliding) return true;
@@ -422,14 +426,14 @@ bool ImpactSolver::resolve_impact(ContactStep& step) {
     report(step);
     return true;
   }
-  // Fingers that close from opposite directions have no solution by Newton's law: the springs take over.
+  // Newton's law has no solution for fingers from opposite directions; the springs act instead.
   for (ImpactPoint* point : impact_) point->undo();
   return false;
 }
 
-/// Finds impulses that together give every point its target rate; false if they diverge.
-/// The error is the largest change of a velocity in a sweep, its scale the largest j n'Kn. Friction depends
-/// on j, so both are relaxed in the same sweep, the normal first.
+/// Solves for impulses that together give every point its target rate; returns false if they diverge. The
+/// error is the largest change of a velocity in a sweep, its scale the largest j n'Kn. Friction depends on j,
+/// so each sweep relaxes the normal first, then friction.
 bool ImpactSolver::solve(double max_impulse) {
   for (int sweep = 0; sweep < precision_.max_sweeps; ++sweep) {
     work_ += impact_.size();
@@ -445,9 +449,9 @@ bool ImpactSolver::solve(double max_impulse) {
   return true;
 }
 
-/// Where restitution together with friction makes energy, blends the impact with one without restitution.
-/// The impact without restitution, u' = 0, starts from the same velocities: the impulses are taken back and
-/// the target is raised by epsilon u.
+/// If restitution and friction together add energy, blends the impact with one without restitution. That
+/// impact, u' = 0, starts from the same velocities: the impulses are undone, and the target is raised by
+/// epsilon u.
 void ImpactSolver::limit_energy(double max_impulse) {
   laws_.clear();
   double gain = 0.0, exchanged = 0.0;
@@ -470,7 +474,7 @@ void ImpactSolver::limit_energy(double max_impulse) {
   for (std::size_t i = 0; i < impact_.size(); ++i) impact_[i]->set_impulse(laws_[i].newtons);
 }
 
-// J and its time, for both bodies: the flight takes back J's displacement before that time (StepChanges).
+// J and its time, for both bodies: the flight removes J's displacement before that time (StepChanges).
 void ImpactSolver::report(ContactStep& step) {
   reported_.clear();
   const auto note = [&](const ImpactPoint& point, const ImpactPoint::Partner& partner,

@@ -14,34 +14,34 @@ namespace mrhi {
 
 enum class ImpactFriction { none, coulomb };
 
-/// The impulse phase: Newton's impact law along the normal, once per approach. Points of one pair of bodies,
-/// all of an island that a hand hits, and all of an island with joints are one simultaneous impact: each
-/// relative velocity becomes at least -restitution times the approach velocity, with impulses that only
-/// push. Impacts of other pairs follow each other in time, up to several of one pair in a step. In a large
-/// island all impacts of a step are simultaneous, solved to a visible precision, and slow ones are left to
-/// the springs. Where restitution and friction together would give the bodies energy, the bodies part more
-/// slowly. With ImpactFriction::coulomb, sliding at the point is stopped within Coulomb's limit of static
+/// The impulse phase: Newton's impact law along the normal, once per approach. Each relative velocity becomes
+/// at least -restitution times the approach velocity, by impulses that never pull. These form one
+/// simultaneous impact: the points of one pair of bodies, all of an island that a hand hits, and all of an
+/// island with joints. Impacts of other pairs follow each other in time, up to several of one pair in a step.
+/// In a large island all impacts of a step are simultaneous and solved to a visible precision; slow ones are
+/// left to the springs. If restitution and friction together would add energy, the bodies separate more
+/// slowly. With ImpactFriction::coulomb, the impact reduces sliding within Coulomb's limit of static
 /// friction.
 class ImpactSolver {
  public:
   ImpactSolver();
-  /// Returns the velocity at the step's end that the springs alone give the body of an island of one.
+  /// Returns the velocity that springs alone give the only body of an island at the end of the step.
   using SpringMotion = std::function<Twist(const Island&)>;
-  /// `springs`, if any, exempt the points of a held body that its springs carry away from the hand: by the
-  /// velocity at the step's start alone, every phalanx beside a grip that accelerates would hit the body.
+  /// `springs`, if set, exempts points of a held body that its springs carry away from the hand. By the
+  /// velocity at the start of the step alone, every phalanx beside an accelerating grip would hit the body.
   void resolve(ContactStep& step, const Islands& islands, ImpactFriction friction,
                const SpringMotion& springs = {});
-  /// Resolves the impacts of an island with joints, in the coordinates of its problem, as one: contacts with
-  /// hands, between bodies, and joints that reach a limit. Linkages transmit the impulses. The problem then
-  /// starts from the velocities that they leave.
+  /// Resolves the impacts of an island with joints as one, in the coordinates of its problem: contacts with
+  /// hands and between bodies, and joints that reach a limit. Linkages transmit the impulses. The problem
+  /// then starts from the velocities after the impact.
   void resolve(ContactStep& step, const Island& island, ImpactFriction friction, IslandProblem& problem,
                const std::vector<JointState>& joints);
 
  private:
-  /// How precisely an impact is solved.
+  /// Limits of an impact's iteration.
   struct Precision {
     int max_sweeps;
-    double converged;  // relative to the approach velocity
+    double converged;  // error over the approach velocity
   };
   static const Precision kExact, kVisible;
 
@@ -68,20 +68,20 @@ class ImpactSolver {
 
   ImpactFriction friction_ = ImpactFriction::none;
   std::vector<ImpactPoint> points_;   // of an island
-  std::vector<double> times_;         // of their collisions, as the bodies move now [s]
+  std::vector<double> times_;         // of their collisions under the present motion [s]
   std::vector<ImpactPoint*> impact_;  // points that are resolved together
   HandRecoils recoils_;
   std::vector<BodyImpact> reported_;
-  std::vector<Twist> twists_;  // by body, of a large island's
+  std::vector<Twist> twists_;  // by body, of a large island
   std::vector<ImpactLaws> laws_;
-  bool by_hand_ = false;  // a hand takes part in the island's impacts
+  bool by_hand_ = false;  // true if a hand takes part in the island's impacts
   Precision precision_;
   std::size_t work_ = 0;  // points relaxed for the island
 
-  // Of an island with joints.
+  // For an island with joints.
   const IslandProblem* problem_ = nullptr;
-  std::deque<JointCoordinates> coordinates_;  // at least as many as points; keep their memory
-  Eigen::VectorXd velocity_, column_;         // of the joints, with the impulses applied so far
+  std::deque<JointCoordinates> coordinates_;  // at least one for each point; they keep their memory
+  Eigen::VectorXd velocity_, column_;         // of the joints, after the impulses so far
 };
 
 }  // namespace mrhi

@@ -7,15 +7,15 @@
 namespace mrhi {
 namespace {
 
-/// Islands of more bodies are large (where contacts opened and slipped Newton's method did not converge in
-/// three steps of four: after 20 directions and 100 evaluations velocities were off by a quarter to all of
-/// what contacts make of them),
+/// Largest number of bodies of an island that Newton's method solves. In larger ones, where contacts opened
+/// and slipped, it did not converge in three steps of four: after 20 directions and 100 evaluations
+/// velocities were off by a quarter to all of the contacts' effect.
 constexpr std::size_t kMaxExact = 4;
-/// unless they hardly move, as those of a pile that stands: Newton's method begins at its solution there.
+/// The same for an island nearly at rest, as a pile, where the warm start is nearly the solution.
 constexpr std::size_t kMaxAtRest = 10;
 
-/// True if no body is faster than a fall of one step.
-/// |p| < m h g. At 0 g nothing is slower than that: columns in microgravity are large islands.
+/// True if no body is faster than a fall of one step, |p| < m h g. At 0 g this is never true: columns in
+/// microgravity are large islands.
 bool is_nearly_at_rest(const ContactStep& step, const Island& island) {
   const double slow = step.step * step.gravity.norm();
   return std::all_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
@@ -25,8 +25,8 @@ bool is_nearly_at_rest(const ContactStep& step, const Island& island) {
 
 }  // namespace
 
-// Eqs. 9 to 15 and then Eqs. 16 to 20, both at the step's end. The order matters: impacts are resolved by the
-// velocities of the step's start, and the springs find what the impacts have left.
+// Eqs. 9 to 15 and then Eqs. 16 to 20, both at the end of the step. The order matters: impacts use the
+// velocities at the start of the step, and springs those after the impacts.
 void ImplicitModel::respond(ContactStep& step) {
   if (step.contacts.empty() && step.body_contacts.empty() && step.grips.empty()) return;
   begin_contacts(step);
@@ -36,8 +36,8 @@ void ImplicitModel::respond(ContactStep& step) {
   end_contacts(step);
 }
 
-// Limits that depend on the whole hand or on the stretch of the step before are set first and held through
-// the step. The large-island solver starts from the last step's forces.
+// Limits that depend on the whole hand or on the last step's stretch are set first and held through the step.
+// The large-island solver starts from the last step's forces.
 void ImplicitModel::begin_contacts(ContactStep& step) {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
@@ -49,8 +49,8 @@ void ImplicitModel::begin_contacts(ContactStep& step) {
   }
 }
 
-// A body that is held and hit is solved twice: once for where its springs take it, and again after the
-// impacts. Without the first solution every phalanx beside a grip that speeds up would hit what it holds.
+// A body that is held and hit is solved twice: before the impacts for the motion by its springs, and again
+// after them. Without the first solution every phalanx beside an accelerating grip would hit the held object.
 void ImplicitModel::resolve_impacts(ContactStep& step) {
   const auto springs = [&](const Island& island) {
     problem_.begin(step, island, configuration_);
@@ -60,15 +60,15 @@ void ImplicitModel::resolve_impacts(ContactStep& step) {
   impacts_.resolve(step, islands_, impact_friction(), springs);
 }
 
-/// A surface that is inside has had its approach, impact or not.
+/// The approach of a penetrating surface has ended, with or without an impact.
 void ImplicitModel::end_contacts(ContactStep& step) {
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
   for (BodyContact& contact : step.body_contacts) contact.struck = contact.struck || contact.depth > 0.0;
 }
 
-// Solved means that h m g is in the momenta already, so that the flight must not give it again. Where nothing
-// acts the momenta stay as they were, and the flight has gravity to give: the parabola is exact, where
-// M v = p + h m g would be backward Euler's.
+// A solved body's momenta include h m g, so the flight must not apply gravity again. If nothing acts, the
+// momenta stay and the flight applies gravity: this gives the exact parabola, where M v = p + h m g would be
+// backward Euler's.
 void ImplicitModel::solve_islands(ContactStep& step) {
   for (const Island& island : islands_.all()) {
     const bool acts = solve(step, island);
@@ -82,18 +82,18 @@ void ImplicitModel::solve_islands(ContactStep& step) {
   }
 }
 
-/// Returns true if any force acts. Islands whose contacts keep opening and slipping in turns go to the
-/// large-island solver.
+/// Returns true if any force acts. The large-island solver takes islands whose contacts keep opening and
+/// slipping.
 bool ImplicitModel::solve(ContactStep& step, const Island& island) {
   const std::size_t bodies = island.bodies.size();
   if (bodies > kMaxExact && (bodies > kMaxAtRest || !is_nearly_at_rest(step, island)))
     return solve_large(step, island);
   problem_.begin(step, island, configuration_);
   bool agree = problem_.solve();
-  // The operator receives the contacts' forces: these must make the momenta.
+  // The operator receives the contacts' forces, so the momenta must follow from these.
   const bool by_forces = step.operators != nullptr && !reacts_by_momentum(step, island.bodies.begin()->body);
   if (!agree && (bodies > 1 || by_forces)) {
-    problem_.evaluate(true);  // the velocity has moved on since
+    problem_.evaluate(true);  // at the final velocity
     if (bodies > 1 && !problem_.nearly_agrees()) return solve_large(step, island);
     agree = true;
   }
@@ -110,7 +110,7 @@ bool ImplicitModel::solve_large(ContactStep& step, const Island& island) {
   return acts;
 }
 
-/// Stable with that stiffness at any step and mass.
+/// The default stiffness is stable at any step and mass.
 extern const ContactModelEntry implicit_model{
     "implicit", 0, 2000.0,
     [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {

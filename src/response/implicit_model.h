@@ -6,18 +6,18 @@
 
 namespace mrhi {
 
-/// The paper's two phases solved at the end of the step: Newton's impact law where surfaces collide, and the
-/// god-object springs with Coulomb friction and soft-finger torsion as functions of the velocity that
-/// results. One convex problem per island of touching bodies, M (v - v*) = h sum J' f(v), by Newton's method.
-/// Release, damping, torsion and the lever of deep contacts are its own: it is not the seed model in the
-/// limit of small steps. See docs/contact.md.
+/// The paper's two phases solved at the end of the step: Newton's impact law where surfaces collide, and
+/// god-object springs with Coulomb friction and soft-finger torsion as functions of the resulting velocity.
+/// Solves one convex problem for each island, M (v - v*) = h sum J' f(v), by Newton's method. Release,
+/// damping, torsion and the lever arm of deep contacts are additions: it is not the limit of the seed model
+/// for small steps. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
   explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
  protected:
-  // The parts of respond(), in their order; islands are built after the first.
+  // The parts of respond(), in order; islands are built after the first.
   void begin_contacts(ContactStep& step);
   void resolve_impacts(ContactStep& step);
   void solve_islands(ContactStep& step);
@@ -31,7 +31,7 @@ class ImplicitModel : public ContactModel {
   bool solve_large(ContactStep& step, const Island& island);
 
   LargeIslandSolver large_;
-  std::vector<Vector3> last_forces_;  // by contact between bodies, of the step before [N]
+  std::vector<Vector3> last_forces_;  // by contact between bodies, of the last step [N]
 
  protected:
   const ContactConfiguration configuration_;

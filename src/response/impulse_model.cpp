@@ -4,8 +4,8 @@
 namespace mrhi {
 namespace {
 
-/// Impulses only: every step in which a phalanx meets an object and still approaches it is an impact; nothing
-/// holds.
+/// Impulses only: every step in which a touching phalanx approaches the object is an impact. Nothing holds an
+/// object.
 class ImpulseModel : public ContactModel {
  public:
   void respond(ContactStep& step) override;
@@ -17,9 +17,8 @@ class ImpulseModel : public ContactModel {
 
 }  // namespace
 
-// Eqs. 9 to 15 alone. That `struck` is forgotten in every step makes each step an approach of its own; as
-// nothing pushes where nothing approaches, a body slides out of any grip
-// (docs/speed_accuracy.md#where-each-contact-model-is-stable).
+// Eqs. 9 to 15 alone. `struck` is reset, so each step is a new approach. Without an approach no force acts,
+// so a body slides out of any grip (docs/speed_accuracy.md#where-each-contact-model-is-stable).
 void ImpulseModel::respond(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     contact.force.setZero();
@@ -29,7 +28,7 @@ void ImpulseModel::respond(ContactStep& step) {
   impacts_.resolve(step, islands_, ImpactFriction::none);
 }
 
-/// The paper's stiffness.
+/// The default stiffness is the paper's.
 extern const ContactModelEntry impulse_model{
     "impulse", 3, 100.0, [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
       return std::make_unique<ImpulseModel>();

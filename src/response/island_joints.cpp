@@ -1,7 +1,7 @@
-// The contact problem of an island with joints. Joints have their own coordinates and no multipliers: no
-// constraint is there that could drift and be drawn back (Baumgarte 1972), and M = J' M_b J is positive
-// definite, with M_b the bodies' masses and J their Jacobian. J and M are those of the step's start; that
-// axes turn meanwhile is the flight's (linkage_flight.h).
+// The contact problem of an island with joints. Joints are solved in their own coordinates, without
+// multipliers. So no constraint drifts or needs stabilisation (Baumgarte 1972), and M = J' M_b J is positive
+// definite, with M_b the bodies' masses and J their Jacobian. J and M are those at the start of the step; the
+// flight accounts for the rotation of axes in the step (linkage_flight.h).
 #include <algorithm>
 #include <cmath>
 
@@ -11,21 +11,21 @@
 namespace mrhi {
 namespace {
 
-/// Rounding of the momentum that the island has: a smaller error times Effort::converged is none.
+/// Fraction of the island's momentum, added to the scale of errors: smaller errors are rounding.
 constexpr double kRounding = 1e-6;
-/// Where more than this is missing, forces are no guess for the next step; of the forces' impulse.
+/// Largest error, over scale(), at which the forces are a warm start of the next step.
 constexpr double kFarOff = 0.01;
-/// Springs give nothing to what parts faster [m/s].
+/// Separation speed beyond which springs apply no force [m/s].
 constexpr double kReleaseSpeed = 0.1;
-/// An island of more bodies has bounded effort.
+/// Largest number of bodies that are solved without a bound on effort.
 constexpr std::size_t kFewBodies = 4;
 
 constexpr int kNoJoint = -1;
 
 }  // namespace
 
-// u0 = M^-1 sum J_b' p_b: momenta of the bodies as the joints see them. What of them joints do not let
-// through is no error of this step: joints hold it back. u* = u0 + h M^-1 J' m g.
+// u0 = M^-1 sum J_b' p_b projects the bodies' momenta onto the joints. The remainder is the joints' reaction,
+// not an error of this step. u* = u0 + h M^-1 J' m g.
 void IslandProblem::begin(const ContactStep& step, const Island& island,
                           const ContactConfiguration& configuration, const std::vector<Linkage>& linkages,
                           std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints,
@@ -46,7 +46,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
   start_with(start_, step, joints);
 }
 
-/// The effort of many bodies is bounded, and their error what can be seen.
+/// Limits of the iteration. Those of many bodies are lower, and their error is bounded by visibility.
 IslandProblem::Effort IslandProblem::effort_in_joints() const {
   Effort effort;
   effort.limits = 2;
@@ -86,9 +86,11 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
   }
 }
 
-/// The momenta at the step's start are gathered in the gradient, those of gravity in the fall.
-/// A joint's torque is made a force by k^2 = M_ii / m of the body that hangs on it; of one that slides that
-/// has no unit, and is how many times that body it moves.
+/// Adds a linkage's unknowns. The gradient collects the momenta at the start of the step, the fall those of
+/// gravity.
+///
+/// A joint's weight converts its torque to a force by k^2 = M_ii / m of its child body. For a prismatic joint
+/// this has no unit: the moved mass over the child's.
 void IslandProblem::add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
                                 LinkageMotion& motion) {
   const auto first = static_cast<Eigen::Index>(unknowns_.size());
@@ -129,10 +131,10 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   unknowns_.insert(unknowns_.end(), 6, {kNoJoint, static_cast<int>(index)});
 }
 
-// Bodies without joints have six unknowns each, so the second loop goes by sixes over those.
+// Bodies without joints have six unknowns each, so the second loop skips over them in sixes.
 void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
                                const std::vector<JointState>& joints) {
-  start_ = velocity;  // which it may be itself
+  start_ = velocity;  // `velocity` may be start_ itself
   free_ = start_ + fall_;
   velocity_ = free_;
   laws_.resize(unknowns_.size());
@@ -152,12 +154,12 @@ void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
   }
 }
 
-/// Brings the bodies' impulses to the joints, and adds what joints give by themselves, t(u).
+/// Projects the bodies' impulses onto the joints, and adds the joints' own forces t(u).
 ///
 ///     g = M (u - u*) - h J' f(J u) - h t(u)
 ///
-/// scale: what contacts give and joints bear, each as a force, and a little of the momentum: where nothing
-/// acts no ratio of nothing could be reached.
+/// scale: contact and joint forces, plus a little of the momentum, so that a relative error exists where no
+/// force acts.
 void IslandProblem::add_joint_forces() {
   gradient_.noalias() += jacobian_.transpose() * body_impulse_;
   scale_ += kRounding * carried_;
@@ -169,8 +171,8 @@ void IslandProblem::add_joint_forces() {
   }
 }
 
-/// What joints store by themselves: h sum e_i(u_i), de_i/du = -t_i; convex too, as each joint's force falls
-/// as its velocity grows.
+/// Potential of the joints' own forces: h sum e_i(u_i), de_i/du = -t_i. It is convex, as each joint's force
+/// falls while its velocity grows.
 double IslandProblem::joint_energy() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -187,8 +189,8 @@ void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double si
   jacobian += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
 }
 
-/// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c what the unknowns make of a row's
-/// relative velocity and spin. -dt/du is not negative and each joint's own, on the diagonal.
+/// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c the Jacobians of a row's relative
+/// velocity and spin. -dt/du is diagonal and not negative.
 void IslandProblem::factorise_joints() {
   hessian_ = mass_;
   for (const SpringContact& row : rows_) {
@@ -218,9 +220,9 @@ void IslandProblem::factorise_joints() {
   factors_.compute(hessian_);
 }
 
-/// Contacts take energy, and give no more than their release speed has; hands give their own speed. A joint's
-/// springs act on as they were, for what they store is small beside it: where Newton's method has failed a
-/// linkage is in violent motion.
+/// Contacts dissipate energy, and return at most that of their release speed; hands add that of their own
+/// speed. The joints' springs keep their forces: their energy is small by comparison, as Newton's method
+/// fails only where a linkage moves violently.
 void IslandProblem::keep_to_energy(const ContactStep& step, const Island& island) {
   double fastest = kReleaseSpeed, mass = 0.0;
   for (const IslandBody& body : island.bodies) {
@@ -236,12 +238,12 @@ void IslandProblem::keep_to_energy(const ContactStep& step, const Island& island
   evaluate(true);
 }
 
-// Bodies get M_b J u: what joints do not let through of contacts' impulses, the joints hold, and it does
-// not enter momenta at all. So J' of the bodies' momenta is M u, which the flight goes on from.
+// Bodies get M_b J u. Joints react to the remainder of the contacts' impulses, which does not enter the
+// momenta. So J' of the bodies' momenta is M u, from which the flight continues.
 void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
                            std::vector<JointState>& joints) {
   settle_rows(step, island);
-  // The next step begins with what acted in this one, unless that is far off.
+  // Forces are the warm start of the next step, unless their error is large.
   const double far = kFarOff * scale();
   const bool lasts = agree || error_squared() <= far * far;
   for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
@@ -258,7 +260,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
     joint.pushed = lasts ? (velocity_[row] - free_[row]) / step_ : 0.0;
     laws_[i].settle(velocity_[row], joint);
   }
-  // u less M^-1 times what is missing: momenta are then those that the reported forces have given.
+  // u minus M^-1 times the residual: momenta then agree with the reported forces.
   if (agree || nearly_agrees()) {
     direction_ = gradient_;
     solve_mass(direction_);

@@ -10,16 +10,16 @@
 namespace mrhi {
 namespace {
 
-/// A body that is off by less at the step's end has been solved for [m].
+/// Position error at the end of the step below which a body counts as solved [m].
 constexpr double kInvisibleDistance = 1e-9;
-/// Momenta are what the forces make of them if less than this is missing; of the forces' impulse.
+/// Largest error, over scale(), at which momenta are taken from the forces.
 constexpr double kNearlyAgrees = 1e-4;
-/// An object that is heavier than this, in masses of the operator who holds it, is solved together with the
-/// operator. A lighter one hardly moves a person: there the operator's velocity of the step's start is stable
-/// at any step.
+/// Smallest mass ratio of an object to the operator who holds it at which both are solved together. A lighter
+/// object hardly moves a person, so the operator's velocity at the start of the step is stable at any step
+/// length.
 constexpr double kMinCoupled = 0.02;
 
-/// X S by its columns, with X = [r]x + t n' the torque of a force at the arm r.
+/// Columns of X S, where X = [r]x + t n' maps a force at the arm r to its torque.
 struct TorqueSlope {
   Triple x, y, z;
   TorqueSlope(const Symmetric3& s, const Triple& r)
@@ -29,7 +29,7 @@ struct TorqueSlope {
   }
 };
 
-/// Takes the motion of what carries the hand out of the row's drive: a twist at the centre of its `arm`.
+/// Makes the row's drive relative to the body that carries the hand: a twist about the centre of `arm`.
 void leave_carrier(const Twist& carrier, const Triple& arm, SpringContact& row) {
   const Triple spin = triple(carrier.angular);
   row.drive = row.drive - triple(carrier.linear) - spin.cross(arm);
@@ -38,8 +38,8 @@ void leave_carrier(const Twist& carrier, const Triple& arm, SpringContact& row) 
 
 }  // namespace
 
-// s_t 1 + (s_n - s_t) n n' - slip d d' / d'd. The last term is there if friction slips: at its limit it turns
-// with the stretch d and grows no more along it.
+// s_t 1 + (s_n - s_t) n n' - slip d d' / d'd. The last term appears if friction slips: at its limit the force
+// turns with the stretch d, but does not grow along it.
 Symmetric3 point_slope(const SpringContact& row) {
   const SpringResponse& response = row.response;
   const double along = response.tangential_slope;
@@ -49,14 +49,14 @@ Symmetric3 point_slope(const SpringContact& row) {
   return s;
 }
 
-// The point of the body at the arm r moves by J (v, w) = v - [r]x w, so J' = (1; [r]x) and
+// The body's point at the arm r has the velocity J (v, w) = v - [r]x w, so J' = (1; [r]x) and
 //
 //     J' S J = (  S         .             )      and the twist's s_T n n' is added at the lower right
 //              (  [r]x S    [r]x S [r]x'  )
 //
-// and where the push acts elsewhere, by the tilt t, [r]x becomes X = [r]x + t n': that adds s_n t n' to [r]x
-// S and s_n (m m' - (r x n) (r x n)'), m = r x n + t, to the lower right. A row of A [r]x' is r x that row of
-// A, as [r]x' = -[r]x. What is symmetric is made once.
+// If the normal force acts elsewhere, by the tilt t, [r]x becomes X = [r]x + t n'. This adds s_n t n' to [r]x
+// S, and s_n (m m' - (r x n) (r x n)'), m = r x n + t, to the lower right. A row of A [r]x' is r x that row
+// of A, as [r]x' = -[r]x. Only the lower triangle of a symmetric block is computed.
 void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& r, Lower6& sum) {
   const SpringResponse& response = row.response;
   const Triple& n = row.spring.normal;
@@ -88,7 +88,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
   for (const IslandBody& body : island.bodies) begin_body(step, body.body);
   make_rows(step, island, configuration);
   if (several()) {
-    // What settles does so in one or two iterations. What does not is left to the large-island solver.
+    // Problems that converge do so in one or two iterations. The large-island solver takes the others.
     effort_.iterations = 6, effort_.limits = 0, effort_.anew = false;
   } else if (step.operators != nullptr && island.links.size() == 0) {
     const Body& body = step.scene.bodies[masses_[0].body];
@@ -122,8 +122,8 @@ void IslandProblem::make_rows(const ContactStep& step, const Island& island,
     make_link_row(step, island, configuration, step.body_contacts[link.index], rows_[row++]);
 }
 
-// No gyroscopic term w x I w is in M (u - u*): it is what the axes' turning does. L itself changes by torques
-// alone, and the flight turns the axes under L afterwards (free_flight.h).
+// M (u - u*) contains no gyroscopic term w x I w. Only torques change L; the flight then turns the axes under
+// constant L (free_flight.h).
 //
 //     u* = (p / m + h g, I^-1 L)          u_0 = u* + h a,     a = (u - u*) / h of the last step
 //     unseen = m (1 nm) / h, of the lightest body
@@ -145,7 +145,7 @@ void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
   weights_.segment<3>(at + 3).setConstant(3.0 * body.mass / body.inertia.trace());
 }
 
-/// Returns the operator of all hands that act on the body; -1 if there are several.
+/// Returns the operator of all hands that act on the body; -1 if none or several.
 int IslandProblem::sole_operator(const ContactStep& step, const Island& island) const {
   int op = -1;
   bool several = false;
@@ -163,13 +163,13 @@ int IslandProblem::sole_operator(const ContactStep& step, const Island& island) 
   return several ? -1 : op;
 }
 
-// The wrench of the springs acts on the body and, opposite, on the operator. So the velocity W of the body
-// against the operator, both at the body's centre, is that of one body of the reduced mass:
+// The springs' wrench acts on the body and, with opposite sign, on the operator. So the body's velocity W
+// relative to the operator, both at the body's centre, is that of one body of the reduced mass:
 //
 //     M_r (W - W*) = h sum J' f(W),     M_r^-1 = M^-1 + X M_p^-1 X'
 //
-// and a heavy object is as stable in the hands of a person as a light one. X M_p^-1 X' has, with d from the
-// operator's centre to the body's, the blocks 1/m - [d]I^-1[d], -[d]I^-1, I^-1[d] and I^-1.
+// A heavy object is then as stable in a person's hands as a light one. With d from the operator's centre to
+// the body's, the blocks of X M_p^-1 X' are 1/m - [d]I^-1[d], -[d]I^-1, I^-1[d] and I^-1.
 void IslandProblem::couple(const ContactStep& step, const Body& body, const BodyState& state,
                            std::size_t op) {
   const Body& person = step.scene.bodies[op];
@@ -188,7 +188,7 @@ void IslandProblem::couple(const ContactStep& step, const Body& body, const Body
   inverse.bottomRightCorner<3, 3>() = inverse_inertia + world_inverse_inertia(body, state.pose.orientation);
   const Eigen::Matrix<double, 6, 6> reduced = inverse.llt().solve(Eigen::Matrix<double, 6, 6>::Identity());
   mass_ = 0.5 * (reduced + reduced.transpose());
-  // Both fall alike, so that gravity has no part in the velocity against each other.
+  // Gravity accelerates both alike, so it has no effect on the relative velocity.
   start_.head<3>() -= carrier_.linear;
   start_.tail<3>() -= carrier_.angular;
   free_ = start_;
@@ -197,8 +197,8 @@ void IslandProblem::couple(const ContactStep& step, const Body& body, const Body
   coupled_ = true;
 }
 
-// Body 1 of the rows is the operator, and body 2 a fixture, which has no number: u = u_1 + v + w x r, with
-// u_1 the hand's velocity against the operator.
+// Body 1 of the rows is the operator; body 2 is a fixture, which has no number: u = u_1 + v + w x r, with u_1
+// the hand's velocity relative to the operator.
 void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
                                    const std::vector<Contact*>& contacts, const Twist& carrier,
                                    const ContactConfiguration& configuration) {
@@ -234,10 +234,9 @@ void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
   }
 }
 
-/// True if the contact is open at this velocity: it then gives nothing, as respond() would find.
-/// d+ = d - tau u.n <= 0, without the spring's other work. Two cases need respond(): a bond, which pulls
-/// without any normal force, and limits that are held, by which friction acts on though the normal force is
-/// gone.
+/// True if the contact is open at this velocity, d+ = d - tau u.n <= 0, and so has no force; respond() would
+/// find the same at a higher cost. Two cases need respond(): a bond, which acts without a normal force, and
+/// held limits, under which friction acts on after the normal force has vanished.
 bool IslandProblem::stays_open(SpringContact& row, const Triple& velocity, bool renew_limits) {
   Spring& spring = row.spring;
   if (spring.bond > 0.0 || spring.depth > spring.ahead * velocity.dot(spring.normal)) return false;
@@ -247,14 +246,14 @@ bool IslandProblem::stays_open(SpringContact& row, const Triple& velocity, bool 
   return true;
 }
 
-/// Backward Euler: the gradient is the impulse that the two sides of M (u - u*) = h J' f(J u) differ by. It
-/// is that of energy() too, while friction's limits are held. A row gives f to its body 2 and -f to body 1:
+/// Backward Euler. The gradient is the residual impulse of M (u - u*) = h J' f(J u). While friction's limits
+/// are held it is also the gradient of energy(). A row applies f to its body 2 and -f to body 1:
 ///
 ///     g = M (u - u*) - h J' (sum f, sum r x f + (f.n) t + T n)
 ///
-/// This is time stepping on velocities as Anitescu & Potra (1997) have it, with springs, which need no
-/// complementarity problem, in place of constraints; convex as Todorov (2014) and, with springs, Castro,
-/// Permenter & Han (2023) have it.
+/// This is velocity-level time stepping (Anitescu & Potra 1997) with springs in place of constraints, so it
+/// needs no complementarity problem. It is convex as in Todorov (2014) and, with springs, Castro, Permenter &
+/// Han (2023).
 void IslandProblem::evaluate(bool renew_limits) {
   if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
@@ -307,9 +306,9 @@ void IslandProblem::multiply_mass(const Vector& by, Vector& result) const {
   }
 }
 
-/// H = M + h sum J' S J: positive definite, as no row's S has a negative eigenvalue.
-/// A row adds to the blocks of its two bodies, and the opposite between them. Of one body, H has factors of
-/// fixed size; of more it is dense, as most bodies of so few touch each other.
+/// H = M + h sum J' S J: positive definite, as no row's S has a negative eigenvalue. A row adds to the
+/// diagonal blocks of its two bodies, and subtracts from the block between them. For one body, H has factors
+/// of fixed size. For more it is dense: in so small an island most bodies touch each other.
 void IslandProblem::factorise() {
   if (in_joints_) return factorise_joints();
   slopes_.assign(masses_.size(), Lower6{});
@@ -349,7 +348,7 @@ void IslandProblem::factorise() {
     factors_of_one_.factorise(slopes_[0]);
 }
 
-// H_ba -= h J_b' S J_a, with rows of b, which is the later body, and columns of a:
+// H_ba -= h J_b' S J_a, with rows of b, the later body, and columns of a:
 //
 //     J_b' S J_a = (  S      (Y S)'            )      X, Y the torques of b and a, S = S'
 //                  (  X S    X S Y' + s_T n n' )
@@ -365,7 +364,7 @@ void IslandProblem::couple_slopes(const SpringContact& row, const Symmetric3& s)
     block.block<3, 1>(3, k) -= step_ * vector(*of_b[k]);
     block.block<1, 3>(k, 3) -= step_ * vector(*of_a[k]).transpose();
   }
-  // X S Y' = X (Y S)', whose column k is b x q + (n.q) t, q the k-th row of Y S.
+  // X S Y' = X (Y S)', whose column k is b x q + (n.q) t, with q the k-th row of Y S.
   const Triple rows[] = {{y.x.x, y.y.x, y.z.x}, {y.x.y, y.y.y, y.z.y}, {y.x.z, y.y.z, y.z.z}};
   const double twist[] = {response.torque_slope * n.x, response.torque_slope * n.y,
                           response.torque_slope * n.z};
@@ -384,15 +383,15 @@ void IslandProblem::find_direction() {
   }
 }
 
-/// In N s: an angular impulse counts as the impulse that gives it at the radius of gyration.
-/// |g_v|^2 + |g_w|^2 / k^2, k^2 = tr I / 3m the mean over the axes.
+/// Squared residual in (N s)^2: |g_v|^2 + |g_w|^2 / k^2. An angular impulse counts as the impulse that causes
+/// it at the radius of gyration k, with k^2 = tr I / 3m the mean over the axes.
 double IslandProblem::error_squared() const {
   return (weights_.array() * gradient_.array().square()).sum();
 }
 
-/// (u - u*)' M (u - u*) / 2 + h sum V(J u), with V the potential whose slope is -f: convex, least at the
-/// step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000). Only a line search
-/// needs it.
+/// (u - u*)' M (u - u*) / 2 + h sum V(J u), with V the potential whose slope is -f. It is convex, and its
+/// minimum is the step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000).
+/// Only a line search needs it.
 double IslandProblem::energy() {
   if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
   change_ = velocity_ - free_;
@@ -412,8 +411,8 @@ bool IslandProblem::nearly_agrees() const {
   return error_squared() <= kNearlyAgrees * kNearlyAgrees * scale_ * scale_;
 }
 
-// Momenta that agree with the forces are M u* + h J' f: what one body gains another loses, however far u is
-// solved. Of a body that is solved with an operator no others are known.
+// Momenta consistent with the forces are M u* + h J' f: one body gains what the other loses, however far u
+// has converged. If a body is solved with its operator, this always holds, as no other momenta are known.
 void IslandProblem::finish_bodies(bool agree, ContactStep& step) const {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const BodyMass& body = masses_[i];

@@ -29,69 +29,71 @@ struct Symmetric3 {
 
 /// Returns S = -d force / d velocity of 2 at the contact point, by the row's last response.
 Symmetric3 point_slope(const SpringContact& row);
-/// Adds J' S J, -d (force, torque) / d (velocity, angular velocity) of a body on which the row acts at `arm`.
+/// Adds J' S J = -d (force, torque) / d (velocity, angular velocity) of a body on which the row acts at
+/// `arm`.
 void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& arm, Lower6& sum);
 
-/// The contact problem of one island at the step's end: M (u - u*) = h J' f(J u), with f the springs' forces
-/// and u* what gravity alone makes of the velocities. The unknowns u are six of each body, linear and angular
-/// in world axes; in an island with joints they are the joints' velocities and six of each body without a
+/// The contact problem of one island at the end of the step: M (u - u*) = h J' f(J u), with f the springs'
+/// forces and u* the velocities under gravity alone. The unknowns u are six for each body, linear and angular
+/// in world axes. In an island with joints they are the joints' velocities, and six for each body without a
 /// joint. Solved by Newton's method. Keeps its memory from island to island.
 class IslandProblem {
  public:
-  /// Bodies without joints.
+  /// An island without joints.
   void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
-  /// An island with joints. `linkages`: all of the scene, with their motions placed; `usual`: the step, of
-  /// which frames leave shorter ones over [s].
+  /// An island with joints. `linkages` and their placed motions are those of the whole scene. `usual`: the
+  /// regular step; the last one of a frame may be shorter [s].
   void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
              const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
              const std::vector<JointState>& joints, double usual);
-  /// The body of an operator whose hands touch fixtures. `carrier` moves the hands.
+  /// The body of an operator whose hands touch fixtures. `carrier`: motion that carries the hands.
   void begin_operator(const ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
                       const Twist& carrier, const ContactConfiguration& configuration);
 
-  /// Returns true if the forces and the velocity found agree.
+  /// Returns true if the velocity found is consistent with the forces.
   bool solve();
-  /// Evaluates the forces at the velocity, with Coulomb's limits renewed there first or held.
+  /// Evaluates the forces at the current velocity, with Coulomb's limits renewed first or held.
   void evaluate(bool renew_limits);
-  /// Impulses that act [N s].
+  /// Sum of the acting impulses, which errors are compared with [N s].
   double scale() const { return scale_; }
-  /// True if so little is missing that momenta may be what the forces make of them.
+  /// True if the error is small enough to take momenta from the forces.
   bool nearly_agrees() const;
-  /// Velocity of the first body of an island without joints, at the step's end.
+  /// Velocity of the first body of an island without joints, at the end of the step.
   Twist velocity() const {
     return {velocity_.head<3>() + carrier_.linear, velocity_.segment<3>(3) + carrier_.angular};
   }
 
-  /// Writes contacts, and the bodies' momenta at the step's end: what the forces make of them if these and
-  /// the velocity `agree`.
+  /// Writes the contacts, and the bodies' momenta at the end of the step: from the forces if the velocity is
+  /// consistent with them (`agree`), else from the velocity.
   void finish(bool agree, ContactStep& step, const Island& island);
   void finish_operator(ContactStep& step, const std::vector<Contact*>& contacts);
 
-  // Of islands with joints.
+  // For islands with joints.
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
   using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-  /// Takes other velocities at the step's start, as impacts have left them.
+  /// Replaces the velocities at the start of the step, by those after impacts.
   void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
   const Vector& start() const { return start_; }
   const Vector& joint_velocity() const { return velocity_; }
   /// Adds `sign` times the Jacobian of the point of body `number` at `arm`.
   void add_point_jacobian(int number, const Vector3& arm, double sign, PointJacobian& jacobian) const;
-  /// The joint whose velocity an unknown is, as an index in Scene::joints; -1 of a body without a joint.
+  /// Joint whose velocity an unknown is, as an index in Scene::joints; -1 for a body without a joint.
   int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
   void note_limit_impulse(Eigen::Index joint, double impulse) {
     laws_[static_cast<std::size_t>(joint)].note_limit_impulse(impulse);
   }
-  /// Solves the mass matrix for velocities, in place.
+  /// Multiplies by the inverse mass matrix, in place: momenta become velocities.
   void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }
-  /// True if anything but gravity acts, or may.
+  /// True if anything but gravity acts or may act.
   bool acts() const { return acts_; }
-  /// Slows a solution that does not agree with its forces down to what springs and hands can have made of it.
+  /// Scales the velocity of an inconsistent solution down to the energy that springs and hands can have
+  /// given.
   void keep_to_energy(const ContactStep& step, const Island& island);
   void finish(bool agree, ContactStep& step, const Island& island, std::vector<JointState>& joints);
 
  private:
-  /// What the forces of a body's rows are together.
+  /// Sum of the forces of a body's rows.
   struct Wrench {
     Triple force, torque;  // [N], [N m]
   };
@@ -101,18 +103,18 @@ class IslandProblem {
     Matrix3 inertia;  // world axes
   };
   struct Unknown {
-    int joint;  // index in Scene::joints, or -1 of the six of a body without a joint
-    int body;   // that it moves
+    int joint;  // index in Scene::joints; -1 for the six of a body without a joint
+    int body;   // the body that it moves
   };
   /// Limits of the iteration.
   struct Effort {
     int iterations = 40;       // with Coulomb's limits renewed in each
-    int limits = 8;            // renewals of held limits after that
-    int held_iterations = 60;  // for each of them
+    int limits = 8;            // renewals of held limits after these
+    int held_iterations = 60;  // after each renewal
     int unchecked = 2;        // first iterations without a line search: exact while no contact opens or slips
-    bool anew = true;         // held limits begin at the step's start, not at the last iterate
-    int trials = 20;          // of a line search
-    double converged = 1e-7;  // largest error of a solution; of the forces' impulse
+    bool anew = true;         // true if held limits restart from the start of the step, not the last iterate
+    int trials = 20;          // per line search
+    double converged = 1e-7;  // largest error of a solution, over scale()
   };
 
   // Newton's method (newton.cpp).
@@ -158,29 +160,29 @@ class IslandProblem {
 
   Effort effort_;
   double step_ = 0.0, scale_ = 0.0;
-  double unseen_ = 0.0;                     // an impulse that moves nothing by what could be seen [N s]
+  double unseen_ = 0.0;                     // an impulse whose effect is invisible [N s]
   std::vector<SpringContact> rows_;         // of hands, grips and contacts between bodies, in this order
   std::vector<BodyMass> masses_;            // by number
   std::vector<Wrench> wrenches_;            // likewise, of the last iterate
-  Vector start_, free_;                     // u at the step's start, and u*
-  Vector velocity_, direction_, gradient_;  // u of the iterate, its step, and the impulse that is missing
-  Vector weights_;  // by which squared impulses of the gradient count: 1, or 1/k^2 of a torque [1/m^2]
+  Vector start_, free_;                     // u at the start of the step, and u*
+  Vector velocity_, direction_, gradient_;  // u of the iterate, Newton step, and residual impulse
+  Vector weights_;  // of squared components of the gradient: 1, or 1/k^2 for torques [1/m^2]
   Vector change_, momentum_;
   Cholesky6 factors_of_one_;
   std::vector<Lower6> slopes_;
   Matrix hessian_;
   Eigen::LLT<Matrix> factors_;
 
-  // One body with the operator whose hands act on it: velocities are those against the operator.
+  // One body solved with the operator whose hands act on it: velocities are relative to the operator.
   bool coupled_ = false;
-  Matrix mass_;    // of both against each other; of an island with joints that of the unknowns
+  Matrix mass_;    // reduced mass of the two, or the joint island's mass matrix
   Twist carrier_;  // velocity of the operator at the body's centre
 
   bool in_joints_ = false, acts_ = false;
   double usual_ = 0.0, carried_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
-  std::vector<JointLaw> laws_;  // by unknown that is a joint's
+  std::vector<JointLaw> laws_;  // by unknown; used for joints
   Matrix jacobian_;             // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;
   Eigen::RowVectorXd spin_jacobian_;

@@ -33,8 +33,8 @@ bool is_held(const ContactStep& step, const Island& island) {
                      [](const Contact& contact) { return contact.touching() && contact.struck; });
 }
 
-// Disjoint sets, each a tree of parents, halved on the way (Tarjan & van Leeuwen 1984). The smaller index
-// becomes the root: so islands come in the order of their first bodies, whatever the order of the contacts.
+// Disjoint sets as trees of parents, with path halving (Tarjan & van Leeuwen 1984). The smaller index becomes
+// the root. So islands come in the order of their first bodies, whatever the order of the contacts.
 int Islands::root_of(int body) {
   auto b = static_cast<std::size_t>(body);
   while (parent_[b] != static_cast<int>(b)) {
@@ -49,7 +49,7 @@ void Islands::unite(int a, int b) {
   parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
 }
 
-// Contacts come sorted by their bodies, so those of a body are one run of them.
+// Contacts are sorted by body, so those of a body are adjacent.
 void Islands::build(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   bodies_.clear();
   links_.clear();
@@ -63,7 +63,7 @@ void Islands::build(const ContactStep& step, const std::vector<std::vector<int>>
   divide(step.scene, !groups.empty());
 }
 
-/// What a hand holds without touching it just now.
+/// Adds bodies that a hand grips without touching them in this step.
 void Islands::add_gripped(const ContactStep& step) {
   for (const Grip& grip : step.grips) {
     if (!grip.active) continue;
@@ -74,8 +74,8 @@ void Islands::add_gripped(const ContactStep& step) {
   }
 }
 
-// Fixtures unite nothing: they do not move, and what stands on the same table is not one island. Joints unite
-// as contacts do: M of a linkage is dense, so that a force on one of its bodies moves all.
+// Fixtures connect no islands: they are immovable, so objects on one table stay separate. Joints connect
+// bodies as contacts do: M of a linkage is dense, so a force on one of its bodies moves all.
 void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector<int>>& groups) {
   parent_.resize(step.scene.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
@@ -101,12 +101,12 @@ void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector
   gather();
 }
 
-// By root, then by body: the smallest index is the root, so both islands and the bodies within one come in
-// the scene's order, and results do not hang on the order in which contacts unite them.
+// Sorts by root, then by body. The smallest index is the root, so islands and the bodies in each come in the
+// scene's order. Results do not depend on the order in which contacts connect them.
 void Islands::gather() {
   for (IslandBody& body : bodies_) body.root = root_of(body.root);
   for (Link& link : links_) link.root = root_of(link.root);
-  // Of each body the entry with what hands do to it is kept, which is the last.
+  // Of a body's entries, the last is kept, which has the hands' contacts.
   std::sort(bodies_.begin(), bodies_.end(), [](const IslandBody& x, const IslandBody& y) {
     return std::tie(x.root, x.body, y.last) < std::tie(y.root, y.body, x.last);
   });
@@ -118,7 +118,7 @@ void Islands::gather() {
   if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
 }
 
-// Bodies and links are sorted by root, so an island is a run of each.
+// Bodies and links are sorted by root, so an island is a range of each.
 void Islands::divide(const Scene& scene, bool by_joints) {
   islands_.clear();
   with_joints_.clear();

@@ -6,14 +6,14 @@
 
 namespace mrhi {
 
-/// A free body that something touches, and the hands' contacts with it.
+/// A free body of an island, and the hands' contacts with it.
 struct IslandBody {
-  int root;                 // the island's first body
+  int root;                 // first body of the island
   std::size_t body;         // in Scene::bodies
   std::size_t first, last;  // in ContactStep::contacts
 };
 
-/// A contact of an island's body with another one of it, or with a fixture.
+/// A contact of an island's body with another of its bodies or with a fixture.
 struct Link {
   int root;
   std::size_t index;  // in ContactStep::body_contacts
@@ -28,11 +28,11 @@ struct Span {
   std::size_t size() const { return static_cast<std::size_t>(last - first); }
 };
 
-/// A group of free bodies that touch each other, with the contacts that act on them.
+/// A group of free bodies connected by contacts or joints, with the contacts that act on them.
 struct Island {
-  Span<IslandBody> bodies;  // by their index
+  Span<IslandBody> bodies;  // sorted by index
   Span<Link> links;         // likewise
-  const int* places;        // by index in Scene::bodies; of bodies of other islands, any number
+  const int* places;        // by index in Scene::bodies; arbitrary for bodies of other islands
 
   /// Returns the number of a body of Scene::bodies in the island; -1 if it belongs to another one.
   int place_of(std::size_t body) const {
@@ -41,18 +41,18 @@ struct Island {
   }
 };
 
-/// True if anything touches or grips the island.
+/// True if any contact or grip acts on the island.
 bool is_touched(const ContactStep& step, const Island& island);
-/// True if a hand touches the island and is past its approach: a finger that is about to hit holds nothing.
+/// True if a hand touches the island after its approach has ended: a finger about to collide does not hold.
 bool is_held(const ContactStep& step, const Island& island);
 
-/// Bodies that touch nothing, and fixtures, belong to none.
+/// Finds islands. Fixtures and bodies without contacts belong to none.
 class Islands {
  public:
-  /// Bodies of a group, which hang together on joints, belong to one island, touched or not. Islands with any
-  /// of them are in with_joints(), and not in all().
+  /// `groups`: bodies connected by joints, which share an island, touched or not. Islands that contain any of
+  /// them are in with_joints(), not in all().
   void build(const ContactStep& step, const std::vector<std::vector<int>>& groups = {});
-  /// By their first body.
+  /// Sorted by their first body.
   const std::vector<Island>& all() const { return islands_; }
   const std::vector<Island>& with_joints() const { return with_joints_; }
 
@@ -69,7 +69,7 @@ class Islands {
   std::vector<Island> islands_, with_joints_;
   std::vector<int> parent_;   // by body
   std::vector<int> places_;   // by body
-  std::vector<char> listed_;  // by body: whether it is among them already
+  std::vector<char> listed_;  // by body: true if it is in bodies_
 };
 
 }  // namespace mrhi

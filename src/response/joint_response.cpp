@@ -6,10 +6,10 @@
 namespace mrhi {
 namespace {
 
-/// A linkage is still if none of its points is faster [m/s]: a tenth of the speed of a body that may sleep
+/// Largest speed of any point of a linkage at rest [m/s]: a tenth of the speed below which a body may sleep
 /// (simulation/sleeping.cpp).
 constexpr double kStillSpeed = 1e-6;
-/// A linkage that has been still for so long sleeps [s].
+/// Time at rest after which a linkage sleeps [s].
 constexpr double kSleepDelay = 0.5;
 
 bool has(const Island& island, int body) {
@@ -36,8 +36,8 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
   }
 }
 
-// As ImplicitModel's, with islands that have joints in their coordinates. Then the linkages' flight, which is
-// theirs alone: free_flight() moves none of their bodies.
+// As ImplicitModel's, with islands that have joints in joint coordinates. Then linkages are advanced:
+// free_flight() skips their bodies.
 void JointedModel::respond(ContactStep& step) {
   begin_contacts(step);
   islands_.build(step, groups_);
@@ -52,7 +52,7 @@ void JointedModel::respond(ContactStep& step) {
   fly(step);
 }
 
-/// True if the island has been still for long, and nothing has pushed it since.
+/// True if the island has been at rest for kSleepDelay and no force has acted since.
 bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
   if (!configuration_.sleep || is_touched(step, island)) return false;
   const auto moves = [&](const IslandBody& body) {
@@ -67,7 +67,7 @@ bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
   return false;
 }
 
-/// Places a linkage where its joints are. Its mass matrix follows from the poses.
+/// Places a linkage by its joint positions, and computes its mass matrix.
 void JointedModel::place(const ContactStep& step, std::size_t index) {
   const Linkage& linkage = linkages_[index];
   positions_.resize(linkage.joints());
@@ -80,8 +80,8 @@ void JointedModel::place(const ContactStep& step, std::size_t index) {
   motions_[index].weigh();
 }
 
-// Where nothing acts the island is left to the flight, which has gravity and no forces: that is exact to
-// its order, and keeps what moves freely from being damped by a backward Euler step.
+// If nothing acts, the island is left to the flight, which has gravity and no forces. This is exact to the
+// flight's order, and free motion is not damped by a backward Euler step.
 void JointedModel::respond(ContactStep& step, const Island& island) {
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!has(island, groups_[i].front())) continue;
@@ -94,7 +94,7 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
   bool agree = problem_.solve();
   if (!agree && step.operators == nullptr) problem_.keep_to_energy(step, island);
   if (!agree && step.operators != nullptr) {
-    problem_.evaluate(true);  // the velocity has moved on since
+    problem_.evaluate(true);  // at the final velocity
     agree = true;
   }
   problem_.finish(agree, step, island, state_.joints);
@@ -105,14 +105,14 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
 
 void JointedModel::fly(const ContactStep& step) {
   for (BodyContact& contact : step.body_contacts) {
-    // What lies on something that hangs on joints does not go to sleep.
+    // Objects on jointed bodies do not sleep.
     if (!scene_.bodies[contact.key.b].flies ||
         (!scene_.bodies[contact.key.a].fixed && !scene_.bodies[contact.key.a].flies))
       contact.still = 0.0;
   }
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!awake_[i]) continue;
-    // Where the island was solved gravity is in the momenta already; given again it would count twice.
+    // If the island was solved, its momenta already include gravity.
     flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
                     step.bodies);
     rest(step, i);
@@ -123,7 +123,8 @@ void JointedModel::fly(const ContactStep& step) {
   }
 }
 
-/// Only what forces of its own hold in its place may lie still: what moves freely, moves, however slowly.
+/// Puts a linkage to sleep. Only one that its own forces hold may come to rest: free motion continues,
+/// however slow.
 ///
 ///     |v| + R |w| < 1 um/s of all its bodies, R the bounding radius, for half a second
 void JointedModel::rest(const ContactStep& step, std::size_t linkage) {

@@ -10,12 +10,12 @@
 
 namespace mrhi {
 
-/// The implicit model for scenes with joints. What hangs on joints is solved in their coordinates, with all
-/// that touches it, and moved on through the step as well: its free flight is its joints'. Scenes without
-/// joints never meet it, and pay nothing.
+/// The implicit model for scenes with joints. Solves islands with joints in joint coordinates, together with
+/// their contacts, and advances their linkages through the step. Scenes without joints do not use it.
 class JointedModel : public ImplicitModel {
  public:
-  /// Keeps references: to the state for what joints remember, to the events for what they do.
+  /// Keeps references to the state, for the joints' state, and to the events, to which it adds those of
+  /// joints.
   JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
                std::vector<Event>& events);
   void respond(ContactStep& step) override;
@@ -32,11 +32,11 @@ class JointedModel : public ImplicitModel {
   SimulationState& state_;
   std::vector<Event>& events_;
   const std::vector<Linkage> linkages_;
-  std::vector<std::vector<int>> groups_;  // of bodies, by linkage
+  std::vector<std::vector<int>> groups_;  // bodies of each linkage
   std::vector<LinkageMotion> motions_;
   std::vector<LinkageFlight> flights_;
-  std::vector<char> awake_, solved_;  // by linkage; solved: gravity has been given
-  const double usual_step_;           // [s]
+  std::vector<char> awake_, solved_;  // by linkage; solved: momenta include gravity
+  const double usual_step_;           // regular step [s]
   Eigen::VectorXd positions_;
 };
 

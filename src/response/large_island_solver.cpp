@@ -8,36 +8,37 @@
 namespace mrhi {
 namespace {
 
-/// Number of points that the sweeps of a step relax, and limits of the number of sweeps.
+/// Number of contacts that all sweeps of a step relax together, and limits of the number of sweeps.
 constexpr int kRelaxationBudget = 1000, kMinSweeps = 8, kMaxSweeps = 30;
-/// An island in which nothing is faster than a fall of so many steps is nearly at rest, and may take more
-/// sweeps, to come to rest.
+/// An island is nearly at rest if no body is faster than a fall of this many steps. It may take more sweeps,
+/// to come to rest.
 constexpr double kNearlyAtRest = 1.0;
 constexpr int kMaxSweepsAtRest = 80;
-/// A sweep that changes velocities by a smaller ratio of what contacts have made of them is the last.
+/// Iteration ends when a sweep changes velocities by less than this ratio of the contacts' total change.
 constexpr double kConverged = 1e-6;
-/// A contact's point is within this ratio of its body's radius, margin included.
+/// Largest distance of a contact point from the body's centre, over the bounding radius; includes the margin.
 constexpr double kRadiusMargin = 1.2;
 constexpr double kMaxSpeed = 1e300;  // [m/s]
-/// A finger that yields later has a linear normal force.
+/// The normal force is linear if the finger complies only beyond this depth [m].
 constexpr double kMaxYield = 1e6;
-/// The release fade is 0 below this ratio of the speed at which it takes all of the normal force.
+/// The release fade counts as 0 below this fraction of the release speed.
 constexpr double kMinFade = 1e-3;
 /// Iterations of Newton's method for one normal impulse.
 constexpr int kMaxIterations = 12;
 /// Largest number of contacts of a patch that are solved together.
 constexpr int kMaxTogether = 4;
-/// A patch that separates in so many sweeps is relaxed contact by contact for the rest of the step.
+/// A patch that fails to be solved together this many times is relaxed contact by contact for the rest of the
+/// step.
 constexpr int kMaxSeparations = 3;
-/// Sweeps through the contacts of a patch some of which are open.
+/// Sweeps through the contacts of a patch that has open contacts.
 constexpr int kInnerSweeps = 3;
 
-/// True if two contacts are of one pair of shapes, with one normal.
+/// True if two contacts belong to one pair of shapes and share a normal.
 bool same_patch(const BodyContact& x, const BodyContact& y) {
   return x.key.order() >> 8 == y.key.order() >> 8 && x.normal == y.normal;
 }
 
-/// Shortens a friction impulse to Coulomb's limit.
+/// Scales a friction impulse down to Coulomb's limit.
 void limit_friction(double limit, Vector3& friction) {
   const double squared = friction.squaredNorm();
   if (squared > limit * limit) friction *= limit / std::sqrt(squared);
@@ -45,9 +46,9 @@ void limit_friction(double limit, Vector3& friction) {
 
 }  // namespace
 
-// u* = (p / m + h g, I^-1 L) of each body, on which impulses then act at once: unlike in IslandProblem the
-// unknowns are the contacts' impulses, and the velocities, u* + M^-1 J' of them, are kept up with each that
-// changes. Fixtures and hands are the last body, with 1/m and I^-1 of 0.
+// Free velocities are u* = (p / m + h g, I^-1 L). Impulses change them at once: unlike in IslandProblem, the
+// unknowns are the contacts' impulses, and the velocities u* + M^-1 J' p are updated with each of them.
+// Fixtures and hands share the last body, whose 1/m and I^-1 are 0.
 void LargeIslandSolver::begin(const ContactStep& step, const Island& island,
                               const ContactConfiguration& configuration,
                               const std::vector<Vector3>& last_forces) {
@@ -81,8 +82,8 @@ void LargeIslandSolver::add_body(const mrhi::Body& body, const BodyState& state,
   max_arm_ = std::max(max_arm_, kRadiusMargin * body.bounding_radius);
 }
 
-/// Adds the pairs of shapes that had a force in the last step, or close fast enough for one. Contacts come
-/// sorted, so those of a pair follow each other.
+/// Adds the pairs of shapes that had a force in the last step, or that close fast enough for one. Contacts
+/// are sorted, so those of a pair are adjacent.
 void LargeIslandSolver::add_links(const ContactStep& step, const Island& island) {
   for (const Link* link = island.links.begin(); link != island.links.end();) {
     const BodyContact& first = step.body_contacts[link->index];
@@ -90,7 +91,7 @@ void LargeIslandSolver::add_links(const ContactStep& step, const Island& island)
     bool acted = false;
     for (; link != island.links.end() && same_patch(step.body_contacts[link->index], first); ++link)
       acted = (*last_forces_)[range.last++] != Vector3::Zero() || acted;
-    if (step.body_contacts[range.first].share <= 0.0) continue;  // too narrow a strip for springs
+    if (step.body_contacts[range.first].share <= 0.0) continue;  // strip too narrow for springs
     if (acted) {
       add_patch(step, range);
     } else {
@@ -102,8 +103,8 @@ void LargeIslandSolver::add_links(const ContactStep& step, const Island& island)
   admit_closing(step);
 }
 
-// The warm start is the last step's force, f = t - p n, by this step's normal, so p = -n.f. A normal impulse
-// that would pull by now is cut off.
+// The warm start is the last step's force f = t - p n, resolved along this step's normal: p = -n.f, cut off
+// at 0.
 void LargeIslandSolver::add_patch(const ContactStep& step, const Range& range) {
   Patch patch{points_.size(), static_cast<int>(range.last - range.first), 0, {}, {}};
   for (std::size_t index = range.first; index < range.last; ++index) {
@@ -122,12 +123,11 @@ void LargeIslandSolver::add_patch(const ContactStep& step, const Range& range) {
   patches_.push_back(patch);
 }
 
-/// How much faster the surfaces would have to close for a force [m/s].
+/// Returns the closing speed that the surfaces lack for a force [m/s].
 ///
 ///     missing = n.(c_a' - c_b') - d / e,      e the time that the spring looks ahead
 ///
-/// as there is a force if d+ = d - e n.u > 0. e is not the same on both sides of d = 0 (look_ahead in
-/// spring_contact.cpp).
+/// A force needs d+ = d - e n.u > 0. e differs between the two signs of d (look_ahead in spring_contact.cpp).
 double LargeIslandSolver::missing_speed(const ContactStep& step, const Range& range) const {
   double least = kMaxSpeed;
   for (std::size_t i = range.first; i < range.last; ++i) {
@@ -143,9 +143,9 @@ double LargeIslandSolver::missing_speed(const ContactStep& step, const Range& ra
   return least;
 }
 
-/// Upper bound of how much faster two surfaces close than when open contacts were checked [m/s].
-/// A point of a body at an arm r changes by |dv + dw x r| <= |dv| + |r| |dw|, and two bodies by twice the
-/// largest of one. While that is below the smallest missing speed of then, no open contact has a force.
+/// Upper bound of the increase in closing speed since open contacts were checked [m/s]. A point at the arm r
+/// changes its velocity by |dv + dw x r| <= |dv| + |r| |dw|, and a pair of bodies by at most twice the
+/// largest of these. No open contact has a force while this is below the smallest missing speed found then.
 double LargeIslandSolver::max_speed_gain() const {
   double most = 0.0;
   for (std::size_t i = 0; i < checked_.size(); ++i) {
@@ -155,8 +155,8 @@ double LargeIslandSolver::max_speed_gain() const {
   return 2.0 * most;
 }
 
-/// Adds open contacts that now have a force; returns true if there are any.
-/// What is added stays for the rest of the step: if it comes to give nothing, that costs little.
+/// Adds open contacts that now have a force; returns true if there are any. They stay for the rest of the
+/// step: one without a force costs little.
 bool LargeIslandSolver::admit_closing(const ContactStep& step) {
   if (open_.empty() || max_speed_gain() < min_missing_speed_) return false;
   checked_.clear();
@@ -181,7 +181,7 @@ bool LargeIslandSolver::admit_closing(const ContactStep& step) {
 void LargeIslandSolver::add_point(const SpringContact& row) {
   const Spring& spring = row.spring;
   points_.emplace_back();
-  Point& point = points_.back();  // with impulses in place of forces: stiffness is times the step
+  Point& point = points_.back();  // impulses replace forces: stiffness is times the step
   point.a = row.a == SpringContact::kNone ? static_cast<int>(free_.size()) : row.a, point.b = row.b;
   point.normal = vector(spring.normal);
   point.arm_a = vector(row.arm_a), point.arm_b = vector(row.arm);
@@ -196,18 +196,18 @@ void LargeIslandSolver::add_point(const SpringContact& row) {
   prepare(row, point);
 }
 
-/// A spring with the law p = k (d - e u), which looks ahead by e, on bodies that comply by u = u0 + w p,
-/// has p = k / (1 + k e w) * (d - e u0), with u0 the rate without it: `soft_stiffness`. Along the surface the
-/// same with the stretch, for t = k (s + e u) and u = u0 - w t, in terms of the rate u with the last t:
-/// t' = kept t + stretch_impulse + damping u.
+/// A spring p = k (d - e u), which looks ahead by e, acts on bodies with mobility w: u = u_0 + w p. Its
+/// impulse is p = k / (1 + k e w) (d - e u_0), with u_0 the rate without it; the factor is `soft_stiffness`.
+/// Friction follows likewise from the stretch, t = k (s + e u) and u = u_0 - w t. As a function of the rate u
+/// that the last t has left: t' = kept t + stretch_impulse + damping u.
 ///
 ///     along n:   p = k (d - e u),   u = u_0 + w p:     p = k / (1 + k e w) (d - e u_0),   u_0 = u - w p_last
 ///     across:    t' = k (s + e (u + w t - w t')):      t' = (1 - give) t + give k (s + e u)
 ///                give = 1 / (1 + k e w)
 ///
-/// k has the step in it (N s/m). Signs differ because n points from b to a and the normal impulse on b is
-/// -p n, which parts them, while t is along the sliding, which it slows down. Iterating t' = k (s + e u),
-/// with u by the last t, would not converge for k e w > 1, which stiff contacts are far beyond.
+/// k includes the step (N s/m). Signs differ because n points from b to a. The normal impulse on b is -p n,
+/// which separates the bodies; t is along the sliding, which it slows. Iterating t' = k (s + e u) with u by
+/// the last t would diverge for k e w > 1, and stiff contacts are far beyond that.
 void LargeIslandSolver::prepare(const SpringContact& row, Point& point) const {
   const Body &a = body(point.a), &b = body(point.b);
   const Matrix3 response = collision_matrix(a.inverse_mass, a.inverse_inertia, point.arm_a) +
@@ -217,7 +217,7 @@ void LargeIslandSolver::prepare(const SpringContact& row, Point& point) const {
   point.turned_a = a.inverse_inertia * point.lever_a, point.turned_b = b.inverse_inertia * point.lever_b;
   point.normal_mobility = (a.inverse_mass + b.inverse_mass) * n.squaredNorm() +
                           point.lever_a.dot(point.turned_a) + point.lever_b.dot(point.turned_b);
-  // A normal impulse makes the surfaces slide as well, if its arm is not along n.
+  // A normal impulse also makes the surfaces slide if its arm is not along n.
   const Vector3 response_to_normal = point.turned_a.cross(point.arm_a) + point.turned_b.cross(point.arm_b);
   point.sliding_response = response_to_normal - n.dot(response_to_normal) * n;
   const double tangential_mobility = max_tangential_response(response, point.normal);
@@ -229,12 +229,13 @@ void LargeIslandSolver::prepare(const SpringContact& row, Point& point) const {
   point.stretch_impulse = (give * point.stiffness) * vector(row.spring.stretch);
 }
 
-/// Normal impulses p of a patch change its rates by W p, and springs bear k (d - e u), k with the step in it:
+/// Normal impulses p of a patch change its rates by W p, and springs give k (d - e u); k includes the step:
 ///
 ///     (W + 1/(k e)) p = d / e - u_0,      W_ij = 1/m_a + 1/m_b + l_ai.I_a^-1 l_aj + l_bi.I_b^-1 l_bj,   l =
 ///     r x n
 ///
-/// Unused rows are the identity's. 1/(k e) keeps it regular, though four points bear three loads.
+/// Unused rows are the identity's. 1/(k e) keeps the matrix regular, though four points have only three
+/// independent normal loads.
 void LargeIslandSolver::prepare(Patch& patch) const {
   if (patch.count < 2 || patch.count > kMaxTogether) return;
   Eigen::Matrix4d& system = patch.system;
@@ -256,7 +257,7 @@ void LargeIslandSolver::prepare(Patch& patch) const {
   return point.drive + a.velocity + a.spin.cross(point.arm_a) - b.velocity - b.spin.cross(point.arm_b);
 }
 
-/// Rate of the gap where the normal force acts.
+/// Rate of the gap at the point of action of the normal force [m/s].
 [[gnu::always_inline]] inline double LargeIslandSolver::rate_of(const Point& point) const {
   const Motion &a = body(point.a).motion, &b = body(point.b).motion;
   return point.normal.dot(point.drive + a.velocity - b.velocity) + point.lever_a.dot(a.spin) -
@@ -275,9 +276,9 @@ void LargeIslandSolver::prepare(Patch& patch) const {
   a.motion.spin -= a.inverse_inertia * point.arm_a.cross(friction) - normal * point.turned_a;
 }
 
-/// The normal impulse that the contact's own law asks for, if the rate is `rate` without it.
-/// Without fade and pad it is in closed form. The rate with that impulse is the highest there can be; where
-/// even that hardly parts, the fade, which goes by the square, takes a millionth at most.
+/// Normal impulse by the contact's law, if the rate is `rate` without it. Closed form if neither fade nor pad
+/// acts. The rate with this impulse is the highest possible; where even that hardly separates, the quadratic
+/// fade takes at most a millionth.
 [[gnu::always_inline]] inline double LargeIslandSolver::find_normal_impulse(std::size_t i,
                                                                             double rate) const {
   const Point& point = points_[i];
@@ -288,13 +289,13 @@ void LargeIslandSolver::prepare(Patch& patch) const {
   return find_faded_impulse(i, rate, plain);
 }
 
-/// Newton's method, kept between bounds, with p(u) = h Spring::normal_force().
+/// Newton's method, safeguarded by a bracket, with p(u) = h Spring::normal_force().
 ///
 ///     g(u) = u - u_0 - w p(u) = 0,     g' = 1 - w dp/du >= 1       in u_0 <= u <= u_0 + w p_plain
 ///
-/// g grows, so there is one zero, and p at it follows from p = (u - u_0) / w. The upper end is where the
-/// plain spring has it: pad and fade only give less. A step of Newton's that leaves the bracket is replaced
-/// by halving it: beyond the release speed p is 0, and does not show where it begins.
+/// g increases, so it has one zero, and there p = (u - u_0) / w. The upper bound is the solution of the plain
+/// spring: pad and fade only reduce its force. A Newton step that leaves the bracket is replaced by
+/// bisection: beyond the release speed p is 0, and its slope does not show where it begins.
 double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double plain) const {
   const double mobility = points_[i].normal_mobility, response = step_ * mobility;
   double low = rate, high = rate + mobility * plain, at = high;
@@ -309,19 +310,19 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
   return std::max(0.0, (at - rate) / mobility);
 }
 
-/// The friction impulse that would keep the tangential spring from slipping, if the surfaces slide so: t' of
+/// Friction impulse that would keep the tangential spring from slipping at this sliding velocity: t' of
 /// prepare().
 [[gnu::always_inline]] inline Vector3 LargeIslandSolver::wanted_friction(const Point& point,
                                                                          const Vector3& sliding) {
   return point.kept * point.impulses.friction + point.stretch_impulse + point.damping * sliding;
 }
 
-/// Gives a contact what it asks for.
+/// Solves one contact with all others fixed.
 ///
 ///     p' = find_normal_impulse(u.n - w p),   t' = disc(wanted_friction(P u + (p' - p) P W n), mu p' + bond)
 ///
-/// The sliding that the new normal impulse makes is foreseen, so that both are of one iterate. Limits are
-/// those of the new normal impulse, not of the last iterate's: no convex function is behind this, but the
+/// Friction anticipates the sliding that the new normal impulse causes, so both belong to one iterate. Its
+/// limit is by the new normal impulse, not the last iterate's. This minimises no convex function, but its
 /// fixed point is Coulomb's law itself.
 [[gnu::always_inline]] inline void LargeIslandSolver::relax(std::size_t i) {
   Point& point = points_[i];
@@ -343,13 +344,13 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
   if (point.twists) relax_twist(i);
 }
 
-/// Gives a patch's normal impulses what they ask for together, if none of them pulls and nothing parts;
-/// returns false and changes nothing otherwise.
+/// Solves a patch's normal impulses simultaneously if the fade of none acts; otherwise returns false and
+/// changes nothing.
 ///
 ///     p' = p + (W + 1/(k e))^-1 (d / e - u - p / (k e)),     u with p in it
 ///
-/// So a load on a face turns nothing that it would not turn at the end: points solved one after the other tip
-/// a box back and forth, and against its neighbours.
+/// Contacts relaxed one after the other would tip a box back and forth, also against its neighbours. Solved
+/// together, a centred load on a face causes no rotation.
 bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
   Point* const points = &points_[patch.first];
   Body &a = body(points->a), &b = body(points->b);
@@ -367,7 +368,7 @@ bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
   bool pulls = false;
   for (int i = 0; i < patch.count; ++i) pulls = pulls || points[i].impulses.normal + more[i] < 0.0;
   if (pulls) {
-    // Some contacts are open: one after the other, none pulling (projected Gauss-Seidel).
+    // Some contacts are open: projected Gauss-Seidel, so that none pulls.
     more.setZero();
     for (int sweep = 0; sweep < kInnerSweeps; ++sweep) {
       for (int i = 0; i < patch.count; ++i) {
@@ -399,7 +400,7 @@ bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
   return true;
 }
 
-/// Gives a contact the friction that it asks for under its normal impulse.
+/// Solves a contact's friction under its normal impulse.
 [[gnu::always_inline]] inline void LargeIslandSolver::relax_friction(Point& point) {
   const double limit = point.friction * point.impulses.normal + point.bond;
   if (limit == 0.0 && point.impulses.friction == Vector3::Zero()) return;
@@ -422,8 +423,8 @@ void LargeIslandSolver::relax(Patch& patch) {
   for (std::size_t i = 0; i < count; ++i) relax(patch.first + i);
 }
 
-// As friction, about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
-// to 2/3 mu a p. Body a is a hand, which nothing turns.
+// As friction, but about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
+// to 2/3 mu a p. Body a is a hand, whose motion is prescribed.
 void LargeIslandSolver::relax_twist(std::size_t i) {
   Point& point = points_[i];
   const SpringContact& row = rows_[i];
@@ -446,9 +447,9 @@ bool LargeIslandSolver::acts() const {
                      [](const Point& point) { return point.impulses.normal > 0.0 || point.bond > 0.0; });
 }
 
-// Symmetric: what a stack bears runs down it in one direction and up it in the other, where sweeps in one
-// direction would carry it by one body a sweep in the other. Conjugate directions too need a symmetric sweep
-// (SSOR).
+// Symmetric sweep: a stack's load spreads through it in either direction within one sweep. Sweeps in one
+// direction only would spread it by one body a sweep in the other. Conjugate directions also need a symmetric
+// sweep (SSOR).
 void LargeIslandSolver::sweep() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) motions_before_[i] = bodies_[i].motion;
   for (std::size_t i = 0; i < points_.size(); ++i) impulses_before_[i] = points_[i].impulses;
@@ -456,15 +457,16 @@ void LargeIslandSolver::sweep() {
   for (std::size_t i = patches_.size(); i-- > 0;) relax(patches_[i]);
 }
 
-/// Goes on in the direction of the sweeps before, conjugate to this one by Fletcher and Reeves' rule (the
-/// ratio of the squares of what two sweeps have changed; none where that has grown); `last` is the square of
-/// what the sweep before has changed. Returns that of this one.
+/// Extrapolates along the previous search direction, made conjugate by Fletcher and Reeves' rule. The factor
+/// is the ratio of the squared changes of two sweeps, or 0 if they have grown. `last` is the squared change
+/// of the previous sweep; returns that of this one.
 ///
 ///     d_k = x_sweep - x_before,     beta = |d_k|^2 / |d_k-1|^2 < 1, else 0,      s_k = d_k + beta s_k-1
 ///     x <- x_sweep + beta s_k-1
 ///
-/// of all impulses and of velocities alike, which depend on them linearly. It comes before a sweep and never
-/// after the last: a normal impulse may pull and friction be outside its disc until contacts are relaxed.
+/// This holds for all impulses, and for velocities, which depend on them linearly. It precedes a sweep and
+/// never follows the last: extrapolated normal impulses may pull, and friction may leave its disc, until
+/// contacts are relaxed.
 double LargeIslandSolver::accelerate(double last) {
   double square = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -487,22 +489,22 @@ double LargeIslandSolver::accelerate(double last) {
   return square;
 }
 
-/// True if no body is faster than a fall of a few steps.
+/// True if no body is faster than a fall of kNearlyAtRest steps.
 bool LargeIslandSolver::is_nearly_at_rest(const ContactStep& step) const {
   const double slow = kNearlyAtRest * step_ * step.gravity.norm();
   return std::all_of(bodies_.begin(), bodies_.end(),
                      [slow](const Body& body) { return body.motion.velocity.norm() < slow; });
 }
 
-// Ends where a sweep changes no velocity by more than 1e-6 of what contacts have made of them, or with the
-// budget. What is undone then is an impulse that both bodies lack, hence no momentum, and is the next
-// step's.
+// Ends when a sweep changes no velocity by more than kConverged of the contacts' total change, or with the
+// budget. The remaining error is an impulse that both bodies lack, so it changes no momentum; the next step
+// solves for it.
 void LargeIslandSolver::solve(const ContactStep& step) {
   impulses_before_.resize(points_.size());
   impulse_directions_.assign(points_.size(), {0.0, Vector3::Zero(), 0.0});
   motions_before_.resize(bodies_.size());
   motion_directions_.assign(bodies_.size(), {Vector3::Zero(), Vector3::Zero()});
-  // Largest change of a body's velocity since then [m/s].
+  // Largest change of a body's velocity since `then` [m/s].
   const auto max_change = [this](const std::vector<Motion>& then) {
     double most = 0.0;
     for (std::size_t i = 0; i < free_.size(); ++i)
@@ -520,9 +522,9 @@ void LargeIslandSolver::solve(const ContactStep& step) {
   }
 }
 
-/// Writes the response that settle() reads.
-/// Impulses over the step are forces. `wanted` is that of wanted_friction(): at the fixed point k q+ where a
-/// contact sticks, and as k q+ beyond the limit where it slips, as t' - t = give (k q+ - t).
+/// Writes the response that settle() reads. Forces are impulses over the step. `wanted` is that of
+/// wanted_friction(). At the fixed point it is k q+ where the contact sticks. It exceeds the limit where k q+
+/// does, as t' - t = give (k q+ - t).
 void LargeIslandSolver::fill_response(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
@@ -539,8 +541,8 @@ void LargeIslandSolver::fill_response(std::size_t i) {
 
 //     p += h m g + sum +-J,     L += sum +-(r x t - p l + T n)
 //
-// Momenta are summed from the impulses, not taken from the velocities: what b gets a loses to the last bit
-// but rounding of the sums, wherever sweeps have ended.
+// Momenta are summed from the impulses, not taken from the velocities. So b gains what a loses up to rounding
+// of the sums, however far sweeps have converged.
 void LargeIslandSolver::finish(ContactStep& step, const Island& island) {
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const std::size_t index = island.bodies.begin()[k].body;

@@ -7,23 +7,21 @@
 
 namespace mrhi {
 
-/// Solves the contact problem of a large island: the law of IslandProblem, with Coulomb's limits by the
-/// normal force of the same iterate. The unknowns are the contacts' impulses. Each contact gets what its own
-/// law asks for with all others as they are, in symmetric sweeps (nonlinear Gauss-Seidel: Jourdan, Alart &
-/// Jean 1998), accelerated as conjugate gradients (Silcowitz, Niebe & Erleben 2010), until no body's velocity
-/// changes visibly, or the step's budget is spent. It starts from the contacts' forces of the last step.
-/// Impulses act on both bodies, so momentum is kept whenever it ends. Cost is linear in the contacts. Keeps
-/// its memory.
+/// Solves the contact problem of a large island: the law of IslandProblem, but with Coulomb's limits by the
+/// normal force of the same iterate. The unknowns are the contacts' impulses. Symmetric sweeps solve each
+/// contact with all others fixed (nonlinear Gauss-Seidel: Jourdan, Alart & Jean 1998), accelerated as
+/// conjugate gradients (Silcowitz, Niebe & Erleben 2010). They end when no body's velocity changes visibly,
+/// or with the step's budget. The last step's contact forces are the warm start. Impulses act on both bodies,
+/// so momentum is conserved at any iterate. Cost is linear in the contacts. Keeps its memory.
 class LargeIslandSolver {
  public:
-  /// `last_forces` of the step's contacts between bodies, in the last step [N]; must last until solve() is
-  /// done.
+  /// `last_forces`: of the step's contacts between bodies, in the last step [N]; must outlive solve().
   void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
              const std::vector<Vector3>& last_forces);
   void solve(const ContactStep& step);
-  /// True if anything acts.
+  /// True if any contact has a normal impulse or a bond.
   bool acts() const;
-  /// Writes the contacts, and the bodies' momenta at the step's end.
+  /// Writes the contacts and the bodies' momenta at the end of the step.
   void finish(ContactStep& step, const Island& island);
 
  private:
@@ -57,33 +55,33 @@ class LargeIslandSolver {
       return {x.normal - y.normal, x.friction - y.friction, x.twist - y.twist};
     }
   };
-  /// A row as it is relaxed.
+  /// A contact in the form that sweeps use.
   struct Point {
     int a, b;
     Vector3 normal, drive;
-    Vector3 arm_a, arm_b;        // of friction [m]
+    Vector3 arm_a, arm_b;        // lever arms of friction [m]
     Impulses impulses;           // accumulated
     double normal_mobility;      // change of the rate by a unit impulse along n [1/kg]
-    Vector3 sliding_response;    // the same across n, by a unit normal impulse [1/kg]
-    Vector3 lever_a, lever_b;    // r x n, of the normal impulse [m]
-    Vector3 turned_a, turned_b;  // I^-1 (r x n): change of the spins by a unit normal impulse [1/(kg m)]
+    Vector3 sliding_response;    // change of the sliding velocity by a unit normal impulse [1/kg]
+    Vector3 lever_a, lever_b;    // r x n: lever arms of the normal impulse [m]
+    Vector3 turned_a, turned_b;  // I^-1 (r x n): change of spin by a unit normal impulse [1/(kg m)]
     double depth, ahead, fade;
-    double compliance;        // 1 / (k e), of the normal impulses [1/kg]
+    double compliance;        // 1 / (k e), along n [1/kg]
     double stiffness;         // times the step [N s/m]
-    double soft_stiffness;    // the same along n, with the compliance of the bodies
-    double kept, damping;     // factors of the last friction impulse, and of the sliding, in the next one
-    Vector3 stretch_impulse;  // and the part of the stretch [N s]
+    double soft_stiffness;    // likewise along n, reduced by the bodies' mobility
+    double kept, damping;     // factors of the last friction impulse and of the sliding in the next one
+    Vector3 stretch_impulse;  // contribution of the stretch to it [N s]
     double friction, bond;
-    bool nonlinear;  // its normal force is not proportional to depth
-    bool twists;     // a hand's, which resists turning about n
+    bool nonlinear;  // true if the normal force is not proportional to depth
+    bool twists;     // true for a hand's contact, which resists spin about n
   };
 
-  /// Contacts of one pair of shapes, which share a normal and are relaxed together; a hand's is single.
+  /// Contacts of one pair of shapes with one normal, relaxed together. A hand's contact is its own patch.
   struct Patch {
     std::size_t first;  // in points_
     int count;
-    int separations;                  // sweeps in which it could not be solved together
-    Eigen::Matrix4d system, inverse;  // rates by normal impulses, springs included [1/kg], [kg]
+    int separations;                  // sweeps that could not solve it simultaneously
+    Eigen::Matrix4d system, inverse;  // rates by normal impulses, with springs [1/kg], [kg]
   };
   /// Contacts of one pair of shapes, as a range in ContactStep::body_contacts.
   struct Range {
@@ -123,17 +121,17 @@ class LargeIslandSolver {
   const std::vector<Vector3>* last_forces_ = nullptr;
   const Island* island_ = nullptr;
   double step_ = 0.0;
-  std::vector<Body> bodies_;  // and at last one that nothing moves
-  std::vector<Motion> free_;  // at the step's end without contact
+  std::vector<Body> bodies_;  // the last one is immovable: fixtures and hands
+  std::vector<Motion> free_;  // at the end of the step, without contacts
   std::vector<Point> points_;
   std::vector<Patch> patches_;
   std::vector<SpringContact> rows_;  // of the points
-  std::vector<std::size_t> linked_;  // of the last of them: index in ContactStep::body_contacts
-  std::vector<Range> open_;          // between bodies: they give no impulse at the last checked motions
+  std::vector<std::size_t> linked_;  // of the links' rows: index in ContactStep::body_contacts
+  std::vector<Range> open_;          // between bodies: without impulse at checked_
   std::vector<Motion> checked_;      // motions at which open_ was checked
-  double min_missing_speed_ = 0.0;   // by which none of open_ closed fast enough then [m/s]
+  double min_missing_speed_ = 0.0;   // smallest missing_speed() of open_ at checked_ [m/s]
   double max_arm_ = 0.0;             // of any contact [m]
-  // Before a sweep, and the directions that are conjugate to the last ones.
+  // State before a sweep, and the current search directions.
   std::vector<Motion> motions_before_, motion_directions_;
   std::vector<Impulses> impulses_before_, impulse_directions_;
 };

@@ -2,37 +2,37 @@
 
 #include "island_problem.h"
 
-// Newton's method with the friction limits of the last iterate; each iterate's problem is convex:
-// g(u) = M (u - u*) - h J' f(u; L) = 0 with g the gradient of a convex, once differentiable E(u) while the
-// limits L are held, and H = M + h J' K J, positive definite by its M:
+// Newton's method with the friction limits of the last iterate. Each iterate's problem is convex: g(u) = M (u
+// - u*) - h J' f(u; L) = 0. While the limits L are held, g is the gradient of a convex, once differentiable
+// E(u), and H = M + h J' K J is positive definite by its M:
 //
 //     H d = -g(u),     u <- u + s d,     s = 1 where it will do
 //
-// Forces have kinks where contacts open and slip, so H is one of the generalised Hessians there and this is
-// a semismooth Newton method (Qi & Sun 1993). Once contacts have their states and all stick, forces are
-// linear in u but for the release fade and the pad, and one step is as good as exact; where some slip and
-// their limits are renewed, what H leaves out of them (dL/dN, see Spring::respond) makes convergence linear.
-// Hessians are kept while the error falls fast (the chord method; Kelley 1995, ch. 5).
+// Forces have kinks where contacts open and slip. There H is one of the generalised Hessians, and this is a
+// semismooth Newton method (Qi & Sun 1993). Once the set of open contacts is found and all others stick,
+// forces are linear in u but for the release fade and the pad, and one step is practically exact. Where
+// contacts slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians
+// are reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
 namespace mrhi {
 namespace {
 
-/// A line search ends where the slope of the energy is this ratio of its first.
+/// A line search ends at this ratio of the energy's slope to that at its start.
 constexpr double kFlat = 0.01;
-/// A step that leaves less than this ratio of the error was taken where the Hessian hardly changes.
+/// Convergence is fast if a step reduces the error below this ratio: the Hessian hardly changes there.
 constexpr double kFast = 0.05;
-/// Fast convergence takes an error of this size below Effort::converged in one more step,
+/// Error, over scale(), from which fast convergence reaches Effort::converged in one more step.
 constexpr double kTrusted = 1e-5;
-/// and so does the first one, by a Hessian of its own, where the last step has led this near: what it
-/// leaves goes with the square (measured: 4e-11 of 3e-5).
+/// The same for the first step, which has a Hessian of its own, if the warm start is this good: the error
+/// falls quadratically (measured: 4e-11 of 3e-5).
 constexpr double kTrustedAtOnce = 1e-4;
-/// Below this error the energy is rounding and no guide any more; of the forces' impulse.
+/// Error, over scale(), below which energy differences are rounding and a line search is useless.
 constexpr double kFine = 1e-5;
-/// A smaller ratio of the forces' impulse is rounding of what goes into it.
+/// Error, over scale(), that is rounding of its terms.
 constexpr double kRounding = 1e-12;
 
 }  // namespace
 
-// The last step of one body is not measured: no momentum is shared that could be lost by it.
+// The last step of a single body is not verified: no momentum is exchanged that could be lost by it.
 bool IslandProblem::solve() {
   const bool trusts_last_step = !several() && !in_joints_;
   double last = 0.0;
@@ -54,24 +54,26 @@ bool IslandProblem::solve() {
 }
 
 bool IslandProblem::error_below(double part) const {
-  // The last is for bodies on which nothing acts: of nothing no ratio is reached [N s].
+  // The constant is for bodies on which nothing acts, where a relative error is undefined [N s].
   const double most = part * scale_ + 1e-18;
   return error_squared() <= most * most;
 }
 
-/// The momenta at the step's end are what the forces found make of those at its start, so that what is
-/// missing here costs no momentum. But it goes into them whole: where forces are large and the step is
-/// long, a small ratio of their impulse is a displacement that can be seen.
+/// True if the error is below Effort::converged and invisible. Momenta at the end of the step follow from the
+/// forces found, so a residual loses no momentum, but it moves bodies. In a long step with large forces even
+/// a small ratio of their impulse is a visible displacement.
 bool IslandProblem::solved() const {
   if (!error_below(effort_.converged)) return false;
   return error_squared() <= unseen_ * unseen_ || error_below(kRounding);
 }
 
-/// Where the limits keep chasing the velocity: they are held while the convex problem is solved to its end,
-/// then renewed. The solution for any limits is passive, so whenever this stops nothing is thrown.
+/// Fallback where limits and velocity do not converge together. Solves the convex problem with limits held,
+/// renews the limits, and repeats. The solution for any limits is passive, so stopping at any time adds no
+/// energy.
+///
 /// With limits held the problem is that of Tresca's friction, which has one solution; a fixed point of
-/// `solve, renew` solves Coulomb's (Panagiotopoulos 1975, Haslinger 1983). That the iteration reaches one is
-/// proven for small coefficients only: hence the bound.
+/// `solve, renew` solves Coulomb's (Panagiotopoulos 1975, Haslinger 1983). Convergence is proven for small
+/// coefficients only, hence the bound.
 void IslandProblem::solve_with_held_limits() {
   if (effort_.anew) velocity_ = start_;
   for (int renewed = 0; renewed < effort_.limits; ++renewed) {
@@ -94,13 +96,13 @@ void IslandProblem::advance(bool checked, bool same_hessian) {
   if (searches && energy() > before + 1e-4 * slope) search_line(slope);
 }
 
-/// From the end of a step that went too far to about the least energy along it, where the slope, which
-/// grows along the line, passes zero. To halve the step until it will do is not enough: a light object
-/// between stiff fingers then alternates across the rim of the friction cone and hardly advances.
+/// Moves back from the end of a step that overshoots to about the least energy along it, where the slope
+/// passes zero. Halving the step until it satisfies Armijo is not enough: a light object between stiff
+/// fingers then alternates across the rim of the friction cone and hardly advances.
 void IslandProblem::search_line(double slope_at_start) {
-  // phi(s) = E(u + s d), phi' = g(u + s d).d, which grows with s as E is convex: from phi'(0) < 0 to
-  // phi'(1) > 0 there is one zero. By false position, which may creep up on it from one side; so every third
-  // trial halves.
+  // phi(s) = E(u + s d) has phi' = g(u + s d).d, which grows with s as E is convex. So phi'(0) < 0 and
+  // phi'(1) > 0 bracket one zero. False position may approach it from one side only, so every third trial
+  // bisects.
   double low = 0.0, high = 1.0, part = 1.0, low_slope = slope_at_start;
   evaluate(false);
   double high_slope = descent();

@@ -7,27 +7,27 @@
 
 namespace mrhi {
 
-// Eqs. 16 and 17: gamma times the depth, along n alone. The factor behind it is not in the paper: without any
-// loss what is held in microgravity rings for ever.
+// Eqs. 16 and 17: gamma times the depth, along n alone. The fade factor is not in the paper: without
+// dissipation a held object in microgravity oscillates for ever.
 //
 //     N = gamma d max(0, 1 - v / v_r),     v = n.(c1' - c2') > 0 as they part,  v_r = kReleaseSpeed
 //
-// This is Hunt & Crossley's (1975) f = k d + lambda d d' with lambda = k / v_r, of the way back alone: what
-// comes together loses its part by Newton's law. A dashpot beside the spring would jump at the touch, and
-// pull as they part.
+// This is Hunt & Crossley's (1975) f = k d + lambda d d' with lambda = k / v_r, for separation only: on
+// approach, Newton's impact law dissipates. A dashpot in parallel would jump at first touch, and pull during
+// separation.
 double normal_force(double stiffness, double depth, double normal_velocity, double fade) {
   if (depth <= 0.0) return 0.0;
   const double parting = std::max(normal_velocity, 0.0) * fade;
   return stiffness * depth * std::max(1.0 - parting, 0.0);
 }
 
-// Eqs. 18 to 20. As printed a sliding contact gives phi f_t, which grows with the stretch without bound; here
-// it gives phi |f_n| in the direction of f_t, which is Coulomb's law.
+// Eqs. 18 to 20. As printed a sliding contact has phi f_t, which grows with the stretch without bound. Here
+// it has phi |f_n| in the direction of f_t, Coulomb's law.
 //
 //     sticks:   f_T = f_t                     |f_t| <= mu N; having slipped, |f_t| <= 0.9 phi N
 //     slips:    f_T = min(|f_t|, phi N) f_t / |f_t|
 //
-// Slipping has a way back of its own: with one limit for both, a contact at the rim would change over in
+// The limit for sticking again is lower. With one limit for both, a contact at the rim would change state in
 // every step.
 Tangential coulomb(const Vector3& spring_force, double normal_force, const Material& material,
                    Friction before) {
@@ -39,14 +39,14 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
   return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
 }
 
-// Eq. 16, f = gamma (p - c), and its parts: along n gamma times the depth (Eq. 17), across it the stretch
-// (Eq. 18). On the object: n points out of it, so the push is -N n, and friction is along the stretch, the
-// way in which the phalanx draws it.
+// Eq. 16, f = gamma (p - c), and its parts: along n gamma times the depth (Eq. 17), tangentially gamma times
+// the stretch (Eq. 18). n points out of the object, so the normal force on it is -N n, and friction is along
+// the stretch.
 //
 //     f = -N n + f_T(gamma s + c w_t),      s = P (p - c),  w_t = P (c1' - c2'),  P = 1 - n n'
 //     c <- c + s - f_T / gamma               where it slips: then gamma s is f_T
 //
-// The paper's f is the push on the finger, gamma (c - p); the object has its opposite.
+// The paper's f is the force on the finger, gamma (c - p); the object has the opposite.
 Vector3 penetration_force(const Body& body, const BodyState& state, double damping, double fade,
                           Contact& contact) {
   contact.force.setZero();
@@ -58,12 +58,12 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 
   const Vector3 reach = contact.hand_point - contact.point;
   const Vector3 stretch = reach - n.dot(reach) * n;
-  // The dashpot beside the spring is within the cone too: friction bears both, or slides.
+  // The dashpot acts within the cone too: friction limits the sum of spring and dashpot.
   const Vector3 drag = damping * contact.share * (velocity - n.dot(velocity) * n);
   const Tangential tangential = coulomb(stiffness * stretch + drag, push, body.material, contact.friction);
   contact.friction = tangential.friction;
   if (tangential.friction == Friction::slipping) {
-    // The god object follows to where the spring has just the force that is left.
+    // The god object moves to where the spring has just the limited force.
     contact.point += stretch - tangential.force / stiffness;
     contact.god_object = state.pose.to_local(contact.point);
   }
@@ -71,13 +71,12 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
   return contact.force;
 }
 
-// Explicit: momenta change by h f, with the forces of the step's start, one contact after the other, each at
-// the velocity that those before it have left. Undamped it asks for steps below 2 sqrt(m / sum gamma);
-// docs/speed_accuracy.md has where it fails.
+// Explicit: momenta change by h f, one contact after the other. Undamped it needs steps below 2 sqrt(m / sum
+// gamma); docs/speed_accuracy.md shows where it fails.
 //
 //     p += h f,  then  x += h p / m:  symplectic Euler's method, stable below h = 2 / w, w^2 = sum gamma / m
 //
-// Forces of later contacts see the velocity that earlier ones have left, positions stay those of the start.
+// Forces use the positions at the start of the step, and the velocities after the contacts before.
 void penetration_phase(const ContactConfiguration& configuration, ContactStep& step) {
   const double fade = release_fade(configuration.release_fade);
   auto first = step.contacts.begin();
@@ -87,10 +86,10 @@ void penetration_phase(const ContactConfiguration& configuration, ContactStep& s
                                    [index](const Contact& contact) { return contact.key.body != index; });
     const Body& body = step.scene.bodies[index];
     BodyState& state = step.bodies[index];
-    double share = 0.0;  // the number of phalanges in touch
+    double share = 0.0;  // number of touching phalanges
     for (auto contact = first; contact != last; ++contact)
       share += contact->touching() ? contact->share : 0.0;
-    // Of N phalanges in touch c = 2 zeta sqrt(N gamma m) together: each has c / N, times its share.
+    // N touching phalanges have c = 2 zeta sqrt(N gamma m) together, so each has c / N, times its share.
     const double damping =
         body.fixed || share == 0.0 || !configuration.damping
             ? 0.0

@@ -20,7 +20,7 @@ void PenetrationModel::respond(ContactStep& step) {
   penetration_phase(configuration_, step);
 }
 
-/// The paper's stiffness.
+/// The default stiffness is the paper's.
 extern const ContactModelEntry penetration_model{
     "penetration", 2, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
       return std::make_unique<PenetrationModel>(configuration);

@@ -5,8 +5,8 @@
 namespace mrhi {
 namespace {
 
-/// The paper's two phases: an impulse when a phalanx strikes (3.4.1), then penetration forces with Coulomb
-/// friction while it touches (3.4.2), as docs/contact.md reads the equations.
+/// The paper's two phases: an impulse when a phalanx collides (3.4.1), then penetration forces with Coulomb
+/// friction during contact (3.4.2), as docs/contact.md reads the equations.
 class SeedModel : public ContactModel {
  public:
   explicit SeedModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
@@ -18,9 +18,9 @@ class SeedModel : public ContactModel {
   ImpactSolver impacts_;
 };
 
-/// The same as the equations are printed (seed/literal). Two things are not taken as printed, as nothing
-/// could be held or pushed then: the object gets the opposite of Eqs. 9 and 16, and the penetration phase is
-/// confined to where there is penetration, f.n > 0.
+/// The same with the equations as printed (seed/literal). Two things differ from the print, without which
+/// nothing could be held or moved. The object gets the opposite of Eqs. 9 and 16, and the penetration phase
+/// needs penetration, f.n > 0.
 class LiteralSeedModel : public ContactModel {
  public:
   void respond(ContactStep& step) override;
@@ -31,8 +31,8 @@ class LiteralSeedModel : public ContactModel {
   std::vector<BodyImpact> impact_;
 };
 
-/// Eqs. 8 to 15, point by point: J = j n, j = -(1 + e) u / n'Kn with K = 1/m "determined by the mass", and
-/// dv = J / m without a spin. Once per approach, at the first touch.
+/// Eqs. 8 to 15, point by point: J = j n, j = -(1 + e) u / n'Kn with K = 1/m "determined by the mass", and dv
+/// = J / m without a spin. Once per approach, at the first touch.
 void LiteralSeedModel::strike(ContactStep& step, Contact& contact) {
   contact.impulse.setZero();
   if (contact.ignored || contact.struck) return;
@@ -50,8 +50,8 @@ void LiteralSeedModel::strike(ContactStep& step, Contact& contact) {
   step.changes.note_impacts(impact_, step.bodies);
 }
 
-/// Eqs. 16 to 20 for the centroid of the phalanx, p. The god object c is the point of the surface under it as
-/// the touch began: the contact's, which goes with the place s of the axis that presses, moved to the middle.
+/// Eqs. 16 to 20 for the centroid of the phalanx, p. The god object c is the surface point under it at first
+/// touch: the contact's, which follows the axis parameter s of the contact, moved to the middle.
 ///
 ///     f = gamma (c - p),    d = n.(c - p),    s_t = (p - c) - n n.(p - c)
 ///     on the object:  -gamma d n + gamma s_t           |s_t| <= mu d      (Eq. 19)
@@ -86,17 +86,17 @@ void LiteralSeedModel::respond(ContactStep& step) {
 
 }  // namespace
 
-// The order is the paper's, 3.4.1 and then 3.4.2, and it matters: the springs' forces fade by the
-// velocities that the impact has left. Without friction in the impact, since J = j n (Eq. 9).
+// The paper's order, 3.4.1 and then 3.4.2, matters: the springs' forces fade by the velocities after the
+// impact. The impact has no friction, since J = j n (Eq. 9).
 void SeedModel::respond(ContactStep& step) {
   islands_.build(step);
   impacts_.resolve(step, islands_, ImpactFriction::none);
-  // A phalanx that is inside has had its approach, impact or not.
+  // The approach of a penetrating phalanx has ended, with or without an impact.
   for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
   penetration_phase(configuration_, step);
 }
 
-/// The paper's stiffness.
+/// The default stiffness is the paper's.
 extern const ContactModelEntry seed_model{
     "seed", 1, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
       if (configuration.literal) return std::make_unique<LiteralSeedModel>();

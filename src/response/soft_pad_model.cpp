@@ -11,30 +11,29 @@
 namespace mrhi {
 namespace {
 
-/// A reduced stand-in for the soft hand of the paper's reference [20] (CLAP), not that hand: no flesh is
-/// deformed. About each point by which a phalanx touches, the skin carries a grid of pads on springs, five
-/// along the phalanx and three across. Each pad's depth is that of the skin where it sits, along the normal
-/// by which the phalanx entered; each has friction of its own. Pads remember nothing by themselves: how far
-/// they are sheared and twisted is the contact's god object and turn about the normal, so that a pad that
-/// slips by itself does so without creep, and the grip slides once its deepest pad does. Explicit.
+/// A reduced stand-in for the soft hand of the paper's reference [20] (CLAP), without its deformable flesh.
+/// Around each contact point the skin has a grid of pads on springs, five along the phalanx and three across.
+/// Each pad has its own depth, along the normal of entry, and its own friction. The state is the contact's
+/// god object and twist about the normal, which shear the pads. So single pads slip without creep, and the
+/// grip slides once its deepest pad does. Explicit.
 class SoftPadModel : public ContactModel {
  public:
   static constexpr int kAlong = 5, kAcross = 3;
-  /// Between pads, as a part of the phalanx's radius.
+  /// Distance between pads, over the phalanx's radius.
   static constexpr double kSpacing = 0.5;
-  /// Of all pads of a phalanx together, unless material/stiffness is set [N/m].
+  /// Stiffness of all pads of a phalanx together, unless material/stiffness is set [N/m].
   static constexpr double kStiffness = 500.0;
-  /// A pad has a damper beside its spring: its damping over its stiffness [s].
+  /// Damping of a pad over its stiffness [s].
   static constexpr double kRelaxation = 0.01;
 
   void respond(ContactStep& step) override;
 };
 
 constexpr int kPads = SoftPadModel::kAlong * SoftPadModel::kAcross;
-/// A phalanx that stands on its tip within this angle has no direction along the surface [rad].
+/// Largest angle from the normal at which a phalanx has no direction along the surface [rad].
 constexpr double kStands = 1e-6;
 
-/// The phalanx as its contact point sees it: axes along the surface and across.
+/// Geometry of the phalanx at its contact point: axes along the surface and across.
 struct Skin {
   explicit Skin(const Contact& contact)
       : radius(contact.radius), s(contact.axis_parameter), rise(contact.normal.dot(contact.axis)) {
@@ -46,15 +45,17 @@ struct Skin {
     across = contact.normal.cross(along);
   }
 
-  /// How far the skin at (x, y) from the pressing point lies behind it, along n; nothing beside the phalanx.
+  /// Distance of the skin at (x, y) behind the contact point, along n; none beside the phalanx.
   ///
   ///     sag(x, y) = R + u rise - sqrt(R^2 - (x - u run)^2 - y^2)            of the sphere u of the axis on
   ///     least over u:     x - u run = sqrt(R^2 - y^2) slope,   slope = rise / hypot(run, rise)
   ///
-  /// from d sag / du = rise - (x - u run) run / sqrt(...) = 0, with u kept on the axis. x is along the
-  /// surface from the pressing point, run and rise are the whole axis along the surface and along n.
+  /// from d sag / du = rise - (x - u run) run / sqrt(...) = 0, with u limited to the axis. x is along the
+  /// surface from the contact point; run and rise are the components of the whole axis along the surface and
+  /// along n.
   std::optional<double> sag(double x, double y) const {
-    // Of the spheres that make up the capsule, the one whose skin is deepest there, u of the axis away.
+    // u is the axis parameter of the capsule's sphere with the deepest skin at (x, y), relative to the
+    // contact's.
     double u = 0.0;
     if (run > 0.0) {
       const double rim = std::sqrt(std::max(0.0, radius * radius - y * y));
@@ -72,7 +73,7 @@ struct Skin {
   Vector3 along, across;
 };
 
-/// The surface that the pads press.
+/// The object's surface under the pads.
 class Surface {
  public:
   Surface(const Contact& contact, const PlacedShape& placed, const Pose& body)
@@ -81,9 +82,8 @@ class Surface {
         pose_(body * placed.pose),
         normal_(pose_.orientation.conjugate() * contact.normal) {}
 
-  /// How deep a pad at `point` is. One beside the object touches nothing. What a mesh is like about the
-  /// contact point is not known here: there the surface counts as flat.
-  /// Along n, not the shortest: pads of one phalanx all leave by the face that it entered by.
+  /// Depth of a pad at `point`, along n, as all pads of a phalanx leave by the face of entry; 0 beside the
+  /// object. A mesh counts as flat around the contact point.
   double depth(const Vector3& point) const {
     if (std::holds_alternative<Mesh>(shape_)) return contact_.normal.dot(contact_.point - point);
     return way_out(shape_, pose_.to_local(point), normal_).value_or(0.0);
@@ -93,16 +93,16 @@ class Surface {
   const Contact& contact_;
   const Shape& shape_;
   Pose pose_;
-  Vector3 normal_;  // shape's frame
+  Vector3 normal_;  // in the shape's frame
 };
 
 struct Pad {
-  Vector3 offset;   // from the pressing point, along the surface
-  Vector3 surface;  // the point of the object that it presses
-  double push;      // [N]
+  Vector3 offset;   // from the contact point, along the surface
+  Vector3 surface;  // point of the object under the pad
+  double push;      // normal force [N]
 };
 
-/// All pads about one contact point.
+/// The pads of one contact point.
 class PadGrid {
  public:
   PadGrid(const Contact& contact, const Body& body, const BodyState& state, double step)
@@ -116,12 +116,12 @@ class PadGrid {
     place(contact, body, state);
   }
 
-  /// Drags the contact's memory to where friction lets go.
+  /// Moves the god object and reduces the twist where friction is exceeded.
   ///
   ///     s <- f_T / k_p where the deepest pad slips,     theta <- clamp(theta + h w_n, -+mu N / (k_p l))
   ///
-  /// k_p is a pad's stiffness and l the way between pads: turned by theta the next pads are sheared by l
-  /// theta. Explicit, and so bounded: what is stored is never more than friction bears.
+  /// k_p is a pad's stiffness and l the distance between pads: a twist theta shears adjacent pads by l theta.
+  /// The integration is explicit, so the stored values are bounded by what friction supports.
   void drag(const BodyState& state, Contact& contact) {
     const Vector3 reach = contact.hand_point - contact.point;
     stretch_ = reach - n_.dot(reach) * n_;
@@ -136,18 +136,18 @@ class PadGrid {
       contact.god_object = state.pose.to_local(contact.point);
       stretch_ = kept;
     }
-    // Beyond this the pads next to the middle slip as well.
+    // Beyond this twist the pads next to the centre slip too.
     const double most = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
     contact.twist = std::clamp(contact.twist + step_ * spin_, -most, most);
     unturn_ = Eigen::AngleAxisd(-contact.twist, n_);
   }
 
-  /// Gives the object what the pads push and drag it with; returns the sum of their forces [N].
+  /// Applies the pads' forces to the object; returns their sum [N].
   ///
   ///     q_i = s + r_i - R(-theta) r_i           shear of the pad at r_i: about theta n x r_i, and s
   ///     f_i = disc(k_p q_i + b_p (w_t + w_n n x r_i), mu N_i) - N_i n,      N_i = max(0, k_p d_i - b_p v_n)
   ///
-  /// acting where the pad sticks to the object, which is q_i behind it. A torque about n comes of the pads'
+  /// They act where the pad sticks to the object, q_i behind it. The torque about n results from the pads'
   /// arms.
   Vector3 act(bool fixed, BodyState& state) const {
     Vector3 sum = Vector3::Zero();
@@ -191,11 +191,11 @@ class PadGrid {
   const Material& material_;
   double step_;
   double stiffness_, damping_;  // of one pad [N/m], [N s/m]
-  double normal_velocity_;      // of the phalanx against the object at the contact point
-  Vector3 slide_;               // the same along the surface
-  double spin_;                 // and about n
+  double normal_velocity_;      // of the phalanx relative to the object at the contact point [m/s]
+  Vector3 slide_;               // likewise along the surface [m/s]
+  double spin_;                 // likewise about n [rad/s]
   double friction_ = 0.0;
-  double hardest_ = 0.0;  // the greatest push of a pad [N]
+  double hardest_ = 0.0;  // largest normal force of a pad [N]
   Vector3 stretch_ = Vector3::Zero();
   Matrix3 unturn_ = Matrix3::Identity();
   std::array<Pad, kPads> pads_;
@@ -204,8 +204,7 @@ class PadGrid {
 
 }  // namespace
 
-// Each body's pads see it as it was before any of them acted (`before`), so that their order makes no
-// difference: all forces are those of the step's start.
+// All pads of a body use its state at the start of the step (`before`), so their order has no effect.
 void SoftPadModel::respond(ContactStep& step) {
   BodyState before;
   std::size_t current = step.bodies.size();

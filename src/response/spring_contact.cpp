@@ -9,28 +9,29 @@
 namespace mrhi {
 namespace {
 
-/// The contact's own damping, as the time by which a spring with a dashpot beside it (Kelvin-Voigt) looks
-/// ahead. A step solved at its end damps as much as half the step does, so only the rest is added: a held
-/// object comes to rest equally fast at every step length [s].
-/// Backward Euler solves k (q + h q') at the step's end; about the step's middle, q + h/2 q', that is the
-/// spring and a dashpot k h/2. With e = h + max(0, tau - h/2) in place of h the dashpot is k (e - h/2) = k
-/// tau at every step up to 2 tau = 10 ms; beyond that the step alone damps more, and cannot be told to damp
-/// less.
+/// Relaxation time of the contact's damping: a spring with a dashpot in parallel (Kelvin-Voigt) looks ahead
+/// by it [s].
+///
+/// Backward Euler solves k (q + h q') at the end of the step. About the middle of the step, q + h/2 q', that
+/// is the spring and a dashpot k h/2. With e = h + max(0, tau - h/2) in place of h the dashpot is k (e - h/2)
+/// = k tau at every step up to 2 tau = 10 ms. So a held object comes to rest equally fast at all these steps.
+/// At longer steps the integrator alone damps more, which cannot be reduced.
 constexpr double kRelaxation = 0.005;
 
-/// Lever at which the tangential springs of a fingertip's contact patch resist twisting about the normal [m].
+/// Lever arm of the tangential springs of a fingertip's contact patch, by which they resist spin about the
+/// normal [m].
 constexpr double kTwistLever = 0.025;
 
-/// Friction torque of a patch that presses evenly, over friction times push times its radius: the mean
-/// distance of a disc's points from its middle.
-/// T = integral of mu p r dA over a disc of radius a with p = N / (pi a^2), which is mu N (2 / a^2) a^3 / 3
-/// = 2/3 mu N a. Hertz's pressure, which falls to the rim, would give 3 pi / 16 mu N a, an eighth less. The
-/// radius is Hertz's a = sqrt(R d) (collision/god_object.cpp).
+/// Friction torque of a patch with uniform pressure, over friction times normal force times radius: the mean
+/// distance of a disc's points from its centre.
+///
+/// T = integral of mu p r dA over a disc of radius a with p = N / (pi a^2), which is mu N (2 / a^2) a^3 / 3 =
+/// 2/3 mu N a. Hertz's pressure, which falls towards the rim, would give 3 pi / 16 mu N a, an eighth less.
+/// The radius is Hertz's a = sqrt(R d) (collision/god_object.cpp).
 constexpr double kPatchTorque = 2.0 / 3.0;
 
-/// Nothing is damped before it touches.
-/// A gap is a spring of depth < 0 that closes at the step's end if h u.n < depth: with the dashpot's time
-/// in place of h it would push on what only comes near.
+/// An open contact has no damping. A gap is a spring of depth < 0, which closes by the end of the step if h
+/// u.n < depth. With the dashpot's time in place of h it would act on bodies that only approach.
 double look_ahead(double step, double depth, bool damping) {
   return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
 }
@@ -39,22 +40,22 @@ double friction_of(const Material& material, Friction friction) {
   return friction == Friction::sticking ? material.static_friction : material.dynamic_friction;
 }
 
-/// By how much the end on 2 has to follow along the surface where it slips: what the spring and its damping,
-/// in line with the friction, do not.
-/// The spring and its dashpot bear what friction leaves of them, k (s + e s') = F with |F| <= phi N: so the
-/// stretch relaxes to F / k,
+/// Distance by which the anchor on body 2 slides along the surface: the part of the motion that spring and
+/// dashpot do not take up.
+///
+/// Friction limits spring and dashpot to k (s + e s') = F with |F| <= phi N, so the stretch relaxes to F / k:
 ///
 ///     s(h) = s + (h / e) (F / k - s)          e = `ahead`, with s' = (s(h) - s) / h
 ///     slide = s + h u_t - s(h)                h u_t = (h / e) (q+ - s)
 ///
-/// Without the dashpot, e = h, the end is dragged to where the spring has just F (Eq. 20, and the god
-/// object of Zilles & Salisbury 1995). F itself is at the limit of the state before; where that was mu,
-/// `rim` takes it back to phi N.
+/// Without the dashpot, e = h, the anchor is dragged to where the spring has just F (Eq. 20, and the god
+/// object of Zilles & Salisbury 1995). The limit of F is that of the friction state before the step. If that
+/// was mu, `rim` scales F to phi N.
 Vector3 slide(const SpringContact& solved, double dynamic_friction, double step) {
   const Spring& spring = solved.spring;
   const SpringResponse& response = solved.response;
-  // The ends part by h u = (h / ahead) (drawn - stretch). Spring and dashpot take up as much of it as the
-  // force F at the rim stretches them by in h, (h / ahead) (F / k - stretch). The rest is slid.
+  // The ends separate by h u = (h / ahead) (drawn - stretch). Spring and dashpot take up (h / ahead) (F / k -
+  // stretch) of it, the extension by the force F at the rim in h. The rest is sliding.
   const double followed = step / spring.ahead;
   const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
   const Vector3 tangential = vector(response.force + response.push * spring.normal);
@@ -64,14 +65,15 @@ Vector3 slide(const SpringContact& solved, double dynamic_friction, double step)
 }
 
 /// Sliding speed up to which friction between objects stays static [m/s].
-/// Friction falls from mu to phi as surfaces slide, not as the force of one point reaches its limit: the
-/// corners of a block on a ramp bear unlike loads and yield one after the other before it slides, and a load
-/// that dips for a moment after a landing starts no slide. What slides as slowly stops within 10 um. In long
-/// steps it is what a step's fall makes.
+///
+/// Friction falls from mu to phi when surfaces slide, not when the force of one point reaches its limit. The
+/// corners of a block on a ramp carry unequal loads and slip one after the other before the block slides. A
+/// momentary dip of the load after a landing starts no slide. A slide this slow stops within 10 um. In long
+/// steps the limit is the speed gained by falling for a step.
 constexpr double kStaticSpeed = 0.01;
 
-/// Drags the end on the body where the contact has yielded. Between bodies friction stays static if the
-/// contact slides slowly with static friction.
+/// Moves the anchor on the body if the contact slips. Friction between bodies stays static if they slide
+/// slowly under static friction.
 void follow(const ContactStep& step, const SpringContact& solved, Contact& contact) {
   const Material& material = step.scene.bodies[contact.key.body].material;
   const Vector3 slid = slide(solved, contact.grip * friction_of(material, contact.friction), step.step);
@@ -88,27 +90,27 @@ void follow(const ContactStep& step, const SpringContact& solved, BodyContact& c
   contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
 }
 
-/// The turn that is left of the twist, as far as the torque holds it.
-/// As in slide(): theta(h) = theta + (h / e) (T / k_t - theta), which is theta + h spin while T is within
-/// its limit. A point that turns freely, k_t = 0, keeps what it has, and the quotient is not used.
+/// Elastic part of the twist after the step. As in slide(): theta(h) = theta + (h / e) (T / k_t - theta),
+/// which is theta + h spin while T is within its limit. A contact without torsional stiffness keeps its
+/// twist, as the quotient is undefined.
 double kept_twist(const SpringContact& solved, double step) {
   const Spring& spring = solved.spring;
   if (spring.twist_stiffness <= 0.0) return spring.twist;
   const double followed = step / spring.ahead;
   return spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
 }
-/// Force, friction and the end on the body.
+/// Writes force and friction state, and moves the anchor on the body.
 ///
 ///     sticks:     |k q+| <= mu N            from sticking
 ///                 |k q+| <= 0.9 phi N       from slipping
 ///
-/// Friction of the step just solved had the limit of the state before: one that breaks away in this step
-/// bore mu N, and bears phi N in the next one. An open contact, N = 0, has nothing to follow.
+/// The step just solved used the limit of the previous friction state: a contact that breaks away in this
+/// step had mu N, and has phi N in the next one. An open contact, N = 0, does not slide.
 template <typename Touch>
 void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& touch) {
   touch.force = vector(solved.response.force);
-  // Eqs. 19, 20 with mu while it sticks and phi while it slides, by the push of the step's end.
-  // What slips sticks again well within the limit only: at the limit it would change over in every step.
+  // Eqs. 19, 20 with mu while sticking and phi while sliding, by the normal force at the end of the step. A
+  // slipping contact sticks again only well within the limit; otherwise it would change state in every step.
   const double limit = (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * solved.spring.slip_limit;
   const bool sticks = solved.response.wanted_squared <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
@@ -123,9 +125,9 @@ double look_ahead(double step, bool damping) {
   return step + (damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
 }
 
-// The share is of the stiffness, so that N = k share d sums to what the phalanx bears, and of the strength,
-// but friction and patch are each point's own. Friction is that of the state before, mu or phi: which one it
-// is to be is found as the step is settled.
+// The share scales the stiffness, so that N = k share d sums to the phalanx's load, and the strength.
+// Friction and patch belong to the single point. Friction is that of the previous state, mu or phi: settle()
+// finds the new one.
 void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Contact& contact,
                  SpringContact& result) {
   const Body& body = step.scene.bodies[contact.key.body];
@@ -133,22 +135,22 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   const Triple reach = triple(contact.hand_point) - point + triple(contact.lever);
   Spring& spring = result.spring;
   spring.normal = n;
-  // Eqs. 16 to 18: of p - c, with p brought back to the surface the way it came, what is along the surface.
+  // Eqs. 16 to 18: the component of p - c along the surface, with p moved back to the surface along its path.
   spring.stretch = reach - n.dot(reach) * n;
   spring.depth = contact.pressed();
   spring.twist = contact.twist;
-  // Kelvin and Voigt's f = k (q + tau q') at the step's end: there q has grown by h q', so it is k (q + (h +
-  // tau) q') with the q of now and the rate that is solved for. `ahead` is h + tau.
+  // Kelvin and Voigt's f = k (q + tau q') at the end of the step: by then q has grown by h q', so it is k (q
+  // + (h + tau) q') with the present q and the rate solved for. `ahead` is h + tau.
   spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
   spring.fade = release_fade(configuration.release_fade);
   const HandStrength& hand = configuration.hand;
   spring.pad = hand.pad;
   spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
   spring.stiffness = body.material.stiffness * contact.share;
-  // In metres of a spring at full stiffness.
+  // Depth of a spring at full stiffness [m].
   spring.yields = contact.strength / std::max(spring.stiffness, 1e-300);
   spring.bond = 0.0;
-  // Springs k at a lever l: a turn by 1 rad stretches them by l, and they give k l at that lever.
+  // Springs k at a lever arm l: a rotation by 1 rad stretches them by l, and they apply k l at that arm.
   spring.twist_stiffness = configuration.torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
   spring.friction = contact.grip * friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
@@ -158,9 +160,9 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   result.drive_spin = contact.hand_spin;
 }
 
-// The stretch is that of the anchors, along n is nothing to remember. No pad, no torsion: points of a
-// manifold share the load, and twist is what they bear together. Body a moves too: its velocity is the
-// solver's, not `drive`.
+// The stretch is that of the anchors; no state is kept along n. No pad and no torsion: the points of a
+// manifold share the load, and resist twist together. Body a moves too: its velocity is the solver's, not
+// `drive`.
 void make_spring(const ContactStep& step, const ContactConfiguration& configuration,
                  const BodyContact& contact, SpringContact& result) {
   Spring& spring = result.spring;
@@ -194,8 +196,7 @@ void settle(const ContactStep& step, const SpringContact& solved, BodyContact& c
 
 namespace {
 
-/// Integral of min(k q, limit) from 0 to q: energy of a spring that yields.
-/// Huber's function:
+/// Integral of min(k q, limit) from 0 to q: energy of a spring with a force limit. Huber's function:
 ///
 ///     E(q) = k q^2 / 2                k q <= L
 ///     E(q) = L q - L^2 / 2k           beyond: value L^2 / 2k and slope L meet at q = L / k
@@ -204,29 +205,27 @@ double yielding_energy(double stiffness, double stretch, double limit) {
   return limit * stretch - 0.5 * limit * limit / stiffness;
 }
 
-/// Gauss and Legendre's rule of three points, exact for polynomials up to degree five.
-/// The push is a polynomial of the fourth degree between its kinks: p of the second degree in the depth,
-/// which is linear in the rate, times 1 - r^2.
+/// Gauss-Legendre quadrature with three points, exact for polynomials up to degree five. The normal force is
+/// a quartic between its kinks: p is quadratic in the depth, which is linear in the rate, times 1 - r^2.
 template <typename Function>
 double integral(double from, double to, Function function) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from), off = std::sqrt(0.6) * half;
   return half / 9.0 * (5.0 * function(middle - off) + 8.0 * function(middle) + 5.0 * function(middle + off));
 }
 
-/// Depth at which the spring begins to give way.
-/// Spring::press() solved for p(d) = Y: d = Y + D / 2 beyond the pad, where p >= D / 2, and d = sqrt(2 Y D)
-/// within it.
+/// Depth at which the finger begins to comply: Spring::press() solved for p(d) = Y. d = Y + D / 2 beyond the
+/// pad, where p >= D / 2, and d = sqrt(2 Y D) within it.
 double yielding_depth(const Spring& spring) {
   if (spring.yields >= 0.5 * spring.pad) return spring.yields + 0.5 * spring.pad;
   return std::sqrt(2.0 * spring.yields * spring.pad);
 }
 
-/// Integral of the push from the rate up, until it is none any more: piece by piece, a polynomial each.
+/// Integral of the normal force from `rate` up to where it vanishes, piece by piece; each is a polynomial.
 ///
 ///     E_N(v) = integral of N(x) dx from v on,     dE_N/dv = -N(v)
 ///
-/// Kinks are where the finger begins to give way, where the pad ends, at rest, from where on the fade acts,
-/// and where the push ends: at d+ = 0 or at the release speed, whichever is slower.
+/// The kinks are where the finger begins to comply, where the pad ends, at rest, where the fade begins, and
+/// where the force ends: at d+ = 0 or at the release speed, whichever is slower.
 double push_energy(const Spring& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
   const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
@@ -245,12 +244,14 @@ double push_energy(const Spring& spring, double rate) {
 
 }  // namespace
 
-// V(u) = E_N(v) + (E_F(|q+|) + E_T(|theta+|)) / tau, E_N the integral of N from v on, E_F and E_T those of a
-// spring that yields at L and L_t (Huber's function). d/du of E_F / tau is F, since q+ grows by tau P u.
-// Minus its gradient is the force. With Coulomb's limits held it is convex, since each force falls as its own
-// rate grows; so the step has one solution, and a line search along Newton's direction finds it.
-// In watts: a force times a velocity, the rate form of an incremental potential (Kane et al. 2000). It is
-// an energy over the time tau.
+// V(u) = E_N(v) + (E_F(|q+|) + E_T(|theta+|)) / tau. E_N is the integral of N from v on; E_F and E_T are
+// energies of springs with the force limits L and L_t (Huber's function). d/du of E_F / tau is F, as q+ grows
+// by tau P u. The force is minus the gradient. With Coulomb's limits held V is convex, as each force falls
+// while its own rate grows. So the step has one solution, and a line search along Newton's direction finds
+// it.
+//
+// In watts, a force times a velocity: the rate form of an incremental potential (Kane et al. 2000), an energy
+// over the time tau.
 double potential(const Spring& spring, const Triple& u, double spin) {
   const double rate = u.dot(spring.normal);
   const Triple drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
@@ -261,12 +262,12 @@ double potential(const Spring& spring, const Triple& u, double spin) {
              spring.ahead;
 }
 
-// With no normal and no depth the spring acts in all directions, and what it bears is the bond alone: a
-// Coulomb contact whose limit does not hang on a push.
+// Without normal and depth the spring acts alike in all directions, and its limit is the bond alone: a
+// Coulomb contact whose limit does not depend on a normal force.
 //
 //     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
 //
-// Depth and fade are 0, so N is 0. The four are at corners of a tetrahedron: forces alone, they bear
+// Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they support
 // torques about any axis.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
                       int point, SpringContact& result) {
@@ -285,7 +286,7 @@ void make_grip_spring(const ContactStep& step, const ContactConfiguration& confi
 
 namespace {
 
-/// Writes back what the solution made of a grip's point: where it has yielded, its end on the body follows.
+/// Writes the solution of one grip point back; if it slips, its anchor on the body follows.
 void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip) {
   const Spring& spring = solved.spring;
   const SpringResponse& response = solved.response;
@@ -299,9 +300,8 @@ void settle_grip(const ContactStep& step, const SpringContact& solved, int point
   grip.torque += vector(solved.arm).cross(force);
   if (response.wanted_squared <= spring.slip_limit * spring.slip_limit) return;
   grip.slips = true;
-  // Ideal plasticity: the end on the body goes after by what the force at the limit does not stretch, as far
-  // as the step goes of the time that the spring looks ahead.
-  // As in slide(), with phi = mu: s + h u - s(h) = (h / e) (q+ - F / k).
+  // Ideal plasticity: the anchor follows by the motion that the limit force does not take up. As in slide(),
+  // with phi = mu: s + h u - s(h) = (h / e) (q+ - F / k).
   const double followed = step.step / spring.ahead;
   const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
   const Pose& pose = step.bodies[grip.body].pose;

@@ -7,23 +7,24 @@
 
 namespace mrhi {
 
-/// Makes the spring of a contact with a hand, or of one between bodies. One without share does nothing.
+/// Makes the spring of a contact with a hand, or of one between bodies. A contact without share has no
+/// stiffness.
 void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Contact& contact,
                  SpringContact& result);
 void make_spring(const ContactStep& step, const ContactConfiguration& configuration,
                  const BodyContact& contact, SpringContact& result);
 
-/// Writes what the solution made of it back.
+/// Writes the solution of a contact back.
 void settle(const ContactStep& step, const SpringContact& solved, Contact& contact);
 void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact);
 
-/// How far ahead a spring that touches is evaluated: the step, and what damping adds [s].
+/// Look-ahead time of a touching spring: the step plus damping [s].
 double look_ahead(double step, bool damping);
 
-/// Convex function of the velocities whose gradient gives the response at the limits that are set [W].
+/// Convex function of the velocities whose gradient is the response under the present limits [W].
 double potential(const Spring& spring, const Triple& u, double spin);
 
-/// Makes the spring of one of a grip's points: it bears any direction alike, without a push.
+/// Makes the spring of one point of a grip, which acts alike in all directions and has no normal force.
 void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
                       int point, SpringContact& result);
 
@@ -34,7 +35,7 @@ void make_hand_rows(const ContactStep& step, const Island& island, const Contact
 void make_link_row(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
                    const BodyContact& contact, SpringContact& row);
 
-/// Writes back what the solution made of the rows of make_hand_rows(). Returns the row behind them.
+/// Writes back the solution of the rows of make_hand_rows(). Returns the row after them.
 const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, const SpringContact* row);
 
 }  // namespace mrhi

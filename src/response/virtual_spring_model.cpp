@@ -8,34 +8,34 @@
 namespace mrhi {
 namespace {
 
-/// A virtual phalanx hangs on the tracked one by a spring and a damper (Borst & Indugula, "A spring model for
-/// whole-hand virtual grasping", Presence 15(1), 2006; the paper's reference [23], Delrieu et al. 2020).
+/// A virtual phalanx coupled to the tracked one by a spring and a damper (Borst & Indugula, "A spring model
+/// for whole-hand virtual grasping", Presence 15(1), 2006; the paper's reference [23], Delrieu et al. 2020).
 /// Those systems give the virtual phalanx a small mass and let an engine keep it outside the object. Here it
-/// is reduced to the point where it rests on the surface (the god object), without mass: what the coupling
-/// pulls it with is what it presses and drags the object with, up to Coulomb's limit, beyond which it is
-/// dragged over the surface. Explicit, as those systems are: forces of a step are those at its start.
+/// is reduced to its point on the surface (the god object), without mass. The coupling's force acts on the
+/// object up to Coulomb's limit, beyond which the point slides. Explicit, as those systems are: forces are
+/// those at the start of the step.
 class VirtualSpringModel : public ContactModel {
  public:
-  /// Of the coupling, unless material/stiffness is set. An explicit spring and damper ask for steps below
-  /// 2 / sqrt(sum k / m) and 2 m / sum b [N/m].
-  /// Of N phalanges both together ask for h^2 N k + 2 h N b < 4 m, where each alone has the bounds above: p
-  /// += -h (k x + b p / m), x += h p / m has its roots within the unit circle up to there
+  /// Stiffness of the coupling, unless material/stiffness is set [N/m]. An explicit spring and damper need
+  /// steps below 2 / sqrt(sum k / m) and 2 m / sum b.
+  ///
+  /// These are the bounds of each alone. For N phalanges both together need h^2 N k + 2 h N b < 4 m: up to
+  /// there p += -h (k x + b p / m), x += h p / m has its roots within the unit circle
   /// (docs/speed_accuracy.md: of 2433 cells beyond it 12 are stable).
   static constexpr double kStiffness = 500.0;
-  /// The coupling's damper is critical for a virtual phalanx of this mass: b = 2 sqrt(k m), 4.5 N s/m at 500
-  /// N/m [kg].
+  /// Mass of a virtual phalanx for which the damper is critical: b = 2 sqrt(k m), 4.5 N s/m at 500 N/m [kg].
   static constexpr double kPhalanxMass = 0.01;
 
   void respond(ContactStep& step) override;
 };
 
-/// Force of the coupling on the object [N]; drags the virtual phalanx where it slips.
+/// Force of the coupling on the object [N]; moves the virtual phalanx where it slips.
 ///
 ///     N = max(0, k d - b v_n),     f_T = coulomb(k s + b v_t),     f = f_T - N n          on the object
 ///
-/// v is the hand's against the object's (Eq. 8), so that b v_n < 0 as they approach pushes the more. The
-/// damper makes the push begin with a jump, b |v_n|, at the touch: what Hunt & Crossley (1975) object to in
-/// it, and what those systems have.
+/// v is the hand's velocity relative to the object (Eq. 8), so approach, b v_n < 0, increases N. The damper
+/// makes N start with a jump, b |v_n|, at first touch. Hunt & Crossley (1975) object to this jump, but those
+/// systems have it.
 Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contact) {
   const double stiffness = body.material.stiffness * contact.share;
   if (!contact.touching() || stiffness <= 0.0) return Vector3::Zero();
@@ -44,7 +44,7 @@ Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contac
   const Vector3& n = contact.normal;
   const Vector3 velocity = relative_velocity(contact, body, state);
   const double normal_velocity = n.dot(velocity);
-  // The virtual phalanx rests on the surface: the coupling presses it on, but the surface cannot hold it
+  // The virtual phalanx rests on the surface: the coupling may push it on, but the surface cannot pull it
   // back.
   const double push = std::max(0.0, stiffness * contact.depth - damping * normal_velocity);
 

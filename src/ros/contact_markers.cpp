@@ -14,18 +14,18 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kLongest = 0.12;        // of an arrow, which no force reaches [m]
-constexpr double kHalfOfLongest = 3.0;   // the force whose arrow is half as long [N]
-constexpr double kLetters = 0.009;       // of a force in numbers [m]
+constexpr double kLongest = 0.12;        // of an arrow for an infinite force [m]
+constexpr double kHalfOfLongest = 3.0;   // force whose arrow is half as long [N]
+constexpr double kLetters = 0.009;       // height of a force's number [m]
 constexpr double kShortest = 0.004;      // [m]
 constexpr double kGap = 0.002;           // between the arrow and the back of the finger [m]
 constexpr double kPointSize = 0.005;     // [m]
 constexpr double kPieces = 14.0;         // of a ring
-constexpr double kLift = 0.0006;         // of a ring off the surface [m]
-constexpr double kLeastImpulse = 0.002;  // of an impact that is seen [N s]
-constexpr double kHalfOfWidest = 0.02;   // the impulse whose ring is half as wide as the widest [N s]
-constexpr double kWidest = 0.03;         // that a ring's radius grows by [m]
-constexpr double kBroad = 0.004;         // of an impact's ring as it begins [m]
+constexpr double kLift = 0.0006;         // of a ring above the surface [m]
+constexpr double kLeastImpulse = 0.002;  // smallest impact with a ring [N s]
+constexpr double kHalfOfWidest = 0.02;   // impulse whose ring widens half as far as the widest [N s]
+constexpr double kWidest = 0.03;         // largest growth of a ring's radius [m]
+constexpr double kBroad = 0.004;         // initial width of an impact's ring [m]
 
 enum FrictionState { kSticks, kSlips, kStruck, kFrictionStates };
 
@@ -43,7 +43,7 @@ Pose on_surface(const Vector3& point, const Vector3& normal) {
   return {point + kLift * normal, Quaternion::FromTwoVectors(Vector3::UnitZ(), normal)};
 }
 
-/// The rings of one colour. It is also each corner's, or rviz would light them and leave their sides black.
+/// Rings of one colour, set at each vertex too; rviz would otherwise light them and leave their sides black.
 void add_rings(const std::vector<Contact>& contacts, FrictionState state, const PictureStyle& style,
                const MarkerLayer& layer) {
   Marker* rings = nullptr;
@@ -75,7 +75,7 @@ void add_force(const Contact& contact, const PictureStyle& style, int id, const 
       .text = text;
 }
 
-/// Blue to orange by way of white, which colour-blind people tell apart.
+/// Blue to orange by way of white, which colour-blind people can distinguish.
 std_msgs::ColorRGBA share_color(double share) {
   const Vector3 blue(0.000, 0.447, 0.698), white(1.0, 1.0, 1.0), orange(0.835, 0.369, 0.000);
   const double s = std::clamp(share, 0.0, 1.0);
@@ -111,7 +111,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, const PictureSt
   for (const Contact& contact : result.contacts) add_force(contact, style, id++, arrows, numbers);
 }
 
-/// An impact that lasts for more than a frame is one.
+/// An impact that spans several frames gets one ring.
 void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& stamp) {
   for (const Contact& contact : contacts) {
     const double impulse = contact.impulse.norm();
@@ -165,12 +165,12 @@ namespace {
 
 constexpr int kSides = 6;
 
-/// Half of an arrow's outline, turned round its axis.
+/// Half of an arrow's outline, rotated about its axis.
 struct OutlinePoint {
   double along, radius;
 };
 
-/// Axes across `along`, whichever.
+/// Any two unit axes perpendicular to `along`.
 std::array<Vector3, 2> across(const Vector3& along) {
   const Vector3 first = along.unitOrthogonal();
   return {first, along.cross(first)};

@@ -11,7 +11,7 @@ namespace mrhi {
 namespace {
 
 constexpr int kFarthest = 1000;          // [m], on each axis
-constexpr double kUnitTolerance = 1e-9;  // of a quaternion's length; what is nearer keeps its bits
+constexpr double kUnitTolerance = 1e-9;  // of a quaternion's length; within it the bits are kept
 
 [[noreturn]] void refuse(const mr_hand_interaction::Hand& message, const std::string& what) {
   throw std::invalid_argument("hand " + std::to_string(message.id) + ": " + what);

@@ -13,12 +13,12 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int kSpare = 8 * kMaxHands;  // skin, wrist's sides and ghost of each
+constexpr int kSpare = 8 * kMaxHands;  // skin, sides of the wrist and ghost of each hand
 
 HandStyle capsule_style() {
   return {color(0.91, 0.76, 0.65), color(0.84, 0.28, 0.06), 1.0};
 }
-/// Thinner, so that it is hidden in the rendered hand where the two agree.
+/// Thinner, so that it is hidden in the rendered hand where the two coincide.
 HandStyle capsule_ghost_style() {
   return {color(0.337, 0.706, 0.914, 0.45), color(0.337, 0.706, 0.914, 0.45), 0.75};
 }
@@ -104,7 +104,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, int first_id, const Mar
   }
 }
 
-/// Counter-clockwise from outside for either side.
+/// Counter-clockwise from outside for both left and right hands.
 void HandMarkers::add_part(const Triangles& triangles, Side side, const Vector3& origin, int id,
                            const MarkerLayer& layer) {
   Marker& marker = add_triangles(id, layer);

@@ -25,7 +25,7 @@ constexpr int kQueue = 10;
 const char* const kStampNotIncreasing = "stamp repeats or goes back";
 const char* const kNoTransform = "no transform";
 
-/// What the node is told on the parameter server.
+/// Parameters of the node on the parameter server.
 struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
     NodeParameters known;
@@ -38,7 +38,7 @@ struct Parameters {
   TrackerReader::Options reader;
 };
 
-/// A TransformMemory of /tf and /tf_static, read by the callbacks' own thread.
+/// A TransformMemory of /tf and /tf_static, read in the callbacks' thread.
 class TrackerTransforms : public TransformMemory {
  public:
   static constexpr const char* kReason = "unusable transform";
@@ -57,7 +57,7 @@ class TrackerTransforms : public TransformMemory {
 
  private:
   using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
-  /// What this node itself gives are objects, which carry no tracker.
+  /// This node's own transforms are of objects, which carry no tracker.
   void take(const Arrival& arrival) {
     if (arrival.getPublisherName() == ros::this_node::getName()) return;
     for (const auto& transform : arrival.getConstMessage()->transforms) {
@@ -100,7 +100,7 @@ struct HandTracking::Impl {
   struct Source {
     std::string topic;  ///< before remapping
     ros::Subscriber subscriber;
-    bool seen = false;  ///< a publisher, by the present subscription
+    bool seen = false;  ///< the present subscription has seen a publisher
   };
 
   void subscribe(Source& source) {
@@ -111,8 +111,8 @@ struct HandTracking::Impl {
         nullptr, ros::TransportHints().tcpNoDelay());
   }
 
-  /// roscpp keeps a topic to the type that it met first, so a publisher of another type or version needs a
-  /// new subscription.
+  /// roscpp fixes a topic's type at its first message, so a publisher of another type or version needs a new
+  /// subscription.
   void accept_other_types() {
     for (Source& source : sources_) {
       const bool connected = source.subscriber.getNumPublishers() > 0;
@@ -157,8 +157,8 @@ struct HandTracking::Impl {
     statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
   }
 
-  /// What is far from its stream goes on to the simulation, which sees what comes after it, as this does not
-  /// for those who listen to hand_frame.
+  /// Frames with stray stamps are passed to the simulation, which checks the following ones, but not
+  /// published on hand_frame.
   bool accept_stamp(Nanoseconds stamp) {
     const Nanoseconds last = stamps_.last;
     const StampVerdict verdict = stamps_.check(stamp);

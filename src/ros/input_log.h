@@ -16,20 +16,18 @@
 #include "mr_hand_interaction/stamp_check.h"
 
 namespace mrhi {
-/// Time of the hand stream between and beyond its frames: the last stamp, and what has passed since it
-/// arrived. So stamps may come from another clock, as those of a bag do. The simulation's time is that
-/// without pauses.
+/// Extrapolates the hand stream's time: the last stamp plus the time since its arrival. So stamps may come
+/// from another clock, like those of a bag. The simulation's time excludes pauses.
 class StampClock {
  public:
-  /// A frame with this stamp has arrived.
+  /// Notes the arrival of a frame with this stamp.
   void take(Nanoseconds stamp, const ros::Time& now) {
     started_ = true;
     last_stamp_ = stamp;
     arrival_ = now;
   }
 
-  /// Stamp that a frame of now would have; now itself before the first frame. Does not go back if ROS time
-  /// does.
+  /// Stamp of a frame sent now; now itself before the first frame. Never decreases, even if ROS time does.
   Nanoseconds stamp(const ros::Time& now) const {
     if (!started_) return from_ros_time(now);
     return last_stamp_ + std::max<Nanoseconds>(0, from_ros_time(now) - from_ros_time(arrival_));
@@ -46,7 +44,7 @@ class StampClock {
   }
 
   bool paused() const { return paused_; }
-  /// Of frames that go on from the last one that was taken.
+  /// Check of frames that continue from the last accepted one.
   StampCheck check() const {
     StampCheck check;
     check.started = started_;
@@ -66,9 +64,8 @@ class StampClock {
   Nanoseconds pauses_ = 0;
 };
 
-/// Whether ROS's clock leaps ahead from one look at it to the next. It is believed once it is still there:
-/// /clock may be of another time for a moment, and a scene that had gone there with it would be at its start
-/// when it is back.
+/// Detects jumps of ROS's clock. A jump is accepted once it persists: /clock may be of another time for a
+/// moment, and a scene that followed it would be reset on its return.
 class ClockLeaps {
  public:
   bool look(Nanoseconds now) {
@@ -78,13 +75,13 @@ class ClockLeaps {
 
  private:
   static constexpr Nanoseconds kLeap =
-      1'000'000'000;  // farther than four times what passed before, too: a clock may be fast
+      1'000'000'000;  // and farther than four times the last interval, as a clock may be fast
 
-  Nanoseconds looked_ = 0, stride_ = 0;  // when, and what had passed since the look before
+  Nanoseconds looked_ = 0, stride_ = 0;  // time of the last look, and its interval from the one before
 };
 
-/// Publishes `simulation_input`: all that a simulation is given, in its order, after it has taken it. Who
-/// begins to listen is sent first what the simulation is then. Costs next to nothing while nobody listens.
+/// Publishes `simulation_input`: all inputs of a simulation, in order, after they are applied. A new
+/// subscriber first gets the present state. Costs little without subscribers.
 class InputLog {
  public:
   InputLog(ros::NodeHandle& node, World world, const LiveSimulation& simulation, const StampClock& clock)
@@ -96,7 +93,7 @@ class InputLog {
             "simulation_input", kQueue,
             [this](const ros::SingleSubscriberPublisher& subscriber) { send_begin(subscriber); })) {}
 
-  /// `hands`, `expected`: as Simulation::begin got them. `frame_id`: of what the hands are placed in.
+  /// `hands`, `expected`: as for Simulation::begin(). `frame_id`: frame of the hands.
   void frame(HandFrame hands, const std::string& frame_id, Nanoseconds expected) {
     ++sequence_;
     if (!heard()) return;

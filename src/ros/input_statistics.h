@@ -15,7 +15,7 @@
 
 namespace mrhi {
 
-/// Counts what a node takes and refuses, for /diagnostics, and logs each kind of refusal at most every five
+/// Counts accepted and rejected input, for /diagnostics, and logs each kind of rejection at most every five
 /// seconds.
 class InputStatistics {
  public:
@@ -27,7 +27,7 @@ class InputStatistics {
     for (const std::string& kind : corrections) corrected_[kind];
   }
 
-  /// Latency: from the frame's stamp until now.
+  /// `latency`: from the frame's stamp until now.
   void taken(double latency) {
     ++taken_;
     ++taken_in_period_;
@@ -44,15 +44,14 @@ class InputStatistics {
     refusals.logged = now;
     ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
   }
-  /// A fault of the input that was put right: counted, and logged as information when it is the first of its
-  /// kind.
+  /// Counts a corrected fault of the input; logs the first of each kind as information.
   void corrected(const std::string& kind, const std::string& detail) {
     if (++corrected_[kind] == 1) ROS_INFO_STREAM(kind << ": " << detail << " (more are counted only)");
   }
-  /// Frames that were sent and have not arrived.
+  /// Counts frames that were sent and have not arrived.
   void lost(std::uint64_t frames) { lost_ += frames; }
   std::uint64_t lost() const { return lost_; }
-  /// A frame was here for so long before it was done with [s].
+  /// Notes the time from a frame's arrival to the end of its processing [s].
   void waited(double seconds) {
     if (seconds > kLate) ++late_;
   }
@@ -89,7 +88,7 @@ class InputStatistics {
   }
 
  private:
-  static constexpr double kLate = 0.05;  // a frame that is done with so long after it came is late [s]
+  static constexpr double kLate = 0.05;  // processing times beyond this are late [s]
 
   struct Refusals {
     std::uint64_t count = 0;
@@ -108,10 +107,10 @@ class InputStatistics {
   ros::SteadyTime period_start_;
 };
 
-/// These, and what else a node reports, on /diagnostics once a second.
+/// Publishes the statistics, and other states of a node, on /diagnostics once a second.
 class NodeDiagnostics : public InputStatistics {
  public:
-  /// `title` of the status that has the statistics; `more` adds to it.
+  /// `title`: of the status with the statistics; `more` adds to it.
   using Task = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
   NodeDiagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& hardware,
                   const std::string& title, const std::vector<std::string>& reasons = {},
@@ -123,7 +122,7 @@ class NodeDiagnostics : public InputStatistics {
       if (more) more(status);
     });
     timer_ = node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
-      // The updater adds its period to the clock, which throws where stamps end.
+      // The updater adds its period to the time, which throws at the end of the range of stamps.
       if (from_ros_time(ros::Time::now()) <= StampCheck::kLatest) updater_.force_update();
       if (each_second_) each_second_();
     });
@@ -138,11 +137,11 @@ class NodeDiagnostics : public InputStatistics {
   ros::SteadyTimer timer_;
 };
 
-/// Counts messages that have not arrived (a queue was full, or the way was), by the numbers that ROS gives
-/// those of a publisher.
+/// Counts messages that have not arrived (full queue or lost transmission), by a publisher's sequence
+/// numbers.
 class SequenceWatch {
  public:
-  /// How many are missing before this one. A number that goes back, or far ahead, begins anew.
+  /// Number missing before this one. A number that goes back or far ahead restarts the count.
   std::uint64_t missing(const std::string& publisher, std::uint32_t sequence) {
     constexpr std::uint32_t kFar = 1'000'000;
     const auto [known, is_new] = last_.emplace(publisher, sequence);

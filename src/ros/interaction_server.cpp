@@ -35,17 +35,17 @@ namespace mrhi {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr Nanoseconds kSlack = 100'000'000;  // a frame may be that late after all
+constexpr Nanoseconds kSlack = 100'000'000;  // delay after which a frame may still arrive
 const ros::WallDuration kIdlePeriod(1.0 / 30);
 
-/// Gravity stays the scene's own here, as the configuration's may be taken back.
+/// Keeps the scene's own gravity, as the configuration's may be removed later.
 SceneOptions options_of(const Configuration& configuration) {
   SceneOptions options = scene_options(configuration);
   options.gravity.reset();
   return options;
 }
 
-/// One parameter; of a request without a name, all of the map that its value is.
+/// One parameter, or for a request without a name all of the map that is its value.
 Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& request) {
   if (!request.name.empty()) return {{request.name, request.value}};
   return read_yaml<ParameterError>("value", [&] {
@@ -59,7 +59,7 @@ Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& reque
   });
 }
 
-/// An object's pose is in tf by its name: with a name of these a tracker would go where the object goes.
+/// An object's pose is in tf by its name: a tracker in a frame of that name would move with the object.
 void require_no_frame(const std::string& name, const std::string& fixed_frame) {
   for (const std::string& frame : {without_slash(fixed_frame), std::string("leap_hands")}) {
     if (name == frame)
@@ -105,7 +105,7 @@ struct InteractionServer::Impl {
                  [this](bool on) { placing_.turn(on, live_.simulation()); },
                  [this]() -> const Simulation& { return live_.simulation(); }}),
         between_frames_(node) {
-    // Apart: all values of the other status are numbers, and a hash is none.
+    // Separate: all values of the other status are numbers, and a hash is not.
     diagnostics_.add("state", [this](auto& status) { report_state(status); });
     if (parameters.standard_outputs) results_.add_standard_outputs(node);
     results_.show(live_.simulation());
@@ -169,7 +169,7 @@ struct InteractionServer::Impl {
     log_.lost(diagnostics_.lost());
   }
 
-  /// `work` returns what it has done, or throws why it is refused.
+  /// `work` returns a description of its change, or throws the reason for refusing it.
   template <class Service, class Work>
   void serve(ros::NodeHandle& node, const char* name, Work work) {
     using Request = typename Service::Request;
@@ -267,8 +267,8 @@ struct InteractionServer::Impl {
     return paused ? "paused" : "running";
   }
 
-  /// Returns what is there then, and what was assumed of it. Runs beside the frames, which do not wait while
-  /// it reads files.
+  /// Returns the added object and assumptions about it. Runs concurrently with frames, which do not wait for
+  /// file access.
   std::string spawn(const ObjectRequest& request) {
     SceneOptions options;
     between_frames_.run([&] { options = options_of(live_.simulation().configuration()); });
@@ -291,7 +291,7 @@ struct InteractionServer::Impl {
     return text;
   }
 
-  /// What is recorded of a replay needs no world that was saved: it is no change.
+  /// Saving does not change the simulation, so it is not recorded.
   std::string save(const std::string& file) {
     if (file.empty() || file.front() != '/')
       throw std::invalid_argument("file '" + text::one_line(file, 200) +
@@ -319,7 +319,7 @@ struct InteractionServer::Impl {
     return text::joined(now);
   }
 
-  /// Every change of the simulation goes this way, and into the log.
+  /// Applies and logs a change of the simulation. All changes use this function.
   void make(const Change& change) {
     mrhi::make(change, live_);
     log_.change(change);
@@ -330,9 +330,8 @@ struct InteractionServer::Impl {
     show_change();
   }
 
-  /// There is another simulation, perhaps with other bodies.
-  /// Changes that come faster than they could be seen are shown together, by the next frame or idle(): a
-  /// scene of many objects costs more to show than to change.
+  /// Call after the simulation was replaced, perhaps with other bodies. Rapid changes are shown together, by
+  /// the next frame or idle(): a scene of many objects costs more to show than to change.
   void show_change() {
     results_.show(live_.simulation());
     if (ros::SteadyTime::now() - results_.shown() > kIdlePeriod)
@@ -345,7 +344,7 @@ struct InteractionServer::Impl {
       try {
         make(PlaceObject{name, pose});
       } catch (const std::invalid_argument&) {
-        // The mouse is out of bounds, or its object is gone: what was good stays.
+        // The mouse is out of bounds, or its object is gone: the last valid state stays.
       }
     }
   }
@@ -355,10 +354,11 @@ struct InteractionServer::Impl {
   StampClock clock_;
   ClockLeaps clock_leaps_;
   InputLog log_;
-  StampCheck while_paused_;  ///< of the frames that come meanwhile; of all others the simulation checks
+  StampCheck while_paused_;  ///< of frames during a pause; the simulation checks all others
   ResultPublisher results_;
   NodeDiagnostics diagnostics_;
-  DurationHistogram step_times_, picture_latency_;  ///< since the last report; from the hand's arrival
+  DurationHistogram step_times_, picture_latency_;  ///< since the last report; the latter from the hand's
+                                                    ///< arrival
   std::uint64_t dropped_while_paused_ = 0;
   Placing placing_;
   Tuning tuning_;
@@ -367,7 +367,7 @@ struct InteractionServer::Impl {
   ros::Subscriber hands_;
   std::vector<ros::ServiceServer> services_;
   ros::SteadyTimer idle_timer_;
-  BetweenFrames between_frames_;  ///< last, so that nothing runs beside the end of the others
+  BetweenFrames between_frames_;  ///< last member, so that no call runs during the destruction of the others
 };
 
 InteractionServer::InteractionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,

@@ -26,7 +26,7 @@ Vector3 vector(const Message& message) {
   return {message.x, message.y, message.z};
 }
 
-/// Drivers leave what they do not know at zero; no part of a hand can be exactly at the device's origin.
+/// Drivers leave unknown points at zero; no part of a hand is exactly at the device's origin.
 std::optional<Vector3> known(const Vector3& point) {
   return point == Vector3::Zero() ? std::nullopt : std::make_optional(point);
 }
@@ -34,7 +34,7 @@ std::optional<float> known(float length) {
   return length == 0.0f ? std::nullopt : std::make_optional(length);
 }
 
-/// The elements of a list by their type number, 0..Size-1, each at most once.
+/// Elements of a list by their type number, 0..Size-1, each at most once.
 template <std::size_t Size, class List>
 std::array<const typename List::value_type*, Size> by_type(const List& list, const std::string& name) {
   if (list.size() > Size)
@@ -80,8 +80,7 @@ float width_of(const Part& part) {
   return part.width;
 }
 
-/// Joints of the fingers as both drivers' messages have them. What they leave at zero stays so: it is a
-/// placeholder.
+/// Joints of the fingers as in both drivers' messages. Points at zero stay so as placeholders.
 template <class Hand>
 void read_fingers(const Hand& message, const std::string& type, HandJoints& hand) {
   const auto fingers = by_type<kFingers>(message.finger_list, type + "/Hand.finger_list");
@@ -91,7 +90,7 @@ void read_fingers(const Hand& message, const std::string& type, HandJoints& hand
     const auto bones = by_type<kBonesPerFinger>(fingers[f]->bone_list, type + "/Finger.bone_list");
     for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
       if (bones[b] == nullptr) continue;
-      // A bone starts where the one before it ends; what is not finite must not be covered up.
+      // A bone starts where the previous one ends; a value that is not finite must not be overwritten.
       auto& joint = hand.joints[f][b];
       if (!joint || joint->allFinite()) joint = position(bones[b]->bone_start);
       hand.joints[f][b + 1] = position(bones[b]->bone_end);
@@ -136,7 +135,7 @@ LeapFrame frame_of(std::vector<std::uint8_t>& bytes) {
 
 using Read = LeapFrame (*)(std::vector<std::uint8_t>&);
 
-/// Reads a version of the message, which its MD5 identifies: it does not depend on the types' names.
+/// Reads a version of the message, identified by its MD5, which does not depend on the types' names.
 template <class Human>
 std::pair<const std::string, Read> version() {
   return {ros::message_traits::MD5Sum<Human>::value(), &frame_of<Human>};

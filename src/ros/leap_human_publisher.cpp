@@ -23,7 +23,8 @@ const HandJoints* hand_of(const JointsFrame& frame, Side side) {
   return found;
 }
 
-/// Direction and normal as Leap has them: to the fingers, and out of the palm. Zero where a joint is missing.
+/// Direction and normal in Leap's convention: towards the fingers, and out of the palm. Zero if a joint is
+/// missing.
 struct PalmAxes {
   Vector3 direction = Vector3::Zero(), normal = Vector3::Zero();
 
@@ -38,7 +39,8 @@ struct PalmAxes {
   }
 };
 
-/// Leap's basis (x, y, z in columns) of a bone, as the driver turns it into a quaternion: from its transpose.
+/// Leap's basis (x, y, z in columns) of a bone, converted to a quaternion as the driver does: from its
+/// transpose.
 Quaternion driver_orientation(const Vector3& along, const Vector3& palm_normal) {
   const Vector3 backwards = -along;
   const Vector3 side = (-palm_normal).cross(backwards);
@@ -138,7 +140,7 @@ msg::LeapHuman human_message(const JointsFrame& frame, const std_msgs::Header& h
 void write_leap(const JointsFrame& frame, const std::string& frame_id, std::uint32_t sequence, float rate,
                 topic_tools::ShapeShifter& message) {
   using Human = msg::LeapHuman;
-  // The driver's names: recordings are read where there is none of this package.
+  // The driver's names: recordings are also read without this package.
   static const std::string definition = boost::replace_all_copy(
       std::string(ros::message_traits::definition<Human>()), "mr_hand_interaction/Leap", "leap_motion/");
   std_msgs::Header header;

@@ -32,13 +32,13 @@
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
-/// Service calls that take long run in a thread of their own, beside the frames. What such a call does to the
-/// simulation it hands to run(), which has it done between two frames by the thread that spins the node.
+/// Runs long service calls in their own thread, concurrently with frames. Such a call passes its changes of
+/// the simulation to run(), which executes them between two frames in the node's spinning thread.
 class BetweenFrames {
  public:
   explicit BetweenFrames(const ros::NodeHandle& node) : node_(node) {}
 
-  /// Drops what waits; who waits for it gets an exception.
+  /// Drops waiting tasks; their callers get an exception.
   ~BetweenFrames() {
     {
       const std::lock_guard<std::mutex> lock(ending_mutex_);
@@ -51,7 +51,7 @@ class BetweenFrames {
   BetweenFrames(const BetweenFrames&) = delete;
   BetweenFrames& operator=(const BetweenFrames&) = delete;
 
-  /// A node handle whose services run beside the frames, after start().
+  /// A node handle whose services run in the separate thread, after start().
   ros::NodeHandle node_beside(const ros::NodeHandle& node) {
     ros::NodeHandle beside(node);
     beside.setCallbackQueue(&beside_);
@@ -59,7 +59,7 @@ class BetweenFrames {
   }
 
   void start() { spinner_.start(); }
-  /// Blocks until `task` is done. Rethrows what it throws; throws std::runtime_error if the node ends before.
+  /// Blocks until `task` is done. Rethrows its exception; throws std::runtime_error if the node ends before.
   void run(const std::function<void()>& task) {
     std::future<void> done;
     {
@@ -76,7 +76,7 @@ class BetweenFrames {
   }
 
  private:
-  /// A task in the queue of the node. One that is dropped breaks its promise.
+  /// A task in the node's callback queue. A dropped one breaks its promise.
   class Job : public ros::CallbackInterface {
    public:
     explicit Job(const std::function<void()>& task) : task_(task) {}
@@ -100,8 +100,8 @@ class BetweenFrames {
   ros::AsyncSpinner spinner_{1, &beside_};
 };
 
-/// Interactive markers by which a free object is moved with the mouse in rviz, at ~place. Feedback comes by
-/// the node's own queue of callbacks; what is dragged is asked for.
+/// Interactive markers that move free objects with the mouse in rviz, at ~place. Feedback arrives by the
+/// node's own callback queue; dragged() polls it.
 class Placing {
  public:
   Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame)
@@ -114,7 +114,7 @@ class Placing {
     drags_.clear();
   }
 
-  /// The bodies that there are have changed.
+  /// Call when the set of bodies has changed.
   void renew(const Simulation& simulation) {
     if (!server_) return;
     server_->clear();
@@ -128,7 +128,7 @@ class Placing {
     server_->applyChanges();
   }
 
-  /// Markers follow their bodies.
+  /// Moves the markers to their bodies.
   void follow(const Simulation& simulation) {
     if (!server_) return;
     for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
@@ -139,8 +139,8 @@ class Placing {
     server_->applyChanges();
   }
 
-  /// Where the mouse holds objects. One that was let go, or of which nothing has been heard for a second, is
-  /// no longer in it.
+  /// Poses at which the mouse holds objects. Excludes objects that were released, or without feedback for
+  /// kSilence.
   std::map<std::string, Pose> dragged() {
     std::map<std::string, Pose> poses;
     if (!server_) return poses;
@@ -161,9 +161,9 @@ class Placing {
   using InteractiveMarkerControl = visualization_msgs::InteractiveMarkerControl;
   using Feedback = visualization_msgs::InteractiveMarkerFeedback;
 
-  /// rviz repeats itself four times a second while the mouse is down.
+  /// rviz repeats feedback four times a second while the mouse button is down.
   static constexpr double kSilence = 1.0;  // [s]
-  static constexpr double kRoom = 2.6;     // size of the handles, in radii of the body
+  static constexpr double kRoom = 2.6;     // size of the handles, over the body's radius
 
   static InteractiveMarkerControl control(const char* name, const Vector3& axis, std::uint8_t mode) {
     InteractiveMarkerControl control;
@@ -215,16 +215,16 @@ class Placing {
   std::map<std::string, Drag> drags_;
 };
 
-/// dynamic_reconfigure at ~tune: what one tunes by eye. It leaves checking to the node, so that a bad value
-/// is refused instead of moved to the nearest one allowed.
+/// dynamic_reconfigure at ~tune, for interactive tuning. The node validates values, so a bad one is rejected
+/// instead of clamped.
 class Tuning {
  public:
   using Config = mr_hand_interaction::TuneConfig;
-  using Values = std::vector<std::pair<std::string, std::string>>;  ///< names and YAML, as of parameters.h
+  using Values = std::vector<std::pair<std::string, std::string>>;  ///< names and YAML, as in parameters.h
   struct Actions {
-    std::function<void(const Values&)> set;         ///< all or none; throws std::exception
-    std::function<void(bool)> place_by_mouse;       ///< interactive markers on or off
-    std::function<const Simulation&()> simulation;  ///< that of now
+    std::function<void(const Values&)> set;         ///< sets all or none; throws std::exception
+    std::function<void(bool)> place_by_mouse;       ///< turns interactive markers on or off
+    std::function<const Simulation&()> simulation;  ///< the present simulation
   };
 
   Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions)
@@ -241,8 +241,8 @@ class Tuning {
     teller_ = std::thread([this] { tell(); });
   }
 
-  /// Ends of the sliders of all numbers, from the parameters' table. A value beyond them, but within the
-  /// parameter's limits, may be set all the same.
+  /// Ranges of the sliders of all numbers, from the parameters' table. Values beyond them are accepted within
+  /// the parameter's limits.
   static void slider_ends(Config& least, Config& most) {
     dynamic_reconfigure::Config low = message_of(least), high = message_of(most);
     set_ends(low.ints, high.ints);
@@ -260,8 +260,8 @@ class Tuning {
     teller_.join();
   }
 
-  /// Tells those who look what holds now, soon: each number is a call to the master, and frames do not wait
-  /// for them.
+  /// Schedules publishing of the present values: each number is a call to the master, and frames do not wait
+  /// for these.
   void show() {
     shown_ = current();
     const std::lock_guard<std::mutex> lock(asking_);
@@ -283,7 +283,7 @@ class Tuning {
     return parameter;
   }
 
-  /// By the name of the parameter, of those that have one.
+  /// Texts by parameter, for those in the dialog.
   static std::map<std::string, std::string> parameter_texts(const Config& config) {
     std::map<std::string, std::string> fields;
     const dynamic_reconfigure::Config message = message_of(config);
@@ -298,8 +298,8 @@ class Tuning {
     return texts;
   }
 
-  /// A parameter that is a number, or the word that a box stands for. Who moves the number means it, also
-  /// where it was the word until then.
+  /// A parameter that is a number or a word with a check box. Moving the number selects it, even if the word
+  /// was selected.
   struct NumberOrWord {
     std::string name, word, number;
     bool moved, word_wanted, word_before;
@@ -310,7 +310,7 @@ class Tuning {
     }
   };
 
-  /// The parameter that a number of the dialog belongs to: gravity has one for each axis.
+  /// Parameter of a number in the dialog: gravity has one for each axis.
   static std::string parameter_of(const std::string& field) {
     for (const std::string& name : parameter_names()) {
       if (field_of(name) == field) return name;
@@ -390,8 +390,8 @@ class Tuning {
     return values;
   }
 
-  /// The server's mutex comes first: what its callback has changed meanwhile is newer than what was to be
-  /// told.
+  /// Locks the server's mutex first: its callback may have changed values that are newer than those to
+  /// publish.
   void tell() {
     while (true) {
       {

@@ -19,7 +19,7 @@
 
 namespace mrhi {
 
-constexpr double kPassing = 0.5;  ///< lifetime of hands and contacts, which go if the node does [s]
+constexpr double kPassing = 0.5;  ///< lifetime of transient markers (hands, contacts), if the node stops [s]
 constexpr double kForEver = 0.0;
 
 /// Adds markers of one layer to an array.
@@ -37,10 +37,10 @@ class MarkerLayer {
   visualization_msgs::MarkerArray& array_;
   std_msgs::Header header_;
   std::string name_;
-  double lifetime_;  ///< [s], 0: for ever
+  double lifetime_;  ///< [s]; 0: unlimited
 };
 
-/// The layers of an array, by their names. A layer is what adds it, and the call of that in Markers::update.
+/// The layers of an array, by name. A layer is added by a function that Markers::update calls.
 struct MarkerLayers {
   visualization_msgs::MarkerArray& array;
   const std_msgs::Header& header;
@@ -52,46 +52,46 @@ struct MarkerLayers {
 
 constexpr int kIdsPerHand = 100;
 
-/// How a hand is drawn.
+/// Style of a hand's capsules.
 struct HandStyle {
   std_msgs::ColorRGBA skin, touching;
-  double thickness;  ///< share of the phalanges' radii
+  double thickness;  ///< fraction of the phalanges' radii
 };
 
-/// Spheres at the joints, cylinders along the bones and the palm, as the simulation has them. Ids from
-/// `first_id`, less than kIdsPerHand.
+/// Spheres at the joints, cylinders along the bones and the palm, as simulated. Ids from `first_id`, less
+/// than kIdsPerHand.
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
                   const MarkerLayer& layer);
 
-/// A shape as a marker, a box in the light that hands are in; valid until the layer's next call.
+/// Adds a shape as a marker; a box has the lighting of hands. Valid until the layer's next call.
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, const MarkerLayer& layer);
 
-/// Farthest that the ends of two hands' phalanges are apart [m].
+/// Largest distance between corresponding ends of two hands' phalanges [m].
 double farthest_apart(const Hand& a, const Hand& b);
-/// Opacity of a ghost's vertex that is this far from the same vertex of the rendered hand [m].
+/// Opacity of a ghost's vertex by its distance from the same vertex of the rendered hand [m].
 float ghost_opacity(double distance, const PictureStyle& style);
-/// Colour of a ghost's vertex with this normal, light included.
+/// Colour of a ghost's vertex with this normal, lighting included.
 Rgb ghost_colour(const Vector3& normal, const PictureStyle& style);
 
-/// Draws hands as triangles. One with bones missing has no skin: its capsules take the skin's place.
+/// Draws hands as triangles. A hand with missing bones has no skin, and is drawn as capsules.
 class HandMarkers {
  public:
   explicit HandMarkers(const Skin& skin);  ///< keeps a reference
-  /// `hand`: skins, and apart from them their wrists' sides; `ghost`: tracked hands' skins where they are
-  /// elsewhere; `capsules`: rendered hands as the simulation has them. kIdsPerHand for each hand. Without
-  /// `style.skins` the first two have only hands that have none.
+  /// `hand`: skins, and separately the sides of their wrists; `ghost`: tracked hands' skins where they
+  /// differ; `capsules`: rendered hands as simulated. kIdsPerHand for each hand. Without `style.skins` the
+  /// first two have only hands without a skin.
   void add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
            const MarkerLayers& layers);
-  /// Takes the memory of markers that are done with, for the next ones.
+  /// Takes used markers, to reuse their memory.
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
   void add_hand(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
                 const SimulationState& state, const PictureStyle& style, int first_id,
                 const MarkerLayer& hand, const MarkerLayer& ghost);
-  /// What is translucent hides nothing, and is drawn from the farthest marker's place to the nearest: in one
-  /// marker the wrist's far side would stand before its near one.
+  /// Translucent markers do not hide each other and are drawn from back to front by their positions. In one
+  /// marker the wrist's far side could be drawn over its near side.
   static constexpr int kWristSides = 6;
   using Triangles = std::vector<SkinWrist::Triangle>;
   visualization_msgs::Marker& add_triangles(int id, const MarkerLayer& layer);
@@ -100,37 +100,37 @@ class HandMarkers {
   void add_skin(const RenderedHand& rendered, int first_id, const MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
                  const MarkerLayer& layer);
-  /// On which side of the wrist, as seen along the forearm.
+  /// Side of the wrist, as seen along the forearm.
   std::size_t side_of_wrist(const SkinWrist::Triangle& triangle) const;
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
   const SkinWrist wrist_;
   std::array<Triangles, kWristSides> sides_;
-  SkinSurface surface_, ghost_, beneath_;  // kept for their memory, as are the rest
+  SkinSurface surface_, ghost_, beneath_;  // reused memory, like the rest
   std::vector<Rgb> colours_;
   std::vector<float> alphas_;
   std::vector<visualization_msgs::Marker> spare_;
 };
 
-/// The same colour in the light that hands are in, on a surface with this normal: rviz leaves the sides that
-/// its own light does not reach almost black.
+/// The colour of a surface with this normal in the lighting of hands: rviz's own leaves averted sides almost
+/// black.
 std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint);
 
 /// From `begin` to `tip`, in world [m].
 struct Arrow {
   Vector3 begin, tip;
-  double shaft_radius, head_radius, head_length;  ///< [m]; the head at most as long as the arrow
+  double shaft_radius, head_radius, head_length;  ///< [m]; the head is at most as long as the arrow
 };
 
 /// Lit as by lit(). Valid until the layer's next call.
 visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id,
                                       const MarkerLayer& layer);
 
-/// Where a body is touched, and by what force. `contacts`: a dot at each; `friction`: a ring on the surface
-/// around it, green where it sticks, yellow where it slips; `forces`: an arrow behind the finger that
-/// presses, whose length grows with the force; `newtons`: the force in numbers, at the arrow's end; `share`:
-/// a ball, how much of what friction bears is used, from blue (none) to orange (all).
+/// Contacts of hands with bodies. `contacts`: a dot at each; `friction`: a ring on the surface around it,
+/// green while sticking, yellow while slipping; `forces`: an arrow behind the finger, whose length grows with
+/// the force; `newtons`: the force as a number, at the arrow's end; `share`: a ball coloured by friction
+/// utilisation, from blue (none) to orange (full).
 void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
                   const MarkerLayers& layers);
 
@@ -139,37 +139,37 @@ void add_contacts(const Scene& scene, const FrameResult& result, const PictureSt
 struct Ring {
   double inner, outer;  // radii [m]
   double begin = 0.0, end = 1.0;
-  double pieces = 36.0;  // of a full turn
+  double pieces = 36.0;  // in a full turn
 };
 void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& marker);
 
-/// A place that an object is to be brought to.
+/// Target of an object.
 struct TargetMark {
   const Body& body;
   Pose pose;              ///< of the body's frame, in world
-  double progress = 0.0;  ///< 0 to 1, of the time that it is to stay there
+  double progress = 0.0;  ///< 0 to 1, of the time to hold the object there
   bool reached = false;
-  bool waits = false;  ///< its turn comes later: fainter
+  bool waits = false;  ///< a later target: fainter
 };
 
-/// The object's shape there, translucent: blue, and green once it is reached; around it a level ring that
-/// fills with the progress. Ids from `first_id`, one more than the body has shapes to be seen.
+/// The object's shape at its target, translucent: blue, and green once reached. A horizontal ring around it
+/// fills with the progress. Ids from `first_id`, one more than the body has visible shapes.
 void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer);
-double ring_radius(const Body& body);  ///< inner, of a target's ring [m]
+double ring_radius(const Body& body);  ///< inner radius of a target's ring [m]
 
-/// The object that is to be taken: a translucent yellow shell around it, and an arrow from above. Ids from
-/// `first_id`, one more than the body has shapes to be seen.
+/// Marks the object to be taken: a translucent yellow shell around it, and an arrow from above. Ids from
+/// `first_id`, one more than the body has visible shapes.
 void add_highlight(const Body& body, const Pose& pose, int first_id, const MarkerLayer& layer);
 
-/// Height of what shadows fall on: the highest level top of a wide fixture under all that is free; else
-/// z = 0.1 m, where rviz has its grid, or lower where something is free there.
+/// Height of the ground for shadows: the highest horizontal top of a wide fixture below all free bodies; else
+/// z = 0.1 m, the height of rviz's grid, or lower if a free body is there.
 double ground_height(const Scene& scene);
 
-/// Where hands have struck bodies: a ring on the surface that widens and fades within kSeen.
+/// Impacts of hands: a ring on the surface that widens and fades within kSeen.
 class ImpactMarkers {
  public:
   static constexpr double kSeen = 0.15;  ///< [s]
-  /// Impacts of a frame, at its stamp.
+  /// Adds the impacts of a frame, at its stamp.
   void note(const std::vector<Contact>& contacts, const ros::Time& stamp);
   void add(const ros::Time& now, const PictureStyle& style, const MarkerLayer& layer);
 
@@ -183,18 +183,19 @@ class ImpactMarkers {
   std::vector<Impact> impacts_;
 };
 
-/// The shadows of hands and of the first free bodies, straight below them on the ground: the higher a thing
-/// is, the softer and fainter.
+/// Shadows of hands and of the first free bodies, vertically on the ground. They are softer and fainter for
+/// higher objects.
 class ShadowMarkers {
  public:
-  /// Keeps a reference. `ground`: height of what they fall on [m].
+  /// Keeps a reference. `ground`: its height [m].
   ShadowMarkers(const Scene& scene, double ground) : scene_(scene), ground_(ground) {}
-  /// Those of what has moved since they were last added, or all; those of hands that are gone are deleted.
+  /// Adds shadows of objects that have moved since they were last added, or all; deletes those of hands that
+  /// are gone.
   void add(const SimulationState& state, const FrameResult& result, bool all, const MarkerLayer& layer);
 
  private:
   struct Cast {
-    std::vector<Vector3> from;  ///< places of what casts it, as it was last added
+    std::vector<Vector3> from;  ///< positions of the object when the shadow was last computed
     visualization_msgs::Marker marker;
   };
   template <typename Outlines>
@@ -206,14 +207,13 @@ class ShadowMarkers {
   std::map<int, Cast> casts_;
 };
 
-/// What the participant is to do now, in a line.
+/// One line that tells the participant what to do now.
 std::string instruction_now(const Session& session, bool paused, bool begins_by_itself);
 
-/// What rviz shows of a session, in the status's frame, a namespace for each layer: `target` (where the
-/// object is to be; its ring fills with the time held), `places` (the others, fainter, with their numbers),
-/// `path`, `object` (highlighted until it is held; `seen`: nothing if it is not there), `instructions`,
-/// `timer` and `result`. They go if they are not shown again. What is to be read is nearer to the eye of
-/// rviz/training.rviz than what hands do.
+/// Markers of a session for rviz, in the status's frame, with a namespace for each layer: `target` (its ring
+/// fills with the time held), `places` (the other targets, fainter, with their numbers), `path`, `object`
+/// (highlighted until held; `seen`: empty if absent), `instructions`, `timer` and `result`. They expire
+/// unless repeated. Text is nearer to the camera of rviz/training.rviz than the hands' workspace.
 visualization_msgs::MarkerArray training_markers(const Session& session, const Body& body,
                                                  const mr_hand_interaction::TrainingStatus& status,
                                                  const std::optional<mr_hand_interaction::ObjectState>& seen);

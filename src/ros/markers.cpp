@@ -18,7 +18,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-/// Under all that is there at the start, where no hand comes between.
+/// Below all bodies at the start, clear of the hands' workspace.
 Vector3 below(const Scene& scene) {
   constexpr double kClearance = 0.10;  // [m]
   Vector3 place(0.0, 0.0, 0.15);
@@ -39,7 +39,7 @@ std::string held_by_hands(const Scene& scene, const SimulationState& state) {
   return "holding: " + (held.empty() ? "nothing" : held);
 }
 
-/// How fast each operator drifts and turns; empty without operators.
+/// Linear and angular speed of each operator; empty without operators.
 std::string motion_of_operators(const Scene& scene, const SimulationState& state) {
   std::string all;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -53,7 +53,7 @@ std::string motion_of_operators(const Scene& scene, const SimulationState& state
   return all;
 }
 
-/// STL knows none.
+/// STL files have none.
 bool has_materials(const std::string& mesh) {
   const std::size_t dot = mesh.rfind('.');
   if (dot == std::string::npos) return false;
@@ -61,7 +61,8 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
-constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger that makes a body translucent [m]
+constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger at which a body becomes translucent
+                                                  // [m]
 constexpr double kLeastOpacity = 0.6;
 
 double opacity_around(double depth) {
@@ -73,7 +74,7 @@ bool same(const Pose& a, const Pose& b) {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
-/// A box in the light that hands are in: rviz's leaves the sides that it does not reach almost black.
+/// A box in the lighting of hands: rviz's own leaves averted sides almost black.
 Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
                 const MarkerLayer& layer) {
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, 2.0 * box.half_extents, paint);
@@ -91,12 +92,12 @@ Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& pai
   return marker;
 }
 
-/// What rviz has no marker for, as its outermost points in directions all around, in that light. A flat side
-/// is one point in all of them, so it serves for what is round.
+/// A shape without a marker type in rviz, as its support points in directions all around, in that lighting. A
+/// flat side would be a single point, so only for round shapes.
 template <typename Round>
 Marker& add_round(const Round& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
                   const MarkerLayer& layer) {
-  constexpr int kAround = 24, kRows = 13;  // odd: no row of directions lies across z
+  constexpr int kAround = 24, kRows = 13;  // odd: no row of directions is perpendicular to z
   constexpr double kPi = 3.141592653589793;
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, Vector3::Ones(), paint);
   const auto direction = [&](int row, int place) -> Vector3 {
@@ -202,13 +203,13 @@ Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGB
   return std::visit(AddShape{pose, paint, id, layer}, shape);
 }
 
-/// Draws the bodies of a scene, in layers `objects` and `fixtures`. One into which a tracked finger has gone
-/// lets its ghost be seen.
+/// Draws the bodies of a scene, in layers `objects` and `fixtures`. A body penetrated by a tracked finger
+/// becomes translucent, so that the ghost is visible.
 class BodyMarkers {
  public:
   explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
 
-  /// Bodies that look other than when they were last added, or all.
+  /// Adds bodies whose appearance has changed, or all.
   void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
            const MarkerLayers& layers) {
     const MarkerLayer objects = layers.layer("objects", kForEver),
@@ -245,7 +246,7 @@ class BodyMarkers {
       marker.text = body.name;
       if (!visual.has_color && has_materials(marker.mesh_resource)) {
         marker.mesh_use_embedded_materials = true;
-        marker.color = color(0.0, 0.0, 0.0, 0.0);  // to rviz: as they are
+        marker.color = color(0.0, 0.0, 0.0, 0.0);  // rviz then keeps the mesh's materials
       }
     }
     if (!body.visuals.empty()) return;
@@ -305,7 +306,7 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
       .text = text_;
 }
 
-/// Twice a second, for a viewer that came later or has lost an array.
+/// Twice a second, for a viewer that has joined later or has missed an array.
 bool Markers::all_due(const ros::Time& stamp) {
   const double since = seconds_between(all_sent_, stamp);
   const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;

@@ -36,7 +36,7 @@ Standing standing() {
   return response.valid() ? Standing::unknown : Standing::no_master;
 }
 
-/// A node that has nothing registered yet is not known either.
+/// Logs a change. A node that has not registered anything yet is unknown too.
 void tell(Standing before, Standing now) {
   const char* const uri = ros::master::getURI().c_str();
   if (now == Standing::no_master)
@@ -49,9 +49,9 @@ void tell(Standing before, Standing now) {
   if (now == Standing::known && before == Standing::no_master) ROS_INFO("the ROS master at %s is back", uri);
 }
 
-/// Logs when the ROS master is gone, and when one is there again that does not know this node:
-/// what is connected goes on without a master, but nobody new can find the node until it is started again.
-/// Asks in a thread of its own, as a master on a network that is down keeps who asks waiting.
+/// Logs when the ROS master is gone, and when a new one does not know this node. Existing connections
+/// continue without a master, but new ones need a restart of the node. Uses its own thread, as calls to a
+/// master on a broken network block.
 class MasterWatch {
  public:
   MasterWatch() : thread_([this] { run(); }) {}
@@ -90,7 +90,7 @@ class MasterWatch {
   std::thread thread_;
 };
 
-/// What a node's arguments alone decide, before there is a master; nothing: the node is to run.
+/// Exit status determined by the arguments alone, before there is a master; empty: run the node.
 std::optional<int> status_of_arguments(int argc, char** argv, const char* usage) {
   std::vector<std::string> words;
   ros::removeROSArgs(argc, argv, words);
@@ -105,10 +105,10 @@ std::optional<int> status_of_arguments(int argc, char** argv, const char* usage)
   return 2;
 }
 
-/// So that what a node has begun is brought to its end. Call after ros::init().
+/// Lets the node finish its work on these signals. Call after ros::init().
 void end_in_order() {
   struct sigaction action {};
-  action.sa_handler = [](int) { ros::requestShutdown(); };  // sets a flag
+  action.sa_handler = [](int) { ros::requestShutdown(); };  // only sets a flag
   for (const int signal : {SIGTERM, SIGHUP, SIGQUIT}) sigaction(signal, &action, nullptr);
 }
 
@@ -189,7 +189,7 @@ void NodeParameters::take_all(const std::string& prefix, XmlRpc::XmlRpcValue& va
 }
 
 void NodeParameters::take(const std::string& name, const std::string& text) const {
-  // Read by libraries that nodes use.
+  // Parameters of libraries that nodes use.
   static const std::set<std::string> others{"diagnostic_period", "diagnostic_updater_use_fqn", "tf_prefix"};
   if (others.count(name) > 0) return;
   std::vector<std::string> names;

@@ -12,19 +12,19 @@
 
 namespace mrhi {
 
-/// A node's handles: of its namespace and of its private one.
+/// Body of a node, with its public and private handles.
 using NodeBody = std::function<void(const ros::NodeHandle& node, const ros::NodeHandle& private_node)>;
 
-/// A node's main(): prints the usage for --help, refuses arguments that are not roslaunch's with one line and
-/// 2, then runs `body`, which ends with the node; an exception's text is logged as fatal, and 1 returned.
-/// SIGTERM, SIGHUP and SIGQUIT end ros::spin() as SIGINT does. Logs when the ROS master is gone or has been
-/// started anew.
+/// main() of a node. Prints the usage for --help, and rejects arguments that are not roslaunch's with one
+/// line and 2. Then runs `body`, which ends with the node; an exception's text is logged as fatal, and 1
+/// returned. SIGTERM, SIGHUP and SIGQUIT end ros::spin() like SIGINT. Logs when the ROS master is gone or has
+/// been restarted.
 int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body);
 
-/// The same without a look at arguments.
+/// The same without checking arguments.
 int run_node(int argc, char** argv, const char* name, const NodeBody& body);
 
-/// A main() whose node is an object that is made of its handles, and works while ROS spins.
+/// main() of a node that is an object, made from its handles, which works while ROS spins.
 template <class Node>
 int run_node(int argc, char** argv, const char* name, const char* usage) {
   return run_node(argc, argv, name, usage, [](const auto& node, const auto& private_node) {
@@ -33,19 +33,19 @@ int run_node(int argc, char** argv, const char* name, const char* usage) {
   });
 }
 
-/// The private parameters of a node, each said once: its name, what it may be, and where its value goes.
+/// The private parameters of a node: for each its name, its allowed values, and its destination.
 class NodeParameters {
  public:
-  /// Takes the YAML text of a parameter; false if it is not allowed.
+  /// Parses the YAML text of a parameter; returns false if it is not allowed.
   using Take = std::function<bool(const std::string& name, const std::string& text)>;
 
   /// `allowed`: for messages. A name that ends with / stands for all parameters below it.
   NodeParameters& add(const std::string& name, const std::string& allowed, const Take& take);
   NodeParameters& text(const std::string& name, std::string& value);
-  /// A list of `min` to `max` texts, which are `what`.
+  /// A list of `min` to `max` texts; `what` describes them.
   NodeParameters& texts(const std::string& name, std::size_t min, std::size_t max, const std::string& what,
                         std::vector<std::string>& values);
-  /// From `min` to `max`; `more` is said behind the limits in messages.
+  /// A number from `min` to `max`; messages append `more` to the limits.
   NodeParameters& number(const std::string& name, double min, double max, double& value,
                          const std::string& more = "");
   NodeParameters& truth(const std::string& name, bool& value);
@@ -62,7 +62,7 @@ class NodeParameters {
     });
   }
 
-  /// A whole number of at least `min`.
+  /// An integer of at least `min`.
   template <class Integer>
   NodeParameters& whole(const std::string& name, int min, Integer& value) {
     constexpr int kMax = std::numeric_limits<int>::max();
@@ -76,7 +76,7 @@ class NodeParameters {
     });
   }
 
-  /// Sets what the parameter server has. Throws ParameterError naming one that is unknown or not allowed.
+  /// Reads all from the parameter server. Throws ParameterError with one that is unknown or invalid.
   void read(const ros::NodeHandle& private_node) const;
 
  private:

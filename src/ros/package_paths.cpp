@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 const char* const kPackage = "mr_hand_interaction";
 const std::string kScheme = "package://";
 
-/// Where a package is on the ROS path; empty if there is none, or where this is built without ROS. Asked for
-/// an unknown one, roslib searches the path anew (24 ms) and prints lines of its own.
+/// Folder of a package on the ROS path; empty if there is none, or in a build without ROS. For an unknown
+/// package, roslib would search the path again (24 ms) and print its own messages.
 std::string package_folder([[maybe_unused]] const std::string& name) {
 #ifdef MR_HAND_INTERACTION_WITHOUT_ROS
   return {};

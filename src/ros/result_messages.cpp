@@ -18,7 +18,7 @@ static_assert(mr_hand_interaction::Contact::IMPULSE == int(ContactPhase::impulse
 
 namespace {
 
-/// The contacts of one phalanx with one body.
+/// Sums the contacts of one phalanx with one body.
 class Feeling {
  public:
   void add(const Contact& contact) {
@@ -61,7 +61,7 @@ mr_hand_interaction::PhalanxHaptics named(const Contact& contact, const Scene& s
   return phalanx;
 }
 
-/// One after the other, as contacts come body by body, each in the order of hands and phalanges.
+/// Contacts are sorted by body, then by hand and phalanx.
 void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& contacts,
                    std::vector<mr_hand_interaction::PhalanxHaptics>& phalanges) {
   for (auto contact = contacts.begin(); contact != contacts.end();) {
@@ -325,7 +325,7 @@ ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& mess
   request.twist = from_message(message.twist);
   request.material = message.material;
   const auto& color = message.color;
-  // Opacity 0 is that of a request that says nothing of its colour; what is no number is not.
+  // A request without a colour has opacity 0. NaN is passed on.
   if (color.a != 0.0f) request.rgba = {{color.r, color.g, color.b, color.a}};
   return request;
 }

@@ -28,7 +28,7 @@
 #include "mr_hand_interaction/simulation.h"
 #include "result_messages.h"
 
-// In memory these are what goes over the wire: roscpp copies a vector of them in one go.
+// Memory layout equals the serialised form: roscpp copies a vector of these at once.
 static_assert(sizeof(geometry_msgs::Point) == 3 * sizeof(double), "a point has padding");
 static_assert(sizeof(std_msgs::ColorRGBA) == 4 * sizeof(float), "a colour has padding");
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "messages are little-endian");
@@ -43,8 +43,8 @@ struct IsSimple<std_msgs::ColorRGBA> : TrueType {};
 }  // namespace ros
 
 namespace mrhi {
-/// Publishes `haptics`, and `haptics/joints` (what each joint of the scene does by itself, as effort) where
-/// there are any, a message for each frame or each step, while somebody listens.
+/// Publishes `haptics`, and `haptics/joints` (the joints' own forces, as effort) if there are any: one
+/// message per frame or per step, while there are subscribers.
 class HapticsPublisher {
  public:
   HapticsPublisher(ros::NodeHandle& node, HapticsRate rate)
@@ -52,7 +52,7 @@ class HapticsPublisher {
         publisher_(node.advertise<mr_hand_interaction::HapticsArray>("haptics", kQueue)),
         joint_publisher_(node.advertise<sensor_msgs::JointState>("haptics/joints", kQueue)) {}
 
-  /// After each step: keeps what is felt, under the stamp of the step's end, until the frame is published.
+  /// After each step: stores its contacts under the stamp of its end, until the frame is published.
   void note_step(const Simulation& simulation, Nanoseconds stamp) {
     if (rate_ != HapticsRate::step) return;
     std_msgs::Header header;
@@ -60,7 +60,7 @@ class HapticsPublisher {
     add(simulation, simulation.state().contacts, header);
   }
 
-  /// What the steps brought, or without any the frame itself, under its header.
+  /// Publishes the stored steps, or without any the frame itself, under its header.
   void publish(const Simulation& simulation, const FrameResult& result, const std_msgs::Header& header) {
     if (steps_.empty() && joint_steps_.empty()) add(simulation, result.contacts, header);
     publish_all(steps_, header, publisher_);
@@ -98,12 +98,10 @@ class HapticsPublisher {
   std::vector<sensor_msgs::JointStatePtr> joint_steps_;
 };
 
-/// The results as messages that everybody has, for those who do not have this package's:
-///   objects/NAME/pose (PoseStamped) and objects/NAME/wrench (WrenchStamped) of each free body; a topic has
-///   no
-///     -, which becomes _, and ends in one _ more for each topic of that name that there is already;
-///   held_object (String), latched and when it changes;
-///   rendered_hands/left/pose_array and rendered_hands/right/pose_array (PoseArray).
+/// Publishes the results as standard messages, for subscribers without this package:
+///    objects/NAME/pose (PoseStamped) and objects/NAME/wrench (WrenchStamped) of each free body. A topic has
+///    _ for -, and ends in one more _ for each earlier topic of that name; held_object (String), latched and
+///    on change; rendered_hands/left/pose_array and rendered_hands/right/pose_array (PoseArray).
 class StandardOutputs {
  public:
   explicit StandardOutputs(const ros::NodeHandle& node)
@@ -112,7 +110,7 @@ class StandardOutputs {
                node_.advertise<geometry_msgs::PoseArray>("rendered_hands/right/pose_array", kQueue)},
         held_(node_.advertise<std_msgs::String>("held_object", kQueue, true)) {}
 
-  /// Of objects.
+  /// Publishes objects and hands.
   void publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
                const std_msgs::Header& header) {
     publish_objects(scene, state, header);
@@ -130,7 +128,7 @@ class StandardOutputs {
       hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
   }
 
-  /// Poses and what is held, as publish does.
+  /// Publishes only poses and held objects.
   void publish_objects(const Scene& scene, const SimulationState& state, const std_msgs::Header& header) {
     follow(scene);
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -166,7 +164,7 @@ class StandardOutputs {
             node_.advertise<geometry_msgs::WrenchStamped>(name + "/wrench", kQueue)};
   }
 
-  /// Topics of the bodies that there are.
+  /// Updates the topics to the present bodies.
   void follow(const Scene& scene) {
     std::map<std::string, ObjectTopics> objects;
     const auto each_free = [&scene](auto&& use) {
@@ -189,7 +187,7 @@ class StandardOutputs {
   std::optional<std::string> last_held_;
 };
 
-/// Publishes what comes of a simulation, and only where somebody listens. A further topic takes its .msg file
+/// Publishes the results of a simulation, to topics with subscribers only. A new topic needs its .msg file
 /// and its add() in the constructor.
 class ResultPublisher {
  public:
@@ -217,10 +215,10 @@ class ResultPublisher {
                                         tracked_message);
   }
 
-  /// From now on the standard messages of StandardOutputs too.
+  /// Also publishes the messages of StandardOutputs from now on.
   void add_standard_outputs(const ros::NodeHandle& node) { standard_.emplace(node); }
 
-  /// From now on this one. rviz begins with an empty picture, so that what is no longer there goes.
+  /// Publishes this simulation from now on. Clears rviz's view first, so that removed bodies disappear.
   void show(const Simulation& simulation) {
     simulation_ = &simulation;
     markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
@@ -231,8 +229,8 @@ class ResultPublisher {
   /// After each step of a frame.
   void note_step() { haptics_.note_step(*simulation_, clock_.to_stamp(simulation_->time())); }
 
-  /// What robots and gloves wait for, under the result's own stamp: haptics, contacts, objects. Its rendered
-  /// hands are not looked at.
+  /// Publishes what robots and gloves wait for, under the result's stamp: haptics, contacts, objects. Does
+  /// not use its rendered hands.
   void publish_response(const FrameResult& result) {
     const std_msgs::Header when = header(result);
     publish_scene_description();
@@ -241,7 +239,8 @@ class ResultPublisher {
     if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
   }
 
-  /// What eyes wait for: hands, then transforms, events and, at most kMarkerRate times a second, markers.
+  /// Publishes the rendered view: hands, then transforms, events and, at most kMarkerRate times a second,
+  /// markers.
   void publish_picture(const FrameResult& result) {
     const std_msgs::Header when = header(result);
     publish_outputs(Moment::picture, result, when);
@@ -252,13 +251,13 @@ class ResultPublisher {
     publish_markers(result, when);
   }
 
-  /// Both.
+  /// Publishes both.
   void publish(const FrameResult& result) {
     publish_response(result);
     publish_picture(result);
   }
 
-  /// What may be shown again at any time: hands and contacts as they were, markers, objects, transforms.
+  /// Repeats what may be shown at any time: the last hands and contacts, markers, objects, transforms.
   void publish_scene(const FrameResult& result, const ros::Time& stamp) {
     publish_scene_description();
     for (const Output& output : outputs_) {
@@ -280,16 +279,16 @@ class ResultPublisher {
     }
   }
 
-  /// When something was last shown, by a clock that nobody sets.
+  /// Time of the last rendered view, by a steady clock.
   ros::SteadyTime shown() const { return shown_; }
   static constexpr double kMarkerRate = 60.0;  ///< [Hz]
 
  private:
   static constexpr int kQueue = 10, kEventQueue = 100;
 
-  /// What a topic is for: robots and gloves first, then eyes.
+  /// Order of topics: for robots and gloves first, then for the view.
   enum class Moment { response, picture };
-  /// Hands are shown again as they were, and joints only where the scene has any.
+  /// Contents of a topic: hands are repeated unchanged; joints are published only if the scene has any.
   enum class Shows { hands, objects, joints };
   struct Output {
     Moment moment;
@@ -314,7 +313,7 @@ class ResultPublisher {
       if (output.moment == moment) output.publish(result, header);
   }
 
-  /// Makes a message, shared, so that a subscriber in the same process gets it without a copy.
+  /// Makes a shared message, so that a subscriber in the same process gets it without a copy.
   template <class Make>
   static void publish_shared(const ros::Publisher& publisher, const Make& make) {
     publisher.publish(boost::make_shared<decltype(make())>(make()));
@@ -331,7 +330,7 @@ class ResultPublisher {
     return header(to_ros_time(clock_.to_stamp(result.stamp)));
   }
 
-  /// Before all that is of the scene.
+  /// Precedes all other messages of the scene.
   void publish_scene_description() {
     if (!std::exchange(scene_changed_, false)) return;
     const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(simulation_->time())));
@@ -345,14 +344,14 @@ class ResultPublisher {
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (ros::WallDuration(now - markers_shown_).toSec() < 1.0 / kMarkerRate) return;
     markers_shown_ = now;
-    // Nobody in this process still has the one before: its memory serves again.
+    // No subscriber in this process holds the last one: reuse its memory.
     if (!picture_.unique()) picture_ = boost::make_shared<visualization_msgs::MarkerArray>();
     markers_->update(result, simulation_->state(), header, *picture_);
     marker_publisher_.publish(picture_);
   }
 
   void publish_transforms(const std_msgs::Header& header) {
-    if (header.stamp == transforms_stamp_) return;  // tf2 warns of a stamp that it has
+    if (header.stamp == transforms_stamp_) return;  // tf2 warns of a repeated stamp
     transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
     transforms_stamp_ = header.stamp;
   }

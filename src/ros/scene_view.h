@@ -56,8 +56,8 @@ inline Body body_of(const mr_hand_interaction::SceneBody& message) {
   return body;
 }
 
-/// A simulation as its messages tell of it: what Markers and skins are drawn from where no simulation is.
-/// Takes throw std::invalid_argument naming a value that is not allowed, and change nothing then.
+/// A simulation as seen in its messages, for drawing Markers and skins in another process. Its take functions
+/// throw std::invalid_argument with an invalid value, and then change nothing.
 class SceneView {
  public:
   SceneView() { state_.hands.resize(kMaxHands); }
@@ -80,7 +80,7 @@ class SceneView {
       if (!index) continue;
       const auto i = static_cast<std::size_t>(*index);
       state_.bodies[i].pose = from_message(object.pose);
-      // Of unit mass and inertia, as bodies of this scene are by default.
+      // Bodies of this scene have unit mass and inertia by default.
       state_.bodies[i].linear_momentum = from_message(object.twist.linear);
       state_.bodies[i].angular_momentum = from_message(object.twist.angular);
       state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
@@ -124,9 +124,9 @@ class SceneView {
 
   const std::string& model() const { return model_; }  ///< contact model
   const Scene& scene() const { return scene_; }
-  /// Bodies' poses, which of them are held, and the hands' ids.
+  /// Poses of bodies, held bodies, and ids of hands.
   const SimulationState& state() const { return state_; }
-  /// Rendered hands with what they press, the tracked hands that belong to them, and contacts.
+  /// Rendered hands with their loads, the corresponding tracked hands, and contacts.
   const FrameResult& result() {
     result_.tracked.clear();
     for (std::size_t i = 0; i < result_.rendered.size(); ++i) {

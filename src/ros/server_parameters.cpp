@@ -19,7 +19,7 @@ std::optional<Twist> twist_in(const std::string& name, const std::string& text) 
   });
 }
 
-/// A name that is used: not empty.
+/// A name that must not be empty.
 NodeParameters::Take name_of(std::string& value) {
   return [&value](const std::string&, const std::string& text) {
     value = text;
@@ -64,7 +64,7 @@ ServerParameters read_server_parameters(const ros::NodeHandle& private_node) {
               return twist.has_value();
             });
   const auto leave = [](const std::string&, const std::string&) { return true; };
-  // What dynamic_reconfigure shows, and hand tracking's own in the same process.
+  // Parameters of dynamic_reconfigure, and of hand tracking in the same process.
   known.add("tune/", "", leave).add("hand_tracking/", "", leave);
   for (const std::string& parameter : parameter_names())
     known.add(parameter, "", [&read](const std::string& name, const std::string& text) {

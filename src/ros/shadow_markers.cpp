@@ -15,28 +15,28 @@ using Point = Eigen::Vector2d;
 using visualization_msgs::Marker;
 
 constexpr int kMostBodies = 8;
-constexpr int kFirstBody = kIdsPerHand;  // id of a shadow; those below are of hands
+constexpr int kFirstBody = kIdsPerHand;  // first id of bodies' shadows; lower ones are of hands
 constexpr double kStays = 0.0005;        // [m]
-constexpr double kGrid = 0.1;            // where rviz has its grid [m]
-constexpr double kClearance = 0.05;      // of what is free from the ground [m]
+constexpr double kGrid = 0.1;            // height of rviz's grid [m]
+constexpr double kClearance = 0.05;      // of free bodies above the ground [m]
 constexpr double kCell = 0.008;          // [m]
-constexpr double kLift = 0.001;          // off the ground and its grid [m]
-constexpr double kWide = 0.1;            // half of what a ground is at least across [m]
-constexpr double kDark = 0.5;            // opacity of what lies on the ground
-constexpr double kFaintAt = 0.3;         // height at which half of that is left [m]
-constexpr double kSoft = 0.006;          // width of the rim of what lies on the ground [m]
-constexpr double kSoftening = 0.05;      // and more for each metre of height
+constexpr double kLift = 0.001;          // above the ground and its grid [m]
+constexpr double kWide = 0.1;            // smallest half width of a ground [m]
+constexpr double kDark = 0.5;            // opacity for an object on the ground
+constexpr double kFaintAt = 0.3;         // height at which half of that remains [m]
+constexpr double kSoft = 0.006;          // width of the soft edge for an object on the ground [m]
+constexpr double kSoftening = 0.05;      // increase per metre of height
 constexpr double kLeastOpacity = 0.02;
-constexpr double kSunk = 0.02;    // what is deeper in the ground has no shadow [m]
+constexpr double kSunk = 0.02;    // greater depths below the ground have no shadow [m]
 constexpr double kHighest = 1.0;  // [m]
 constexpr std::size_t kMeshPoints = 300;
 
-/// A convex thing seen from above, by how far it goes in directions all around: of a thing of 5 cm right to
-/// a quarter of a millimetre.
+/// Outline of a convex object from above, as support distances in all directions; accurate to a quarter of a
+/// millimetre for 5 cm.
 struct Outline {
   static constexpr std::size_t kDirections = 32;
 
-  /// `farthest` gives its point farthest along a direction, in world.
+  /// `farthest` returns the support point along a direction, in world.
   template <typename Farthest>
   explicit Outline(const Farthest& farthest) : lowest(farthest(-Vector3::UnitZ()).z()) {
     for (std::size_t i = 0; i < kDirections; ++i) reach[i] = direction(i).dot(farthest(direction(i)));
@@ -54,7 +54,7 @@ struct Outline {
     return all[i];
   }
 
-  /// From its rim; negative inside.
+  /// Signed distance from the outline; negative inside.
   double distance(const Point& point) const {
     double farthest_out = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < kDirections; ++i)
@@ -111,7 +111,7 @@ std::vector<Outline> outlines_of(const Hand& hand) {
   return outlines;
 }
 
-/// One thing's shadow: a net of square cells, clear where it ends.
+/// Shadow of one object: a grid of square cells, transparent at the edge.
 class Shadow {
  public:
   Shadow(std::vector<Outline> outlines, double ground) : outlines_(std::move(outlines)), ground_(ground) {
@@ -201,7 +201,7 @@ double ground_height(const Scene& scene) {
   return ground;
 }
 
-/// Not worked out anew for less than kStays.
+/// Keeps a shadow whose object has moved by less than kStays.
 template <typename Outlines>
 void ShadowMarkers::add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all,
                             const MarkerLayer& layer) {

@@ -58,15 +58,15 @@ std::vector<std::string> hands_topics(const std::string& end) {
   return {"hands/" + end, "hands/left/" + end, "hands/right/" + end};
 }
 
-/// A message that trackers may give hands in.
+/// A message type with which trackers report hands.
 struct Tracker {
   std::string type;
-  std::vector<std::string> md5s, topics;  ///< its versions, and where it is looked for
-  /// What it says: joints in an order, or hands by name of finger and bone.
+  std::vector<std::string> md5s, topics;  ///< its versions, and its standard topics
+  /// Its contents: joints in an order, or hands by names of fingers and bones.
   std::function<std::variant<TrackedPoints, LeapFrame>(const std::string& md5,
                                                        std::vector<std::uint8_t>& bytes)>
       read;
-  bool tells_sides = false;  ///< else hands by name are one, of the side that topic or frame names
+  bool tells_sides = false;  ///< false: hands by name are one hand, of the side that topic or frame names
 };
 
 template <template <class> class Message>
@@ -95,7 +95,7 @@ const std::vector<Tracker>& trackers() {
   return all;
 }
 
-/// By its MD5, which does not depend on the type's name. Throws DecodeError.
+/// Finds a type by its MD5, which does not depend on its name. Throws DecodeError.
 const Tracker& tracker_of(const TrackerReader::Message& message) {
   const std::set<std::string> types = TrackerReader::types();
   std::string allowed = text::joined({types.begin(), types.end()});
@@ -108,7 +108,7 @@ const Tracker& tracker_of(const TrackerReader::Message& message) {
                                                             message.md5 + "; allowed: " + allowed);
 }
 
-/// A bag may not know who published.
+/// A bag may lack the publisher.
 std::string stream_of(const TrackerReader::Message& message) {
   return message.topic + (message.publisher.empty() ? "" : " of " + message.publisher);
 }
@@ -125,8 +125,8 @@ void TransformMemory::set_fixed(const geometry_msgs::TransformStamped& transform
   buffer_.setTransform(without_slashes(transform), "fixed", true);
 }
 
-/// Out of order is no fault of a transform, which the buffer sorts in. A clock that stands or runs off tells
-/// nothing: a frame's stream has the time of its own stamps, and of what has passed since the last of them.
+/// Transforms out of order are valid: the buffer sorts them. A clock that stands still or jumps is ignored: a
+/// frame's stream has the time of its own stamps, plus the time since the last of them.
 std::string TransformMemory::set(const geometry_msgs::TransformStamped& transform, Nanoseconds now) {
   if (streams_.size() >= kMostFrames && streams_.count(transform.child_frame_id) == 0)
     return named(transform) + ": there are " + std::to_string(kMostFrames) + " frames already";

@@ -25,11 +25,11 @@
 
 namespace mrhi {
 
-/// Longest list or text of a tracker's message [bytes]; real ones have less than 4 KB.
+/// Largest list or text of a tracker's message [bytes]; real ones have less than 4 KB.
 constexpr std::size_t kMaxListBytes = 64 * 1024;
 
-/// Refuses lists longer than kMaxListBytes. roscpp resizes a list to the length that a message states before
-/// it looks for the elements, so four bytes could claim all memory.
+/// Rejects lists longer than kMaxListBytes. roscpp allocates a list of the length in the message before it
+/// reads the elements, so four bytes could claim all memory.
 template <class T>
 struct BoundedAllocator : std::allocator<T> {
   template <class U>
@@ -48,7 +48,7 @@ struct BoundedAllocator : std::allocator<T> {
 };
 using Bounded = BoundedAllocator<char>;
 
-/// A message with this allocator from its bytes; `type` names it in errors. Throws DecodeError.
+/// Deserialises a message with this allocator; `type` is its name in errors. Throws DecodeError.
 template <class Message>
 Message deserialised(const std::string& type, std::vector<std::uint8_t>& bytes) {
   const auto refuse = [&](const std::string& what) {
@@ -70,43 +70,43 @@ Message deserialised(const std::string& type, std::vector<std::uint8_t>& bytes) 
   return message;
 }
 
-/// Where trackers stand, by the transforms of /tf and /tf_static in the order in which they came: live, and
-/// from a bag. A stamp beyond a duration's range would end the node in tf2's own listener, and one far ahead
-/// makes all that follow too old.
+/// Poses of trackers, by the transforms of /tf and /tf_static in their order of arrival, live and from a bag.
+/// In tf2's own listener, a stamp beyond a duration's range would end the node, and one far ahead would make
+/// all later transforms too old.
 class TransformMemory {
  public:
-  /// What never moves.
+  /// Sets a static transform.
   void set_fixed(const geometry_msgs::TransformStamped& transform);
-  /// What may move, as it came at `now`. Returns why it is left out; empty: it is not.
+  /// Sets a dynamic transform that arrived at `now`. Returns the reason for rejecting it; empty: accepted.
   std::string set(const geometry_msgs::TransformStamped& transform, Nanoseconds now);
 
-  /// Whether a chain of transforms leads from one frame to the other.
+  /// True if a chain of transforms connects both frames.
   bool connects(const std::string& fixed, const std::string& frame) const;
-  /// Pose of a frame in another: at the stamp, else the latest. Throws tf2::TransformException.
+  /// Pose of a frame in another, at the stamp or else the latest. Throws tf2::TransformException.
   Pose pose(const std::string& fixed, const std::string& frame, Nanoseconds stamp) const;
-  /// What moves is forgotten: it would be refused as older than what is here.
+  /// Removes dynamic transforms; new ones would be rejected as older than these.
   void clear() { buffer_.clear(); }
 
  private:
-  /// When transforms of a frame came, and what was the last to be believed.
+  /// Arrival times of a frame's transforms, and the last one accepted.
   struct Stream {
     StampCheck check;
     Nanoseconds arrival = 0;
   };
-  std::map<std::string, Stream> streams_;  // by the child frame
+  std::map<std::string, Stream> streams_;  // by child frame
   tf2::BufferCore buffer_;
 };
 
-/// What a tracker's message says: joints of one hand or both, in one of joint_orders(), in the header's
+/// Contents of a tracker's message: joints of one hand or both, in one of joint_orders(), in the header's
 /// frame.
 struct TrackedPoints {
   std_msgs::Header header;
   std::vector<Vector3> points;
-  std::vector<float> radii;  ///< of the points, from the joint to the skin; empty: not known
+  std::vector<float> radii;  ///< distances from the points to the skin; empty: unknown
   float confidence = 1.0f;   ///< 0 to 1
 };
 
-/// A header of a message with another allocator.
+/// Copies a header from a message with another allocator.
 template <class Header>
 std_msgs::Header header_of(const Header& other) {
   std_msgs::Header header;
@@ -116,7 +116,7 @@ std_msgs::Header header_of(const Header& other) {
   return header;
 }
 
-/// Joints that a message of any allocator has. Orientations are not used.
+/// Reads joints from a message of any allocator. Orientations are not used.
 template <class Allocator>
 TrackedPoints tracked_points(const geometry_msgs::PoseArray_<Allocator>& message) {
   TrackedPoints tracked{header_of(message.header), {}, {}};
@@ -124,8 +124,8 @@ TrackedPoints tracked_points(const geometry_msgs::PoseArray_<Allocator>& message
     tracked.points.emplace_back(pose.position.x, pose.position.y, pose.position.z);
   return tracked;
 }
-/// Channel "radius": from each joint to the skin [m]. Channel "confidence": 0 to 1 for each joint; their mean
-/// is the hand's.
+/// Channel "radius": distance from each joint to the skin [m]. Channel "confidence": 0 to 1 for each joint;
+/// their mean is the hand's.
 template <class Allocator>
 TrackedPoints tracked_points(const sensor_msgs::PointCloud_<Allocator>& message) {
   TrackedPoints tracked{header_of(message.header), {}, {}};
@@ -142,46 +142,46 @@ TrackedPoints tracked_points(const sensor_msgs::PointCloud_<Allocator>& message)
   return tracked;
 }
 
-/// The order of a hand's joints, of so many.
+/// Returns the order of `size` joints.
 using OrderOf = std::function<const JointOrder&(std::size_t size, const Vector3* points)>;
 
-/// Hands from the joints' positions; a joint of which a coordinate is NaN is missing. Twice as many joints as
-/// an order has: a left hand, then a right one; else the hand is of the side given. A hand without any joint
-/// is not there; no points: a frame with no hand. Ids are 1 for left, 2 for right, as such trackers give
-/// none. Without `order_of` it is the usual order of that size. Throws DecodeError for any other number of
-/// joints.
+/// Makes hands from joint positions; a joint with a NaN coordinate is missing. Twice an order's number of
+/// joints means a left hand, then a right one; otherwise the hand is of the given side. A hand without any
+/// joint is absent; no points make a frame without hands. Such trackers have no ids, so these are 1 for left,
+/// 2 for right. Without `order_of` uses the usual order of that size. Throws DecodeError for any other number
+/// of joints.
 JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of = {});
 
-/// Whether it has both hands.
+/// True if it has both hands.
 bool has_both_hands(const TrackedPoints& tracked);
-/// The side that a topic names by its last part or the one before, as hands/left/pose_array does.
+/// Side in a topic's last part or the one before, as in hands/left/pose_array.
 std::optional<Side> side_of_topic(const std::string& name);
-/// The side that a frame names, which ends in left_hand or right_hand.
+/// Side in a frame's name, which ends in left_hand or right_hand.
 std::optional<Side> side_of_frame(const std::string& name);
 
-/// Turns trackers' messages of every kind into hands in world: the same code for the live nodes and for bags.
+/// Converts trackers' messages of all types to hands in world, for live nodes and bags alike.
 class TrackerReader {
  public:
   struct Options {
     Side side = Side::right;  ///< of a hand whose side neither topic nor frame names
-    std::string order;        ///< of joints, see joint_orders(); empty: recognised by the lengths of bones
-    double scale = 1.0;       ///< metres per unit of the tracker's lengths
+    std::string order;        ///< of joints, see joint_orders(); empty: detected by the lengths of bones
+    double scale = 1.0;       ///< metres per unit of length of the tracker
   };
-  /// Throws std::invalid_argument for an unknown order, or a scale that is no positive number.
+  /// Throws std::invalid_argument for an unknown order, or a scale that is not a positive number.
   explicit TrackerReader(const Options& options);
 
   static std::set<std::string> types();
-  /// Where trackers publish; each topic may carry any of the types.
+  /// Topics of trackers; each may carry any of the types.
   static std::vector<std::string> topics();
 
   struct Message {
-    std::string topic;      ///< by the name that tells the side
-    std::string publisher;  ///< has a clock of its own
+    std::string topic;      ///< name that determines the side
+    std::string publisher;  ///< each has its own clock
     std::string type, md5;
     std::vector<std::uint8_t> bytes;
     Nanoseconds receipt = 0;
   };
-  /// Of a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+  /// From a topic_tools::ShapeShifter or a rosbag::MessageInstance.
   template <class Serialised>
   static Message message_of(const std::string& topic, const std::string& publisher, const Serialised& message,
                             const ros::Time& receipt) {
@@ -192,12 +192,12 @@ class TrackerReader {
             serialised_bytes(message),
             static_cast<Nanoseconds>(receipt.toNSec())};
   }
-  /// A tracker's place in world by its frame.
+  /// Pose of a tracker in world, by its frame.
   using Place = std::function<Pose(const std::string& frame_id, Nanoseconds stamp)>;
 
-  /// What it throws is what `place` throws. `sequence` gets the header's number if the message can be read.
+  /// Throws what `place` throws. `sequence` receives the header's number if the message is readable.
   SourceFrame read(Message message, const Place& place, std::optional<std::uint32_t>* sequence = nullptr);
-  /// What still waits, at the end of a recording.
+  /// Returns the waiting frame, at the end of a recording.
   std::optional<HandFrame> rest() { return input_.rest(); }
 
  private:

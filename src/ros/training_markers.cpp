@@ -17,17 +17,18 @@ using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
 constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
-constexpr double kTimer = 0.02;                        // of the timer's
+constexpr double kTimer = 0.02;                        // of the timer's letters
 constexpr double kMark = 0.014;                        // of a place's number [m]
-constexpr double kMarkRoom = 1.35;                     // from a place to its number, of its ring's radius
-constexpr double kLine = 1.4;                          // from line to line, of the letters' height
+constexpr double kMarkRoom = 1.35;                     // distance from a target to its number, over its
+                                                       // ring's radius
+constexpr double kLine = 1.4;                          // line spacing, over the letters' height
 constexpr int kIdsPerPlace = 100;
-constexpr std::size_t kLongest = 44;  // letters in a line
+constexpr std::size_t kLongest = 44;  // letters per line
 
-/// 0.3 m before the eye of rviz/training.rviz, at the upper edge of what it sees: hands do their work behind
-/// it.
+/// 0.3 m in front of the camera of rviz/training.rviz, at the upper edge of its view: the hands' workspace is
+/// behind it.
 const Vector3 kHeadingPlace(0.0, -0.136, 0.487), kTimerPlace(0.10, -0.155, 0.43);
-const Vector3 kDown(0.0, -0.2955, -0.9553);  // of that view
+const Vector3 kDown(0.0, -0.2955, -0.9553);  // in that view
 
 std_msgs::ColorRGBA waiting() {
   return color(0.337, 0.706, 0.914, 0.35);
@@ -49,7 +50,7 @@ void write(const MarkerLayer& layer, int id, const Vector3& place, const std::st
   layer.add(id, Marker::TEXT_VIEW_FACING, upright(place), Vector3::Constant(height), white()).text = text;
 }
 
-/// In lines of at most kLongest letters, broken between words.
+/// Breaks a text between words into lines of at most kLongest letters.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream words(text);
@@ -63,7 +64,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The heading, below it the text's lines, and below them how far it is or what came of the last.
+/// Writes the heading, the text's lines below it, and then the progress or the last result.
 void write_instruction(const MarkerLayer& layer, const MarkerLayer& below, const std::string& heading,
                        const std::string& text, const std::string& result) {
   Vector3 place = kHeadingPlace;
@@ -78,7 +79,7 @@ Pose pose_at(const Goal& goal, const Session& session) {
   return {goal.position, goal.angle_tolerance ? goal.orientation : any};
 }
 
-/// Where the object is to be for a goal, if it is to be somewhere.
+/// Marks the target of a goal, if it has one.
 void add_goal(const Session& session, const Body& body, const Status& status, const MarkerLayer& layer) {
   const Goal& goal = session.task().goals[session.trial().goal()];
   if (goal.kind == GoalKind::nudge_into) {
@@ -88,7 +89,7 @@ void add_goal(const Session& session, const Body& body, const Status& status, co
   add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, layer);
 }
 
-/// Before its ring, on the side of who looks.
+/// In front of its ring, towards the viewer.
 Vector3 mark_place(const Goal& goal, const Body& body) {
   return goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
 }
@@ -184,11 +185,11 @@ visualization_msgs::MarkerArray training_markers(
 
 namespace {
 
-constexpr double kRingRoom = 1.15;   // radius of the ring, of the body's bounding radius
-constexpr double kRingWidth = 0.12;  // of its radius
-constexpr double kShell = 1.12;      // of a highlight, of the body's size
-constexpr double kShaft = 0.035;     // of the arrow that points at it [m]
-constexpr double kGap = 0.012;       // between the two [m]
+constexpr double kRingRoom = 1.15;   // radius of the ring, over the body's bounding radius
+constexpr double kRingWidth = 0.12;  // over its radius
+constexpr double kShell = 1.12;      // size of a highlight, over the body's
+constexpr double kShaft = 0.035;     // of the arrow that points at the object [m]
+constexpr double kGap = 0.012;       // between arrow and object [m]
 
 Pose level_at(const Vector3& place) {
   return {place, Quaternion::Identity()};
@@ -198,7 +199,7 @@ std_msgs::ColorRGBA to_take(double alpha) {
   return color(0.941, 0.894, 0.259, alpha);
 }
 
-/// Returns the id that follows.
+/// Returns the next free id.
 int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& paint, double size, int id,
              const MarkerLayer& layer) {
   const auto add = [&](const Shape& shape, const Pose& place) {

@@ -34,9 +34,9 @@
 #include "node.h"
 
 namespace mrhi {
-/// What the training node is told on the parameter server.
+/// Parameters of the training node on the parameter server.
 struct TrainingParameters {
-  /// Throws ParameterError naming a parameter that is unknown, missing or not allowed.
+  /// Throws ParameterError with the first that is unknown, missing or invalid.
   explicit TrainingParameters(const ros::NodeHandle& private_node) {
     constexpr double kLongestBreak = 3600.0;  // [s]
     NodeParameters known;
@@ -57,7 +57,7 @@ struct TrainingParameters {
     require("folder", folder, "where the session is to be");
   }
 
-  /// What the node with the objects was told on the parameter server, under a task's gravity.
+  /// Configuration of the interaction node, from the parameter server, with a task's gravity.
   Configuration told_configuration(const ros::NodeHandle& node, const Vector3& gravity) const {
     Configuration configuration = configuration_of(node);
     configuration.gravity = gravity;
@@ -65,7 +65,7 @@ struct TrainingParameters {
   }
 
   /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
-  /// operator cannot do, SessionError for a folder that cannot be used.
+  /// operator cannot perform, SessionError for an unusable folder.
   Session open_session(const ros::NodeHandle& node, Nanoseconds now,
                        const std::function<void(const EventRow&)>& on_event) const {
     return Session(checked_task(), started_header(), place(), folder, now, setup_of(node),
@@ -74,12 +74,13 @@ struct TrainingParameters {
 
   std::string task = "pick_and_place";  ///< ~task: name or YAML file
   SessionHeader header;       ///< ~participant, ~group, ~handedness, ~condition, ~seed, ~session, ~simulated
-  std::optional<int> number;  ///< ~number: of the participant, from 1; else the one that ends the name
-  std::string folder;         ///< ~folder: of the session; a ~ at its beginning is the home directory
+  std::optional<int> number;  ///< ~number: of the participant, from 1; default: the one at the end of the
+                              ///< name
+  std::string folder;         ///< ~folder: of the session; a leading ~ is the home directory
   std::string simulation = "interaction_node";  ///< ~simulation: name of the node with the objects
-  double auto_next = 3.0;    ///< ~auto_next: break after a trial [s]; below 0: the next one waits for ~next
-  bool auto_start = false;   ///< ~auto_start: the first trial does not wait for ~next
-  bool by_operator = false;  ///< ~operator: a simulated operator does the task, which is checked
+  double auto_next = 3.0;    ///< ~auto_next: break after a trial [s]; below 0: wait for ~next
+  bool auto_start = false;   ///< ~auto_start: start the first trial without ~next
+  bool by_operator = false;  ///< ~operator: a simulated operator performs the task, which is checked
 
  private:
   Task checked_task() const {
@@ -90,7 +91,7 @@ struct TrainingParameters {
     return loaded;
   }
 
-  /// With the milliseconds, or without.
+  /// With or without milliseconds.
   static std::string utc_now(bool with_milliseconds) {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
@@ -125,7 +126,7 @@ struct TrainingParameters {
   }
 };
 
-/// Puts the objects of a task into the scene of a running interaction_node, by its services.
+/// Sets up a task's objects in the scene of a running interaction_node, by its services.
 class TrainingScene {
  public:
   /// Throws SceneError for an object whose file cannot be read.
@@ -144,14 +145,14 @@ class TrainingScene {
       models_[fixture.name] = load_fixture(fixture, scene_folders(), scene_options({}));
   }
 
-  /// What moves in the scene; from its messages.
+  /// Records the moving bodies of the scene, from its messages.
   void note_objects(std::set<std::string> names, bool has_operator) {
     names_ = std::move(names);
     has_operator_ = has_operator;
   }
 
-  /// The task's gravity and fixtures, and of free bodies and devices this one alone, at its start. An
-  /// operator is at the start too. Empty, or what went wrong.
+  /// Sets the task's gravity and fixtures, and removes all free bodies and devices but this one, which is
+  /// reset to its start. Resets an operator too. Returns an error, or an empty string.
   std::string prepare(const TaskObject& object) {
     if (!names_) return "the simulation has not told yet what moves in its scene";
     if (needs_operator_ && !has_operator_)
@@ -191,7 +192,7 @@ class TrainingScene {
     gravity.request.value = text::vector(task_.gravity);
     if (const std::string wrong = call(set_, gravity); !wrong.empty()) return wrong;
     for (const Fixture& fixture : task_.fixtures) {
-      remove(fixture.name);  // of a session before
+      remove(fixture.name);  // of an earlier session
       const std::string wrong = spawn(models_.at(fixture.name));
       if (!wrong.empty()) return wrong;
     }
@@ -225,25 +226,26 @@ class TrainingScene {
 
   const Task& task_;
   std::map<std::string, ObjectModel> models_;   // of objects and fixtures
-  std::optional<std::set<std::string>> names_;  // none before the first message
+  std::optional<std::set<std::string>> names_;  // empty before the first message
   bool set_up_ = false, has_operator_ = false, needs_operator_ = false;
   ros::ServiceClient spawn_, spawn_urdf_, delete_, set_, pause_, reset_;
 };
 
-/// Follows the parameters of a running interaction_node by its `simulation_input`, whatever changes them:
-/// services, sliders, or another start.
+/// Observes the parameters of a running interaction_node by its `simulation_input`, whatever changes them:
+/// services, sliders or a restart.
 class ParameterWatch {
  public:
   struct Difference {
-    std::string name, value;  ///< the value that there is now
-    bool as_begun;            ///< it is again what it was to be
+    std::string name, value;  ///< present value
+    bool as_begun;            ///< true if it is as expected again
   };
 
-  /// What they are to be. Of a BEGIN gravity is passed over: a session sets it after it has begun to listen.
+  /// `configuration`: expected values. Ignores the gravity of a BEGIN, which a session sets after it has
+  /// begun to listen.
   explicit ParameterWatch(const Configuration& configuration)
       : begun_(texts_of(configuration)), now_(configuration) {}
 
-  /// What this message has changed against all that came before.
+  /// Returns the differences that this message causes.
   std::vector<Difference> take(const mr_hand_interaction::SimulationInput& message) {
     if (!may_set(message)) return {};
     const Configuration later = after(message, now_);
@@ -272,7 +274,7 @@ class ParameterWatch {
     return files;
   }
 
-  /// As they are once the message has been taken.
+  /// The parameters after the message.
   static Configuration after(const SimulationInput& message, Configuration configuration) {
     if (message.kind == SimulationInput::BEGIN) {
       const auto gravity = configuration.gravity;

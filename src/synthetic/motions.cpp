@@ -8,10 +8,10 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;  // [m] straight to the object with the hand open
-constexpr double kAside = 0.16;     // [m] further away, where the hand comes from
+constexpr double kApproach = 0.10;  // straight to the object with the hand open [m]
+constexpr double kAside = 0.16;     // further away, where the hand comes from [m]
 
-/// Opens the hand round an object at `at`, draws it back to `off` along `retreat` and on to `aside`.
+/// Opens the hand around an object at `at`, withdraws it to `off` along `retreat` and on to `aside`.
 void release(Script& script, const GraspPostures& postures, const Pose& at, const Pose& off,
              const Vector3& retreat, const Pose& aside) {
   script.then(0.7, at, postures.near).by_way_of(postures.touching, 1.0 - postures.touching_share);
@@ -19,17 +19,17 @@ void release(Script& script, const GraspPostures& postures, const Pose& at, cons
   script.then(0.8, aside, relaxed_posture());
 }
 
-/// A hand that takes hold of something, moves it and lets go.
+/// A hand that grasps an object, moves it and releases it.
 class Grip {
  public:
-  /// Goes on from `script`.
+  /// Continues `script`.
   Grip(Script script, const Grasp& grasp, const Vector3& place)
       : script_(std::move(script)),
         postures_(grasp),
         retreat_(grasp.retreat),
         at_(Pose{place, Quaternion::Identity()} * grasp.wrist) {}
 
-  /// Reaches for it from `aside` of where it is straight before it, at `distance` [m] and `speed` [m/s].
+  /// Approaches from `aside` of a point straight in front of the object, at `distance` [m] and `speed` [m/s].
   Grip& take(const Vector3& aside, double distance = 0.08, double speed = 0.1) {
     const Pose before = shifted(at_, distance * retreat_);
     if (script_.motion().keyframes.empty()) script_.then(0.0, shifted(before, aside), relaxed_posture());
@@ -69,7 +69,7 @@ class Grip {
   Pose at_;
 };
 
-/// Carries the object, held with its centre at `centre`, to another pose, holds it, lets go and withdraws.
+/// Carries a held object, with its centre at `centre`, to another pose, holds and releases it, and withdraws.
 void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& postures,
                        const Vector3& centre, const Pose& carried, const Vector3& aside) {
   const Pose target = Pose{centre, Quaternion::Identity()} * carried;
@@ -110,7 +110,7 @@ ScriptedMotion catch_ball() {
 constexpr double kHalfCube = 0.025;
 constexpr double kPeakSpeed = 1.875;  // of minimum jerk, in lengths per duration
 
-/// Index tip's centre where its skin touches the cube on the side that `normal` points out of.
+/// Centre of the index tip when its skin touches the cube's face with this normal.
 Vector3 touching_tip(const Vector3& normal) {
   return scene_object() + (kHalfCube + human_hand().fingers[1].radius) * normal;
 }
@@ -140,8 +140,7 @@ ScriptedMotion tap() {
   struck(kBaseFlexion, 1) += 0.5 * kSwing;
   const auto finger = finger_joints(human_hand().fingers[1], touching.col(1));
   const double stroke = kPeakSpeed * kSwing * (finger[4] - finger[1]).norm() / kSpeed;
-  // Pitched so that the tip passes the level of its knuckle where it meets the cube: it strikes straight
-  // down.
+  // Pitch at which the tip is level with its knuckle on hitting the cube, so that it moves straight down.
   const Vector3 chord = finger[4] - finger[1];
   const double pitch = std::atan2(-chord.z(), chord.x());
   const Vector3 fingers(0.0, std::cos(pitch), std::sin(pitch)),
@@ -159,7 +158,7 @@ ScriptedMotion slap() {
   constexpr double kSpeed = 1.5, kBefore = 0.26, kAfter = 0.26;
   const HandPosture posture = flat_posture();
   const Vector3 swing(-1.0, 0.0, 0.0);
-  // The cube's centre ahead of the middle finger's knuckle, the hand upright with the thumb up.
+  // The cube's centre is in front of the middle finger's knuckle; the hand is upright with the thumb up.
   const auto middle = finger_joints(human_hand().fingers[2], posture.col(2));
   const Pose direction = hand_pose(Vector3::Zero(), Vector3::UnitY(), -swing);
   const Vector3 meeting(middle[1].x() + 0.010, middle[1].y(), middle[1].z() - human_hand().fingers[2].radius);
@@ -174,21 +173,21 @@ ScriptedMotion slap() {
   return script.at(2.3 + stroke, shifted(through, {0.0, -0.12, -0.02}), relaxed_posture()).motion();
 }
 
-constexpr double kThumbDepth = 0.006, kFingerDepth = 0.003;  // that the tips press beyond the surface [m]
+constexpr double kThumbDepth = 0.006, kFingerDepth = 0.003;  // of the tips beyond the surface [m]
 
-/// The wrist of one who points away from the body, palm down.
+/// Wrist pose for pointing away from the body, palm down.
 Pose pointing_forward() {
   return hand_pose(Vector3::Zero(), {0.0, 1.0, -0.25}, {0.0, 0.25, 1.0});
 }
 
-/// Where the index finger's tip is, touching a surface at `point` with the skin.
+/// Position of the index fingertip with its skin touching a surface at `point`.
 Pose touching(const Vector3& point, const Vector3& normal) {
   const Vector3 tip = point + human_hand().fingers[1].radius * normal;
   return wrist_for_index_tip(tip, pointing_forward(), pointing_posture());
 }
 
-/// Thumb and two fingers on either side of an upright bar, palm to the panel, fingers to the right. Its frame
-/// is world's at the bar's middle.
+/// Thumb and two fingers on opposite sides of an upright bar, palm towards the panel, fingers to the right.
+/// Its frame is world's at the bar's centre.
 Grasp bar_grasp(double width) {
   const double x = 0.5 * width;
   const Vector3 right = Vector3::UnitX();
@@ -202,7 +201,7 @@ Grasp bar_grasp(double width) {
           -Vector3::UnitY()};
 }
 
-/// Fingers under a level bar and the thumb on it, palm up.
+/// Fingers under a horizontal bar and the thumb on it, palm up.
 Grasp rail_grasp(double width) {
   const double z = 0.5 * width;
   const Vector3 up = Vector3::UnitZ();
@@ -216,9 +215,9 @@ Grasp rail_grasp(double width) {
           -Vector3::UnitY()};
 }
 
-const Vector3 kBeside(0.03, -0.08, 0.03);  // where the hand comes from, and goes to [m]
+const Vector3 kBeside(0.03, -0.08, 0.03);  // start and end of the hand [m]
 
-/// A fingertip that touches at `place`, moves on by `way` in that time, and comes back.
+/// A fingertip that touches at `place`, moves on by `way` in `duration`, and returns.
 ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
   const Vector3 ready = 0.03 * normal;
   const Pose at = touching(place, normal), off = shifted(at, ready);
@@ -230,10 +229,11 @@ ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& 
   return script.motion();
 }
 
-constexpr double kHatchFace = 0.115;  // where a fingertip is that turns a latch: before the hatch [m]
+constexpr double kHatchFace = 0.115;  // position of a fingertip that rotates a latch, in front of the hatch
+                                      // [m]
 
-/// The fingertip takes a latch at 45 mm from its axle, `up` or down, by a quarter of a turn. It is on the arc
-/// by its places and velocities at every 30 degrees.
+/// The fingertip moves a latch, 45 mm from its axle, `up` or down by a quarter turn. Keyframes with
+/// velocities every 30 degrees keep it on the arc.
 void turn_latch(Script& script, const Vector3& axle, double up) {
   constexpr double kArm = 0.04, kUnder = 0.006, kParts = 3.0, kAngle = M_PI / 2.0, kTime = 2.0;
   const double radius = human_hand().fingers[1].radius;
@@ -258,16 +258,16 @@ void turn_latch(Script& script, const Vector3& axle, double up) {
   script.then(0.5, shifted(wrist(kAngle, off), back), posture);
 }
 
-/// Fingers on an arm of tongs are as much farther apart than on a cube.
+/// Spacing of the fingers on an arm of tongs, over that on a cube.
 constexpr double kApart = 1.3;
 
-/// Tips on the arms of tongs at half their length, each arm at `angle` from the middle; in the scene's
-/// object's frame.
+/// Grasp of the arms of tongs at half their length, each arm at `angle` from the middle; in the frame of the
+/// scene's object.
 Grasp tongs_grasp(double angle) {
   Grasp grasp = shipped_grasp("cube");
   const double c = std::cos(angle), s = std::sin(angle);
   for (FingertipContact& contact : grasp.contacts) {
-    contact.depth *= 1.7;  // arms give way, and the grip with them
+    contact.depth *= 1.7;  // the arms comply, and the grip with them
     const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + kApart * contact.point.x();
     contact.normal = {-s, side * c, 0.0};
     contact.point = Vector3(-0.07 + along * c, side * along * s, 0.0) + 0.004 * contact.normal;
@@ -275,7 +275,7 @@ Grasp tongs_grasp(double angle) {
   return grasp;
 }
 
-/// Both latches, then the hatch by its handle.
+/// Opens both latches, then the hatch by its handle.
 ScriptedMotion open_hatch() {
   const Vector3 hinge(0.12, 0.14, 0.25);
   Script script("hatch");
@@ -333,12 +333,12 @@ const MotionEntry kMotions[] = {
      [] {
        return push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0);
      }},
-    // Down on its end, which stands up at 20 degrees.
+    // Pushes down the raised end, at 20 degrees.
     {"flip_switch",
      [] {
        return push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2);
      }},
-    // A quarter of a turn by its upper arm.
+    // A quarter turn by the upper arm.
     {"turn_valve",
      [] {
        const Vector3 axle(0.01, 0.12, 0.34);

@@ -9,21 +9,21 @@
 
 namespace mrhi {
 
-/// Where the shipped scenes of one object have it.
+/// Position of the object in the shipped scenes with one.
 inline Vector3 scene_object() {
   return {0.0, 0.0, 0.22};
 }
 
-/// Hand frame at `wrist` whose x is along `fingers` and whose z is as near to `dorsal` as that allows.
+/// Hand frame at `wrist`, with x along `fingers` and z as close to `dorsal` as possible.
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal);
 
-/// Turn about a unit axis.
+/// Rotation about a unit axis.
 Quaternion turn(double degrees, const Vector3& axis);
 
-/// Wrist that puts the right hand's index tip at `tip`, turned as `direction` is.
+/// Wrist pose that puts the right hand's index tip at `tip`, with the orientation of `direction`.
 Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture);
 
-/// Angles in degrees: a row per joint, in each a column per finger; 0 where a row ends early.
+/// Angles in degrees: a row for each joint, with a column for each finger; missing columns are 0.
 HandPosture posture_of_degrees(const double (&degrees)[kFingerJoints][kFingers]);
 
 /// Builds a motion keyframe by keyframe.
@@ -46,13 +46,13 @@ class Script {
     const Keyframe last = motion_.keyframes.back();
     return then(duration, last.wrist, last.posture);
   }
-  /// The last keyframe's posture is reached by way of another.
+  /// Adds a posture on the way to the last keyframe.
   Script& by_way_of(const HandPosture& posture, double share) {
     motion_.keyframes.back().via = posture;
     motion_.keyframes.back().via_share = share;
     return *this;
   }
-  /// The last keyframe is reached along an arc about a point, with which the hand turns.
+  /// Makes the path to the last keyframe an arc about a point, with which the hand rotates.
   Script& round(const Vector3& centre) {
     motion_.keyframes.back().centre = centre;
     return *this;
@@ -73,76 +73,76 @@ inline Pose shifted(const Pose& pose, const Vector3& by) {
 
 struct Reach {
   FingerAngles angles;
-  double error;  ///< distance that remains between tip and target [m]
+  double error;  ///< remaining distance between tip and target [m]
 };
 
-/// Angles within the limits that bring the end of the last bone to `target` (right hand's frame), as near to
-/// `preferred` as that allows: damped least squares with the preference in the null space (Nakamura &
-/// Hanafusa 1986).
+/// Inverse kinematics of a finger: angles within the limits that bring the end of the last bone to `target`
+/// (right hand's frame), as close to `preferred` as possible. Damped least squares with the preference in the
+/// null space (Nakamura & Hanafusa 1986).
 Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred);
 
-/// Where a fingertip is to touch an object: a point of its surface and the outward normal there.
+/// Planned contact of a fingertip: a point of the object's surface and the outward normal there.
 struct FingertipContact {
   int finger;
   Vector3 point;
   Vector3 normal;
-  double depth;  ///< how far the tip is to press beyond the surface [m]
+  double depth;  ///< of the fingertip beyond the surface [m]
 };
 
 /// `preferred` with the fingers of `contacts` placed so that their tips, as spheres of the finger's radius,
-/// are `gap` off the surface, or at each contact's depth if gap is negative. Contacts in the frame that
-/// `wrist` is in; right hand. `worst_error`, if given, becomes the largest Reach::error.
+/// are `gap` off the surface, or at each contact's depth if gap is negative. Contacts are in the frame of
+/// `wrist`; right hand. `worst_error`, if set, receives the largest Reach::error.
 HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
                              const std::vector<FingertipContact>& contacts, double gap,
                              const HandPosture& preferred, double* worst_error = nullptr);
 
-/// How a right hand holds an object: everything in the object's frame.
+/// A right hand's grasp of an object, in the object's frame.
 struct Grasp {
   Pose wrist;  ///< while the object is held
   std::vector<FingertipContact> contacts;
-  HandPosture preferred;  ///< that the fingers are near to
-  double opening;         ///< of each fingertip before closing and after [m]
-  Vector3 retreat;        ///< unit: the way by which the open hand leaves the object
+  HandPosture preferred;  ///< posture to which the fingers stay close
+  double opening;         ///< gap of each fingertip before closing and after [m]
+  Vector3 retreat;        ///< unit: direction in which the open hand leaves the object
 
   Grasp turned(const Quaternion& by) const;
 };
 
-/// Postures of a hand round an object: open, nearly touching, just touching with all tips, pressing. From one
-/// to the next but the first each tip moves in proportion to its depth, so that the springs of tips whose
-/// depths balance stay in balance all the way: closing and opening do not push the object.
+/// Postures of a hand around an object: open, nearly touching, just touching with all tips, and holding.
+/// Between the last three each tip moves in proportion to its depth. So springs that balance at the full
+/// depths balance throughout, and closing and opening do not push the object.
 struct GraspPostures {
   HandPosture open, near, touching, pressing;
-  double touching_share;  ///< of the way from near to pressing
+  double touching_share;  ///< fraction of the path from near to holding
 
   explicit GraspPostures(const Grasp& grasp);
 };
 
-/// Of the shipped objects cube, ball, long_cuboid and flat_cuboid. Throws std::invalid_argument that lists
+/// Grasp of a shipped object: cube, ball, long_cuboid or flat_cuboid. Throws std::invalid_argument that lists
 /// them.
 Grasp shipped_grasp(const std::string& object);
 
-/// Grasp of any object: across its narrowest side through the centre of mass, in the body's frame. Throws
-/// std::invalid_argument that names the object and what is allowed.
+/// Grasp of any object: across its narrowest width through the centre of mass, in the body's frame. Throws
+/// std::invalid_argument with the object and what is allowed.
 Grasp narrowest_grasp(const Body& body);
 
 /// Grasp of a body: the shipped one of its name, else narrowest_grasp(), and throws as that does.
 Grasp grasp_of(const Body& body);
 
-/// Reaches for an object at rest whose centre is at `object`, closes, carries and lets go; `scene` names its
-/// scene, `aside` is where the hand comes from [m, world].
+/// Reaches for an object at rest with its centre at `object`, closes, carries and releases it. `scene` is the
+/// name of its scene; the hand comes from `aside` [m, world].
 ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
                                const Vector3& aside);
 
-/// Postures of a hand round an object from open to pressed deep into it. `depth` is what thumb and fingers
-/// together close beyond its surface; each tip has its share of it. Below 0 the tips are off the surface.
+/// Postures of a hand around an object, from open to deep beyond its surface. `depth` is that of thumb and
+/// fingers together, of which each tip has its fraction. Below 0 the tips are off the surface.
 class GripPostures {
  public:
-  /// `grasp`'s depths are shares: those of its first two contacts make up one. `deepest` > 0 [m].
+  /// `grasp`'s depths are fractions: those of its first two contacts sum to one. `deepest` > 0 [m].
   GripPostures(const Grasp& grasp, double deepest);
 
   HandPosture open, near;  ///< near: just off the surface
   double near_depth;       ///< of `near`, below 0 [m]
-  /// Between near_depth and the deepest; beyond, at that end.
+  /// Posture at a depth, clamped to near_depth and the deepest.
   HandPosture at(double depth) const;
   double deepest() const { return deepest_; }
 
@@ -151,8 +151,8 @@ class GripPostures {
   std::vector<HandPosture> pressed_;  ///< evenly spaced from depth 0 to the deepest
 };
 
-/// Turns of a body of one box about its centre that leave its outline as it is, the identity first; of others
-/// the identity alone.
+/// Rotations of a body of one box about its centre that preserve its shape, identity first; for others only
+/// the identity.
 std::vector<Quaternion> box_symmetries(const Body& body);
 
 }  // namespace mrhi

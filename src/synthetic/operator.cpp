@@ -10,31 +10,33 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;                        // [m] straight to the object with the hand open
+constexpr double kApproach = 0.10;                        // straight to the object with the hand open [m]
 constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
-constexpr double kLeastTime = 0.3;                        // of a movement [s]
-constexpr double kCatchable = 0.1;                        // what is faster is left to go [m/s]
-constexpr double kAstray = 0.05;                          // from where the object was expected [m]
-constexpr double kOutOfHand = 0.04;                       // from where the object was in the hand [m]
-constexpr double kPatience = 10.0;  // with an object that is held where it is wanted, and nothing happens [s]
+constexpr double kLeastTime = 0.3;                        // minimum of a movement [s]
+constexpr double kCatchable = 0.1;                        // faster objects are not pursued [m/s]
+constexpr double kAstray = 0.05;                          // from the object's expected position [m]
+constexpr double kOutOfHand = 0.04;                       // from the object's position in the hand [m]
+constexpr double kPatience = 10.0;                        // time at the target without an effect [s]
 constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
                  kGoAside = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.61;         // of the way to the object, when the hand begins to close
-constexpr double kTouch = 0.07;          // until what is felt is acted on [s]
-constexpr double kCorrecting = 2.0;      // of the misplacement that is seen, a second
+constexpr double kWidest = 0.61;         // fraction of the path to the object at which the hand begins to
+                                         // close
+constexpr double kTouch = 0.07;          // from feeling to acting [s]
+constexpr double kCorrecting = 2.0;      // rate of correcting a seen error [1/s]
 constexpr double kFastCorrection = 0.1;  // [m/s]
-constexpr double kUnseen = 0.5;          // of its misplacement
+constexpr double kUnseen = 0.5;          // unseen fraction of an error
 constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
 constexpr double kUsualStiffness = 800.0, kLeastStiffness = 20.0;  // of the grip [N/m]
-constexpr double kUnfelt = 0.15;        // of the wanted grip: less says that something else holds the object
-constexpr double kClosingSpeed = 0.05;  // most, of the depth [m/s]
+constexpr double kUnfelt = 0.15;        // fraction of the wanted grip: less means that something else holds
+                                        // the object
+constexpr double kClosingSpeed = 0.05;  // maximum rate of the depth [m/s]
 constexpr double kSwing = 1.0;          // [Hz]
 
-const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, from where it begins to approach [m]
+const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, relative to the start of its approach [m]
 
-/// Where the object will be, if it goes on as it does.
+/// Pose of the object after `ahead` seconds at its present velocity.
 Pose expected(const Sight& sight, double ahead) {
   return {sight.object.position + ahead * sight.twist.linear,
           (rotation_by(ahead * sight.twist.angular) * sight.object.orientation).normalized()};
@@ -82,7 +84,7 @@ HandPlace SimulatedOperator::planned(double time) const {
   return place;
 }
 
-/// Up from the place and down, and so on, from rest; the first second it swings less.
+/// Up and down about the target, from rest; with a smaller amplitude in the first second.
 Vector3 SimulatedOperator::swung(double time) const {
   if (!swing_began_) return Vector3::Zero();
   const double since = time - *swing_began_;
@@ -95,7 +97,7 @@ Vector3 SimulatedOperator::acceleration(double time) const {
   return (at(time + kStep) - 2.0 * at(time) + at(time - kStep)) / (kStep * kStep);
 }
 
-/// Sees where the object is between its fingers while it closes them, and moves the hand to suit.
+/// Observes the object between the fingers while they close, and moves the hand accordingly.
 void SimulatedOperator::correct(double since, const Moment& seen) {
   const bool closing = phase_ == Phase::reaching && last_time_ - began_ > kWidest * way_.back().time;
   if (since <= 0.0 || !(closing || (phase_ == Phase::grasping && !arrived(last_time_)))) return;
@@ -109,14 +111,14 @@ void SimulatedOperator::correct(double since, const Moment& seen) {
   corrected_ += since * speed;
 }
 
-/// What it felt a moment ago.
+/// What it felt kTouch ago.
 const SimulatedOperator::Moment& SimulatedOperator::felt(double time) const {
   const auto later = std::find_if(past_.begin(), past_.end(),
                                   [&](const Moment& moment) { return moment.time > time - kTouch; });
   return later == past_.begin() ? *later : *(later - 1);
 }
 
-/// Wants a grip above what the load it is about to cause needs, and has learned how deep that is.
+/// Sets a grip force above the need of the coming load, and the depth for it by the learned stiffness.
 void SimulatedOperator::squeeze(double time, double since) {
   if (!gripping_ || since <= 0.0) return;
   const Moment& touch = felt(time);
@@ -170,11 +172,11 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
 void SimulatedOperator::watch(double time, const Moment& seen) {
   if (seen.sight.place && seen.sight.twist.linear.norm() <= kCatchable) return reach(time, seen);
   if (phase_ == Phase::watching) return;
-  plan(Phase::withdrawing, seen);  // stops where it is
+  plan(Phase::withdrawing, seen);  // stops in place
   then(kLeastTime, shifted(now_.wrist, 0.5 * kLeastTime * velocity_), now_.posture);
 }
 
-/// One movement: the hand opens on the way, and has closed round the object as it arrives.
+/// One movement: the hand opens on its path, and has closed around the object on arrival.
 void SimulatedOperator::reach(double time, const Moment& seen) {
   prepare_grasp();
   const double lag = time - seen.time;
@@ -211,7 +213,7 @@ void SimulatedOperator::carry(const Moment& seen) {
   then(duration, {wrist, now_.wrist.orientation}, now_.posture);
 }
 
-/// The object should be where it was wanted.
+/// Checks that the object is at its target.
 void SimulatedOperator::follow_up(double time, const Moment& seen) {
   if (!seen.sight.place) return let_go();
   if (seen.sight.swing != Vector3::Zero()) {
@@ -235,7 +237,7 @@ void SimulatedOperator::let_go() {
   then(kGoAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
 }
 
-/// What it has let go still clings to its hand: turns the flat hand over.
+/// A released object still adheres to the hand: rotates the flat hand.
 void SimulatedOperator::shake_off() {
   const Quaternion over = now_.wrist.orientation * turn(120.0, Vector3::UnitX());
   const Vector3 away = now_.wrist.position + 0.5 * kApproach * retreat_;
@@ -264,7 +266,7 @@ void SimulatedOperator::prepare_grasp() {
   misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
 }
 
-/// Of the grasps that the object's symmetry allows the one with the wrist turned least.
+/// Of the grasps allowed by the object's symmetry, the one that rotates the wrist least.
 Pose SimulatedOperator::wrist_about(const Pose& object) {
   const Quaternion comfortable = usual_.wrist.orientation;
   const auto strain = [&](const Quaternion& turn) {
@@ -281,7 +283,7 @@ Pose SimulatedOperator::wrist_about(const Pose& object) {
   return object * wrist;
 }
 
-/// From where the hand is, and as fast as it is.
+/// Begins at the hand's present pose and velocity.
 void SimulatedOperator::plan(Phase phase, const Moment& seen, const Vector3& drift) {
   const Vector3 velocity = velocity_ - drift;
   phase_ = phase;
@@ -299,7 +301,7 @@ void SimulatedOperator::then(double duration, const Pose& wrist, const HandPostu
   way_.push_back({way_.back().time + duration, wrist, posture});
 }
 
-/// The fingers alone.
+/// Moves the fingers only.
 void SimulatedOperator::close_to(double depth, double duration) {
   constexpr int kSteps = 8;
   const Pose wrist = now_.wrist;

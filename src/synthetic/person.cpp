@@ -11,13 +11,13 @@
 namespace mrhi {
 namespace {
 
-constexpr double kSpread = 0.2, kLeast = 0.5, kMost = 1.6;  // of one person against the group
+constexpr double kSpread = 0.2, kLeast = 0.5, kMost = 1.6;  // of one person relative to the group
 
-/// A figure of the two groups.
+/// A value for both groups.
 struct Figure {
   double OperatorSkill::*value;
   double beginner, veteran;
-  bool personal = true;  // differs from person to person
+  bool personal = true;  // varies from person to person
 };
 constexpr Figure kFigures[] = {{&OperatorSkill::reaction_time, 0.25, 0.20},
                                {&OperatorSkill::movement_start, 0.2, 0.2},
@@ -38,9 +38,9 @@ OperatorSkill skill_of(double Figure::*group) {
   return skill;
 }
 
-constexpr double kSlow = 0.05;     // what is faster is left to go [m/s]
+constexpr double kSlow = 0.05;     // faster objects are not pursued [m/s]
 constexpr double kGetReady = 0.9;  // at pace 1, before a motion [s]
-constexpr double kBehind = 0.35;   // where the hand waits, behind what it works on [m]
+constexpr double kBehind = 0.35;   // distance of the waiting hand behind its target [m]
 
 HandPlace waiting(const Vector3& object) {
   return {hand_pose(object + Vector3(0.05, -kBehind, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
@@ -60,14 +60,14 @@ std::vector<Keyframe> moved(std::vector<Keyframe> way, const Vector3& by) {
   return way;
 }
 
-/// Times count from the first that is kept.
+/// Returns the keyframes up to `end`.
 std::vector<Keyframe> until(std::vector<Keyframe> way, double end) {
   way.erase(std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time > end; }),
             way.end());
   return way;
 }
 
-/// The last part, of so many seconds.
+/// Returns the keyframes of the last `seconds`, with times from their start.
 std::vector<Keyframe> last(std::vector<Keyframe> way, double seconds) {
   const double begin = way.back().time - seconds;
   way.erase(way.begin(),
@@ -91,7 +91,7 @@ std::vector<Keyframe> backwards(const std::vector<Keyframe>& way) {
   return back;
 }
 
-/// A finger pushes the object along x of `about`, and the palm waits for it at its place.
+/// A finger pushes the object along x of `about`, and the palm stops it at its target.
 std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place) {
   const std::vector<Keyframe> nudge = make_motion("nudge").keyframes, slap = make_motion("slap").keyframes;
   const Vector3 way_to_go = place - object;
@@ -174,7 +174,7 @@ bool PractisedPerson::ready(const PractisedGoal& goal, const Sight& sight) const
                                            : sight.twist.linear.norm() < kSlow;
 }
 
-/// Gets the hand to where the motion begins, waits for its time, and makes it.
+/// Moves the hand to the start of the motion, waits for its time, and performs it.
 void PractisedPerson::look(double time, const Moment& seen) {
   const std::size_t goal = seen.sight.goal;
   if (goal >= goals_.size() || !goals_[goal] || !ready(*goals_[goal], seen.sight)) return;
@@ -193,7 +193,7 @@ void PractisedPerson::look(double time, const Moment& seen) {
 
 std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const Moment& seen,
                                               double& begin) const {
-  constexpr double kCube = 0.025, kByTheHandle = 8.8;  // [m]; [s] the last part of open_hatch
+  constexpr double kCube = 0.025, kByTheHandle = 8.8;  // [m]; [s] end part of open_hatch
   const Vector3 object = seen.sight.object.position, off = object - scene_object();
   switch (goal.skill) {
     case Skilled::tap:

@@ -14,11 +14,12 @@ namespace {
 
 constexpr double kScale = 1.05;
 constexpr double kPalmWidth = 0.085;
-constexpr double kPalmShare = 0.68;  // of the way from the wrist to the middle of the knuckles
+constexpr double kPalmShare = 0.68;  // fraction of the distance from the wrist to the middle of the knuckles
 
-/// Degrees and millimetres, for a table that reads like the anatomy.
+/// Dimensions in degrees and millimetres, for a table as in anatomy.
 struct Anatomy {
-  const double (&bones)[kBonesPerFinger];  ///< metacarpal to distal; the thumb's first is Leap's empty one
+  const double (&bones)[kBonesPerFinger];  ///< metacarpal to distal; the thumb's first is empty in Leap's
+                                           ///< model
   double radius;
   Vector3 base;
   double metacarpal_yaw, metacarpal_pitch;  ///< towards the thumb, towards the palm
@@ -65,7 +66,7 @@ float clamp_share(double value) {
   return static_cast<float>(std::min(1.0, std::max(0.0, value)));
 }
 
-/// Leap's figures, roughly: how far the fingers are bent; how near thumb and index tip are.
+/// Approximates Leap's values: flexion of the fingers, and distance between thumb and index tip.
 void fill_strengths(const HandPosture& posture, HandJoints& hand) {
   const double bend = posture.block<2, 4>(kBaseFlexion, 1).sum() / 4.0;
   hand.grab_strength = clamp_share((bend - 60.0 * kDegree) / (120.0 * kDegree));
@@ -73,7 +74,7 @@ void fill_strengths(const HandPosture& posture, HandJoints& hand) {
   hand.pinch_strength = clamp_share((0.080 - aperture) / 0.055);
 }
 
-/// Parabola through the postures at the shares 0, via_share and 1 of the way.
+/// Parabola through the postures at the fractions 0, via_share and 1 of the path.
 HandPosture posture_between(const Keyframe& from, const Keyframe& to, double share) {
   const HandPosture straight = from.posture + share * (to.posture - from.posture);
   if (to.via_share <= 0.0) return straight;
@@ -82,7 +83,7 @@ HandPosture posture_between(const Keyframe& from, const Keyframe& to, double sha
   return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
 }
 
-/// Both turned about the centre by the same share of the turn that the ends differ by.
+/// Rotates position and orientation about the centre by the same fraction of the rotation between both ends.
 Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
   const Quaternion turn = to.wrist.orientation * from.wrist.orientation.conjugate();
   const Quaternion part = Quaternion::Identity().slerp(share, turn);
@@ -90,7 +91,7 @@ Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
   return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
 }
 
-/// Left hand's frame for what a right hand does, mirrored in world's x.
+/// Left hand's frame for a right hand's, mirrored in world's x.
 Pose mirrored(const Pose& wrist) {
   const Quaternion& q = wrist.orientation;
   const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);

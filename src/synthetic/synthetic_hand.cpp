@@ -37,7 +37,7 @@ double in_range(const char* name, double value, double lowest, double highest) {
 constexpr const char* kFingerNames[] = {"thumb", "index", "middle", "ring", "pinky"};
 constexpr const char* kAxes[] = {"_x", "_y", "_z"};
 
-/// Vectors and their like that a row has no value for are still columns.
+/// All columns of vectors and similar values appear, also those that stay empty.
 std::string header() {
   std::string line = "time_s,frame_id,hand_id,is_left,confidence,grab_strength,pinch_strength";
   const auto add_vector = [&line](const std::string& name) {

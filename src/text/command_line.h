@@ -10,8 +10,8 @@
 
 namespace mrhi {
 
-/// What a command line gives for an option: for reading it, and for saying what is wrong with it. What
-/// refuses throws UsageError.
+/// Value of an option on the command line, with conversions and error messages. Failed conversions throw
+/// UsageError.
 struct Given {
   std::string option, form, text;
 
@@ -24,11 +24,11 @@ struct Given {
   long whole(long lowest, long highest) const;
   const std::string& one_of(const std::vector<std::string>& names) const;
   std::pair<std::string, std::string> setting() const;  ///< KEY=VALUE
-  /// All between the commas from field `first` on, which are so many finite numbers.
+  /// Comma-separated fields from `first` on, which must be `count` finite numbers.
   std::vector<double> numbers(std::size_t first, std::size_t count) const;
 };
 
-/// The options of a program, each said once: its name, the form of its value, and what takes it.
+/// The options of a program: for each its name, the form of its value, and its handler.
 class CommandLine {
  public:
   using Take = std::function<void(const Given&)>;
@@ -37,11 +37,11 @@ class CommandLine {
   CommandLine& once(const std::string& name, const std::string& form, const Take& take);
   CommandLine& once(const std::string& name, const std::string& form, std::string& text);
   CommandLine& each(const std::string& name, const std::string& form, const Take& take);
-  /// Words that are no option's, which else are refused.
+  /// Handler of words that belong to no option; without it they are refused.
   CommandLine& words(const Take& take);
 
-  /// Takes the words after the program's name, in their order. False as soon as one asks for --help or -h.
-  /// Throws UsageError for what is not known, lacks its value, or is given twice where once is allowed.
+  /// Handles the words after the program's name, in order. Returns false at the first --help or -h. Throws
+  /// UsageError for an unknown option, a missing value, or a repeated option that may appear once.
   bool read(const std::vector<std::string>& words) const;
 
  private:

@@ -69,7 +69,7 @@ bool FileLines::next(std::string& line) {
                     std::to_string(kLongestLine) + " bytes; allowed: at most that");
   if (stream_.fail()) return false;
   line.assign(room_.data(), stream_.eof() ? taken : taken - 1);
-  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
+  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
   if (number_ == 1 && line.compare(0, 3, kByteOrderMark) == 0) line.erase(0, 3);
   return true;
 }

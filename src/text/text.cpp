@@ -64,7 +64,7 @@ std::string one_line(const std::string& text, std::size_t longest) {
   std::string line;
   for (const char c : text) {
     const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
-    // A terminal takes what begins with an escape for a command.
+    // A terminal would read an escape sequence as a command.
     const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
     if (!blank) line += control ? '?' : c;
     if (blank && !line.empty() && line.back() != ' ') line += ' ';

@@ -11,18 +11,18 @@
 
 #include "mr_hand_interaction/math.h"
 
-/// How values appear in error messages: short, on one line, the same in every locale.
+/// Formats values for error messages: short, on one line, the same in every locale.
 namespace mrhi::text {
 
 std::string number(double value);
-/// The shortest that is read back as the same bits.
+/// Shortest text that is read back as the same bits.
 std::string exact(double value);
 std::string vector(const Vector3& value);
-/// The number that is the whole text, with a decimal point whatever the locale; nothing of anything else.
+/// Converts a whole text to a number, with a decimal point in any locale; empty for any other text.
 std::optional<double> to_number(const std::string& text);
 std::string joined(const std::vector<std::string>& names);
 
-/// The names of items that have one each.
+/// Names of items that have a name each.
 template <typename Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
@@ -31,28 +31,27 @@ std::vector<std::string> names_of(const Items& items) {
   return names;
 }
 
-/// What is between the commas: one more than there are.
+/// Splits at commas.
 std::vector<std::string> split(const std::string& text);
 
-/// Line breaks become spaces, other control characters '?'; what is longer than `longest` characters is cut.
+/// Replaces line breaks by spaces and other control characters by '?'; truncates to `longest` characters.
 std::string one_line(const std::string& text, std::size_t longest = 300);
 
-/// A name as people write it: without underscores.
+/// A name for display: without underscores.
 std::string with_spaces(std::string name);
 
 }  // namespace mrhi::text
 
 namespace mrhi {
 
-/// Whether a text may name a thing or a person: 1 to 64 letters, digits, '_' and '-', not first '-'. So a
-/// name is neither a path nor an option, nor what a spreadsheet takes for a formula or a terminal for a
-/// command.
+/// True if a text is a valid name of a thing or a person: 1 to 64 letters, digits, '_' and '-', not first
+/// '-'. So a name is neither a path, an option, a spreadsheet's formula nor a terminal's command.
 bool is_name(const std::string& text);
 
-/// What is_name() takes, for messages.
+/// Rule of is_name(), for messages.
 extern const char* const kNameIs;
 
-/// Entries that have a `name` and a `place` each, in the order of their places and then of their names.
+/// Sorts entries with a `name` and a `place` each by their places, then names.
 template <typename Entry>
 std::vector<const Entry*> in_their_places(std::vector<const Entry*> entries) {
   const auto order = [](const Entry* entry) {
@@ -63,7 +62,7 @@ std::vector<const Entry*> in_their_places(std::vector<const Entry*> entries) {
   return entries;
 }
 
-/// Throws std::invalid_argument for a name that none has; `kind` is what they are called there.
+/// Throws std::invalid_argument for an unknown name; `kind` is the entries' kind in the message.
 template <typename Entry>
 const Entry& entry_named(const std::vector<const Entry*>& entries, std::string_view name, const char* kind) {
   for (const Entry* entry : entries)

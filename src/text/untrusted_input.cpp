@@ -18,9 +18,9 @@ namespace {
 
 constexpr int kDeepest = 32;
 constexpr std::size_t kMostElements = 100'000;
-constexpr std::size_t kMostAttributes = 64;  // of an element: libraries look each up among those before it
+constexpr std::size_t kMostAttributes = 64;  // per element: libraries compare each with all before it
 
-/// Bytes of the UTF-8 character that begins with `lead`; 0: none does.
+/// Length in bytes of the UTF-8 character that begins with `lead`; 0: invalid.
 std::size_t length_of(unsigned char lead) {
   if (lead < 0x80) return 1;
   if (lead < 0xC2) return 0;
@@ -35,7 +35,7 @@ bool has_control_characters(const std::string& xml) {
   });
 }
 
-/// Follows tags without building anything.
+/// Scans tags without building a document.
 class Tags {
  public:
   explicit Tags(const std::string& xml) : xml_(xml) {}
@@ -69,19 +69,20 @@ class Tags {
  private:
   bool begins(const char* text) const { return xml_.compare(at_, std::string(text).size(), text) == 0; }
 
-  /// Of an element's tag, or of one that closes it.
+  /// True if it begins the tag of an element or its closing tag.
   static bool begins_name(char c) {
     return c == '/' || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
            static_cast<unsigned char>(c) >= 0x80;
   }
 
-  /// The end is looked for behind the opening: "<!-->" does not close itself.
+  /// Searches behind the opening: "<!-->" does not close itself.
   void skip_to(const char* end, std::size_t opening) {
     const std::size_t found = xml_.find(end, at_ + opening);
     at_ = found == std::string::npos ? xml_.size() : found + 1;
   }
 
-  /// TinyXML ends one at its first '>', other libraries at the first "?>": allowed is what both end there.
+  /// TinyXML ends an instruction at its first '>', other libraries at the first "?>": both must be the same
+  /// place.
   void instruction() {
     skip_to(">", 5);
     if (at_ < 2 || xml_[at_ - 2] != '?') strange_ = true;
@@ -114,7 +115,7 @@ class Tags {
 
 constexpr char kDone = 'd', kFailed = 'f';
 
-// Sanitizers keep terabytes of addresses for themselves.
+// Sanitizers reserve terabytes of address space.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kMemoryIsLimited = false;
 #elif defined(__has_feature)
@@ -127,7 +128,7 @@ constexpr bool kMemoryIsLimited = true;
 constexpr bool kMemoryIsLimited = true;
 #endif
 
-/// Addresses that this process has in use.
+/// Address space in use by this process.
 rlim_t size_of_this() {
   std::ifstream pages("/proc/self/statm");
   rlim_t size = 0;
@@ -141,7 +142,7 @@ void limit(Resource resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-/// What a library has to say as it dies is of no use to anybody.
+/// Suppresses a library's output when the child process dies.
 void be_silent() {
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere < 0) return;
@@ -174,7 +175,7 @@ void write_all(int to, const std::string& text) {
   _exit(0);
 }
 
-/// All that comes until the other end is closed; less if it is too much or takes too long.
+/// Reads until the other end is closed, or until a limit is exceeded.
 std::string read_all(int from, const ChildLimits& limits) {
   constexpr int kMilliseconds = 1000, kPatience = 4;
   std::string text;
@@ -238,7 +239,7 @@ std::string run_in_child(const ChildLimits& limits, const std::function<std::str
   const std::string answer = child < 0 ? "" : read_all(ends[0], limits);
   close(ends[0]);
   if (child > 0) {
-    kill(child, SIGKILL);  // done already, or to be ended
+    kill(child, SIGKILL);  // finished, or to be ended
     while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
     }
   }

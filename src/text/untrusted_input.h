@@ -10,19 +10,18 @@ constexpr std::size_t kMostXmlBytes = 4 * 1024 * 1024;
 
 bool is_utf8(const std::string& text);
 
-/// What would lead an XML library astray, with what is allowed; nothing: none of it. Libraries recurse as
-/// deep as elements are nested, and take a time that grows with the square of an element's attributes.
+/// Returns a construct that would overload an XML library, with what is allowed; empty if there is none.
+/// Libraries recurse as deep as elements are nested, and need quadratic time in an element's attributes.
 std::optional<std::string> xml_danger(const std::string& xml);
 
-/// What a child process may use.
+/// Resource limits of a child process.
 struct ChildLimits {
-  int seconds;                 ///< of the processor, and four times as many by the clock
-  std::size_t memory, output;  ///< beyond what this process has; of what it gives [bytes]
+  int seconds;                 ///< of processor time; four times as many of real time
+  std::size_t memory, output;  ///< beyond this process's memory; of the result [bytes]
 };
 
-/// Runs `work` in a child process and gives what it returns; an exception's text is thrown as
-/// std::runtime_error. What takes more than the limits, or ends the process, throws std::runtime_error that
-/// says which, and leaves this process as it was.
+/// Runs `work` in a child process and returns its result. Throws std::runtime_error with the text of its
+/// exception, or with the exceeded limit or the cause of its end. This process is not affected.
 std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work);
 
 }  // namespace mrhi

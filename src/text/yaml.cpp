@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMostBytes = 256 * 1024;
 constexpr int kDeepest = 32;
 
-/// Follows a document without building it.
+/// Scans a document without building it.
 class Guard : public YAML::EventHandler {
  public:
   explicit Guard(const std::string& source) : source_(source) {}
@@ -52,8 +52,8 @@ class Guard : public YAML::EventHandler {
   int depth_ = 0;
 };
 
-/// yaml-cpp up to 0.6.3 takes all memory for a colon that ends the text within braces; before a new line it
-/// finds that these are not closed.
+/// yaml-cpp up to 0.6.3 exhausts memory for a colon that ends the text within braces. Before a new line it
+/// reports that these are not closed.
 std::string ended(const std::string& yaml) {
   return !yaml.empty() && yaml.back() == ':' ? yaml + '\n' : yaml;
 }
@@ -86,7 +86,7 @@ YAML::Node load_yaml_file(const std::string& file) {
 }
 
 bool Range::contains(double value) const {
-  return (min_allowed ? value >= min : value > min) && value <= max;  // not for NaN either
+  return (min_allowed ? value >= min : value > min) && value <= max;  // false for NaN
 }
 
 std::string Range::describe() const {

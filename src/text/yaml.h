@@ -11,24 +11,24 @@
 
 namespace mrhi {
 
-/// YAML that is not taken. what() is one line that begins with the source and says what is allowed.
+/// Error of rejected YAML. what() is one line with the source first and what is allowed.
 class YamlError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// YAML from who knows where: at most 256 KiB, 32 levels deep, without aliases, so that neither a few bytes
-/// that stand for millions nor a value that holds itself gets in. All of it is checked before anything is
-/// built. Throws YamlError.
+/// Loads untrusted YAML: at most 256 KiB, 32 levels deep, without aliases. This excludes short texts that
+/// expand to millions of nodes, and values that contain themselves. All limits are checked before parsing.
+/// Throws YamlError.
 YAML::Node load_yaml_file(const std::string& file);
 
-/// The same from a text of at most that many bytes; `source` names it in messages.
+/// The same from a text of at most `most` bytes; `source` is its name in messages.
 YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most = 256 * 1024);
 
-/// yaml-cpp's word as one line with the place.
+/// yaml-cpp's message as one line with the place.
 std::string yaml_complaint(const std::string& source, const YAML::Exception& error);
 
-/// What `read` gives; what it throws of YAML is an Error.
+/// Returns the result of `read`; converts its YAML exceptions to Error.
 template <typename Error, typename Read>
 auto read_yaml(const std::string& source, const Read& read) {
   try {
@@ -40,7 +40,7 @@ auto read_yaml(const std::string& source, const Read& read) {
   }
 }
 
-/// The numbers a setting may take: two finite ends always; max is one of them.
+/// Range of a setting's number: both ends finite, max included.
 struct Range {
   constexpr Range(double least, double most, bool least_allowed = true)
       : min(least), max(most), min_allowed(least_allowed) {}
@@ -52,14 +52,14 @@ struct Range {
   std::string describe() const;  ///< "a number from 0 to 1"
 };
 
-/// Typed readers: nothing if the node is of another type or not finite.
+/// Typed readers: empty if the node has another type or is not finite.
 std::optional<double> yaml_number(const YAML::Node& node);
 std::optional<int> yaml_integer(const YAML::Node& node);
 std::optional<Vector3> yaml_vector(const YAML::Node& node);
-/// A sequence of so many numbers.
+/// A sequence of `size` numbers.
 std::optional<std::vector<double>> yaml_numbers(const YAML::Node& node, std::size_t size);
 
-/// Numbers on one line, that keep their bits.
+/// Numbers on one line, with exact bits.
 YAML::Node yaml_list(const std::vector<double>& values);
 
 /// The node as one line of YAML, for messages.
@@ -68,7 +68,7 @@ std::string yaml_text(const YAML::Node& node);
 /// "FILE:LINE" of a node.
 std::string yaml_place(const std::string& file, const YAML::Mark& mark);
 
-/// A node and its path in the file ("materials/cube"), for messages. What refuses throws InputError.
+/// A node and its path in the file ("materials/cube"), for messages. Errors throw InputError.
 struct YamlElement {
   const std::string& file;
   std::string path;
@@ -80,13 +80,13 @@ struct YamlElement {
   [[noreturn]] void refuse(const std::string& allowed) const;
 };
 
-/// The keys of a map, each known and given once.
+/// Keys of a map; throws for an unknown or repeated one.
 std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<std::string>& known);
 
-/// A number in the range; `unit` ends the message: " [s]".
+/// A number in the range; the message ends with `unit`: " [s]".
 double read_number(const YamlElement& element, const Range& range, const char* unit);
 
-/// Three numbers, each in the range: places in m by default.
+/// Three numbers, each in the range; by default a position in m.
 Vector3 read_vector(const YamlElement& element, const Range& range = {-1000, 1000});
 
 }  // namespace mrhi

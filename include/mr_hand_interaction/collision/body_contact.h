@@ -8,7 +8,8 @@
 
 namespace mrhi {
 
-/// Which surfaces of two bodies touch. Ordered, so that contacts are always treated in the same order.
+/// Identifies the touching surfaces of two bodies. Ordered, so that contacts are always processed in the same
+/// order.
 struct BodyContactKey {
   std::uint16_t a;       ///< index in Scene::bodies: a fixture, or a free body listed before b
   std::uint16_t b;       ///< a free body
@@ -23,34 +24,34 @@ struct BodyContactKey {
   friend bool operator==(const BodyContactKey& x, const BodyContactKey& y) { return x.order() == y.order(); }
 };
 
-/// One touch of body a, which has the hand's part, with the free body b. World frame unless said otherwise;
-/// n points from b to a; impulse and force act on b, their opposites on a.
+/// A contact of body a, in the hand's role, with the free body b. World frame unless noted; n points from b
+/// to a; impulse and force act on b, their opposites on a.
 struct BodyContact {
   BodyContactKey key{};
 
-  // Memory: lasts while the surfaces touch.
-  Vector3 anchor_a = Vector3::Zero();  ///< point of a, body frame, that sticks to
-  Vector3 anchor_b = Vector3::Zero();  ///< this point of b, body frame
+  // Persistent while the surfaces touch.
+  Vector3 anchor_a = Vector3::Zero();  ///< anchor of friction on a, body frame
+  Vector3 anchor_b = Vector3::Zero();  ///< anchor of friction on b, body frame
   Friction friction = Friction::sticking;
-  bool struck = false;  ///< the impulse of this approach has been given
-  double still = 0.0;   ///< for how long both bodies have been as good as at rest [s]
+  bool struck = false;  ///< the impulse of this approach has been applied
+  double still = 0.0;   ///< time for which both bodies have been nearly at rest [s]
 
-  // This step.
-  Vector3 point = Vector3::Zero();    ///< midway between the surfaces, where they touch or will touch
+  // In this step.
+  Vector3 point = Vector3::Zero();    ///< midway between the surfaces at first touch
   Vector3 normal = Vector3::UnitZ();  ///< n
   Vector3 arm_a = Vector3::Zero();    ///< from the centre of a to the point
   Vector3 arm_b = Vector3::Zero();    ///< from the centre of b to the point
-  /// From the point to where friction acts, along the surface: the friction of a face that spins is that of
-  /// all its places, and these are nearer to its middle than its corners [m].
+  /// From the point to the point of action of friction, along the surface [m]. Friction of a spinning face
+  /// acts over all its area, nearer to the centre than the corners.
   Vector3 friction_offset = Vector3::Zero();
-  Vector3 stretch = Vector3::Zero();  ///< anchor a less anchor b, across n [m]
-  Material material;                  ///< of the two together
+  Vector3 stretch = Vector3::Zero();  ///< anchor a minus anchor b, perpendicular to n [m]
+  Material material;                  ///< combined from both bodies
   double depth = 0.0;                 ///< > 0 overlap, < 0 gap [m]
-  double share = 1.0;                 ///< of the pair's stiffness; the shares of its points sum to 1
-  double first_touch = -1.0;          ///< of a pair still apart: from the step's start [s], >= 0
+  double share = 1.0;                 ///< of the pair's stiffness; the shares of a pair's points sum to 1
+  double first_touch = -1.0;          ///< of a separated pair, from the start of the step; < 0: none [s]
 
-  // What the response made of it in this step.
-  Vector3 force = Vector3::Zero();    ///< near it lies the next step's [N]
+  // Response in this step.
+  Vector3 force = Vector3::Zero();    ///< warm start of the next step [N]
   Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
 };
 

@@ -10,21 +10,21 @@
 
 namespace mrhi {
 
-/// A recording that cannot be read. what() is one line: file, line number, column, what is allowed.
+/// Error of an unreadable recording. what() is one line: file, line number, column, what is allowed.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Columns of a CSV file by name. Errors are RecordingError.
+/// Columns of a CSV file by name. Throws RecordingError.
 class CsvColumns {
  public:
   CsvColumns(std::string file, const std::string& header);
 
-  /// Makes this line the one that is read from.
+  /// Selects the line to read from.
   void take(const std::string& line, std::size_t line_number);
 
-  /// The cell's number; nothing if it is empty or there is no such column.
+  /// The cell's number; empty if the cell is empty or the column does not exist.
   std::optional<double> number(const std::string& column) const;
   double required(const std::string& column) const;
   /// Columns PREFIX_x, PREFIX_y, PREFIX_z: all three or none.
@@ -39,8 +39,8 @@ class CsvColumns {
   std::size_t line_number_ = 1;
 };
 
-/// Reads a recording in the CSV schema (one line per hand and device frame; hand_id -1: a frame with no hand;
-/// columns by name; empty cells: not recorded). Throws RecordingError.
+/// Reads a recording in the CSV schema: one line per hand and device frame; hand_id -1 for a frame without
+/// hands; columns by name; empty cells for missing values. Throws RecordingError.
 std::vector<JointsFrame> read_recording_csv(const std::string& file);
 
 }  // namespace mrhi

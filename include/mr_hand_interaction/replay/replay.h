@@ -13,23 +13,23 @@
 
 namespace mrhi {
 
-/// How the hands of a tracker are read from a recording.
+/// Options for reading hands from a recording.
 struct HandOptions {
-  std::map<std::string, std::string> topics;  ///< of a bag, and the usual topic for which each stands
-  std::string order;                          ///< of joints; empty: recognised
-  double scale = 1.0;                         ///< metres per unit of the recording's lengths
+  std::map<std::string, std::string> topics;  ///< topics of a bag, and the standard topic that each replaces
+  std::string order;                          ///< of joints; empty: detected
+  double scale = 1.0;                         ///< metres per unit of length of the recording
 };
 
-/// The command line of `replay`.
+/// Command line of `replay`.
 struct ReplayArguments {
   bool help = false;
-  std::vector<std::string> compare;     ///< what scripts/compare is called with; nothing is played then
-  std::optional<double> export_rate;    ///< scripts/export is called with it afterwards [Hz]
-  bool explain = false;                 ///< scripts/explain is called afterwards
-  std::optional<double> marker_rate;    ///< of the markers in markers.bag [Hz], which has poses too
-  std::set<std::size_t> marker_frames;  ///< numbers of the frames in markers.bag, instead
-  std::string film;                     ///< scripts/film.py draws markers.bag into this file afterwards
-  std::vector<std::string> repeatable;  ///< the words that make the same run again, in whatever folder
+  std::vector<std::string> compare;     ///< arguments of scripts/compare, which is run instead of a replay
+  std::optional<double> export_rate;    ///< rate for scripts/export, which is run afterwards [Hz]
+  bool explain = false;                 ///< run scripts/explain afterwards
+  std::optional<double> marker_rate;    ///< of the markers in markers.bag [Hz]; it then has poses too
+  std::set<std::size_t> marker_frames;  ///< indices of the frames in markers.bag, instead of a rate
+  std::string film;                     ///< video file that scripts/film.py makes from markers.bag afterwards
+  std::vector<std::string> repeatable;  ///< arguments that repeat this run in any folder
   std::string scene;                    ///< name or URDF file
   std::string input;                    ///< .bag or .csv
   std::string output;                   ///< folder
@@ -42,19 +42,19 @@ struct ReplayArguments {
   HandOptions hands;
 };
 
-/// Arguments without the program's name. Throws UsageError. Whether scene, objects and parameters exist is
-/// not checked here.
+/// Parses the arguments, without the program's name. Throws UsageError. Does not check that scene, objects
+/// and parameters exist.
 ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments);
 
-/// What --help says.
+/// Text of --help.
 const char* replay_help();
 
-/// Scene and parameters as the arguments say, objects placed. Throws UsageError for a name or value on the
-/// command line that is not allowed, SceneError and ParameterError for files.
+/// Loads scene and parameters, and places the objects. Throws UsageError for an invalid name or value on the
+/// command line, SceneError and ParameterError for files.
 Simulation prepare_simulation(const ReplayArguments& arguments);
 
-/// The whole program after its arguments are known. Throws UsageError, else std::exception with one line for
-/// bad data; what had been written stays.
+/// Runs the program. Throws UsageError, or std::exception with one line for bad data; files written so far
+/// stay.
 void replay(const ReplayArguments& arguments);
 
 }  // namespace mrhi

@@ -9,21 +9,20 @@ namespace mrhi {
 
 class ContactModel;
 
-/// What there is of a contact model before it is made. The file src/response/NAME_model.cpp defines
-/// NAME_model; the build finds it, and all else asks contact_models().
+/// Registration of a contact model. The file src/response/NAME_model.cpp defines NAME_model; the build finds
+/// it, and all other code uses contact_models().
 struct ContactModelEntry {
   const char* name;
-  int place;         ///< in lists
-  double stiffness;  ///< its own: of bodies that the scene says nothing about [N/m]
+  int place;         ///< position in lists
+  double stiffness;  ///< default, for bodies without a stiffness in the scene [N/m]
   std::unique_ptr<ContactModel> (*make)(const ContactConfiguration&);
-  bool of_objects = false;  ///< it answers touches between objects too
+  bool of_objects = false;  ///< also handles contacts between objects
 };
 
-/// In the order of their places.
+/// All models, in the order of their positions.
 const std::vector<const ContactModelEntry*>& contact_models();
 
-/// Material of bodies that the scene says nothing about. Its stiffness, if not set, is the contact model's
-/// own.
+/// Material of bodies without one in the scene. Its stiffness, if not set, is the contact model's default.
 Material default_material(const Configuration& configuration);
 
 }  // namespace mrhi

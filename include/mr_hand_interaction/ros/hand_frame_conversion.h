@@ -14,15 +14,15 @@
 
 namespace mrhi {
 
-/// Which capsules touch an object.
+/// Capsules that touch an object.
 using Touching = std::array<bool, kCapsules>;
 
-/// Capsules that are absent, and the palm's, are left out.
+/// Omits absent capsules and the palm's.
 mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching = {});
 mr_hand_interaction::HandFrame to_message(const HandFrame& frame, const std::string& frame_id);
 
-/// The same bits that to_message was given. Throws std::invalid_argument naming the hand and what is wrong
-/// with it: a value that is not finite or out of range, an unknown side, finger or bone, a bone given twice.
+/// Restores the bits given to to_message(). Throws std::invalid_argument with the hand and the fault: a value
+/// that is not finite or out of range, an unknown side, finger or bone, or a duplicate bone.
 HandFrame from_message(const mr_hand_interaction::HandFrame& message);
 
 geometry_msgs::Point to_message(const Vector3& point);
@@ -33,16 +33,16 @@ Vector3 from_message(const geometry_msgs::Point& point);
 Vector3 from_message(const geometry_msgs::Vector3& vector);
 Pose from_message(const geometry_msgs::Pose& pose);
 Twist from_message(const geometry_msgs::Twist& twist);
-/// With the quaternion brought to unit length.
+/// Normalises the quaternion.
 Pose from_message(const geometry_msgs::Transform& transform);
 
-/// A frame's name without the slash that it may begin with.
+/// Removes a leading slash from a frame's name.
 std::string without_slash(const std::string& frame_id);
 
-/// What no header can hold becomes the nearest that one can.
+/// Clamps to the range of a header's stamp.
 ros::Time to_ros_time(Nanoseconds stamp);
 Nanoseconds from_ros_time(const ros::Time& stamp);
-/// Of either sign [s]. The difference as a ros::Duration throws beyond 2^31 s, which a stamp or /clock may
+/// Difference of either sign [s]. A ros::Duration would throw beyond 2^31 s, which stamps or /clock may
 /// reach.
 double seconds_between(const ros::Time& from, const ros::Time& to);
 

@@ -11,20 +11,21 @@
 
 namespace mrhi {
 
-/// Turns what hand trackers publish into hand_frame, placed in the fixed frame by tf2. A hand of joints alone
-/// (PoseArray, PointCloud) is of the side that its topic names, else its frame, else of ~side. Parameters:
-/// ~fixed_frame (world); ~side (right), of hands/pose_array and hands/point_cloud; ~order of joints (empty:
-/// recognised); ~scale, metres per unit of the tracker (1). Throws an exception in one line for a bad one.
+/// Converts messages of hand trackers to hand_frame, transformed to the fixed frame by tf2. The side of a
+/// hand of joints alone (PoseArray, PointCloud) is that in its topic's name, else in its frame's, else ~side.
+/// Parameters: ~fixed_frame (world); ~side (right), of hands/pose_array and hands/point_cloud; ~order of
+/// joints (empty: detected); ~scale, metres per unit of the tracker (1). Throws an exception with one line
+/// for an invalid one.
 class HandTracking {
  public:
   HandTracking(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~HandTracking();
 
-  /// Who is in the same process gets each frame at once, before it is published, with the frame that it is
-  /// placed in and when its message arrived. Its numbers are those of the message.
+  /// Callback in the same process, called for each frame before it is published, with the fixed frame and the
+  /// arrival time of its message. Values are those of the published message.
   using Sink = std::function<void(HandFrame, const std::string& frame_id, const ros::Time& arrival)>;
   void pass_to(Sink sink);
-  /// Frames of trackers that were sent and have not arrived, so far.
+  /// Number of frames that trackers have sent and that have not arrived.
   std::uint64_t lost() const;
 
  private:

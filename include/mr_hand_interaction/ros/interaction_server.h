@@ -11,8 +11,8 @@
 
 namespace mrhi {
 
-/// Feeds hand_frame to a simulation and publishes what comes of it; takes changes of its scene and parameters
-/// between frames. Callbacks of its node handles must not run at the same time.
+/// Runs a simulation on hand_frame and publishes its results. Changes of its scene and parameters are applied
+/// between frames. Callbacks of its node handles must not run concurrently.
 class InteractionServer {
  public:
   /// Throws SceneError for a scene that cannot be loaded.
@@ -20,11 +20,11 @@ class InteractionServer {
                     const ServerParameters& parameters);
   ~InteractionServer();
 
-  /// Frames come from the topic hand_frame,
+  /// Receives frames from the topic hand_frame,
   void subscribe(ros::NodeHandle& node);
-  /// or from the same process. `arrival`: of the message that they were in.
+  /// or from the same process. `arrival`: time at which the frame's message arrived.
   void take(HandFrame frame, const std::string& frame_id, const ros::Time& arrival);
-  /// Frames that have not arrived, where who hands them on knows.
+  /// Number of frames that have not arrived, if the sender knows it.
   void note_lost(std::uint64_t frames);
 
  private:

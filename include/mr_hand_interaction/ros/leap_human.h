@@ -11,44 +11,44 @@
 
 namespace mrhi {
 
-/// A message that cannot be decoded. what() is one line.
+/// Error of a message that cannot be decoded. what() is one line.
 class DecodeError : public std::runtime_error {
  public:
   enum class Kind : std::uint8_t {
-    unknown_version,  ///< of no version of leap_motion/Human that we know
+    unknown_version,  ///< not a known version of leap_motion/Human
     malformed,        ///< the bytes do not fit the type
-    wrong_count,      ///< fingers, bones or joints: too many, twice the same, or of no known kind
-    unknown_order     ///< joints in no order in which they are a hand
+    wrong_count,      ///< fingers, bones or joints: too many, duplicate, or of unknown type
+    unknown_order     ///< the order of joints fits no hand
   };
 
   DecodeError(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
   Kind kind() const { return kind_; }
-  /// The kind in words, for counting.
+  /// The kind as text, for counters.
   const char* reason() const;
 
  private:
   Kind kind_;
 };
 
-/// The part of a leap_motion/Human message that is used.
+/// The fields of a leap_motion/Human message that are used.
 struct LeapFrame {
   std::string frame_id;        ///< of the header
   std::uint32_t sequence = 0;  ///< of the header
-  JointsFrame joints;  ///< stamp of the header, 0 if it was not set; one entry per hand with is_present
+  JointsFrame joints;          ///< stamp of the header, 0 if not set; one entry per hand with is_present
 };
 
-/// MD5 of each of its four published versions.
+/// MD5 of each of the four published versions.
 std::vector<std::string> leap_versions();
 
-/// Reads a serialised leap_motion/Human of any of its four published versions, which `md5` identifies. Throws
+/// Reads a serialised leap_motion/Human of any of its four published versions, identified by `md5`. Throws
 /// DecodeError.
 LeapFrame read_leap(const std::string& md5, std::vector<std::uint8_t> bytes);
 
-/// Reads a serialised leap_motion_controller/Hand as casado-fdo/leap-motion-ros publishes it: one hand, whose
-/// side only the topic tells, without its wrist. Throws DecodeError.
+/// Reads a serialised leap_motion_controller/Hand as published by casado-fdo/leap-motion-ros: one hand
+/// without its wrist, whose side follows from the topic. Throws DecodeError.
 LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes);
 
-/// The bytes of a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+/// Bytes of a topic_tools::ShapeShifter or a rosbag::MessageInstance.
 template <class Message>
 std::vector<std::uint8_t> serialised_bytes(const Message& message) {
   std::vector<std::uint8_t> bytes(message.size());

@@ -8,20 +8,20 @@
 
 namespace mrhi {
 
-/// Where this package's config, rviz, ... are: beside the executable's lib folder (installed), where it was
-/// built, or on the ROS package path. Needs no ROS master.
+/// Folders with this package's config, rviz, ...: relative to the executable's lib folder (installed), in the
+/// build's source, or on the ROS package path. Needs no ROS master.
 std::vector<std::string> share_folders();
 
-/// Folders in which a scene's name is looked up.
+/// Folders in which scenes are looked up by name.
 std::vector<std::string> scene_folders();
 
-/// Folders in which a task's name is looked up.
+/// Folders in which tasks are looked up by name.
 std::vector<std::string> task_folders();
 
-/// "package://NAME/PATH" as the path of a file; empty if there is no such package.
+/// Turns "package://NAME/PATH" into a file path; empty if there is no such package.
 std::string resolve_package_uri(const std::string& uri);
 
-/// What loading a scene takes from the configuration.
+/// Options for loading a scene, from the configuration.
 SceneOptions scene_options(const Configuration& configuration);
 
 }  // namespace mrhi

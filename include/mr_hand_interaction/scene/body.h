@@ -10,7 +10,7 @@
 
 namespace mrhi {
 
-/// How an object's surface answers a touch.
+/// Contact properties of an object's surface.
 struct Material {
   double restitution = 0.3;       ///< epsilon of Newton's impact law (Eq. 10), 0..1
   double static_friction = 0.8;   ///< mu, Coulomb's cone while sticking (Eq. 19)
@@ -18,26 +18,26 @@ struct Material {
   double stiffness = 100.0;       ///< gamma of the penetration force (Eq. 16) [N/m]
 };
 
-/// Which of a material's numbers a scene gives itself; the others follow the parameters.
+/// True for each material property that the scene sets; the others follow the parameters.
 struct OwnMaterial {
   bool restitution = false, static_friction = false, dynamic_friction = false, stiffness = false;
 };
 
-/// What hands can do with a body beyond touching it, under `implicit`.
+/// Interaction of hands with a body under `implicit`.
 enum class GraspMode : std::uint8_t {
-  parameter,  ///< `assist` or `free`, as the parameter contact/grasp_assist says
-  free,       ///< contact alone
-  assist,     ///< contact and grasp assist
-  never       ///< hands push it, but exert no force on it while they have it between two sides
+  parameter,  ///< `assist` or `free`, by the parameter contact/grasp_assist
+  free,       ///< contacts only
+  assist,     ///< contacts and grasp assist
+  never       ///< hands may push it, but apply no force while it is between opposing contact groups
 };
 
-/// What does not change about one object. The body frame has its origin at the centre of mass and the axes of
-/// the URDF link.
+/// Constant properties of one object. The body frame has its origin at the centre of mass and the axes of the
+/// URDF link.
 struct Body {
   std::string name;
-  bool fixed = false;                     ///< a fixture: never moves, mass and inertia are not used
-  bool flies = true;                      ///< neither a fixture nor on a joint: moves by itself
-  bool is_operator = false;               ///< an operator's body (Scene::operators): nothing touches it
+  bool fixed = false;                     ///< a fixture: immovable; mass and inertia are not used
+  bool flies = true;                      ///< neither a fixture nor on a joint: advanced by free flight
+  bool is_operator = false;               ///< an operator's body (Scene::operators): contacts ignore it
   double mass = 1.0;                      ///< [kg], > 0
   Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass, body axes [kg m^2], positive definite
   Matrix3 inverse_inertia = Matrix3::Identity();
@@ -54,17 +54,17 @@ struct Body {
   double bounding_radius = 0.0;  ///< of all shapes, about the body frame's origin [m]
 };
 
-/// What a mode may be called, for messages.
+/// Names of the modes, for messages.
 constexpr const char* kGraspModes = "free, assist or never";
 
-/// A mode by its name in files: free, assist or never. Nothing for another name.
+/// Mode by its name in files: free, assist or never. Empty for another name.
 std::optional<GraspMode> grasp_mode(const std::string& name);
 /// Empty for GraspMode::parameter.
 std::string name_of(GraspMode mode);
 
-/// Fills inverse_inertia (zero for a fixture), its principal axes and bounding_radius from the rest. Throws
-/// std::invalid_argument naming the body and the value if a free body's mass or inertia is not positive
-/// (definite), or a number is beyond its limits (src/scene/limits.h).
+/// Computes inverse_inertia (zero for a fixture), its principal axes and bounding_radius. Throws
+/// std::invalid_argument with the body and the value if a free body's mass or inertia is not positive
+/// (definite), or a number exceeds its limits (src/scene/limits.h).
 void complete(Body& body);
 
 }  // namespace mrhi

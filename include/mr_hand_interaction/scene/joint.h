@@ -12,31 +12,31 @@ namespace mrhi {
 
 struct Scene;
 
-/// The two ways in which a joint moves: about its axis [rad], or along it [m]. What is "/rad" or "N m" below
-/// is "/m" or "N" of one that slides.
+/// Motion of a joint: rotation about its axis [rad], or translation along it [m]. For a sliding joint, units
+/// of "/rad" and "N m" below are "/m" and "N".
 enum class JointKind : std::uint8_t { turning, sliding };
 
-/// Draws the joint to a place of rest, which may lie beyond its limits.
+/// Spring towards a rest position, which may lie beyond the joint's limits.
 struct JointSpring {
   double stiffness = 0.0;  ///< [N m/rad]
   double rest = 0.0;       ///< [rad]
 };
 
-/// Places that the joint snaps into, each as far as midway to the next one.
+/// Positions into which the joint snaps; each attracts up to midway to the next one.
 struct Detents {
   std::vector<double> at;  ///< ascending [rad]
-  double force = 0.0;      ///< that takes it out of the closest ones [N m]
+  double force = 0.0;      ///< force to leave the detents that are closest together [N m]
 };
 
-/// Holds the joint at one place by up to a force, within a reach; what is drawn further is let go, and is
-/// caught when it comes back.
+/// Holds the joint at one position, up to a force and within a capture range. A joint pulled further is
+/// released, and captured again when it returns.
 struct Latch {
   double at = 0.0;     ///< [rad]
-  double force = 0.0;  ///< most that it holds and draws with [N m]
-  double reach = 0.0;  ///< [rad]
+  double force = 0.0;  ///< maximum holding force [N m]
+  double reach = 0.0;  ///< capture range [rad]
 };
 
-/// A joint by which a body hangs on another one, on a fixture, or on the world.
+/// A joint between a body and its parent: another body, a fixture, or the world.
 struct Joint {
   static constexpr int kWorld = -1;
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -44,16 +44,16 @@ struct Joint {
   std::string name;
   JointKind kind = JointKind::turning;
   int parent = kWorld;              ///< index in Scene::bodies
-  int child = 0;                    ///< likewise: of a body that is no fixture
+  int child = 0;                    ///< likewise; not a fixture
   Vector3 axis = Vector3::UnitX();  ///< unit, joint's frame, which is the child's link frame
-  Pose in_parent;                   ///< of the joint's frame at 0, in the parent's body frame
-  Pose in_child;                    ///< of the joint's frame, in the child's body frame
-  double start = 0.0;               ///< where it begins [rad]
+  Pose in_parent;                   ///< joint frame at position 0, in the parent's body frame
+  Pose in_child;                    ///< joint frame, in the child's body frame
+  double start = 0.0;               ///< initial position [rad]
   double lower = -kUnlimited;       ///< [rad]
   double upper = kUnlimited;        ///< [rad]
   double restitution = 0.0;         ///< of the limits, 0..1
   double damping = 0.0;             ///< viscous [N m s/rad]
-  double friction = 0.0;            ///< Coulomb's, static as sliding [N m]
+  double friction = 0.0;            ///< Coulomb friction, static and sliding alike [N m]
   std::optional<JointSpring> spring;
   std::optional<Detents> detents;
   std::optional<Latch> latch;
@@ -61,20 +61,20 @@ struct Joint {
   bool is_limited() const { return lower > -kUnlimited || upper < kUnlimited; }
 };
 
-/// Of the child's link frame, which is the joint's, against its frame at 0.
+/// Pose of the joint's frame, which is the child's link frame, relative to its pose at position 0.
 Pose joint_motion(const Joint& joint, double position);
 
-/// Puts the start poses of all bodies that hang on joints where the joints' starts have them, and the joints
-/// in an order in which a body's own comes before those of what hangs on it. Throws std::invalid_argument
-/// with one line for a joint that has no place in a tree: a loop, two joints to one body, a fixture as child,
-/// a parent that is not there, numbers out of their limits.
+/// Sets the start poses of all jointed bodies from the joints' start positions, and sorts the joints so that
+/// a body's own precedes those of its children. Throws std::invalid_argument with one line for joints that
+/// form no tree: a loop, two joints to one body, a fixture as child, an unknown parent, or numbers out of
+/// their limits.
 void arrange_joints(Scene& scene);
 
-/// The free body that a body hangs on through joints, or the body itself if it is free. Nothing for a fixture
-/// and for what hangs on a fixture or on the world.
+/// The free body at the root of a body's linkage; the body itself if it is free. Empty for fixtures and for
+/// bodies jointed to a fixture or to the world.
 std::optional<int> floating_root(const Scene& scene, int body);
 
-/// Index of the joint of that name, or nothing.
+/// Index of the joint of that name, or empty.
 std::optional<int> find_joint(const Scene& scene, const std::string& name);
 
 }  // namespace mrhi

@@ -9,12 +9,12 @@
 
 namespace mrhi {
 
-/// An object that somebody wants in a scene.
+/// A request to add an object to a scene.
 struct ObjectRequest {
   std::string name;  ///< empty: that of the URDF's link
-  /// XML with one link that has a shape, or the path or package:// of a file of it; empty: `shape` instead.
+  /// XML of one link with a shape, or the path or package:// of such a file; empty: `shape` instead.
   std::string urdf;
-  std::string folder;        ///< where paths of meshes in the XML start
+  std::string folder;        ///< base of relative mesh paths in the XML
   std::string shape;         ///< box, sphere, or cylinder (about z)
   std::vector<double> size;  ///< box: x, y, z; sphere: radius; cylinder: radius, length [m]
   double mass = 0.0;         ///< of `shape`, which is solid [kg]; 0: a fixture
@@ -22,21 +22,21 @@ struct ObjectRequest {
   Twist twist;               ///< of the centre of mass, world axes
   std::string material;      ///< YAML, as in a scene's materials; empty: the parameters'
   std::optional<std::array<float, 4>> rgba;
-  /// All links of the URDF, with their joints; `name` and '_' come before the names of links and joints then,
-  /// and of the rest only `urdf` and `pose`, of the URDF's root, count.
+  /// Adds all links of the URDF, with their joints. `name` and '_' are then prefixed to the names of links
+  /// and joints. Otherwise only `urdf` and `pose`, of the URDF's root, are used.
   bool whole = false;
-  std::string joints;  ///< of `whole`: YAML, as in a scene's joints; empty: as the URDF has them
+  std::string joints;  ///< for `whole`: YAML, as in a scene's joints; empty: as in the URDF
 };
 
-/// The request with the text of the file that its `urdf` names, and that file's folder; the request itself if
-/// that is no path. Throws SceneError.
+/// The request with the text of the file that `urdf` names, and its folder; the request itself if `urdf` is
+/// no path. Throws SceneError.
 ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options);
 
-/// Throws SceneError with one line that says what is wrong and what is allowed. A link of the URDF on a fixed
-/// joint is a fixture.
+/// The requested body. Throws SceneError with one line that states what is wrong and what is allowed. A link
+/// of the URDF on a fixed joint is a fixture.
 Body requested_body(const ObjectRequest& request, const SceneOptions& options);
 
-/// What is to be added to a scene: that body, or all of a URDF that is wanted whole. Throws likewise.
+/// The requested body, or the whole URDF, as a scene to be appended. Throws SceneError likewise.
 Scene requested_scene(const ObjectRequest& request, const SceneOptions& options);
 
 }  // namespace mrhi

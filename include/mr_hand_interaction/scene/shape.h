@@ -15,15 +15,14 @@ struct AxisSpan;
 struct Capsule;
 struct ClosestFeatures;
 
-/// Of a solid in its frame.
+/// Volume moments of a solid in its frame.
 struct SolidMoments {
   double volume = 0.0;               ///< [m^3]
-  Vector3 first = Vector3::Zero();   ///< the integral of x over it [m^4]
-  Matrix3 second = Matrix3::Zero();  ///< that of x x^T [m^5]
+  Vector3 first = Vector3::Zero();   ///< integral of x over the solid [m^4]
+  Matrix3 second = Matrix3::Zero();  ///< integral of x x^T over the solid [m^5]
 };
 
-/// A solid between two flat ends that are half.z from its middle: on a rectangle, or on a disc of radius
-/// half.x.
+/// A prism with flat ends at half.z from its centre, on a rectangle or on a disc of radius half.x.
 struct PrismForm {
   Vector3 half;  ///< [m]
   bool round;
@@ -33,23 +32,22 @@ struct PrismForm {
 struct TriangleMesh {
   std::vector<Vector3> vertices;
   std::vector<std::array<int, 3>> triangles;
-  /// First triangle of each closed part, ascending from 0, of a mesh whose parts may overlap: the solid is
-  /// their union. Empty: one part.
+  /// First triangle of each closed part, ascending from 0, if parts may overlap: the solid is their union.
+  /// Empty: one part.
   std::vector<int> parts{};
 };
 
-// Each shape answers the same questions, in its own frame and in a file of its own
-// (src/collision/shape_*.cpp):
-//   bounding_radius  of the smallest sphere around the origin that holds it [m]
-//   moments          of a solid of its form
-//   farthest         its point farthest along n
-//   way_out          from `point` along the unit vector `direction` to where that line leaves the shape
-//   core             the capsule that it is, if it is one or a ball
-//   prism            the prism that it is, if it is one
-//   closest          features of a capsule of the hand; anything of a distance beyond `margin` may stand for
-//                    what is farther than that
-//   span             what of the capsule's axis stands over the flat or straight piece at `features`
-// A mesh leaves the last two to its MeshCollider, that is made once.
+// Queries of each shape, in its own frame; each shape has a file of its own (src/collision/shape_*.cpp):
+//    bounding_radius  of the smallest sphere around the origin that contains it [m]
+//    moments          of a solid of its form
+//    farthest         support point along n
+//    way_out          distance from `point` along the unit vector `direction` to the surface
+//    core             the equal capsule, if it is a ball or a capsule
+//    prism            the equal prism, if it is one
+//    closest          closest features to a capsule of the hand; beyond a distance of `margin` any feature
+//                     may be returned
+//    span             interval of the capsule's axis over the flat or straight feature at `features`
+// A mesh leaves the last two to its MeshCollider, which is built once.
 
 struct Sphere {
   double radius;  ///< [m]
@@ -92,7 +90,7 @@ struct Cylinder {
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 };
 
-/// A capsule: axis along z, centred at the origin, a half ball on each end.
+/// A capsule: axis along z, centred at the origin, a hemisphere on each end.
 struct Pill {
   double radius;       ///< [m]
   double half_length;  ///< of the straight part [m]
@@ -109,7 +107,7 @@ struct Pill {
 
 struct Mesh {
   std::shared_ptr<const TriangleMesh> triangles;  ///< scaled, in the shape's frame
-  std::string uri;                                ///< for display: as the URDF has it, a path made file://
+  std::string uri;                                ///< for display: as in the URDF; a path becomes file://
   Vector3 scale = Vector3::Ones();
 
   double bounding_radius() const;
@@ -122,21 +120,21 @@ struct Mesh {
 
 using Shape = std::variant<Sphere, Box, Cylinder, Pill, Mesh>;
 
-/// A collision shape and its place in the body frame.
+/// A collision shape and its pose in the body frame.
 struct PlacedShape {
   Shape shape;
   Pose pose;
 };
 
-/// A shape to look at and its place in the body frame.
+/// A visual shape and its pose in the body frame.
 struct Visual {
   Shape shape;
   Pose pose;
   std::array<float, 4> rgba{{0.7f, 0.7f, 0.7f, 1.0f}};
-  bool has_color = false;  ///< given; a mesh without one keeps its file's materials
+  bool has_color = false;  ///< a colour is given; a mesh without one keeps its file's materials
 };
 
-/// Radius of the smallest sphere around the shape frame's origin that holds the shape [m].
+/// Radius of the smallest sphere around the shape frame's origin that contains the shape [m].
 double bounding_radius(const Shape& shape);
 
 }  // namespace mrhi

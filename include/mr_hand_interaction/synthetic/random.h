@@ -6,7 +6,7 @@
 
 namespace mrhi {
 
-/// Random numbers that are the same bits everywhere: splitmix64 (Steele, Lea & Flood 2014).
+/// Random numbers with the same bits on every platform: splitmix64 (Steele, Lea & Flood 2014).
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -17,10 +17,10 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// 0 to 1.
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
-  /// Of mean 0 and deviation 1: a sum of twelve uniform numbers. Only additions, so the bits do not depend on
-  /// a mathematics library.
+  /// Approximately normal with mean 0 and deviation 1: a sum of twelve uniform numbers. Uses only additions,
+  /// so the bits do not depend on a mathematics library.
   double gaussian() {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += uniform();

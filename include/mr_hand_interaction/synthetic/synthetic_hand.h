@@ -11,14 +11,13 @@
 
 namespace mrhi {
 
-/// Noise like that of a Leap Motion: white on every joint, 0.2 mm rms when still and 1.2 mm from 1 m/s on,
-/// and 0.2 mm rms common to the whole hand, all times `amplitude`. The same seed and frames give the same
-/// bits.
+/// Noise like that of a Leap Motion, times `amplitude`: white on every joint, 0.2 mm rms at rest and 1.2 mm
+/// from 1 m/s on, and 0.2 mm rms common to the whole hand. The same seed and frames give the same bits.
 class TrackingNoise {
  public:
   TrackingNoise(double amplitude, std::uint64_t seed) : amplitude_(amplitude), random_(seed) {}
 
-  /// Disturbs a frame; frames in the order of their stamps.
+  /// Adds noise to a frame. Call with frames in the order of their stamps.
   void apply(JointsFrame& frame);
 
  private:
@@ -37,19 +36,19 @@ struct SyntheticHandOptions {
   std::uint64_t seed = 1;
 };
 
-/// A device that sees a scripted hand: its frames one after the other, evenly spaced, stamps from 0.
+/// A device that sees a scripted hand: evenly spaced frames, with stamps from 0.
 class SyntheticHand {
  public:
-  /// Throws std::invalid_argument that names the option and what is allowed. The device is where
-  /// default_device_mount() has it.
+  /// Throws std::invalid_argument with the option and what is allowed. The device is at
+  /// default_device_mount().
   explicit SyntheticHand(const SyntheticHandOptions& options);
-  /// Another motion than the options'.
+  /// Uses another motion than that of the options.
   SyntheticHand(const SyntheticHandOptions& options, const ScriptedMotion& motion);
 
   const ScriptedMotion& motion() const { return motion_; }
-  /// Stamp that the next frame will have.
+  /// Stamp of the next frame.
   Nanoseconds next_stamp() const;
-  /// Number of the run that the next frame belongs to, from 0.
+  /// Index of the next frame's run, from 0.
   int next_run() const;
   JointsFrame next();
 
@@ -61,12 +60,12 @@ class SyntheticHand {
   std::int64_t frame_ = 0;
 };
 
-/// One run of the motion and the pause after it.
+/// Records one run of the motion and the pause after it.
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options);
 std::vector<JointsFrame> record_motion(const SyntheticHandOptions& options, const ScriptedMotion& motion);
 
-/// Writes frames in the CSV schema of recordings: a line per hand and frame, hand_id -1 for a frame without
-/// hands, time from the first stamp, micrometres. What a frame does not have is left empty.
+/// Writes frames in the CSV schema of recordings: one line per hand and frame, hand_id -1 for a frame without
+/// hands, time from the first stamp, micrometres. Missing values are empty.
 void write_recording_csv(std::ostream& out, const std::vector<JointsFrame>& frames);
 
 }  // namespace mrhi

@@ -26,14 +26,14 @@ constexpr int bone_of(int capsule) {
   return capsule % kBonesPerFinger;
 }  ///< 0 for the palm
 
-/// One hand at one time, in world. A capsule with radius 0 is one that the tracker did not give.
+/// One hand at one time, in world. A capsule with radius 0 was not reported by the tracker.
 struct Hand {
   std::uint32_t id = 0;
   Side side = Side::right;
   double confidence = 1.0;      ///< 0..1
   double grab_strength = 0.0;   ///< 0..1
   double pinch_strength = 0.0;  ///< 0..1
-  Pose palm;                    ///< centre of the palm; x to the fingers, z out of the back of the hand
+  Pose palm;                    ///< centre of the palm; x towards the fingers, z out of the back of the hand
   double palm_width = 0.0;      ///< [m]
   Vector3 wrist = Vector3::Zero();
   std::array<Capsule, kCapsules> capsules;
@@ -41,7 +41,7 @@ struct Hand {
   bool has(int capsule) const { return capsules[static_cast<std::size_t>(capsule)].radius > 0.0; }
 };
 
-/// What the tracker saw at one time.
+/// Hands reported by the tracker at one time.
 struct HandFrame {
   Nanoseconds stamp = 0;
   std::vector<Hand> hands;

@@ -13,39 +13,39 @@
 namespace mrhi {
 
 /// Merges the frames of several trackers, in world and stamped by one clock, into one stream. A merged frame
-/// has the stamp of a frame of the leading stream: the first that delivers, while it goes on. The hands of
-/// the other streams are interpolated at that stamp, so a merged frame waits for their next ones. A stream
-/// has ended when two of its intervals, or 0.1 s, have gone by without a frame. Depends on the frames alone.
+/// has the stamp of the leading stream: the first that delivers frames. Hands of the other streams are
+/// interpolated at that stamp, so a merged frame waits for their next frames. A stream ends when two of its
+/// intervals, or 0.1 s, pass without a frame. The result depends on the frames alone.
 class HandMerger {
  public:
   enum class Mode : std::uint8_t {
-    people,  ///< each stream sees hands of its own; ids are made different: id * streams + stream
-    fused    ///< all streams see the hands of one person: one hand of a side, with ids 1 (left) and 2 (right)
+    people,  ///< streams see different hands; ids become unique: id * streams + stream
+    fused    ///< streams see one person: one hand of each side, with ids 1 (left) and 2 (right)
   };
 
-  /// At least one stream.
+  /// `streams`: at least 1.
   HandMerger(std::size_t streams, Mode mode);
 
-  /// Merged frames that are complete with this frame of a stream, oldest first. A frame that is not after the
-  /// one before it in its stream begins its stream anew.
+  /// Returns the merged frames that this frame of a stream completes, oldest first. A frame that is not later
+  /// than its predecessor restarts its stream.
   std::vector<HandFrame> take(std::size_t stream, const HandFrame& frame);
 
  private:
   struct Stream {
     std::deque<HandFrame> frames;  ///< newest last
-    Nanoseconds interval = 0;      ///< between the last two; 0: not known
+    Nanoseconds interval = 0;      ///< between the last two; 0: unknown
 
     bool goes_on(Nanoseconds now) const;
-    /// Hands in the frames on both sides of the stamp, in between.
+    /// Hands interpolated between the frames on both sides of the stamp.
     std::vector<Hand> at(Nanoseconds stamp) const;
   };
-  /// One side of the person that all streams see.
+  /// One hand of a person seen by all streams.
   struct FusedSide {
-    std::vector<double> weights;            ///< of the streams, slowly changing
-    std::vector<std::optional<Hand>> seen;  ///< by each stream, in the merged frame before
+    std::vector<double> weights;            ///< of the streams; they change slowly
+    std::vector<std::optional<Hand>> seen;  ///< by each stream, in the last merged frame
     std::optional<Hand> output;
     Nanoseconds stamp = 0;
-    HandVelocity jump;  ///< of points [m], which fades: from a change in which streams see the hand
+    HandVelocity jump;  ///< fading offset of points [m], after a change in the streams that see the hand
     Nanoseconds jumped = 0;
   };
   void take_complete(std::vector<HandFrame>& complete);
@@ -62,21 +62,20 @@ class HandMerger {
   std::array<FusedSide, 2> sides_;
 };
 
-/// Left and right hands that come in streams of their own, brought together in frames by their stamps alone,
-/// so that a replay does as the live node. Of two streams that go on, a frame waits for the other side's:
-/// they belong together if they are no farther apart than half the interval of the faster stream, whose
-/// frames that find no partner are left out. A stream has ended when two of its intervals, or 0.1 s, have
-/// gone by without a frame.
+/// Combines left and right hands from separate streams into frames, by their stamps alone, so a replay equals
+/// the live node. While both streams continue, a frame waits for one of the other side. Two frames match if
+/// their stamps differ by at most half the interval of the faster stream; its frames without a match are
+/// dropped. A stream ends when two of its intervals, or 0.1 s, pass without a frame.
 class HandPairs {
  public:
-  /// The frame that is complete with this one of a side, if one is.
+  /// Returns the frame that this one of a side completes, if any.
   std::optional<HandFrame> take(Side side, const HandFrame& frame);
-  /// What still waits, at the end of a recording.
+  /// Returns the waiting frame, at the end of a recording.
   std::optional<HandFrame> rest();
 
  private:
   struct Stream {
-    Nanoseconds last = 0, interval = 0;  ///< interval 0: not known
+    Nanoseconds last = 0, interval = 0;  ///< interval 0: unknown
     void note(Nanoseconds stamp);
     bool goes_on(Nanoseconds stamp) const;
   };
@@ -87,14 +86,14 @@ class HandPairs {
   Side waiting_side_ = Side::left;
 };
 
-/// Joints that a tracker loses for moments stay with their hand: each is moved on as those that are seen
-/// before and after have moved together (three, not in one line, must be). For trackers that report at most
-/// one hand of a side. By stamps alone, so that a replay does as the live node.
+/// Fills short gaps of single joints. A missing joint moves with the rigid motion of the joints seen before
+/// and now, at least three that are not collinear. For trackers that report at most one hand of a side. Uses
+/// stamps alone, so a replay equals the live node.
 class JointGaps {
  public:
-  static constexpr Nanoseconds kLongest = 200'000'000;  ///< as tracking/hold_time ships
+  static constexpr Nanoseconds kLongest = 200'000'000;  ///< default of tracking/hold_time
 
-  /// Puts in what was seen no longer ago than kLongest.
+  /// Fills joints that were last seen at most kLongest ago.
   void fill(JointsFrame& frame);
 
  private:
@@ -102,8 +101,8 @@ class JointGaps {
   using Points = std::array<std::optional<Vector3>, kJoints>;
   struct Memory {
     Nanoseconds stamp = 0;
-    Points points;                            ///< with what was put in
-    std::array<Nanoseconds, kJoints> seen{};  ///< when each was last
+    Points points;                            ///< including filled ones
+    std::array<Nanoseconds, kJoints> seen{};  ///< stamp at which each was last seen
 
     void move_on(const Points& now);
     void take(HandJoints& hand, Nanoseconds at);

@@ -19,13 +19,13 @@ namespace mrhi {
 
 class FolderLock;
 
-/// A session that cannot be opened or written. what() is one line.
+/// Error of a session that cannot be opened or written. what() is one line.
 class SessionError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What session.yaml says; docs/study.md has its meaning.
+/// Contents of session.yaml; docs/study.md has their meaning.
 struct SessionHeader {
   std::string participant, group, handedness, condition;
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
@@ -38,8 +38,8 @@ struct SessionHeader {
   std::string software;
 };
 
-/// What a session is played with: files by their names, with their bytes. A session's folder keeps them below
-/// setup/, so that a session that goes on goes on with the same. Empty: nothing is kept.
+/// Files that define a session, by name with their bytes. A session's folder stores them in setup/, so that a
+/// resumed session uses the same. Empty: nothing is stored.
 struct SessionSetup {
   std::map<std::string, std::string> files;
 };
@@ -50,61 +50,60 @@ struct TrialRow {
   std::string object;
   int repetition = 1;  ///< from 1; 0: practice
   TrialResult result = TrialResult::none;
-  double start = 0.0;  ///< since the session's start [s]
+  double start = 0.0;  ///< since the start of the session [s]
   TrialMeasures measures;
 };
 
 /// A row of events.csv.
 struct EventRow {
-  double time = 0.0;      ///< since the session's start [s]
+  double time = 0.0;      ///< since the start of the session [s]
   Nanoseconds stamp = 0;  ///< on the clock of the session
-  std::string utc;        ///< as 2024-05-06T10:00:00.123Z; empty: not known
+  std::string utc;        ///< as 2024-05-06T10:00:00.123Z; empty: unknown
   int trial = 0;          ///< 0: none
   TrainingStage stage = TrainingStage::manipulation;
   std::string event, object, detail;
 };
 
-/// A row of hands.csv (filtered) or hands_raw.csv, with the columns that replay gives them: the tip of an
-/// index finger.
+/// A row of hands.csv (filtered) or hands_raw.csv, with the columns that replay writes: the tip of an index
+/// finger.
 struct HandRow {
-  double time = 0.0;  ///< since the session's start [s]
+  double time = 0.0;  ///< since the start of the session [s]
   bool filtered = false;
   std::uint32_t hand = 0;
   int side = 0;                                            ///< as in Hand.msg
-  Vector3 start = Vector3::Zero(), end = Vector3::Zero();  ///< of its last phalanx, in world [m]
+  Vector3 start = Vector3::Zero(), end = Vector3::Zero();  ///< of the distal phalanx, in world [m]
   double radius = 0.0;
 };
 
-/// A session's folder: session.yaml, setup/, trials.csv, events.csv, and once there are hands hands.csv and
-/// hands_raw.csv. What is logged is in the file when the call returns, whatever becomes of this program.
+/// A session's folder: session.yaml, setup/, trials.csv, events.csv, and once there are hands, hands.csv and
+/// hands_raw.csv. A logged row is in the file when the call returns, even if the program then fails.
 class SessionFolder {
  public:
-  /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
-  /// Throws SessionError if it is that of another session or of another setup, has other tables of these
-  /// names, is in use by another program, or cannot be read or written. All that is there is looked at before
-  /// anything is touched.
+  /// Creates the folder, or resumes the session in it; a line that a crash has truncated is removed. Throws
+  /// SessionError if the folder belongs to another session or setup, has other tables of these names, is in
+  /// use by another program, or cannot be read or written. All files are checked before any is changed.
   SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
   ~SessionFolder();
 
   const std::string& path() const { return path_; }
   bool resumed() const { return resumed_; }
-  /// What was in trials.csv: without measures.
+  /// Rows of trials.csv, without measures.
   const std::vector<TrialRow>& earlier_trials() const { return earlier_; }
   int last_trial() const { return last_trial_; }   ///< highest number in either file; 0: none
-  double last_time() const { return last_time_; }  ///< of events.csv [s]
-  /// What was taken away, for the log.
+  double last_time() const { return last_time_; }  ///< last time in events.csv [s]
+  /// Descriptions of removed lines, for the log.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Throws SessionError once the files that are written to are no more what is found under their names.
+  /// Throws SessionError if the open files are no longer those at their paths.
   void check_there() const;
 
-  /// These throw SessionError, too, if the disk does not take it.
+  /// Throw SessionError, also if writing fails.
   void log(const EventRow& row);
   void log(const TrialRow& row);
   void log(const HandRow& row);
 
  private:
-  /// A file that rows are added to, and which one it is.
+  /// A file to which rows are appended, with its identity.
   struct Table {
     std::string file;
     std::ofstream out;
@@ -128,25 +127,25 @@ class SessionFolder {
   Table trials_, events_, hands_, hands_raw_;
 };
 
-/// Numbers are those of TrainingStatus.msg.
+/// Numbers as in TrainingStatus.msg.
 enum class SessionPhase : std::uint8_t { ready, running, paused, finished };
 
-/// What a session asks of and tells to the program that runs it; both may be empty.
+/// Callbacks of a session to its program; both may be empty.
 struct SessionHooks {
-  std::function<std::string()> utc;                   ///< what time it is, for EventRow::utc
+  std::function<std::string()> utc;                   ///< present time, for EventRow::utc
   std::function<void(const EventRow& row)> on_event;  ///< after each row of events.csv
 };
 
-/// Place of a participant in the Latin square: the number at the end of the name ("P07": 7), counted from 0
-/// where it is counted from 1 by people. Throws SessionError for a name without one.
+/// Row of a participant in the Latin square, from 0: the number at the end of the name, from 1 ("P07": 7),
+/// less one. Throws SessionError for a name without a number.
 std::uint64_t participant_place(const std::string& participant);
 
-/// A participant's trials, one after the other, and their log. Each combination of object and repetition that
-/// has no row yet, or only rows that say aborted, is still to be done.
+/// A participant's trials, one after the other, and their log. A combination of object and repetition is
+/// still to be done if it has no row, or only aborted ones.
 class Session {
  public:
-  /// `header`: gravity, task and order are those of the task. `place`: see participant_place. `now`: stamps
-  /// are counted from here; a session that goes on counts on from its last event.
+  /// `header`: gravity, task and order are taken from the task. `place`: see participant_place(). `now`:
+  /// origin of times; a resumed session continues from its last event.
   Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
           Nanoseconds now, const SessionSetup& setup = {}, SessionHooks hooks = {});
 
@@ -154,27 +153,26 @@ class Session {
   const Task& task() const { return *task_; }
   const SessionFolder& folder() const { return folder_; }
   std::size_t trials() const { return plan_.size(); }
-  std::size_t position() const { return position_; }  ///< in the plan, of the trial that is running or next
-  const TaskObject& object() const;                   ///< of that trial; of the last one when finished
+  std::size_t position() const { return position_; }  ///< index in the plan of the running or next trial
+  const TaskObject& object() const;                   ///< of that trial; of the last one if finished
   const Trial& trial() const { return trial_; }       ///< the running one, or the last
-  const std::optional<TrialRow>& last() const { return last_; }  ///< the last that has ended since the start
+  const std::optional<TrialRow>& last() const { return last_; }  ///< the last ended since the start
 
-  /// Phase ready: the next trial runs, from the first observation on.
+  /// Starts the next trial, from the first observation on. Requires phase ready.
   void begin(Nanoseconds now);
-  /// Phase running.
+  /// Requires phase running.
   void update(const Observation& seen);
-  /// Phase running, once the trial has begun: for the path of the fingertip. The row's time is set here.
+  /// Logs the path of the fingertip; sets the row's time. Requires phase running and a trial that has begun.
   void log_hand(HandRow row, Nanoseconds stamp);
-  /// Running and paused only.
+  /// Requires phase running or paused.
   void pause(bool paused, Nanoseconds now);
-  /// The running trial, or the next one, is passed over.
+  /// Skips the running trial, or the next one.
   void skip(Nanoseconds now);
-  /// The running trial is aborted and is the next one; if none is running, the one before is to be done
-  /// again.
+  /// Aborts the running trial, which is then the next one. If none is running, repeats the previous one.
   void repeat(Nanoseconds now);
-  /// A parameter of the running system is from now on another one than `setup` says, or that one again.
+  /// Logs that a parameter of the running system now differs from `setup`, or equals it again.
   void note_parameter(const std::string& name, const std::string& value, bool as_begun, Nanoseconds now);
-  /// For the end of the program: a running trial is aborted.
+  /// Aborts a running trial, at the end of the program.
   void abort(Nanoseconds now);
 
  private:
@@ -207,27 +205,27 @@ class Session {
   std::optional<TrialRow> last_;
 };
 
-/// Order in which a participant (counted from 0) meets n things: a row of a Latin square, shuffled by the
-/// seed. Among n participants in a row, the first of them a multiple of n, each thing has each place once;
-/// among 2 n (n, if n is even) each also follows each other equally often (Williams 1949).
+/// Order of n things for a participant (counted from 0): a row of a Latin square, shuffled by the seed. Among
+/// n consecutive participants, the first a multiple of n, each thing has each position once. Among 2 n (n, if
+/// n is even) each thing also follows each other one equally often (Williams 1949).
 std::vector<std::size_t> latin_square_order(std::size_t n, std::uint64_t participant, std::uint64_t seed);
 
-/// The git revision that this library was built from, with a hash of what was changed since; "unknown" where
-/// it was built outside of a repository.
+/// Git revision from which this library was built, with a hash of local changes; "unknown" if built outside a
+/// repository.
 std::string source_revision();
 
-/// task.yaml (the file as it stands), parameters.yaml (every parameter's value; gravity is the task's), the
-/// URDF and YAML of each object and fixture, meshes.txt (SHA-256 of the mesh files, if there are any),
-/// software.yaml (version and revision) and SHA256SUMS of them all, which `sha256sum -c` reads. Throws
-/// SceneError for a file that cannot be read.
+/// Returns task.yaml (unchanged), parameters.yaml (all parameters; gravity is the task's), the URDF and YAML
+/// of each object and fixture, meshes.txt (SHA-256 of the mesh files, if any), software.yaml (version and
+/// revision) and SHA256SUMS of them all, for `sha256sum -c`. Throws SceneError for a file that cannot be
+/// read.
 SessionSetup session_setup(const std::string& task_file, const Task& task, Configuration configuration,
                            const std::vector<std::string>& scene_folders, const SceneOptions& options,
                            const std::string& version);
 
-/// Writes them to FOLDER/setup, whole or not at all. Throws SessionError.
+/// Writes the files to FOLDER/setup, all or none. Throws SessionError.
 void write_setup(const std::string& folder, const SessionSetup& setup);
 
-/// Throws SessionError that says where what is in FOLDER/setup differs first, if it does.
+/// Throws SessionError with the first difference, if FOLDER/setup differs.
 void check_same_setup(const std::string& folder, const SessionSetup& setup);
 
 }  // namespace mrhi

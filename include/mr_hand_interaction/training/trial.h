@@ -12,52 +12,54 @@
 
 namespace mrhi {
 
-/// The operator's body at one time.
+/// Motion of the operator's body at one time.
 struct OperatorMotion {
   Pose pose;    ///< of the centre of mass in world
   Twist twist;  ///< world axes
 };
 
-/// What a trial sees of its object at one time.
+/// Input of a trial at one time.
 struct Observation {
   Nanoseconds stamp = 0;
   Pose pose;                         ///< of the object's body frame in world
   Twist twist;                       ///< world axes
   bool held = false;                 ///< grasped by a hand
   bool touched = false;              ///< by a hand
-  std::optional<double> grip_force;  ///< half the sum of the forces that press on the object [N]
-  int tracking_losses = 0;           ///< hands lost since the observation before
-  int touches = 0;  ///< contacts of a hand with a body that began since the observation before
-  std::optional<OperatorMotion> person;  ///< nothing: the scene has no operator
-  bool put_back = false;                 ///< left the bounds since then, and was put back where it started
-  std::vector<std::pair<std::string, double>> joints;  ///< by name: where it is [rad], [m]
+  std::optional<double> grip_force;  ///< half the sum of the normal forces on the object [N]
+  int tracking_losses = 0;           ///< hands lost since the last observation
+  int touches = 0;                   ///< contacts of a hand with a body that began since the last observation
+  std::optional<OperatorMotion> person;  ///< empty: the scene has no operator
+  bool put_back = false;                 ///< left the bounds since the last observation, and was reset to its
+                                         ///< start
+  std::vector<std::pair<std::string, double>> joints;  ///< names and positions [rad], [m]
 };
 
-/// Of a body of a simulation and what hangs on it, after a frame.
+/// Observes a body of a simulation and its descendants by joints, after a frame.
 Observation observe(const Simulation& simulation, std::size_t body);
 
-/// Numbers are those of TrainingStatus.msg.
+/// Numbers as in TrainingStatus.msg.
 enum class TrialResult : std::uint8_t { none, completed, skipped, timed_out, aborted };
 const char* to_string(TrialResult result);  ///< as in trials.csv
 
-/// Columns of trials.csv; what was not measured is empty.
+/// Columns of trials.csv; values that were not measured are empty.
 struct TrialMeasures {
-  double completion_time = 0.0;                                    ///< [s] until the object was let go
-  std::array<std::optional<double>, kTrainingStages> stage_times;  ///< [s]; empty: never got there
-  int attempts = 0;  ///< times grasped (nudge_into, strike: touched); `grasps` in trials.csv too
-  /// Times lost, for 0.1 s at least, while it should have been held (strike: left at another speed).
+  double completion_time = 0.0;                                    ///< until the object was released [s]
+  std::array<std::optional<double>, kTrainingStages> stage_times;  ///< [s]; empty: stage not reached
+  int attempts = 0;  ///< number of grasps (nudge_into, strike: touches); also `grasps` in trials.csv
+  /// Number of losses of at least 0.1 s while it should be held (strike: released at another speed).
   int drops = 0;
-  int manipulation_drops = 0;  ///< of the drops those in the stage of manipulation: the paper's attempts
-  double path_length = 0.0;    ///< way of the object while held [m]
-  std::optional<double> grip_force_mean, grip_force_max;  ///< while held [N]; the mean over time
-  std::optional<double> release_drift;                    ///< from where it was let go, drift_time later [m]
-  std::optional<double> release_speed;                    ///< as it was let go [m/s]
+  int manipulation_drops = 0;  ///< drops in the stage of manipulation: the paper's attempts
+  double path_length = 0.0;    ///< of the object while held [m]
+  std::optional<double> grip_force_mean, grip_force_max;  ///< while held [N]; mean over time
+  std::optional<double> release_drift;                    ///< distance from the place of release, drift_time
+                                                          ///< later [m]
+  std::optional<double> release_speed;                    ///< at release [m/s]
   int tracking_losses = 0;
-  int touches = 0;  ///< times that a hand began to touch an object or a fixture
-  /// Of the last goal `rest` with a position: the speed at which its body first came within the tolerance
-  /// [m/s]; where it was and how it lay as the goal was achieved [m], [rad].
+  int touches = 0;  ///< number of first touches of a hand with an object or a fixture
+  /// Of the last goal `rest` with a position: speed at which its body first came within the tolerance [m/s];
+  /// errors of position and orientation when the goal was achieved [m], [rad].
   std::optional<double> arrival_speed, misplacement, misalignment;
-  std::optional<double> operator_speed, operator_spin;  ///< at the trial's end [m/s], [rad/s]
+  std::optional<double> operator_speed, operator_spin;  ///< at the end of the trial [m/s], [rad/s]
 };
 
 enum class TrialEventKind : std::uint8_t {
@@ -65,11 +67,11 @@ enum class TrialEventKind : std::uint8_t {
   grasped,
   dropped,
   released,
-  reached,        ///< detail: number of the goal, from 1; its timer runs
-  left,           ///< detail: the timer [s] as it stopped
+  reached,        ///< detail: number of the goal, from 1; its timer starts
+  left,           ///< detail: the timer [s] when it stopped
   goal_achieved,  ///< detail: number of the goal, from 1
-  touched,        ///< for a goal that asks for a touch
-  missed,         ///< a strike; detail: the object's speed [m/s]
+  touched,        ///< for a goal that requires a touch
+  missed,         ///< a strike at another speed; detail: the object's speed [m/s]
   tracking_lost,
   put_back,
   ended
@@ -89,15 +91,14 @@ class Trial {
  public:
   explicit Trial(const Task& task) : task_(&task) {}
 
-  /// Takes what is seen now. An observation that is not later than the one before is passed over, and so is
-  /// all after the end.
+  /// Processes an observation. Ignores one that is not later than the last, and all after the end.
   void update(const Observation& seen);
-  /// The time until the next observation does not count.
+  /// Excludes the time until the next observation.
   void pause() { counting_ = false; }
-  /// Ends it as skipped or aborted; nothing if it has ended.
+  /// Ends the trial as skipped or aborted; no effect if it has ended.
   void end(TrialResult result);
 
-  TrialResult result() const { return result_; }  ///< none: goes on
+  TrialResult result() const { return result_; }  ///< none: not ended
   bool begun() const { return last_.has_value(); }
   std::size_t goal() const { return goal_; }  ///< index in the task's goals
   TrainingStage stage() const { return task_->goals[goal_].stage; }
@@ -106,7 +107,7 @@ class Trial {
   double remaining() const;                ///< of the goal's timer [s]
   double elapsed() const { return to_seconds(elapsed_); }
   const TrialMeasures& measures() const { return measures_; }
-  /// What the last update() or end() brought about.
+  /// Events of the last update() or end().
   const std::vector<TrialEvent>& events() const { return events_; }
 
  private:
@@ -136,17 +137,17 @@ class Trial {
   TrialResult result_ = TrialResult::none;
   std::optional<Observation> last_;
   Nanoseconds stamp_ = 0, elapsed_ = 0, before_ = 0;  ///< before_: elapsed at the last observation
-  Nanoseconds goal_begun_ = 0;                        ///< elapsed as the one before was achieved
+  Nanoseconds goal_begun_ = 0;                        ///< elapsed_ when the last goal was achieved
   bool counting_ = false;
   std::array<Nanoseconds, kTrainingStages> stage_elapsed_{};
 
   Vector3 start_ = Vector3::Zero();
   bool inside_ = false;    ///< of the goal's condition
   bool arrived_ = false;   ///< rest: within its tolerance once
-  bool touching_ = false;  ///< or it is not long ago
+  bool touching_ = false;  ///< now or shortly before
   Nanoseconds timer_ = 0, untouched_ = 0, gripped_ = 0;
   double grip_impulse_ = 0.0;         ///< over gripped_ [N s]
-  std::optional<Nanoseconds> loose_;  ///< not held since, while it should be
+  std::optional<Nanoseconds> loose_;  ///< not held since, although it should be
   std::optional<LettingGo> let_go_;
   TrialMeasures measures_;
   std::vector<TrialEvent> events_;

@@ -40,7 +40,7 @@ using mr_hand_interaction::SceneDescription;
 
 constexpr std::uint32_t kQueue = 10;
 constexpr double kEyeMoved = 1e-4;     // [m]
-const Rgb kSkin(0.91f, 0.73f, 0.62f);  // of which the tone is made
+const Rgb kSkin(0.91f, 0.73f, 0.62f);  // base of the skin's tone
 
 QColor to_qt(const std_msgs::ColorRGBA& c) {
   return QColor::fromRgbF(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
@@ -61,9 +61,8 @@ void set_colour(const rviz::ColorProperty& property, std_msgs::ColorRGBA& colour
 
 }  // namespace
 
-/// Hands, objects and what acts between them, drawn in rviz from poses: `scene` once, then `rendered_hands`,
-/// `tracked_hands`, `objects` and `contacts`. What is drawn is what Markers says; skins are bent and lit
-/// here.
+/// Draws hands, objects and their contacts in rviz from messages: `scene` once, then `rendered_hands`,
+/// `tracked_hands`, `objects` and `contacts`. Draws what Markers makes; skins are deformed and lit here.
 class InteractionDisplay : public rviz::Display {
  public:
   InteractionDisplay() { add_properties(); }
@@ -92,7 +91,7 @@ class InteractionDisplay : public rviz::Display {
     objects_.clear();
     skins_.clear();
     ghosts_.clear();
-    if (!subscribers_.empty()) subscribe();  // the scene comes to who is new
+    if (!subscribers_.empty()) subscribe();  // a new subscriber gets the scene
   }
 
  protected:
@@ -111,7 +110,7 @@ class InteractionDisplay : public rviz::Display {
   }
 
  private:
-  /// What rviz's Selection panel says of an object.
+  /// Properties of an object in rviz's Selection panel.
   class ObjectSelection : public rviz::SelectionHandler {
    public:
     ObjectSelection(rviz::DisplayContext* context, std::string name, const Ogre::SceneNode* node,
@@ -167,7 +166,7 @@ class InteractionDisplay : public rviz::Display {
     rviz::VectorProperty *position_ = nullptr, *velocity_ = nullptr, *spin_ = nullptr;
     rviz::QuaternionProperty* orientation_ = nullptr;
   };
-  /// A layer's switch, and where it has them its colour and a threshold.
+  /// A layer's switch, and if it has them its colour and a threshold.
   struct Layer {
     rviz::BoolProperty* shown = nullptr;
     rviz::ColorProperty* colour = nullptr;
@@ -321,7 +320,7 @@ class InteractionDisplay : public rviz::Display {
     const FrameResult& result = view_.result();
     if (markers_) {
       std_msgs::Header header;
-      header.frame_id = fixed_frame_.toStdString();  // scene_node_ is where frame_ is in it
+      header.frame_id = fixed_frame_.toStdString();  // scene_node_ is at the pose of frame_ in it
       header.stamp = stamp_;
       markers_->update(result, view_.state(), header, array_);
       scene_->take(array_);
@@ -351,7 +350,7 @@ class InteractionDisplay : public rviz::Display {
     }
   }
 
-  /// Fingers that touch an object, and with what force.
+  /// Fingers that touch an object, with their forces.
   std::string touching(const std::string& object) {
     char force[32];
     std::string all;
@@ -375,7 +374,7 @@ class InteractionDisplay : public rviz::Display {
   std::vector<ros::Subscriber> subscribers_;
   std::string frame_;
   ros::Time stamp_;             ///< of the last frame
-  ros::SteadyTime hands_came_;  ///< when hands last came
+  ros::SteadyTime hands_came_;  ///< time of the last hands
   std::map<std::string, mr_hand_interaction::ObjectState> objects_;
   SceneView view_;
   std::unique_ptr<Markers> markers_;
@@ -383,7 +382,7 @@ class InteractionDisplay : public rviz::Display {
   std::vector<std::unique_ptr<SkinObject>> skins_, ghosts_;
   SkinTone tone_;
   visualization_msgs::MarkerArray array_;
-  Vector3 drawn_from_ = Vector3::Zero();  ///< the eye
+  Vector3 drawn_from_ = Vector3::Zero();  ///< position of the camera
   bool changed_ = false;
 };
 

@@ -46,12 +46,12 @@ inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
                           static_cast<float>(q.z));
 }
 
-constexpr const char* kStatus = "text";  ///< the layer of what is held
-constexpr float kStatusHeight = 0.05f;   ///< of its letters, of half the window's
+constexpr const char* kStatus = "text";  ///< the layer of held objects
+constexpr float kStatusHeight = 0.05f;   ///< height of its letters, over half the window's
 
 constexpr const char* kGroup = "General";  ///< of OGRE's resources
 
-/// The material of vertices that bring their own light: opaque, or blended by their alpha.
+/// Material of vertices with their own lighting: opaque, or blended by their alpha.
 inline Ogre::MaterialPtr vertex_colour_material(bool blended) {
   const std::string name = std::string("mr_hand_interaction/vertex_colours") + (blended ? "_blended" : "");
   Ogre::MaterialManager& manager = Ogre::MaterialManager::getSingleton();
@@ -63,17 +63,17 @@ inline Ogre::MaterialPtr vertex_colour_material(bool blended) {
   if (blended) {
     material->setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
     material->setDepthWriteEnabled(true);
-    // Ogre draws what writes depth among the solid, where it would hide what lies behind it.
+    // Ogre sorts materials that write depth among the opaque, where they would hide bodies behind them.
     material->getTechnique(0)->getPass(0)->setTransparentSortingForced(true);
   }
   return material;
 }
 
-/// Draws the markers that Markers makes as rviz's own displays do, a node for each namespace; but the status
-/// text in the lower left corner of the window.
+/// Draws the markers made by Markers as rviz's own displays do, with a node for each namespace. The status
+/// text is in the lower left corner of the window.
 class MarkerScene {
  public:
-  /// `selection` gives the handler of a body's shapes, which are below the node.
+  /// `selection` makes the handler of a body's shapes, which are below the node.
   using SelectionFactory =
       std::function<rviz::SelectionHandlerPtr(const std::string& body, const Ogre::SceneNode* node)>;
   MarkerScene(rviz::DisplayContext* context, Ogre::SceneNode* parent, SelectionFactory selection)
@@ -114,7 +114,7 @@ class MarkerScene {
   const std::set<std::string>& missing() const { return missing_; }
 
  private:
-  /// A marker as it is drawn.
+  /// A marker with its scene node.
   struct Item {
     Item(int marker_type, rviz::DisplayContext* context, Ogre::SceneNode* layer)
         : type(marker_type),
@@ -160,7 +160,7 @@ class MarkerScene {
     const bool is_body = marker.ns == "objects" || marker.ns == "fixtures";
     if (!is_body || marker.text.empty()) return;
     if (!item->selection) item->selection = selection_(marker.text, item->node);
-    // Each time: the marker gives them its own.
+    // Set each time: the marker resets the handle.
     rviz::SelectionManager::setPickHandle(item->selection->getHandle(), item->node);
   }
 
@@ -176,7 +176,7 @@ class MarkerScene {
 constexpr float kSheen = 0.10f, kSharpness = 14.0f;  // of the highlight (Blinn-Phong)
 constexpr float kEdge = 0.06f;                       // of the fine hairs at the outline
 
-/// What a skin reflects to the eye besides its colour.
+/// Reflection of a skin towards the camera besides its colour.
 inline float sheen(const Eigen::Vector3f& normal, const Eigen::Vector3f& to_eye) {
   const Eigen::Vector3f half = (main_light() + to_eye).normalized();
   const float facing = std::clamp(normal.dot(to_eye), 0.0f, 1.0f);
@@ -193,8 +193,8 @@ inline void add_vertex(const Vector3& place, const Vector3& normal, const Rgb& c
   object.colour(c[0], c[1], c[2], alpha);
 }
 
-/// A hand's skin as one mesh with a normal and a colour for each vertex, light included: that of light.h, and
-/// the sheen of skin, which depends on where the eye is.
+/// A hand's skin as one mesh with a normal and a colour for each vertex, lighting included: that of light.h,
+/// and the sheen of skin, which depends on the camera.
 class SkinObject {
  public:
   SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
@@ -217,7 +217,7 @@ class SkinObject {
   SkinObject(const SkinObject&) = delete;
   SkinObject& operator=(const SkinObject&) = delete;
 
-  /// `eye` in world [m]. False, and nothing is drawn, if the hand has no whole skin.
+  /// `eye` in world [m]. Draws nothing and returns false if the hand has no complete skin.
   bool draw(const RenderedHand& rendered, const FrameResult& result, const SimulationState& state,
             const SkinTone& tone, const Vector3& eye) {
     object_->setVisible(skin_.pose(rendered.hand, surface_));
@@ -229,7 +229,7 @@ class SkinObject {
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
     }
     wrist_.add_lid(surface_, colours_);
-    // The wrist's far side is seen through its near side, and is drawn before it.
+    // The wrist's far side is visible through its near side, and is drawn first.
     const Side side = rendered.hand.side, averted = side == Side::left ? Side::right : Side::left;
     add_section(0, wrist_.opaque(), side);
     add_section(1, wrist_.fading(), averted);
@@ -237,7 +237,7 @@ class SkinObject {
     return true;
   }
 
-  /// The tracked hand where it is elsewhere than the rendered one, strongest at its outline.
+  /// The tracked hand where it differs from the rendered one, most opaque at its outline.
   void draw_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, const Vector3& eye) {
     const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
     object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));

@@ -25,7 +25,7 @@ namespace {
 using Status = mr_hand_interaction::TrainingStatus;
 
 constexpr int kRefresh = 100;  // [ms]
-constexpr double kOld = 1.0;   // what is older says nothing of now [s]
+constexpr double kOld = 1.0;   // older messages are ignored [s]
 const char* const kNode = "training_node/";
 const char* const kPauses = "pause";
 
@@ -43,7 +43,7 @@ bool is_old(const ros::SteadyTime& time) {
   return time.isZero() || (ros::SteadyTime::now() - time).toSec() > kOld;
 }
 
-/// Empty, or what went wrong.
+/// Returns an error, or an empty string.
 std::string ask(const std::string& service, bool pause) {
   std_srvs::SetBool set;
   std_srvs::Trigger trigger;
@@ -57,9 +57,8 @@ std::string ask(const std::string& service, bool pause) {
 
 }  // namespace
 
-/// The experimenter's panel in rviz: who does what, and how it goes; next, pause, skip and repeat by the
-/// services of training_node. All of it runs in rviz's thread but the call of a service, which may take a
-/// while.
+/// The experimenter's panel in rviz: participant, task and progress; next, pause, skip and repeat by the
+/// services of training_node. Runs in rviz's thread, except service calls, which may block.
 class TrainingPanel : public rviz::Panel {
  public:
   explicit TrainingPanel(QWidget* parent = nullptr) : rviz::Panel(parent), timer_(new QTimer(this)) {
@@ -165,7 +164,7 @@ class TrainingPanel : public rviz::Panel {
     buttons_["pause"]->setText(status_.phase == Status::PAUSED ? "Go on" : "Pause");
   }
 
-  /// One at a time: the buttons are off until it is answered.
+  /// One call at a time: the buttons are disabled until it returns.
   void call(const std::string& service) {
     if (calling_.joinable()) return;
     say(QString::fromStdString(service) + " ...");
@@ -189,11 +188,11 @@ class TrainingPanel : public rviz::Panel {
   std::map<std::string, QLabel*> lines_;
   std::map<std::string, QPushButton*> buttons_;
   mr_hand_interaction::TrainingStatus status_;
-  ros::SteadyTime told_, touched_, seen_;  ///< when the last message came
-  double grip_ = 0.0;                      ///< on the trial's object: half of what presses on it [N]
-  double confidence_ = 0.0;                ///< of the hand that is seen best
-  int frames_ = 0;                         ///< of hands since the last refresh
-  double rate_ = 0.0;                      ///< of them [Hz]
+  ros::SteadyTime told_, touched_, seen_;  ///< times of the last messages
+  double grip_ = 0.0;                      ///< on the trial's object: half the sum of the normal forces [N]
+  double confidence_ = 0.0;                ///< highest confidence of the visible hands
+  int frames_ = 0;                         ///< frames of hands since the last refresh
+  double rate_ = 0.0;                      ///< of these frames [Hz]
   ros::SteadyTime counted_;
   std::vector<ros::Subscriber> subscribers_;
   std::thread calling_;
