@@ -29,6 +29,7 @@ struct ReplayArguments {
   std::optional<double> marker_rate;    ///< of the markers in markers.bag [Hz], which has poses too
   std::set<std::size_t> marker_frames;  ///< numbers of the frames in markers.bag, instead
   std::string film;                     ///< scripts/film.py draws markers.bag into this file afterwards
+  bool serve = false;                   ///< web.launch shows markers.bag in browsers afterwards
   std::vector<std::string> repeatable;  ///< the words that make the same run again, in whatever folder
   std::string scene;                    ///< name or URDF file
   std::string input;                    ///< .bag or .csv
