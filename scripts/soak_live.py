@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Records a scripted hand and plays it in a loop through the nodes for hours of its own time: memory, open files and
 the steps' 99th percentile of the node, ten times on the way. Exits with 1 if any grows after the first of them."""
+import functools
 import os
 import shutil
 import signal
@@ -22,19 +23,50 @@ MOST_MEMORY, MOST_TIME = 1.05, 1.5  # against the first look; time is that of a 
 PAGE = os.sysconf("SC_PAGE_SIZE") / 1048576.0
 
 
-def run(*command):
-    return subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL)
-
-
 def end(process):
-    os.killpg(process.pid, signal.SIGINT)
-    process.wait(60)
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGINT)
+        process.wait(60)
 
 
-def record(bag):
+def soak(scenario):
+    """Calls scenario(hours, folder, start) beside a master and prints whether it was flat. Programs that it starts end with it,
+    the last first. Returns the exit status."""
+    folder, running = tempfile.mkdtemp(), []
+    os.environ["ROS_LOG_DIR"] = os.path.join(folder, "log")
+
+    def start(*command):
+        running.insert(0, subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+        return running[0]
+    try:
+        start("roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/"))
+        while not rosgraph.is_master_online():
+            time.sleep(0.1)
+        is_flat = scenario(float(sys.argv[1]), folder, start)
+    finally:
+        for process in running:
+            end(process)
+        shutil.rmtree(folder)
+    print("flat" if is_flat else "NOT FLAT")
+    return 0 if is_flat else 1
+
+
+@functools.lru_cache()  # whoever asks a node is one of its open files for a while
+def process_of(node):
+    return "/proc/%d/" % ServerProxy(rosgraph.Master("/soak").lookupNode(node)).getPid("/soak")[2]
+
+
+def memory_and_files(node):
+    """Resident memory [MiB] and number of open files of a node's process."""
+    process = process_of(node)
+    with open(process + "statm") as statm:
+        return [int(statm.read().split()[1]) * PAGE, len(os.listdir(process + "fd"))]
+
+
+def record(bag, start):
     """Two runs of the hand, with what comes before and after."""
-    recorder = run("rosbag", "record", "-O", bag, "/leap_motion/leap_device")
-    hand = run("rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=grasp_cube")
+    recorder = start("rosbag", "record", "-O", bag, "/leap_motion/leap_device")
+    hand = start("rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=grasp_cube")
     time.sleep(25)  # of the hand's own time
     end(hand)
     end(recorder)
@@ -43,11 +75,7 @@ def record(bag):
 class Look:
     def __init__(self, p99):
         self.p99 = p99
-        uri = rosgraph.Master("/soak").lookupNode(NODE)
-        process = "/proc/%d/" % ServerProxy(uri).getPid("/soak")[2]
-        with open(process + "statm") as statm:
-            self.memory = int(statm.read().split()[1]) * PAGE
-        self.files = len(os.listdir(process + "fd"))
+        self.memory, self.files = memory_and_files(NODE)
 
 
 class Live:
@@ -89,26 +117,14 @@ def watch(hours):
     return flat(looks) and live.loops > 0
 
 
-def main():
-    folder, core = tempfile.mkdtemp(), run("roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/"))
-    try:
-        while not rosgraph.is_master_online():
-            time.sleep(0.1)
-        bag = os.path.join(folder, "hand.bag")
-        record(bag)
-        launch = run("roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + bag, "scene:=cube", "rviz:=false",
-                     "loop:=true", "rate:=%d" % RATE)
-        try:
-            rospy.init_node("soak", disable_signals=True)
-            is_flat = watch(float(sys.argv[1]))
-        finally:
-            end(launch)
-    finally:
-        end(core)
-        shutil.rmtree(folder)
-    print("flat" if is_flat else "NOT FLAT")
-    return 0 if is_flat else 1
+def loop(hours, folder, start):
+    bag = os.path.join(folder, "hand.bag")
+    record(bag, start)
+    start("roslaunch", "mr_hand_interaction", "playback.launch", "bag:=" + bag, "scene:=cube", "rviz:=false", "loop:=true",
+          "rate:=%d" % RATE)
+    rospy.init_node("soak", disable_signals=True)
+    return watch(hours)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(soak(loop))

@@ -6,30 +6,25 @@ import csv
 import json
 import math
 import os
-import re
-import shutil
-import signal
 import socket
 import struct
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-from xmlrpc.client import ServerProxy
 
 import aiohttp
-import rosgraph
 import rospy
 from mr_hand_interaction.msg import InteractionEvent
+
+from soak_live import memory_and_files, soak
 
 RATE = 60
 VISIT = 10.0  # [s] that the third browser stays
 LOOK = 30.0  # [s] between two looks
 NODES = ('/web_door', '/interaction_node')
 GROWTH = 1.05  # of memory, against the largest of the first tenth
-LOG_GROWTH = 200000  # bytes an hour, the same: a busy machine loses frames, which the node reports every 5 s
-PAGE = os.sysconf('SC_PAGE_SIZE') / 1048576.0
+LOG_GROWTH = 100000  # bytes an hour, the same: for each of up to three reasons why frames are lost, a line a minute
 FINGERS = ('thumb', 'index', 'middle', 'ring', 'pinky')
 RADIUS = 0.008  # [m]
 ABSENT = 25 * [math.nan, math.nan, math.nan, math.nan]
@@ -111,20 +106,6 @@ def log_bytes(folder):
     return sum(os.path.getsize(os.path.join(path, name)) for path, _, names in os.walk(folder) for name in names)
 
 
-class Nodes:
-    def __init__(self):
-        master = rosgraph.Master('/soak')
-        self._processes = ['/proc/%d/' % ServerProxy(master.lookupNode(node)).getPid('/soak')[2] for node in NODES]
-
-    def look(self):
-        """Memory [MiB] and open files of each."""
-        numbers = []
-        for process in self._processes:
-            with open(process + 'statm', encoding='ascii') as statm:
-                numbers += [int(statm.read().split()[1]) * PAGE, len(os.listdir(process + 'fd'))]
-        return numbers
-
-
 def is_flat(looks, hours):
     first = looks[:max(1, len(looks) // 10)]
     allowed = [max(look[i] for look in first) for i in range(len(first[0]))]
@@ -137,12 +118,12 @@ def is_flat(looks, hours):
 
 
 def watch(hours, browsers, logs, grasps):
-    nodes, looks, end = Nodes(), [], time.monotonic() + 3600 * hours
+    looks, end = [], time.monotonic() + 3600 * hours
     print('%6s %9s %6s %9s %6s %9s %8s %8s %7s %7s' % ('min', 'door/MiB', 'files', 'node/MiB', 'files', 'log/bytes', 'hands',
                                                        'frames', 'visits', 'grasps'))
     while time.monotonic() < end:
         time.sleep(min(LOOK, 360 * hours))
-        looks.append(nodes.look() + [log_bytes(logs)])
+        looks.append([number for node in NODES for number in memory_and_files(node)] + [log_bytes(logs)])
         print('%6.1f %9.2f %6d %9.2f %6d %9d %8d %8d %7d %7d' % ((hours * 3600 - end + time.monotonic()) / 60, *looks[-1],
                                                                  browsers.sent, browsers.frames, browsers.visits, len(grasps)),
               flush=True)
@@ -165,39 +146,22 @@ def listens(port):
         return one.connect_ex(('127.0.0.1', port)) == 0
 
 
-def end_all(processes):
-    for process in processes:
-        os.killpg(process.pid, signal.SIGINT)
-        process.wait(60)
-
-
-def main():
-    hours, folder, running, grasps = float(sys.argv[1]), tempfile.mkdtemp(), [], []
-    logs = os.environ['ROS_LOG_DIR'] = os.path.join(folder, 'log')
+def browse(hours, folder, start):
+    grasps = []
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         port = free.getsockname()[1]
-
-    def run(*command):
-        running.insert(0, subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
-    try:
-        run('roscore', '-p', re.search(r':(\d+)/?$', os.environ['ROS_MASTER_URI']).group(1))
-        wait_for(rosgraph.is_master_online, 'a master')
-        run('roslaunch', 'mr_hand_interaction', 'web.launch', 'scene:=cube', 'token:=soak', 'port:=%d' % port)
-        rospy.init_node('soak', disable_signals=True)
-        rospy.Subscriber('interaction_events', InteractionEvent,
-                         lambda event: event.kind == InteractionEvent.GRASP_BEGIN and grasps.append(event.header.stamp))
-        wait_for(lambda: listens(port), 'the door')
-        browsers = Browsers(port, scripted_hand(folder))
-        flat = watch(hours, browsers, logs, grasps)
-        browsers.over = True
-        browsers.thread.join(30)
-    finally:
-        end_all(running)
-        shutil.rmtree(folder)
-    print('flat' if flat else 'NOT FLAT')
-    return 0 if flat else 1
+    start('roslaunch', 'mr_hand_interaction', 'web.launch', 'scene:=cube', 'token:=soak', 'port:=%d' % port)
+    rospy.init_node('soak', disable_signals=True)
+    rospy.Subscriber('interaction_events', InteractionEvent,
+                     lambda event: event.kind == InteractionEvent.GRASP_BEGIN and grasps.append(event.header.stamp))
+    wait_for(lambda: listens(port), 'the door')
+    browsers = Browsers(port, scripted_hand(folder))
+    flat = watch(hours, browsers, os.path.join(folder, 'log'), grasps)
+    browsers.over = True
+    browsers.thread.join(30)
+    return flat
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    sys.exit(soak(browse))

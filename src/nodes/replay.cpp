@@ -57,6 +57,15 @@ int report(const ReplayArguments& arguments) {
   return status;
 }
 
+/// Becomes web.launch, which ends by Ctrl-C.
+[[noreturn]] void serve(const std::string& bag) {
+  const std::string argument = "bag:=" + fs::absolute(bag).string();
+  execlp("roslaunch", "roslaunch", "mr_hand_interaction", "web.launch", "hands:=bag", argument.c_str(),
+         nullptr);
+  throw std::runtime_error(std::string("cannot start roslaunch: ") + std::strerror(errno) +
+                           "; allowed: a terminal in which ROS is set up");
+}
+
 }  // namespace
 }  // namespace mrhi
 
@@ -69,6 +78,8 @@ int main(int argc, char** argv) {
     }
     if (!arguments.compare.empty()) return mrhi::run_script("compare", arguments.compare);
     mrhi::replay(arguments);
-    return mrhi::report(arguments);
+    const int status = mrhi::report(arguments);
+    if (status == 0 && arguments.serve) mrhi::serve(arguments.output + "/markers.bag");
+    return status;
   });
 }

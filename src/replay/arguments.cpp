@@ -74,7 +74,7 @@ std::string film(const Given& given) {
 
 CommandLine command_line(ReplayArguments& a, bool& compare) {
   CommandLine line;
-  line.flag("--compare", compare).flag("--explain", a.explain);
+  line.flag("--compare", compare).flag("--explain", a.explain).flag("--serve", a.serve);
   line.once("--scene", "NAME|FILE", a.scene).once("--input", "FILE.bag|FILE.csv", a.input);
   line.once("--output", "DIR", a.output);
   line.once("--topic", "TOPIC", [&a](const Given& given) { a.topic = given.text; });
@@ -126,7 +126,7 @@ void check(ReplayArguments& arguments) {
 std::vector<std::string> repeatable(const std::vector<std::string>& words) {
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--explain") continue;
+    if (words[i] == "--explain" || words[i] == "--serve") continue;
     static const std::set<std::string> reports{"--output", "--export", "--markers", "--marker-frames",
                                                "--film"};
     if (reports.count(words[i]) > 0) {
@@ -192,6 +192,7 @@ the machine allows and needs no ROS master.
                             objects and contacts of each frame for rviz's Interaction display
   --marker-frames FRAME,... markers.bag of these frames only, by their numbers in frames.csv
   --film FILE.webp|FILE.mp4 film of the run as rviz shows it; needs rviz, Xvfb, ImageMagick, and webp or ffmpeg
+  --serve                   shows the run to browsers of this machine until Ctrl-C: web.launch hands:=bag with markers.bag
   --compare DIR DIR         runs scripts/compare: when and where the objects of two runs diverge, by how much, and whether
                             the runs are equal bit by bit
   --tolerance METRES,RADIANS

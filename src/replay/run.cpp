@@ -88,9 +88,9 @@ ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
   summary.input = arguments.input;
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
-  constexpr double kFilmRate = 60.0;  // [Hz]
+  constexpr double kShownRate = 60.0;  // [Hz]
   std::optional<double> rate = arguments.marker_rate;
-  if (!rate && !arguments.film.empty()) rate = kFilmRate;
+  if (!rate && (arguments.serve || !arguments.film.empty())) rate = kShownRate;
   if (rate || !arguments.marker_frames.empty())
     markers_ = marker_bag(output_ + "/markers.bag", rate, arguments.marker_frames);
 }

@@ -15,8 +15,8 @@
 
 namespace mrhi {
 
-/// Counts accepted and rejected input, for /diagnostics, and logs each kind of rejection at most every five
-/// seconds.
+/// Counts accepted and rejected input, for /diagnostics, and logs each kind of rejection: at once, then after
+/// pauses of 5 s that double up to a minute while rejections of the kind continue.
 class InputStatistics {
  public:
   /// Reasons and corrections that are listed from the start; others are added as they occur.
@@ -35,12 +35,14 @@ class InputStatistics {
     latency_max_ = std::max(latency_max_, latency);
   }
   void rejected(const std::string& reason, const std::string& detail) {
-    const ros::WallDuration kQuiet(5.0);
     Refusals& refusals = rejected_[reason];
     ++refusals.count;
     refusals.last = detail;
     const ros::SteadyTime now = ros::SteadyTime::now();
-    if (!refusals.logged.isZero() && now - refusals.logged < kQuiet) return;
+    const double since = refusals.logged.isZero() ? kLongestSilence : (now - refusals.logged).toSec();
+    if (since < refusals.silence) return;
+    const bool go_on = since < 2.0 * refusals.silence;
+    refusals.silence = go_on ? std::min(2.0 * refusals.silence, kLongestSilence) : kShortestSilence;
     refusals.logged = now;
     ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
   }
@@ -89,12 +91,14 @@ class InputStatistics {
 
  private:
   static constexpr double kLate = 0.05;  // processing times beyond this are late [s]
+  static constexpr double kShortestSilence = 5.0, kLongestSilence = 60.0;  // between two lines of a kind [s]
 
   struct Refusals {
     std::uint64_t count = 0;
     std::uint64_t reported = 0;
     std::string last;
     ros::SteadyTime logged;
+    double silence = kShortestSilence;  ///< until the next line [s]
   };
 
   std::uint64_t taken_ = 0;

@@ -42,7 +42,7 @@ const JointOrder& usual_order(std::size_t joints, const Vector3*) {
 void add_hand(const TrackedPoints& tracked, std::size_t first, std::size_t joints, Side side,
               const OrderOf& order_of, JointsFrame& frame) {
   const Vector3* const points = tracked.points.data() + first;
-  if (std::all_of(points, points + joints, [](const Vector3& point) { return point.hasNaN(); })) return;
+  if (std::all_of(points, points + joints, [](const Vector3& point) { return !point.allFinite(); })) return;
   const bool has_radii = tracked.radii.size() == tracked.points.size();
   frame.hands.push_back(hand_in_order(order_of(joints, points), points,
                                       has_radii ? tracked.radii.data() + first : nullptr, side));

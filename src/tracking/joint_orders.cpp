@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLongestRatio = 4.0;  // of a bone to the adult's, in proportion to the hand's size
 constexpr double kLongestBone = 0.3;   // where the size is not known [m]
+constexpr double kMaxMisfit = 1.4;  // of a bone, ln(kLongestRatio): a stray joint tells nothing of the order
 
 using Joint = std::optional<Vector3>;
 
@@ -176,7 +177,7 @@ std::string names_of(std::size_t size) {
 }
 
 std::optional<Vector3> known(const Vector3& point) {
-  if (point.hasNaN()) return std::nullopt;
+  if (!point.allFinite()) return std::nullopt;
   return point;
 }
 
@@ -200,7 +201,7 @@ std::optional<Proportions> proportions(const HandJoints& hand) {
   if (ratios.size() < kBonesToJudge) return std::nullopt;
   const double common = median(ratios);
   double misfit = 0.0;
-  for (const double ratio : ratios) misfit += std::abs(ratio - common);
+  for (const double ratio : ratios) misfit += std::min(std::abs(ratio - common), kMaxMisfit);
   return Proportions{std::exp(common), misfit / static_cast<double>(ratios.size())};
 }
 

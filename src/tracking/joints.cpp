@@ -135,36 +135,46 @@ const char* const kJointNames[5] = {"metacarpal base", "metacarpal end", "proxim
                                     "tip"};
 const char* const kBoneNames[kBonesPerFinger] = {"metacarpal", "proximal", "intermediate", "distal"};
 
-std::string point_defect(const std::string& name, const std::optional<Vector3>& point) {
+/// The words of a name, joined only if there is a defect: nearly every hand has none.
+using Name = std::initializer_list<const char*>;
+
+std::string joined(Name name) {
+  std::string text;
+  for (const char* const word : name) text += (text.empty() ? "" : " ") + std::string(word);
+  return text;
+}
+
+std::string point_defect(Name name, const std::optional<Vector3>& point) {
   if (!point) return "";
-  if (!point->allFinite()) return name + " is not finite";
+  if (!point->allFinite()) return joined(name) + " is not finite";
   if (point->norm() > kFarthestJoint)
-    return name + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
+    return joined(name) + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
   return "";
 }
 
 /// Not a number fails both comparisons, and is a defect.
-std::string width_defect(const std::string& name, const std::optional<float>& width, float widest) {
+std::string width_defect(Name name, const std::optional<float>& width, float widest) {
   if (!width || (*width > 0.0f && *width <= widest)) return "";
-  return name + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
+  return joined(name) + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
 }
 
 std::string finger_defect(const HandJoints& hand, std::size_t finger) {
-  const std::string name = kFingerNames[finger];
+  const char* const name = kFingerNames[finger];
   const auto& joints = hand.joints[finger];
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    const std::string found = point_defect(name + " " + kJointNames[j], joints[j]);
+    const std::string found = point_defect({name, kJointNames[j]}, joints[j]);
     if (!found.empty()) return found;
   }
   for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
-    const std::string bone = name + " " + kBoneNames[b];
-    const std::string wide = width_defect(bone + " width", hand.bone_width[finger][b], kWidestBone);
+    const std::string wide =
+        width_defect({name, kBoneNames[b], "width"}, hand.bone_width[finger][b], kWidestBone);
     if (!wide.empty()) return wide;
     if (!joints[b] || !joints[b + 1]) continue;
     const double length = (*joints[b + 1] - *joints[b]).norm();
-    if (length > kLongestBone) return bone + " is " + std::to_string(length) + " m long; at most 0.3 m";
+    if (length > kLongestBone)
+      return joined({name, kBoneNames[b]}) + " is " + std::to_string(length) + " m long; at most 0.3 m";
   }
-  return width_defect(name + " width", hand.finger_width[finger], kWidestFinger);
+  return width_defect({name, "width"}, hand.finger_width[finger], kWidestFinger);
 }
 
 struct Unit {
@@ -213,8 +223,9 @@ std::string defect(const HandJoints& hand, std::optional<PalmFit>& fit) {
   for (const auto& [name, value] : strengths)
     if (!std::isfinite(value)) return std::string(name) + " is not finite";
   if (std::string found = size_defect(hand); !found.empty()) return found;
-  for (std::string found : {point_defect("palm centre", hand.palm_centre), point_defect("wrist", hand.wrist),
-                            width_defect("palm width", hand.palm_width, kWidestPalm)})
+  for (const std::string& found :
+       {point_defect({"palm centre"}, hand.palm_centre), point_defect({"wrist"}, hand.wrist),
+        width_defect({"palm width"}, hand.palm_width, kWidestPalm)})
     if (!found.empty()) return found;
   for (std::size_t f = 0; f < kFingers; ++f) {
     const std::string found = finger_defect(hand, f);

@@ -24,9 +24,9 @@ auto& joint(Joints& hand, std::size_t i) {
 
 /// A hand beside the adult's of hand_anatomy.h.
 struct Proportions {
-  double size;  ///< common factor of its bones to the adult's: the median of their ratios
-  double
-      misfit;  ///< mean of |ln(ratio / size)|: below 0.1 of a hand, 0.3 and more of joints in a wrong order
+  double size;    ///< common factor of its bones to the adult's: the median of their ratios
+  double misfit;  ///< mean of |ln(ratio / size)|, each up to 1.4: below 0.1 of a hand, 0.3 and more in a
+                  ///< wrong order
 };
 
 /// By the lengths of all bones and the distances from the wrist to the knuckles that are known. Nothing if
@@ -63,8 +63,8 @@ const std::vector<JointOrder>& joint_orders();
 /// Throws std::invalid_argument that lists the known names.
 const JointOrder& joint_order(const std::string& name);
 
-/// The hand whose joints are `points`, of the order's size; a point with a coordinate NaN is missing. Radii
-/// are of the points too, from a joint to the skin [m], or none: 0 and NaN mean unknown.
+/// The hand whose joints are `points`, of the order's size; a point with a coordinate that is not finite is
+/// missing. Radii are of the points too, from a joint to the skin [m], or none: 0 and NaN mean unknown.
 HandJoints hand_in_order(const JointOrder& order, const Vector3* points, const float* radii, Side side);
 
 /// Recognises the order of a stream of hands by the lengths of their bones, which are those of a hand only in

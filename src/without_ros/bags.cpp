@@ -15,7 +15,7 @@ OpenLog open_log(const ReplayArguments& arguments) {
 
 std::unique_ptr<Pictures> marker_bag(const std::string&, const std::optional<double>&,
                                      const std::set<std::size_t>&) {
-  throw UsageError("--markers: this replay was built without ROS and writes no bags");
+  throw UsageError("--markers, --film, --serve: this replay was built without ROS and writes no bags");
 }
 
 }  // namespace mrhi

@@ -129,8 +129,8 @@ TEST(ReplayArguments, a_bag_alone_is_enough) {
 TEST(ReplayArguments, what_is_made_of_the_tables_is_read) {
   const ReplayArguments parsed =
       parse_replay_arguments(with({"--explain", "--export", "60", "--marker-frames", "7,3,7", "--markers",
-                                   "30", "--film", "a.mp4", "--set", "step=0.002"}));
-  EXPECT_TRUE(parsed.explain);
+                                   "30", "--film", "a.mp4", "--serve", "--set", "step=0.002"}));
+  EXPECT_TRUE(parsed.explain && parsed.serve);
   EXPECT_EQ(parsed.export_rate, 60.0);
   EXPECT_EQ(parsed.marker_frames, (std::set<std::size_t>{3, 7}));
   EXPECT_EQ(parsed.marker_rate, 30.0);

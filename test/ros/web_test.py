@@ -6,6 +6,7 @@ import glob
 import json
 import math
 import os
+import shutil
 import signal
 import socket
 import ssl
@@ -268,6 +269,26 @@ class WebTest(unittest.TestCase):
                 seen = max(seen, viewer.place("cube")[2])
                 return seen > highest - 0.002
             wait_until(was_carried, "the cube carried to %.3f m" % highest)
+
+    def test_replay_serves_what_it_has_run(self):
+        """roslaunch is started as a user's replay starts it, with the port and the token of this test."""
+        recording(self.folder, RATE)
+        hand, = glob.glob(os.path.join(self.folder, "*.csv"))
+        stand_in = os.path.join(self.folder, "roslaunch")
+        with open(stand_in, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\nexec '%s' \"$@\" token:=%s port:=%d\n" % (shutil.which("roslaunch"), TOKEN, self.port))
+        os.chmod(stand_in, 0o755)
+        served = subprocess.Popen([program("replay"), "--scene", "cube", "--input", hand, "--output", "served", "--serve"],
+                                  cwd=self.folder, stdout=subprocess.DEVNULL,
+                                  env=dict(os.environ, PATH=self.folder + os.pathsep + os.environ["PATH"]))
+        try:
+            with Viewer(self.port) as viewer:
+                wait_until(lambda: viewer.hands == 1 and viewer.place("cube"), "hand and cube")
+                start = viewer.place("cube")[2]
+                wait_until(lambda: viewer.place("cube")[2] > start + CARRIED, "the cube carried")
+        finally:
+            served.send_signal(signal.SIGINT)
+            self.assertEqual(served.wait(60), 0)
 
     def test_two_people_have_their_hands_in_one_scene(self):
         together = []  # frames with two hands

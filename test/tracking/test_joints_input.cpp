@@ -224,6 +224,23 @@ TEST_P(Orders, AreRecognisedByTheLengthsOfBones) {
   }
 }
 
+/// Trackers write such numbers for what they do not see, at most for a moment.
+TEST_P(Orders, StayWhileAJointOfAFingerIsFarAway) {
+  const JointOrder& order = joint_orders()[GetParam()];
+  for (const double far : {9999.0, 1e30, HUGE_VAL}) {
+    for (std::size_t joint = 0; joint < order.size; ++joint) {
+      if (joint == order.wrist) continue;
+      OrderRecognition recognition;
+      for (int frame = 0; frame < 20; ++frame) {
+        std::vector<Vector3> points = listed(hand_away(), order);
+        if (frame >= 10) points[joint].setConstant(far);
+        bool changed = false;
+        EXPECT_EQ(&recognition.order_of(order.size, points.data(), changed), &order) << joint;
+      }
+    }
+  }
+}
+
 TEST_P(Orders, GiveBackTheHandThatTheyList) {
   const JointOrder& order = joint_orders()[GetParam()];
   const HandJoints hand = hand_away();

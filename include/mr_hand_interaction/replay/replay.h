@@ -29,6 +29,7 @@ struct ReplayArguments {
   std::optional<double> marker_rate;    ///< of the markers in markers.bag [Hz]; it then has poses too
   std::set<std::size_t> marker_frames;  ///< indices of the frames in markers.bag, instead of a rate
   std::string film;                     ///< video file that scripts/film.py makes from markers.bag afterwards
+  bool serve = false;                   ///< web.launch shows markers.bag in browsers afterwards
   std::vector<std::string> repeatable;  ///< arguments that repeat this run in any folder
   std::string scene;                    ///< name or URDF file
   std::string input;                    ///< .bag or .csv
