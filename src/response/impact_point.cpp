@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../collision/god_object.h"
+#include "../math/rotation.h"
 #include "impact.h"
 
 namespace mrhi {
@@ -109,6 +110,19 @@ void ImpactPoint::advance_arms(double seconds, double closed) {
   const Vector3 point = 0.5 * (a.velocity() + b.velocity());
   for (Partner* partner : {&a, &b}) {
     if (partner->state != nullptr) partner->arm += seconds * (point - partner->velocity_of_centre());
+  }
+}
+
+// I^-1 <- R I^-1 R', R by t w. An impulse that conserves energy with the inertia at the start of the step
+// does not at the time of impact: an elongated body that spins gained up to 0.2 % in an elastic impact.
+void ImpactPoint::turn_inertia() {
+  const double wait = time - inertia_time;
+  inertia_time = time;
+  for (Partner* partner : {&a, &b}) {
+    if (partner->state == nullptr) continue;
+    const Vector3 turn = wait * (partner->inverse_inertia * partner->state->angular_momentum);
+    const Matrix3 rotation = rotation_by(turn).toRotationMatrix();
+    partner->inverse_inertia = rotation * partner->inverse_inertia * rotation.transpose();
   }
 }
 

@@ -62,9 +62,10 @@ struct ImpactPoint {
   bool* struck = nullptr;          // the contact's flag that its approach has ended
 
   // State at `time`.
-  double time = 0.0;  // from the start of the step; finally the time of impact [s]
-  double gap = 0.0;   // [m]
-  Vector3 normal;     // from b to a
+  double time = 0.0;          // from the start of the step; finally the time of impact [s]
+  double gap = 0.0;           // [m]
+  Vector3 normal;             // from b to a
+  double inertia_time = 0.0;  // of the inverse inertia, from the start of the step [s]
 
   // Impact.
   Vector3 approach;                            // relative velocity before the impact [m/s]
@@ -93,6 +94,8 @@ struct ImpactPoint {
   double collision_time() const;
   /// Advances to a time under the present motion.
   void advance_to(double later);
+  /// Rotates the bodies' inertia to `time`, as the body rotates until it is hit.
+  void turn_inertia();
 
   /// Computes the effective masses and clears the accumulated impulse.
   void begin();

@@ -398,6 +398,7 @@ bool ImpactSolver::find_next_impact(double end) {
       in_impact = in_impact || now(other);
     if (in_impact) impact_.push_back(&points_[i]);
     points_[i].advance_to(in_impact ? times_[i] : first);
+    if (in_impact) points_[i].turn_inertia();
   }
   return true;
 }

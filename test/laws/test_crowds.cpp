@@ -125,8 +125,8 @@ bool comes_to_rest(const Scene& scene) {
   return sleeps();
 }
 
-// How a heap falls hangs on its start's last bits. Of forty starts one does not sleep: a cube on an edge
-// turns on, which nothing hinders.
+// The last bits of its start decide how a heap falls. Of 400 starts 5 to 9 do not sleep within four seconds:
+// a cube on an edge rotates on, which nothing hinders. Three of twelve would be one draw in 700.
 TEST(Crowds, heaps_come_to_rest_and_sleep) {
   constexpr int kHeaps = 12;
   int rest = 0;
@@ -138,7 +138,7 @@ TEST(Crowds, heaps_come_to_rest_and_sleep) {
     }
     rest += comes_to_rest(scene);
   }
-  EXPECT_GE(rest, kHeaps - 1);
+  EXPECT_GE(rest, kHeaps - 2);
 }
 
 TEST(Crowds, a_block_of_touching_cubes_stays_where_it_is) {
