@@ -34,7 +34,7 @@ void write_row(const std::string& motion, const testing::Staging& estimated, int
   std::cout.flush();
 }
 
-/// Spectrum and size of a stream's noise.
+/// Properties of a stream's noise besides its size.
 struct Colour {
   double correlation, dropped;
 };
