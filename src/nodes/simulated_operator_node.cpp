@@ -35,7 +35,7 @@ simulated operator on /leap_motion/leap_device.
 using Status = mr_hand_interaction::TrainingStatus;
 
 /// Longest catch-up after a late timer tick [periods].
-constexpr double kLongestMove = 2.0;
+constexpr double kMaxCatchUp = 2.0;
 
 Body body_of(const TaskObject& object) {
   constexpr double kUsualFriction = 0.8;
@@ -110,7 +110,7 @@ class OperatorPublisher {
   void take_status(const mr_hand_interaction::TrainingStatus& status) { status_ = status; }
   void tick() {
     const ros::Time now = ros::Time::now();
-    const double since = std::clamp(seconds_between(ticked_, now), 0.0, kLongestMove / rate_);
+    const double since = std::clamp(seconds_between(ticked_, now), 0.0, kMaxCatchUp / rate_);
     ticked_ = now;
     if (const auto fixed = fixed_.find(status_.object); fixed != fixed_.end()) {
       object_.name = fixed->first;

@@ -38,14 +38,14 @@ namespace mrhi {
 struct TrainingParameters {
   /// Throws ParameterError with the first that is unknown, missing or invalid.
   explicit TrainingParameters(const ros::NodeHandle& private_node) {
-    constexpr double kLongestBreak = 3600.0;  // [s]
+    constexpr double kMaxBreak = 3600.0;  // [s]
     NodeParameters known;
     known.text("task", task).text("participant", header.participant).text("group", header.group);
     known.text("handedness", header.handedness).text("condition", header.condition);
     known.whole("seed", 0, header.seed).whole("session", 1, header.session).whole("number", 1, number);
     known.truth("simulated", header.simulated).truth("operator", by_operator).truth("auto_start", auto_start);
     known.text("folder", folder).text("simulation", simulation);
-    known.number("auto_next", -kLongestBreak, kLongestBreak, auto_next, " [s], below 0: not by itself");
+    known.number("auto_next", -kMaxBreak, kMaxBreak, auto_next, " [s], below 0: not by itself");
     known.read(private_node);
     const char* const home = std::getenv("HOME");
     if (home != nullptr && folder.compare(0, 2, "~/") == 0) folder = home + folder.substr(1);
