@@ -195,7 +195,7 @@ constexpr double kMinSquaredMomentum = 1e-200;
 /// by its norm would round slow rotations alike in every step, and they would drift.
 ///
 ///     q <- q + q (b - 1),      b - 1 = ((1 + s) cos - 1, (1 + s) sin),      s = (1 - |q|^2) / 2
-///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: what is small is made small
+///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: no cancellation
 ///
 /// s corrects the error of |q| to first order, so q is never divided by its norm.
 void turn_on(const Quaternion& by, Quaternion& orientation) {

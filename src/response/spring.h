@@ -81,9 +81,9 @@ constexpr double kYieldedStiffness = 0.02;
 // With d the depth, D the pad, Y the depth at full stiffness for the finger's strength (`yields`), and k p
 // the normal force:
 //
-//     p = d^2 / 2D           p' = d / D        d <= D      the pulp stiffens (Serina et al. 1997)
+//     p = d^2 / 2D           p' = d / D        d <= D      the pad stiffens (Serina et al. 1997)
 //     p = d - D / 2          p' = 1            d > D       the two meet with the same slope
-//     p -> Y + e (p - Y)     p' -> e p'        p > Y       the finger gives way, e = kYieldedStiffness
+//     p -> Y + e (p - Y)     p' -> e p'        p > Y       the finger complies, e = kYieldedStiffness
 //
 // The slope is zero only at d = 0, so two fingers that both comply still centre the object between them.
 // Without a pad 1 / 2D is 0, as infinity would give 0 times infinity. Without a strength limit Y is infinite.

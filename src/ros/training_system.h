@@ -154,7 +154,7 @@ class TrainingScene {
   /// Sets the task's gravity and fixtures, and removes all free bodies and devices but this one, which is
   /// reset to its start. Resets an operator too. Returns an error, or an empty string.
   std::string prepare(const TaskObject& object) {
-    if (!names_) return "the simulation has not told yet what moves in its scene";
+    if (!names_) return "the simulation has not published its objects yet";
     if (needs_operator_ && !has_operator_)
       return "the simulation has no operator; allowed: its scene is that of the task (" + task_.scene + ")";
     for (const TaskObject& other : task_.objects) {
