@@ -20,8 +20,7 @@ constexpr std::size_t kOpening = 6;    // frames after opening for the hand's sp
 constexpr std::size_t kMost = 10;      // closings of one recording
 constexpr double kOpen = 0.02;         // aperture of a passing hand beyond the body's width [m]
 constexpr double kPassing = 1.0;       // required duration of that [s]
-constexpr double kLevel = 0.7;         // standing bodies are grasped from the side: sine of the line's
-                                       // elevation
+constexpr double kLevel = 0.7;         // standing bodies are grasped from the side: sine of the elevation
 
 const Vector3& thumb(const Sighting& hand) {
   return hand.joints[0][4];

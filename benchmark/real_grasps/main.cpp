@@ -52,8 +52,7 @@ struct Arguments {
   bool compare = false;              ///< our models in several settings
   std::vector<std::string> engines;  ///< modules of physics engines
   std::string arctic;                ///< folder of windows, or empty
-  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< times before windows: seconds, or
-                                                                   ///< clear
+  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< before windows: seconds, or clear
   std::vector<std::string> paths;                                  ///< recordings, or folders with recordings
 };
 

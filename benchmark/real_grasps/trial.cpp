@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kLossAllowed = 0.06;  // time before opening at which a grasp may end [s]
 constexpr double kPressed = 0.15;     // a hand that opens slowly releases before its aperture has widened [s]
-constexpr double kLeastAway = 0.025;  // largest distance from the grip that counts as in the hand, for small
-                                      // bodies [m]
+constexpr double kLeastAway = 0.025;  // minimum of the allowed distance from the grip, for small bodies [m]
 constexpr double kPalmWindow = 0.05;  // averaging time of the palm's velocity, to both sides [s]
 
 /// Entry with the nearest time.

@@ -44,10 +44,8 @@ struct ScenePlan {
   std::function<std::unique_ptr<Experiment>(bool quick)> make;
   std::function<void(const EngineMaker& ours)> prepare = nullptr;  ///< before the first run; may be empty
   bool full_only = false;                                          ///< omitted by --quick
-  std::string missing = {};                                        ///< reason why it cannot be run here, or
-                                                                   ///< empty
-  double budget = 10.0;                                            ///< time for a contender, unless --quick
-                                                                   ///< [s]
+  std::string missing = {};                                        ///< why it cannot be run here, or empty
+  double budget = 10.0;                                            ///< of a contender, unless --quick [s]
 };
 
 /// All scenes, in order of execution.

@@ -412,8 +412,7 @@ double quickness(const Body& body) {
 // (1/I_min - 1/I_max) |L|. A ball's momentum does not rotate, so one part suffices at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double way = spread(body) * angular_momentum.norm() * step;
-  const double enough = std::min(kMaxParts, way / kFreeTurn);  // this order gives a number even if `way` is
-                                                               // NaN
+  const double enough = std::min(kMaxParts, way / kFreeTurn);  // in this order never NaN
   const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;

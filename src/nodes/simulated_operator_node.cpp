@@ -62,9 +62,7 @@ struct Parameters {
 
 Task checked_task(const std::string& name) {
   Task task = load_task(find_task_file(name, task_folders()));
-  for (const TaskObject& object : task.objects)
-    make_person({}, task, body_of(object), 0);  // or throws the
-                                                // reason
+  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // may throw
   return task;
 }
 
@@ -180,8 +178,7 @@ class OperatorPublisher {
   std::unique_ptr<Person> person_;
   std::uint32_t trial_ = 0;
   ros::Time ticked_;
-  double time_ = 0.0;  ///< time of the person's motion since the start of the trial, by the frames' stamps
-                       ///< [s]
+  double time_ = 0.0;  ///< person's time since the start of the trial, by the frames' stamps [s]
   std::vector<HandJoints> hands_;
 
   LeapHumanPublisher publisher_;

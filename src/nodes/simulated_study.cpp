@@ -125,9 +125,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
 
 void play(Study study) {
   study.task = find_task_file(study.task, task_folders());
-  for (const std::string& model : study.models)
-    configuration_of(study, model);  // checked before the first
-                                     // session
+  for (const std::string& model : study.models) configuration_of(study, model);  // checked first
   const Task task = load_task(study.task);
   OperatorStage stage;
   stage.scene_folders = scene_folders();

@@ -73,8 +73,7 @@ struct ContactStep {
   const Scene& scene;
   const Vector3& gravity;                   ///< [m/s^2]
   double step;                              ///< [s]
-  std::vector<Contact>& contacts;           ///< with hands, sorted by key; the model writes forces and
-                                            ///< impulses
+  std::vector<Contact>& contacts;           ///< with hands, sorted by key; output: forces and impulses
   std::vector<BodyContact>& body_contacts;  ///< between bodies, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
   StepChanges& changes;

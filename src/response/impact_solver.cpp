@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::size_t kPointCapacity = 64;        // capacity for one step; grows if needed
 constexpr double kTimeTolerance = 1e-12;          // impacts closer in time are simultaneous [s]
-constexpr std::size_t kMaxImpactsPerContact = 4;  // limit for an island in one step, on average; then springs
-                                                  // act
+constexpr std::size_t kMaxImpactsPerContact = 4;  // of an island in one step, on average; then springs act
 /// Limit of relaxed points of an island, beyond which no further impact of the step is sought.
 constexpr std::size_t kMaxWork = 1500;
 /// Largest number of contacts between bodies of an island that is not large.

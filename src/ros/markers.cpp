@@ -61,8 +61,7 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
-constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger at which a body becomes translucent
-                                                  // [m]
+constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger that make a body translucent [m]
 constexpr double kMinOpacity = 0.6;
 
 double opacity_around(double depth) {

@@ -19,8 +19,7 @@ using Status = mr_hand_interaction::TrainingStatus;
 constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
 constexpr double kTimer = 0.02;                        // of the timer's letters
 constexpr double kMark = 0.014;                        // of a place's number [m]
-constexpr double kMarkRoom = 1.35;                     // distance from a target to its number, over its
-                                                       // ring's radius
+constexpr double kMarkRoom = 1.35;                     // from a target to its number, over its ring's radius
 constexpr double kLine = 1.4;                          // line spacing, over the letters' height
 constexpr int kIdsPerPlace = 100;
 constexpr std::size_t kMaxLetters = 44;  // letters per line

@@ -74,8 +74,7 @@ struct TrainingParameters {
 
   std::string task = "pick_and_place";  ///< ~task: name or YAML file
   SessionHeader header;       ///< ~participant, ~group, ~handedness, ~condition, ~seed, ~session, ~simulated
-  std::optional<int> number;  ///< ~number: of the participant, from 1; default: the one at the end of the
-                              ///< name
+  std::optional<int> number;  ///< ~number: of the participant, from 1; default: the end of the name
   std::string folder;         ///< ~folder: of the session; a leading ~ is the home directory
   std::string simulation = "interaction_node";  ///< ~simulation: name of the node with the objects
   double auto_next = 3.0;    ///< ~auto_next: break after a trial [s]; below 0: wait for ~next

@@ -21,16 +21,14 @@ constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
                  kGoAside = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.61;         // fraction of the path to the object at which the hand begins to
-                                         // close
+constexpr double kWidest = 0.61;         // fraction of the path after which the hand begins to close
 constexpr double kTouch = 0.07;          // from feeling to acting [s]
 constexpr double kCorrecting = 2.0;      // rate of correcting a seen error [1/s]
 constexpr double kFastCorrection = 0.1;  // [m/s]
 constexpr double kUnseen = 0.5;          // unseen fraction of an error
 constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
 constexpr double kInitialStiffness = 800.0, kMinStiffness = 20.0;  // of the grip [N/m]
-constexpr double kUnfelt = 0.15;        // fraction of the wanted grip: less means that something else holds
-                                        // the object
+constexpr double kUnfelt = 0.15;        // of the wanted grip: below it something else holds the object
 constexpr double kClosingSpeed = 0.05;  // maximum rate of the depth [m/s]
 constexpr double kSwing = 1.0;          // [Hz]
 

@@ -20,8 +20,7 @@ struct Motion3 {
   double amplitude, frequency;  // [m], [Hz]
   bool noisy;
   int further_cubes;
-  int squares = 0;            // along an edge of the cube's faces, each of two triangles; 0: a box instead of
-                              // a mesh
+  int squares = 0;            // along an edge of the cube, each of two triangles; 0: a box, no mesh
   double frame_rate = 120.0;  // of the noisy tracker [Hz]
 };
 
