@@ -522,9 +522,9 @@ void LargeIslandSolver::solve(const ContactStep& step) {
   }
 }
 
-/// Writes the response that settle() reads. Forces are impulses over the step. `wanted` is that of
-/// trial_friction(). At the fixed point it is k q+ where the contact sticks. It exceeds the limit where k q+
-/// does, as t' - t = give (k q+ - t).
+/// Writes the response that settle() reads. Forces are impulses over the step. The trial force is
+/// that of trial_friction(). At the fixed point it is k q+ where the contact sticks. It exceeds the limit
+/// where k q+ does, as t' - t = give (k q+ - t).
 void LargeIslandSolver::fill_response(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
