@@ -35,9 +35,9 @@ struct WindowOutcome {
 /// Last frame before the release in which no hand touches the object; 0 if there is none.
 std::size_t last_clear(const Window& window, const Configuration& configuration);
 
-/// Drives the object along its captured path for up to `lead` seconds before its window, or without `lead`
-/// from last_clear() on, so that hands acquire their contacts as they approach. Then releases it with its
-/// captured velocity.
+/// Drives the object along its captured path before its window: for up to `lead` seconds, or without `lead`
+/// from last_clear() on. So hands acquire their contacts as they approach. Then releases it with its captured
+/// velocity.
 WindowOutcome play(const Window& window, const Configuration& configuration, std::optional<double> lead);
 
 /// Rigid baseline: the object keeps its pose relative to the distal phalanges (least squares) of the better

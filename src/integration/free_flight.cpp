@@ -338,9 +338,9 @@ void turn_on(double cosine, const Triple& sine, Quaternion& q) {
   q = Quaternion(w + (w_more * w - u.dot(vector)), u.x + more.x, u.y + more.y, u.z + more.z);
 }
 
-/// free_rotation() for short rotations, without roots and with few divisions. The shortest rotation of the
-/// momentum and the rotation about it have a product of norm sqrt(1 - e) if the first has the scalar part 1 -
-/// e and the second has its vector along m + n / 2.
+/// free_rotation() for short rotations, without roots and with few divisions. It multiplies the shortest
+/// rotation of the momentum by the rotation about it. The product has the norm sqrt(1 - e) if the scalar part
+/// of the first is 1 - e and the vector of the second is along m + n / 2.
 ///
 ///     (2 L^2 (1 - e), n x m)  then  (cos, sin m / L),  over 2 L^2:
 ///     scalar  cos (1 - e),     vector  cos n x m / 2 L^2 + sin / L (m + n / 2)

@@ -7,8 +7,8 @@ namespace mrhi {
 
 /// Forces of a joint as functions of its velocity at the end of the step: spring, detents, latch, damping,
 /// friction, limits. Each decreases as the velocity grows, so the step's problem stays convex. Limits,
-/// friction and latch are springs ten thousand times as stiff as the joint's inertia per squared step, the
-/// last two up to their force limit. So a held joint does not creep.
+/// friction and latch are springs, ten thousand times as stiff as the joint's inertia per squared step.
+/// Friction and latch have a force limit; up to it a held joint does not creep.
 class JointLaw {
  public:
   /// `inertia`: the joint's diagonal entry of the mass matrix; `usual`: regular step, as the last one of a

@@ -44,7 +44,7 @@ struct MeetingFaces {
   }
 };
 
-// Of a box, the three faces whose normals are on the side of n; of a cylinder, the end and the side at n's
+// For a box, the three faces whose normals are on the side of n; for a cylinder, the end and the side at n's
 // azimuth. A face parallel to n carries none of the normal force and is left out.
 MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
   constexpr double kSameNormal = 1e-6;
@@ -78,9 +78,9 @@ double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3
   return lowest;
 }
 
-// grip = f_edge / mu (phi if the contact slips) multiplies the spring's friction limit. It is found for the
-// direction of the stretch at the start of the step, and held through the step, so that the step's problem
-// stays convex.
+// grip = f_edge / mu (phi if the contact slips) multiplies the spring's friction limit. Its direction is that
+// of the stretch at the start of the step. It is held through the step, so that the step's problem stays
+// convex.
 void grip_edges(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     if (!contact.at_edge || !contact.touching()) continue;

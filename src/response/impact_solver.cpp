@@ -82,8 +82,8 @@ ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
   return point;
 }
 
-/// Sets the depth so that at constant velocity the springs find the actual gap at the end of the step,
-/// although an impact has changed the velocity within it.
+/// Sets the depth for the springs of a pair whose velocity an impact has changed within the step. At the
+/// constant velocity that springs assume, it gives the actual gap at the end of the step.
 ///
 ///     d+ = d - h u = -gap(h)      so      d = h u - gap(h)
 ///

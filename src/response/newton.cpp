@@ -9,10 +9,10 @@
 //     H d = -g(u),     u <- u + s d,     s = 1 where it will do
 //
 // Forces have kinks where contacts open and slip. There H is one of the generalised Hessians, and this is a
-// semismooth Newton method (Qi & Sun 1993). Once the set of open contacts is found and all others stick,
-// forces are linear in u but for the release fade and the pad, and one step is practically exact. Where
-// contacts slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians
-// are reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
+// semismooth Newton method (Qi & Sun 1993). If the set of open contacts is known and all others stick, forces
+// are linear in u but for the release fade and the pad. One step is then practically exact. Where contacts
+// slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians are
+// reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
 namespace mrhi {
 namespace {
 

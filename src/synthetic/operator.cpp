@@ -264,7 +264,7 @@ void SimulatedOperator::prepare_grasp() {
   misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
 }
 
-/// Of the grasps allowed by the object's symmetry, the one that rotates the wrist least.
+/// Returns the wrist pose of the grasp with the least rotation among those allowed by the object's symmetry.
 Pose SimulatedOperator::wrist_about(const Pose& object) {
   const Quaternion comfortable = usual_.wrist.orientation;
   const auto strain = [&](const Quaternion& turn) {

@@ -54,7 +54,7 @@ struct TrialMeasures {
   std::optional<double> release_speed;                    ///< at release [m/s]
   int tracking_losses = 0;
   int touches = 0;  ///< number of first touches of a hand with an object or a fixture
-  /// Of the last goal `rest` with a position: speed at which its body first came within the tolerance [m/s];
+  /// For the last goal `rest` with a position: speed at which its body first came within the tolerance [m/s];
   /// errors of position and orientation when the goal was achieved [m], [rad].
   std::optional<double> arrival_speed, misplacement, misalignment;
   std::optional<double> operator_speed, operator_spin;  ///< at the end of the trial [m/s], [rad/s]
