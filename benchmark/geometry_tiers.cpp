@@ -1,6 +1,6 @@
-// How much of a finger contact needs to model: spheres, capsules, tapered capsules and the skin itself
-// against a box. A box is brought to just touch the skin of a relaxed hand; what another geometry makes of
-// the gap then is its error. Ratios of the times come from one run in which the geometries take turns.
+// Geometry that finger contact needs: spheres, capsules, tapered capsules and the skin itself against a box.
+// A box is placed to just touch the skin of a relaxed hand; the gap of another geometry is then its error.
+// Geometries alternate in one run, so that their times can be compared.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -20,7 +20,7 @@ namespace mrhi {
 namespace {
 
 constexpr int kPoses = 2000, kRounds = 20;
-constexpr double kTouch = 1e-6;  // nearer is a touch [m]
+constexpr double kTouch = 1e-6;  // largest gap that counts as contact [m]
 const Box kBox{Vector3(0.025, 0.02, 0.015)};
 
 /// Distance of a point from the box, negative inside [m].
@@ -29,7 +29,7 @@ double distance(const Vector3& point) {
   return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
 }
 
-/// A capsule whose radius goes evenly from one end to the other.
+/// A capsule whose radius varies linearly between its ends.
 struct TaperedCapsule {
   Vector3 start, end;
   double start_radius, end_radius;
@@ -60,8 +60,8 @@ struct Geometries {
   std::vector<TaperedCapsule> tapered;
 };
 
-/// Mean distance from the bone's axis of the skin's vertices over one half of the bone; the radius that the
-/// tracker gives where there are none.
+/// Mean distance from the bone's axis of the skin's vertices over one half of the bone; the tracker's radius
+/// if there are none.
 double skin_radius(const Capsule& bone, int capsule, bool first_half, const Skin& skin,
                    const std::vector<Vector3>& vertices) {
   const Vector3 along = bone.end - bone.start;
@@ -87,7 +87,7 @@ Geometries resting_hand(const Skin& skin) {
     if (!all.hand.has(c)) continue;
     const Capsule& bone = all.hand.capsules[static_cast<std::size_t>(c)];
     for (const double s : {0.0, 0.5, 1.0}) all.spheres.emplace_back(bone.axis_point(s), bone.radius);
-    // The means over two halves lie a quarter from the ends.
+    // The means over two halves belong to points a quarter from the ends.
     const double near = skin_radius(bone, c, true, skin, all.skin),
                  far = skin_radius(bone, c, false, skin, all.skin), taper = far - near;
     all.tapered.push_back({bone.start, bone.end, near - 0.5 * taper, far + 0.5 * taper});
@@ -95,7 +95,7 @@ Geometries resting_hand(const Skin& skin) {
   return all;
 }
 
-/// Writes `from` as seen from `box` to `to`, which has the same sizes.
+/// Transforms `from` into the frame of `box`, into `to` of the same sizes.
 void place(const Geometries& from, const Pose& box, Geometries& to) {
   const auto moved = [&box](const Vector3& point) { return box.to_local(point); };
   std::transform(from.skin.begin(), from.skin.end(), to.skin.begin(), moved);
@@ -167,7 +167,7 @@ Touch nearest(const std::vector<Vector3>& skin) {
   return touch;
 }
 
-/// Poses of the box, seeded, at which it just touches the skin of a finger's outer two bones: on the palm's
+/// Random poses of the box, at which it just touches the skin of a finger's two distal bones: on the palm's
 /// side if `inside`.
 std::vector<Pose> touching_poses(const Geometries& rest, const Skin& skin, bool inside) {
   std::mt19937_64 random(7);
@@ -187,7 +187,7 @@ std::vector<Pose> touching_poses(const Geometries& rest, const Skin& skin, bool 
     for (int i = 0; i < 100 && touch.gap > kTouch; ++i) {
       place(rest, pose, placed);
       touch = nearest(placed.skin);
-      pose.position -= touch.gap * from;  // never past the touch
+      pose.position -= touch.gap * from;  // never beyond first touch
     }
     if (std::abs(touch.gap) <= kTouch &&
         capsule_shares(skin.rest()[touch.vertex])[static_cast<std::size_t>(capsule)] > 0.5)
@@ -228,7 +228,7 @@ void compare(const Geometries& rest, const Skin& skin, bool inside) {
 }  // namespace mrhi
 
 int main() {
-  const mrhi::Skin skin(mrhi::skinned(mrhi::finest_skin(false), false));  // finer than the one that is drawn
+  const mrhi::Skin skin(mrhi::skinned(mrhi::finest_skin(false), false));  // finer than the rendered one
   const mrhi::Geometries rest = mrhi::resting_hand(skin);
   std::printf(
       "%d poses each; all fingers against one box; smallest of %d times, all geometries by turns; "

@@ -1,4 +1,5 @@
-// Plays a scene for callgrind to count the instructions of its settled steps: scripts/instruction_count.
+// Runs the settled steps of a scene, for counting their instructions with callgrind:
+// scripts/instruction_count.
 #include <cstring>
 #include <iostream>
 #include <memory>
@@ -8,7 +9,7 @@
 #include "support/pinch_scene.h"
 #include "support/tessellated.h"
 
-// Callgrind begins and ends to collect with these, by their names: none may call another or be inlined.
+// Callgrind starts and stops at these functions, by name: they must not call each other or be inlined.
 extern "C" {
 [[gnu::noinline]] int counted_steps(mrhi::Simulation& simulation) {
   int steps = 0;
@@ -50,7 +51,7 @@ Scene pinch() {
   return PinchScene().scene();
 }
 
-/// Scene (a) by an operator who floats.
+/// Scene (a) with a floating operator.
 Scene pinch_afloat() {
   Scene scene = pinch();
   Body person;
@@ -92,7 +93,7 @@ Scene stack() {
   return scene;
 }
 
-/// Two pinches a metre apart, and four more cubes within reach of neither.
+/// Two pinches a metre apart, and four more cubes out of reach of both.
 Scene two_pinches() {
   Scene scene = pinch();
   for (int i = 0; i < 5; ++i) {
@@ -119,7 +120,7 @@ std::vector<Hand> none(double) {
   return {};
 }
 
-/// Scene (a) with a ball of 2880 triangles in the cube's place.
+/// Scene (a) with a ball of 2880 triangles instead of the cube.
 Scene pinched_mesh() {
   Scene scene = pinch();
   Body& body = scene.bodies.front();
@@ -165,11 +166,11 @@ const Plan kPlans[] = {
     {"two_hands_six_objects_120_hz_frame", two_pinches, two_swinging, kTrackerFrame, 0.6, true, true},
 };
 
-/// The number of steps that were counted.
+/// Returns the number of counted steps.
 int play(const Plan& plan) {
   Configuration configuration = testing::implicit_configuration();
   configuration.contact.sleep = plan.sleep;
-  configuration.step = 1.001 * plan.frame_time;  // one step a frame, though stamps are rounded
+  configuration.step = 1.001 * plan.frame_time;  // one step per frame, although stamps are rounded
   Simulation simulation(plan.scene(), configuration);
   const long last = std::lround((plan.settled + plan.counted) / plan.frame_time);
   int steps = 0;
@@ -194,7 +195,7 @@ int list() {
   return 0;
 }
 
-/// What the counts depend on besides our code.
+/// Prints what the counts depend on besides our code.
 int print_compiler() {
 #ifdef __clang__
   std::cout << "clang ";

@@ -1,6 +1,6 @@
-// What holding a mesh costs beside holding a box: scene (a) with another shape in place of the cube, the
-// shapes in turns of some frames, so that whatever else the machine does meets all alike. Medians of a step
-// and of a frame's end. meshes [NAME]: only shapes with that in their name, and the box.
+// Cost of holding a mesh compared with a box: scene (a) with other shapes instead of the cube. Shapes
+// alternate every few frames, so that other load affects all alike. Prints medians of a step and of a frame's
+// end. meshes [NAME]: only shapes with NAME in their name, and the box.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -26,7 +26,7 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-/// A block as thick as the cube with a groove across each of its other sides: fingers lie in none.
+/// A block as thick as the cube, with a groove across each of its other sides, where no finger is.
 TriangleMesh grooved(int n) {
   TriangleMesh mesh = testing::tessellated_box(Vector3::Constant(0.025), n);
   for (Vector3& v : mesh.vertices) {
@@ -36,7 +36,7 @@ TriangleMesh grooved(int n) {
   return mesh;
 }
 
-/// A bowl's wall, seen from outside a ball: hollow from above.
+/// A ball with a hollow on top.
 TriangleMesh dented(int k) {
   TriangleMesh mesh = testing::tessellated_ball(0.025, k);
   for (Vector3& v : mesh.vertices)

@@ -1,6 +1,6 @@
-// How often a scripted hand grasps and holds through a tracker of this noise and rate: noisy_grasps MOTION
-// [SEEDS] Prints CSV: held from when the object is carried until the hand opens, percent of the seeds, with
-// the noise estimated and with a good tracker's.
+// Rate of grasps that a scripted hand makes and holds with a tracker of this noise and rate: noisy_grasps
+// MOTION [SEEDS]. Prints CSV: held from carrying until the hand opens, percent of the seeds, with estimated
+// noise and with a good tracker's.
 
 #include <cstdlib>
 #include <iostream>
@@ -34,7 +34,7 @@ void write_row(const std::string& motion, const testing::Staging& estimated, int
   std::cout.flush();
 }
 
-/// Noise of a stream beside its size.
+/// Properties of a stream's noise besides its size.
 struct Colour {
   double correlation, dropped;
 };

@@ -1,5 +1,5 @@
-// Plays hand recordings with bodies put in the hands' way and looks at every rendered hand: how many jump,
-// are in a body, or are out of their joints' limits. docs/pipeline.md.
+// Plays hand recordings with bodies in the hands' paths, and checks every rendered hand: how many jump,
+// penetrate a body, or exceed their joints' limits. docs/pipeline.md.
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>

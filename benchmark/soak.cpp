@@ -1,6 +1,6 @@
-// Recordings and scripted motions through the core, one after the other, for hours of their time: what
-// memory, open files and the step cost at the end of each hour, and what became of a body that nothing
-// touches. scripts/soak.
+// Runs recordings and scripted motions through the core, one after the other, for hours of simulated time.
+// Reports memory, open files and step cost at the end of each hour, and the drift of a free body.
+// scripts/soak.
 #include <dirent.h>
 #include <unistd.h>
 
@@ -20,10 +20,9 @@ namespace {
 constexpr double kHour = 3600.0;            // [s]
 constexpr Nanoseconds kBreak = 50'000'000;  // between two recordings
 
-/// What must not grow from hour to hour, after the first. The step's cost is that of a machine with other
-/// things to do.
+/// Largest growth after the first hour. The step's cost varies with other load of the machine.
 constexpr double kMostMemory = 1.02, kMostTime = 1.5;
-/// Of a body in free flight, as a part of what it has. Rotation is exact to rounding, which adds up.
+/// Largest relative drift of a body in free flight. Rotation is exact to rounding, which accumulates.
 constexpr double kMostDrift = 1e-9;
 
 double resident_megabytes() {
@@ -41,7 +40,7 @@ int open_files() {
   return count;
 }
 
-/// A body that spins far from all others.
+/// A spinning body far from all others.
 Body spinner() {
   Body body = testing::box_body(Vector3(0.2, 0.1, 0.05), 0.5);
   body.name = "spinner";
@@ -74,7 +73,7 @@ std::vector<Take> takes() {
   return all;
 }
 
-/// One simulation of all takes in turn, each with the bodies of its own way at their start when it begins.
+/// One simulation of all takes in turn; the bodies of each are at their start when it begins.
 class Soak {
  public:
   explicit Soak(const Take& first) : simulation_(scene(first), Configuration()) {}
@@ -96,7 +95,7 @@ class Soak {
   DurationHistogram steps;
   long frames = 0;
 
-  /// Of the spinner's energy and angular momentum, as parts of what they were.
+  /// Relative change of the spinner's energy and angular momentum.
   double drift() const {
     const std::size_t last = simulation_.scene().bodies.size() - 1;
     const Body& body = simulation_.scene().bodies[last];

@@ -1,5 +1,5 @@
-// Speed that a hand at 0.3 m/s gives to a cube at rest, over the cube's mass: a fingertip and a palm of a
-// person, and the paper's hand. Prints CSV, which plot_speed_against_mass.py draws.
+// Speed that a hand at 0.3 m/s gives to a cube at rest, over the cube's mass: for a person's fingertip and
+// palm, and for the paper's hand. Prints CSV for plot_speed_against_mass.py.
 
 #include <cmath>
 #include <iostream>
@@ -13,22 +13,22 @@ namespace {
 constexpr double kSpeed = 0.3;                   // of the hand [m/s]
 constexpr double kSize = 0.1;                    // of the cube [m]
 constexpr double kStart = 0.1, kRate = 120.0;    // of the impact [s], of frames [1/s]
-constexpr double kPushed = 0.4;                  // for which the hand goes on after the impact [s]
+constexpr double kPushed = 0.4;                  // duration of the hand's motion after the impact [s]
 constexpr double kLeast = 0.01, kMost = 1000.0;  // masses [kg]
 constexpr int kSteps = 50;
 
-/// All of the hand moves alike: it does not close.
+/// The whole hand translates: it does not close.
 Hand hand_at(double t, bool palm) {
   const double surface = -0.5 * kSize - kSpeed * (kStart - t);
   Hand hand = testing::empty_hand();
   hand.palm.position = Vector3(surface - 0.1, 0, 0);
-  // Both touch with one point.
+  // Each has one contact point.
   testing::add_fingertip(hand, palm ? kPalm : capsule_index(1, 3), Vector3(surface, 0, 0), -Vector3::UnitX());
   return hand;
 }
 
 struct Speeds {
-  double impact = 0.0, pushed = 0.0;  // of the impact alone, after kPushed [m/s]
+  double impact = 0.0, pushed = 0.0;  // after the impact alone, and after kPushed [m/s]
 };
 
 Speeds speeds(double mass, bool palm, const HandStrength& strength) {

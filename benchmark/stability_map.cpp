@@ -1,5 +1,5 @@
-// Where each contact model stays stable: a cube between fingertips, over mass, step, stiffness, number of
-// contacts and restitution. See docs/speed_accuracy.md.
+// Stability of each contact model: a cube between fingertips, over mass, step, stiffness, number of contacts
+// and restitution. See docs/speed_accuracy.md.
 
 #include <algorithm>
 #include <chrono>
@@ -22,14 +22,14 @@ namespace {
 
 constexpr int kMasses = 11, kSteps = 9;
 
-/// `count` values from `first` to `last`, each the same multiple of the one before.
+/// `count` values from `first` to `last` in geometric progression.
 std::vector<double> geometric(double first, double last, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(first * std::pow(last / first, i / (count - 1.0)));
   return values;
 }
 
-/// The step in whole nanoseconds, as the simulation counts it.
+/// Steps in whole nanoseconds, as the simulation counts them.
 std::vector<double> steps() {
   std::vector<double> values = geometric(0.00025, 1.0 / 60.0, kSteps);
   for (double& step : values) step = 1e-9 * std::round(1e9 * step);
@@ -51,7 +51,7 @@ std::vector<Value> every_second(const std::vector<Value>& values) {
   return kept;
 }
 
-/// Both ends of each quantity are in it.
+/// Includes both ends of each range.
 StabilityGrid coarse_grid() {
   const StabilityGrid whole = whole_grid();
   return {every_second(whole.masses), every_second(whole.steps), every_second(whole.stiffnesses),

@@ -1,5 +1,5 @@
-// Where a step's time goes: the median of each stage of scene (a), alone and with far cubes. What the clock
-// itself takes is measured and taken off.
+// Time of each stage of a step: medians in scene (a), alone and with far cubes. The measured cost of the
+// clock is subtracted.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -28,7 +28,7 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-/// What a stage of no length is measured as [ns].
+/// Measured duration of an empty stage [ns].
 double clock_cost() {
   std::vector<double> empty;
   for (int i = 0; i < kMeasured; ++i) {
@@ -84,7 +84,7 @@ void measure(int far) {
                 std::max(0.0, median(stages[static_cast<std::size_t>(i)])));
 }
 
-/// Median step of scene (a), with frames at `rate`: how often the hand's velocity changes [1/s].
+/// Median step of scene (a), with frames at `rate`, at which the hand's velocity changes [1/s].
 double step_of_pinch(double rate, double amplitude) {
   const testing::PinchScene pinch;
   Simulation simulation(pinch.scene(), testing::unfiltered(ContactModelKind::implicit));
@@ -103,7 +103,7 @@ double step_of_pinch(double rate, double amplitude) {
   return median(steps);
 }
 
-/// Two hands that hold a cube each among four more, one step a frame at 120 Hz: from the frame's arrival to
+/// Two hands that each hold a cube among four more, one step per frame at 120 Hz: from the frame's arrival to
 /// the rendered hands.
 void measure_frame() {
   const testing::PinchScene pinch;

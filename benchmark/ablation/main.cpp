@@ -1,5 +1,5 @@
-// What each refinement of contact buys and costs: turned off by itself in the scene that needs it, and in
-// scene (a) for the cost of a step. Prints the table of docs/contact.md.
+// Benefit and cost of each contact refinement: turned off alone in the scene that needs it, and in scene (a)
+// for the cost of a step. Prints the table of docs/contact.md.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ constexpr const char* kUsage =
     "usage: ablation | ablation --steps none|REFINEMENT (scene (a) alone, for a profiler)\n";
 
 std::string written(double value, const std::string& unit) {
-  constexpr double kNothing = 1e-6;  // far below what a figure is read for
+  constexpr double kNothing = 1e-6;  // far below the precision of a printed value
   char text[32];
   std::snprintf(text, sizeof text, value < 1000.0 ? "%.3g" : "%.0f", value);
   return (value > 0.0 && value < kNothing ? "< 1e-6" : text) + (unit.empty() ? "" : " " + unit);

@@ -27,12 +27,12 @@ testing::Ride shaken(const Variant& variant, double step) {
   return testing::ride(variant.pinch, stepped(variant, step), rate, testing::eased(0.05, 3.0));
 }
 
-/// How fast the cube moves in a still hand that grips it twice as hard as its weight needs [m/s]. It has no
-/// weight until it is gripped.
+/// Speed of the cube in a still hand that grips it twice as hard as its weight needs [m/s]. Gravity acts on
+/// it once it is gripped.
 double creep(const Variant& variant) {
   constexpr double kGripped = 1.0, kSettled = 5.0, kWatched = 20.0, kRate = 60.0;
   testing::PinchScene pinch = variant.pinch;
-  // Four springs and one face each other.
+  // Four springs oppose one.
   pinch.overlap = 0.25 * (2.0 * pinch.mass * kGravity / Material().static_friction) / (0.8 * pinch.stiffness);
   Configuration configuration = variant.configuration;
   configuration.gravity = Vector3(0, 0, -kGravity);
@@ -47,7 +47,7 @@ double creep(const Variant& variant) {
   return (play(simulation, kSettled + 1.0 / kRate, kSettled + kWatched) - settled).norm() / kWatched;
 }
 
-/// Time until a held cube that is kicked to 0.1 m/s is slower than 1 mm/s for good [s].
+/// Time until a held cube kicked to 0.1 m/s stays slower than 1 mm/s [s].
 double time_to_rest(const Variant& variant) {
   constexpr double kRate = 1000.0, kKicked = 1.0, kWatched = 4.0;
   Simulation simulation(variant.pinch.scene(), stepped(variant, kFine));
@@ -68,7 +68,7 @@ testing::NoisyRide in_raw_noise(const Variant& variant) {
   return testing::noisy_ride(testing::NoisyPinch(1, variant.pinch), variant.configuration);
 }
 
-/// rms by which raw tracking noise moves the force of the thumb [N].
+/// rms of the thumb's force under raw tracking noise [N].
 double force_noise(const Variant& variant) {
   testing::NoisyPinch pinch(1, variant.pinch);
   Simulation simulation(pinch.scene(), variant.configuration);
@@ -97,7 +97,7 @@ double plates(const Variant& variant, double speed, double rate) {
   return testing::plates_hit(speed, rate, configuration);
 }
 
-/// Relative error against the closed form of a slap 2 cm beside the middle at 3 m/s.
+/// Relative error of a slap 2 cm off centre at 3 m/s, from the closed form.
 Twist slap_error(const Variant& variant) {
   constexpr double kLever = 0.02;
   const Body body = testing::slab(Vector3::Constant(0.05), 0.5);

@@ -3,7 +3,7 @@
 namespace mrhi::ablation {
 namespace {
 
-constexpr double kHard = 2e5;  // stiffness of what hardly gives way [N/m]
+constexpr double kHard = 2e5;  // stiffness of a nearly rigid finger [N/m]
 
 Refinement part(const std::string& name, bool ContactConfiguration::*refinement) {
   return {name, [=](Variant& variant) { variant.configuration.contact.*refinement = false; }};

@@ -10,14 +10,14 @@
 namespace mrhi::ablation {
 namespace {
 
-constexpr double kRate = 1000.0;  // frames and steps a second
+constexpr double kRate = 1000.0;  // frames and steps per second
 
 class SceneA {
  public:
   explicit SceneA(const Variant& variant)
       : pinch_(variant.pinch), simulation_(pinch_.scene(), variant.configuration) {}
 
-  /// The frame's step alone [ns].
+  /// Time of the frame's step alone [ns].
   double advance(int frame) {
     const double t = frame / kRate;
     const Vector3 sway = testing::smooth(t - 0.5, 0.5) * testing::swing(t - 0.5, 0.1, 0.5);
@@ -44,7 +44,7 @@ void run_scene_a(const Variant& variant) {
 }
 
 std::vector<double> times_of_a_step(const std::vector<Variant>& variants) {
-  constexpr int kTurn = 50, kWarm = 10;  // of a turn: fills the caches
+  constexpr int kTurn = 50, kWarm = 10;  // steps per turn, and before it to fill the caches
   std::vector<std::unique_ptr<SceneA>> scenes;
   for (const Variant& variant : variants) scenes.push_back(std::make_unique<SceneA>(variant));
   std::vector<std::vector<double>> times(variants.size());

@@ -7,16 +7,16 @@
 
 namespace mrhi::ablation {
 
-/// The hand of scene (a) closes, and swings from 0.5 s on; a step a frame.
+/// The hand of scene (a) closes, and swings from 0.5 s on; one step per frame.
 constexpr int kSteps = 4000;
 void run_scene_a(const Variant& variant);
 
-/// Median time of a step of scene (a) under each variant [ns]; they take turns, so that a machine that slows
-/// down slows all.
+/// Median step time of scene (a) for each variant [ns]. Variants alternate, so that other load affects all
+/// alike.
 std::vector<double> times_of_a_step(const std::vector<Variant>& variants);
 
-/// Instructions of a step of scene (a): mean, as callgrind counts them in `program --steps REFINEMENT`.
-/// Negative if there is no valgrind.
+/// Mean instructions per step of scene (a), counted by callgrind in `program --steps REFINEMENT`. Negative
+/// without valgrind.
 double instructions_of_a_step(const std::string& program, const std::string& refinement);
 
 }  // namespace mrhi::ablation

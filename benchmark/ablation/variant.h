@@ -8,8 +8,8 @@
 
 namespace mrhi::ablation {
 
-/// `implicit` with the paper's hand, or with one refinement turned off. Without help, which would hold what
-/// contact alone loses.
+/// `implicit` with the paper's hand, or with one refinement turned off. Without grasp assist, which would
+/// hide losses of contact.
 struct Variant {
   Variant() { configuration.contact.grasp_assist = false; }
 
@@ -28,10 +28,10 @@ struct Refinement {
   }
 };
 
-/// By the names of the parameters `contact/...`; "compliance" off is 200 000 N/m instead of 2000.
+/// By the parameter names `contact/...`; "compliance" off is 200 000 N/m instead of 2000.
 const std::vector<Refinement>& refinements();
 
-/// A figure that shows what a refinement is good for.
+/// A measure that shows the benefit of a refinement.
 struct Measure {
   std::string refinement, what, unit;
   std::function<double(const Variant&)> of;

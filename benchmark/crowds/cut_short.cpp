@@ -25,8 +25,8 @@ namespace mrhi::crowds {
 namespace {
 
 constexpr double kStep = 0.001;        // [s]
-constexpr int kReference = 200;        // budgets that the reference may spend
-constexpr std::size_t kMostExact = 4;  // bodies of an island that is not large
+constexpr int kReference = 200;        // budgets of the reference solution
+constexpr std::size_t kMostExact = 4;  // maximum bodies of an island that is not large
 
 double cpu_time() {
   timespec now{};
@@ -152,7 +152,7 @@ class Falling {
   std::vector<Grip> no_grips_;
 };
 
-/// `looks` steps apart, crowds are compared.
+/// Compares large islands every `looks` steps.
 void play(const Scene& scene, double seconds, int looks, Sizes& sizes) {
   Falling falling(scene);
   for (int i = 1; i <= std::lround(seconds / kStep); ++i) falling.advance(i % looks == 0 ? &sizes : nullptr);

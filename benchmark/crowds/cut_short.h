@@ -2,8 +2,8 @@
 
 namespace mrhi::crowds {
 
-/// Drops ever more cubes on a floor and prints, as CSV, what a crowd's step costs and by how much its budget
-/// leaves velocities off the same problem's own solution.
+/// Drops increasing numbers of cubes on a floor. Prints, as CSV, the cost of a large island's step and its
+/// velocity error against the converged solution of the same problem.
 void print_cut_short();
 
 }  // namespace mrhi::crowds

@@ -1,8 +1,8 @@
-// What a step costs where many bodies meet: CPU time of each, how often it was much, and what became of
-// momentum. crowds [NAME [SECONDS]]: scenes with that in their names, each for so much CPU time at most;
-// crowds --cut-short: error against cost over the size of a crowd; crowds --heaps: what the dearest step of a
-// heap of dice costs, over 16 starts. Each scene is played three times, which is three times the same: of a
-// step counts the least, which is nearest to what it costs where nothing else runs.
+// Cost of steps with large islands: CPU time of each, frequency of expensive ones, and error of momentum.
+// crowds [NAME [SECONDS]]: scenes with NAME in their names, each for at most SECONDS of CPU time. crowds
+// --cut-short: error against cost over the size of an island. crowds --heaps: cost of the most expensive step
+// of a heap of dice, over 16 starts. Each scene is played three times with equal results; the lowest time of
+// a step counts, as least disturbed by other load.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -19,22 +19,21 @@
 namespace mrhi::crowds {
 namespace {
 
-/// Of this thread alone [us]: others on the machine do not count.
+/// CPU time of this thread [us], unaffected by other load.
 double cpu_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of all bodies together.
+/// Total momentum of all bodies.
 Vector3 momentum_of(const Simulation& simulation) {
   Vector3 sum = Vector3::Zero();
   for (const BodyState& state : simulation.state().bodies) sum += state.linear_momentum;
   return sum;
 }
 
-/// What gravity and hands give in a step. Fixtures take what they like: where there are any, nothing is to be
-/// kept.
+/// Impulse of gravity and hands in a step. Not defined with fixtures, which absorb momentum.
 Vector3 given_from_outside(const Simulation& simulation, double step) {
   const SimulationState& state = simulation.state();
   Vector3 sum = Vector3::Zero();
@@ -48,10 +47,10 @@ bool has_fixtures(const Scene& scene) {
 }
 
 struct Measured {
-  std::vector<double> times;  // of a step, or of a frame if it is timed as a whole [us]
-  double error = 0.0;         // of momentum in one step, most, where there are no fixtures [N s]
-  std::size_t contacts = 0;   // most
-  double slept = -1.0;        // from when on [s]
+  std::vector<double> times;  // of a step, or of a frame if timed as a whole [us]
+  double error = 0.0;         // largest error of momentum in one step, without fixtures [N s]
+  std::size_t contacts = 0;   // maximum
+  double slept = -1.0;        // time at which all slept [s]
 };
 
 bool all_asleep(const Simulation& simulation) {
@@ -130,7 +129,7 @@ void print(const Crowd& crowd, Measured measured) {
               measured.slept, 1e-3 * static_cast<double>(usage.ru_maxrss));
 }
 
-/// Dice dropped, moved by up to 0.4 mm from start to start.
+/// Dropped dice, displaced by up to 0.4 mm between starts.
 void print_heaps(int dice) {
   constexpr int kStarts = 16;
   double sum = 0.0, worst = 0.0, mean = 0.0;

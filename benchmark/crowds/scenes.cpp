@@ -34,7 +34,7 @@ void add_cube(Scene& scene, double edge, const Vector3& position,
   scene.bodies.push_back(cube);
 }
 
-/// Always the same, between -1 and 1.
+/// Pseudo-random, between -1 and 1.
 double scattered(int i) {
   return 2.0 * std::fmod(0.618033988749895 * i + 0.37 * std::fmod(0.7548776662 * i * i, 1.0), 1.0) - 1.0;
 }
@@ -43,7 +43,7 @@ Quaternion turned(int i) {
   return Quaternion(1.0, scattered(3 * i), scattered(3 * i + 1), scattered(3 * i + 2)).normalized();
 }
 
-/// Four upright fingers beside each other across x.
+/// Four upright fingers side by side along x.
 Hand comb(std::uint32_t id, const Vector3& tip) {
   Hand hand = testing::empty_hand(id);
   for (int finger = 1; finger < kFingers; ++finger) {
@@ -54,13 +54,13 @@ Hand comb(std::uint32_t id, const Vector3& tip) {
   return hand;
 }
 
-/// The cubes of a square of `side`, `pitch` apart.
+/// Position of a cube in a square of `side` cubes with spacing `pitch`.
 Vector3 in_square(int i, int side, double pitch) {
   return Vector3(pitch * (i % side - 0.5 * (side - 1)), pitch * (i / side % side - 0.5 * (side - 1)),
                  pitch * (i / (side * side)));
 }
 
-/// A cloud of cubes that falls in on itself, without gravity or floor.
+/// A cloud of cubes that collapses, without gravity or floor.
 Crowd gathering(int count) {
   constexpr double kEdge = 0.04;
   Crowd crowd{std::to_string(count) + " cubes thrown together in 0 g", {}, 1.5};
@@ -159,7 +159,7 @@ Crowd lifted(int count) {
   crowd.whole_frame = true;
   for (int i = 0; i < count; ++i)
     add_cube(crowd.scene, kEdge, Vector3(kPitch * (i % 10), kPitch * (i / 10), 0.5 * kEdge - 1e-7));
-  // The corner's box, pinched above its neighbours' middle and lifted out.
+  // The corner's box, pinched above its neighbours' centres and lifted out.
   crowd.hands = [](double t) -> std::vector<Hand> {
     const Vector3 place(0.0, 0.0, 0.045 + 0.1 * testing::smooth(t - 1.0, 1.0));
     const double gap = testing::closing_gap(t - 0.3, 0.002);

@@ -1,5 +1,5 @@
-// Jitter against lag of every filter and setting, over real recordings, as they are and with noise added; and
-// what a cube does that a noisy hand holds. See docs/pipeline.md.
+// Jitter against lag of every filter and setting, over real recordings with and without added noise, and the
+// motion of a cube held by a noisy hand. See docs/pipeline.md.
 
 #include <fstream>
 #include <iostream>
@@ -15,7 +15,7 @@
 namespace mrhi::filter_benchmark {
 namespace {
 
-constexpr double kBetweenRates = 80.0;  // frames a second; the recordings have 38 to 60, or 99 to 116
+constexpr double kBetweenRates = 80.0;  // frames per second; the recordings have 38 to 60, or 99 to 116
 
 /// Takes of one rate, recorded or with noise added.
 struct Group {
@@ -68,7 +68,7 @@ void write_rides(std::ostream& csv) {
   }
 }
 
-/// False if the file cannot be written.
+/// Returns false if the file cannot be written.
 template <typename Write>
 bool write_file(const std::string& path, Write write) {
   std::ofstream csv(path);

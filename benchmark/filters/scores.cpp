@@ -8,9 +8,9 @@
 namespace mrhi::filter_benchmark {
 namespace {
 
-constexpr double kJitterWidth = 0.07;                               // takes away what is below 10 Hz [s]
+constexpr double kJitterWidth = 0.07;                               // removes frequencies below 10 Hz [s]
 constexpr double kShortestMove = 0.1;                               // [s]
-constexpr double kEarliest = -0.03, kLatest = 0.1, kShift = 0.001;  // shifts that are tried [s]
+constexpr double kEarliest = -0.03, kLatest = 0.1, kShift = 0.001;  // range and step of the tested shifts [s]
 
 class MeanSquare {
  public:
@@ -45,7 +45,7 @@ Vector3 at(const std::vector<double>& times, const Points& points, double time) 
   return ((1.0 - share) * points.row(i - 1) + share * points.row(i)).transpose();
 }
 
-/// The shift that brings frames `first` to before `last` of a path closest to the reference.
+/// Shift that best aligns frames `first` to before `last` of a path with the reference.
 double lag_of(const std::vector<double>& times, const Points& path, const Points& reference,
               std::size_t first, std::size_t last) {
   std::vector<double> errors;

@@ -8,7 +8,7 @@
 namespace mrhi::filter_benchmark {
 namespace {
 
-/// One line of the chart: a parameter runs through values, others are fixed.
+/// One line of the chart: one parameter varies, others are constant.
 struct Series {
   std::string filter;
   std::vector<std::pair<std::string, std::string>> fixed;

@@ -7,7 +7,7 @@
 namespace mrhi::filter_benchmark {
 namespace {
 
-constexpr int kFewest = 4;  // frames that a parabola is fitted to
+constexpr int kFewest = 4;  // minimum frames for a parabola
 
 /// Frames from `first` to before `last`.
 struct Window {

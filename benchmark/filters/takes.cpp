@@ -14,8 +14,8 @@ namespace mrhi::filter_benchmark {
 namespace {
 
 constexpr double kLongestGap = 0.1;                 // within a take [s]
-constexpr std::size_t kFewestFrames = 30;           // of a take
-constexpr double kReferenceWidth = 0.05;            // passes what is below 14 Hz [s]
+constexpr std::size_t kFewestFrames = 30;           // minimum of a take
+constexpr double kReferenceWidth = 0.05;            // passes frequencies below 14 Hz [s]
 constexpr double kStill = 0.02, kMoving = 0.1;      // [m/s]
 constexpr double kStillFor = 0.1, kSettling = 0.1;  // before and after; from a take's beginning [s]
 

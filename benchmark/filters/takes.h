@@ -9,29 +9,29 @@
 
 namespace mrhi::filter_benchmark {
 
-/// What a hand's joint does at a frame.
+/// Motion of a hand's joint at a frame.
 enum class Doing : char { still, moving, neither };
 
-/// The ends of phalanges that a hand has throughout a take: its joints, and its fingertips among them.
+/// Ends of phalanges that a hand has throughout a take: its joints, including its fingertips.
 struct Joints {
   std::vector<std::size_t> capsules;
-  std::vector<std::size_t> tips;                           ///< positions in `capsules`
-  std::vector<std::pair<std::size_t, std::size_t>> bones;  ///< positions in `capsules` of a bone's two ends
+  std::vector<std::size_t> tips;                           ///< indices in `capsules`
+  std::vector<std::pair<std::size_t, std::size_t>> bones;  ///< indices in `capsules` of a bone's two ends
 };
 
-/// One hand of a recording as long as it is tracked without a break.
+/// A part of a recording in which one hand is tracked without interruption.
 struct Take {
   std::vector<double> times;  ///< [s]
-  std::vector<Hand> input;    ///< what a filter is given
+  std::vector<Hand> input;    ///< input of the filter
   Joints joints;
-  Paths reference;                        ///< where the joints are
+  Paths reference;                        ///< true positions of the joints
   std::vector<std::vector<Doing>> doing;  ///< by joint, then by frame
 
-  double frame_rate() const;  ///< the middle one of its intervals' [1/s]
+  double frame_rate() const;  ///< from the median interval [1/s]
 };
 
-/// The takes of all recordings. As recorded, the reference is the recording smoothed without delay; with
-/// noise added, it is the recording itself.
+/// Takes of all recordings. The reference is the recording smoothed without delay; with added noise, it is
+/// the recording itself.
 std::vector<Take> load_takes(const std::vector<std::string>& files, bool with_noise);
 
 /// Joints of a take's hands.

@@ -1,4 +1,5 @@
-// From a hand's message to its picture, beside a relay that only passes messages on: see docs/reliability.md.
+// Latency from a hand's message to its rendered view, compared with a relay that only forwards messages: see
+// docs/reliability.md.
 #include <ros/ros.h>
 #include <topic_tools/shape_shifter.h>
 
@@ -22,11 +23,11 @@ namespace {
 using topic_tools::ShapeShifter;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRate = 120.0;  // frames a second to each of the two
-constexpr double kWarmUp = 3.0;  // [s] not counted
+constexpr double kRate = 120.0;  // frames per second to each of the two
+constexpr double kWarmUp = 3.0;  // excluded [s]
 constexpr std::uint32_t kQueue = 10;
 
-/// Passes messages on and does nothing else.
+/// Forwards messages.
 class Relay {
  public:
   explicit Relay(ros::NodeHandle& node) : node_(node) {
@@ -44,10 +45,10 @@ class Relay {
   ros::Publisher out_;
 };
 
-/// One way there and back: when what was sent, and how long each took.
+/// Round trips: times of sending and durations.
 class Track {
  public:
-  /// `counted`: not of the warm-up.
+  /// `counted`: not in the warm-up.
   void sent(std::uint64_t stamp, bool counted) {
     const std::lock_guard<std::mutex> lock(mutex_);
     sent_[stamp] = {Clock::now(), counted};
@@ -85,7 +86,7 @@ class Track {
   std::size_t bytes_ = 0;
 };
 
-/// The first header's stamp in a serialised message whose header begins at `offset`.
+/// Stamp of the first header, at `offset`, in a serialised message.
 std::uint64_t stamp_in(const ShapeShifter& message, std::size_t offset) {
   std::vector<std::uint8_t> bytes(message.size());
   ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -99,8 +100,8 @@ std::uint64_t stamp_in(const ShapeShifter& message, std::size_t offset) {
 
 class Measurement {
  public:
-  /// `topics` of the node whose messages are waited for, each with its header first or, markers, in its
-  /// first.
+  /// `topics`: outputs of the node to wait for, each with its header first, or for markers in the first
+  /// marker.
   Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options,
               const std::vector<std::string>& topics)
       : node_(node), hand_(options) {

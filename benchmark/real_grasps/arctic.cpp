@@ -17,8 +17,8 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kLed = 1e5;       // so much heavier is an object that is led: no hand moves it
-constexpr double kFurthest = 1e3;  // no bounds: what falls is away [m]
+constexpr double kLed = 1e5;       // mass factor of a driven object: no hand moves it
+constexpr double kFurthest = 1e3;  // no bounds: a falling object counts as away [m]
 
 /// Calls `take` with each row of a table.
 template <typename Take>
@@ -41,7 +41,7 @@ Pose pose_in(const CsvColumns& row) {
   return pose;
 }
 
-/// Index of the body whose place is captured.
+/// Index of the body whose pose is captured.
 std::size_t root_of(const Scene& scene) {
   return scene.joints.empty() ? 0 : static_cast<std::size_t>(scene.joints.front().parent);
 }
@@ -74,7 +74,7 @@ Pose captured_pose(const Window& window, std::size_t frame, std::size_t body) {
   return root * joint.in_parent * joint_motion(joint, window.angles[frame]) * joint.in_child.inverse();
 }
 
-/// About a frame.
+/// At a frame.
 Twist captured_twist(const Window& window, std::size_t frame, std::size_t body) {
   const std::size_t a = frame > 0 ? frame - 1 : 0, b = std::min(frame + 1, window.places.size() - 1);
   const double seconds = to_seconds(window.frames[b].stamp - window.frames[a].stamp);
@@ -83,7 +83,7 @@ Twist captured_twist(const Window& window, std::size_t frame, std::size_t body) 
   return {(to.position - from.position) / seconds, turn.angle() / seconds * turn.axis()};
 }
 
-/// Puts the object where it was captured, into a state of which all else stays.
+/// Sets the object to its captured pose, and keeps all other state.
 void put(const Window& window, std::size_t frame, SimulationState state, Simulation& simulation) {
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     Body body = simulation.scene().bodies[i];
@@ -105,7 +105,7 @@ bool advance(const Window& window, std::size_t frame, Simulation& simulation) {
   return hands && simulation.advance(*hands) == Rejection::none;
 }
 
-/// The hands and what they touch as the object is let free. Calls `look` after each frame.
+/// The hands and their contacts when the object is released. Calls `look` after each frame.
 template <typename Look>
 SimulationState led(const Window& window, Configuration configuration, std::size_t from, Look look) {
   configuration.gravity = Vector3::Zero();
@@ -120,7 +120,7 @@ SimulationState led(const Window& window, Configuration configuration, std::size
   return simulation.state();
 }
 
-/// Where the last phalanges of a hand are.
+/// Positions of a hand's distal phalanges.
 std::vector<Vector3> last_phalanges(const Hand& hand) {
   std::vector<Vector3> points;
   for (int finger = 0; finger < kFingers; ++finger) {
@@ -139,7 +139,7 @@ std::optional<Hand> hand_in(const Window& window, std::size_t frame, Side side) 
   return hand == hands->hands.end() ? std::nullopt : std::optional<Hand>(*hand);
 }
 
-/// Of an object that goes with one hand's last phalanges. A hand that is not seen carries nothing.
+/// Error of an object that moves rigidly with one hand's distal phalanges. A missing hand carries nothing.
 std::vector<double> away_with(const Window& window, Side side) {
   std::vector<double> away(window.places.size() - window.free_from - 1, kFurthest);
   const auto first = hand_in(window, window.free_from, side);
@@ -206,7 +206,7 @@ WindowOutcome play(const Window& window, const Configuration& configuration, std
 
 WindowOutcome play_rigidly(const Window& window) {
   WindowOutcome right{away_with(window, Side::right), {}, {}}, left{away_with(window, Side::left), {}, {}};
-  constexpr double kNear = 0.02;  // the tightest limit that is told of [m]
+  constexpr double kNear = 0.02;  // the tightest reported limit [m]
   return share_within({right}, kNear) < share_within({left}, kNear) ? left : right;
 }
 

@@ -11,49 +11,47 @@
 
 namespace mrhi::real_grasps {
 
-/// Captured hands on a captured object, as arctic_windows.py cuts them.
+/// Captured hands and object, as cut by arctic_windows.py.
 struct Window {
   std::string name;
   bool first = false;               ///< of its capture
   Scene scene;                      ///< the object alone, at 1 g: a body, or two on a hinge
-  std::vector<JointsFrame> frames;  ///< as a device at the default mount sees the hands
-  std::vector<Pose> places;    ///< of the object's body, of two that which carries the other, in each frame
-  std::vector<double> angles;  ///< of its hinge, likewise, if it has one [rad]
-  std::size_t free_from = 0;   ///< frame in which it is let free
+  std::vector<JointsFrame> frames;  ///< as seen by a device at the default mount
+  std::vector<Pose> places;         ///< of the object's body, or of the parent of two, in each frame
+  std::vector<double> angles;       ///< of its hinge, if any, likewise [rad]
+  std::size_t free_from = 0;        ///< frame at which it is released
 };
 
 /// Throws RecordingError, SceneError.
 std::vector<Window> load_windows(const std::string& folder, const Configuration& configuration);
 
-/// What became of the object, from the frame after it was let free.
+/// Motion of the object from the frame after its release.
 struct WindowOutcome {
-  std::vector<double> away;    ///< from where it was recorded, in each frame [m]
-  std::vector<double> turned;  ///< its hinge, from what was recorded, likewise [rad]
-  std::vector<double> forces;  ///< of each finger that presses, in each frame [N]
+  std::vector<double> away;    ///< distance from its captured position, in each frame [m]
+  std::vector<double> turned;  ///< error of its hinge, likewise [rad]
+  std::vector<double> forces;  ///< of each loaded finger, in each frame [N]
 };
 
-/// Last frame before the object is let free in which no hand touches it; 0 if there is none.
+/// Last frame before the release in which no hand touches the object; 0 if there is none.
 std::size_t last_clear(const Window& window, const Configuration& configuration);
 
-/// For up to `lead` seconds [s] before its window, or without `lead` from last_clear() on, the object is led
-/// where it was recorded, so that hands touch it as they come to it; then it is free, with the velocity
-/// recorded.
+/// Drives the object along its captured path before its window: for up to `lead` seconds, or without `lead`
+/// from last_clear() on. So hands acquire their contacts as they approach. Then releases it with its captured
+/// velocity.
 WindowOutcome play(const Window& window, const Configuration& configuration, std::optional<double> lead);
 
-/// What a hand that carried the object as if it were one with it would do: the object keeps its pose in the
-/// last phalanges (least squares) of the hand that is best in hindsight. No fingers move in it, nothing slips
-/// or falls.
+/// Rigid baseline: the object keeps its pose relative to the distal phalanges (least squares) of the better
+/// hand in hindsight. No finger moves in this hand, and nothing slips or falls.
 WindowOutcome play_rigidly(const Window& window);
 
-/// Share of all frames in which the object is less than `limit` [m] from its recorded place, and its hinge,
-/// if it has one, less than `angle` [rad] from where it was recorded.
+/// Fraction of all frames with an error below `limit` [m], and below `angle` [rad] at the hinge, if any.
 double share_within(const std::vector<WindowOutcome>& outcomes, double limit,
                     double angle = std::numeric_limits<double>::infinity());
 
-/// Windows in which it is so in every frame.
+/// Number of windows in which this holds for every frame.
 std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit);
 
-/// That nine of ten of all finger forces do not exceed [N].
+/// 90th percentile of all finger forces [N].
 double force_p90(const std::vector<WindowOutcome>& outcomes);
 
 }  // namespace mrhi::real_grasps

@@ -10,17 +10,17 @@ namespace {
 
 constexpr double kTip = 0.0088;        // radius of a fingertip [m]
 constexpr double kPalm = 0.013;        // radius of the palm [m]
-constexpr double kClear = 0.002;       // to be found between hand and body at the start [m]
-constexpr std::size_t kEarliest = 90;  // frames before the closing in which that is looked for
-constexpr double kGap = 0.06;          // longest time between a track's frames [s]
+constexpr double kClear = 0.002;       // required gap between hand and body at the start [m]
+constexpr std::size_t kEarliest = 90;  // maximum frames from that start to the closing
+constexpr double kGap = 0.06;          // maximum time between a track's frames [s]
 constexpr double kShortest = 0.15;     // of a closing [s]
-constexpr double kDeeper = 0.004;      // it closes by so much more than to the body's width [m]
-constexpr double kAfterwards = 0.4;    // played on after the hand has opened [s]
-constexpr std::size_t kOpening = 6;    // frames after it in which the hand's speed counts
+constexpr double kDeeper = 0.004;      // closing beyond the body's width [m]
+constexpr double kAfterwards = 0.4;    // time after the hand has opened [s]
+constexpr std::size_t kOpening = 6;    // frames after opening for the hand's speed
 constexpr std::size_t kMost = 10;      // closings of one recording
-constexpr double kOpen = 0.02;         // wider than the body, a hand that passes stays open [m]
-constexpr double kPassing = 1.0;       // and for so long [s]
-constexpr double kLevel = 0.7;         // what stands is grasped from the side: sine of the line's rise
+constexpr double kOpen = 0.02;         // aperture of a passing hand beyond the body's width [m]
+constexpr double kPassing = 1.0;       // required duration of that [s]
+constexpr double kLevel = 0.7;         // standing bodies are grasped from the side: sine of the elevation
 
 const Vector3& thumb(const Sighting& hand) {
   return hand.joints[0][4];
@@ -39,13 +39,13 @@ Vector3 grip(Kind kind, const Sighting& hand) {
   return 0.5 * (thumb(hand) + opposite(kind, hand));
 }
 
-/// Turned about the vertical towards x.
+/// Orientation about the vertical with x along `x`.
 std::optional<Pose> upright(const Vector3& centre, const Vector3& x) {
   if (!centre.allFinite() || !(std::abs(x.z()) < kLevel)) return std::nullopt;
   return Pose{centre, Quaternion(Eigen::AngleAxisd(std::atan2(x.y(), x.x()), Vector3::UnitZ()))};
 }
 
-/// Middle of what comes together; x from the thumb to what it meets, y as the index's last bone.
+/// Centre of the closing parts; x from the thumb to the opposing part, y along the index's distal bone.
 std::optional<Pose> place_in(const Row& row, const Sighting& hand) {
   const Kind kind = row.kind;
   const Vector3 x = (opposite(kind, hand) - thumb(hand)).normalized();
@@ -68,7 +68,7 @@ double signed_distance(const Vector3& point, const Row& row, const Pose& place) 
   return outside.cwiseMax(0.0).norm() + std::min(outside.maxCoeff(), 0.0);
 }
 
-/// Frames of a track from `closed` to before `opened` in which the hand is closed.
+/// Frames of a track from `closed` to before `opened`, in which the hand is closed.
 struct Span {
   std::size_t closed, opened;
 };
@@ -92,7 +92,7 @@ std::vector<Span> closed_spans(const Track& track, Kind kind, double limit) {
   return spans;
 }
 
-/// Where a hand stays open for a while; the body is put there as that while is half over.
+/// Times in which a hand stays open; the body is placed at their middle.
 std::vector<Span> open_spans(const Track& track, Kind kind, double limit) {
   std::vector<Span> spans;
   std::size_t from = 0;
@@ -106,7 +106,7 @@ std::vector<Span> open_spans(const Track& track, Kind kind, double limit) {
   return spans;
 }
 
-/// The last of the track's frames before `closed` in which no hand is near the body.
+/// Last of the track's frames before `closed` in which no hand is near the body.
 std::optional<std::size_t> clear_before(std::size_t closed, const Recording& recording, const Track& track,
                                         const Row& row, const Pose& place) {
   for (std::size_t m = closed; m-- > 0 && m + kEarliest > closed;) {

@@ -10,12 +10,12 @@ namespace mrhi::real_grasps {
 namespace {
 
 constexpr double kMoves = 0.03;    // [m/s]
-constexpr double kBack = -0.3;     // cosine of the normal with the way out of the back of the hand
+constexpr double kBack = -0.3;     // cosine of the normal to the direction out of the back of the hand
 constexpr double kSweeps = 0.1;    // of the palm towards the body [m/s]
-constexpr double kPart = 0.5;      // and of what the phalanx has
-constexpr double kClosing = -0.1;  // of the way between a finger's tip and the thumb's [m/s]
+constexpr double kPart = 0.5;      // and over the phalanx's speed
+constexpr double kClosing = -0.1;  // rate of the distance between a finger's tip and the thumb's [m/s]
 
-/// The one that pushed most.
+/// Contact with the largest impulse.
 const Contact* hardest(const FrameResult& result, int body, double seconds) {
   const auto push = [seconds](const Contact& contact) {
     return contact.impulse.norm() + seconds * contact.force.norm();
@@ -26,7 +26,7 @@ const Contact* hardest(const FrameResult& result, int body, double seconds) {
   return most;
 }
 
-/// From the thumb's tip to the finger's, or of the thumb to the index finger's [m].
+/// Distance from the thumb's tip to the finger's, or for the thumb to the index finger's [m].
 double opening(const Hand& hand, int finger) {
   const auto tip = [&hand](int f) {
     return hand.capsules[static_cast<std::size_t>(capsule_index(f, kBonesPerFinger - 1))].end;

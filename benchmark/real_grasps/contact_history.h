@@ -7,12 +7,12 @@
 
 namespace mrhi::real_grasps {
 
-/// What a hand did as it first set a body in motion.
+/// Action of a hand that first moves a body.
 enum class Blow {
-  back,     ///< struck it with its back, or with the back of a finger
-  sweep,    ///< moved against it as a whole
-  closing,  ///< closed a finger on it
-  open      ///< touched it with fingers that stayed or opened
+  back,     ///< impact with the back of the hand or of a finger
+  sweep,    ///< motion of the whole hand against the body
+  closing,  ///< a finger closed on the body
+  open      ///< contact with fingers that stayed open or opened
 };
 const char* to_string(Blow blow);
 
@@ -21,11 +21,12 @@ struct FirstBlow {
   Blow blow;
 };
 
-/// That of a body at rest, once a frame of `seconds` [s] has given it more than 0.03 m/s; else nothing.
+/// Action on a body at rest in a frame of `seconds` [s] after which it moves faster than 0.03 m/s; else
+/// empty.
 std::optional<FirstBlow> first_blow(const Simulation& simulation, int body, double seconds);
 
-/// Adds, of each finger or palm that presses as the frame ends, how hard [N]: the sum of its contacts'
-/// forces. Contacts struck in the frame are left out: what they are pressed with is not known.
+/// Appends the force of each loaded finger or palm at the end of the frame [N]: the sum of its contacts'
+/// forces. Excludes contacts with an impact in the frame, whose load is unknown.
 void add_finger_forces(const FrameResult& result, std::vector<double>& forces);
 
 }  // namespace mrhi::real_grasps

@@ -13,8 +13,8 @@ namespace {
 
 struct OurSetting {
   const char* model;
-  double stiffness;          // [N/m], 0: the model's own
-  bool papers_hand = false;  // unlimited, hard, without help
+  double stiffness;          // [N/m], 0: the model's default
+  bool papers_hand = false;  // unlimited, rigid, without grasp assist
 };
 
 constexpr OurSetting kOurs[] = {

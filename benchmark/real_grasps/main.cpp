@@ -1,4 +1,5 @@
-// Bodies put where recorded hands close: how many are held until the hand opens? See docs/real_grasps.md.
+// Bodies are placed where recorded hands close: how many are held until the hand opens? See
+// docs/real_grasps.md.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -47,12 +48,12 @@ struct Arguments {
   std::string output;  ///< folder, or empty
   unsigned jobs = 1;
   Disturbance disturbance;
-  unsigned seeds = 1;                ///< each closing is played so many times, with other noise
+  unsigned seeds = 1;                ///< runs of each closing, with different noise
   bool compare = false;              ///< our models in several settings
   std::vector<std::string> engines;  ///< modules of physics engines
   std::string arctic;                ///< folder of windows, or empty
-  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< of windows: seconds, or clear
-  std::vector<std::string> paths;                                  ///< recordings, or folders of them
+  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< before windows: seconds, or clear
+  std::vector<std::string> paths;                                  ///< recordings, or folders with recordings
 };
 
 std::vector<Row> rows_of(const Given& given) {
@@ -70,7 +71,7 @@ std::vector<Row> rows_of(const Given& given) {
   return rows;
 }
 
-/// Seconds of a lead, or nothing for `clear`.
+/// Seconds of a lead; empty for `clear`.
 std::optional<double> seconds_of(const std::string& lead) {
   if (lead == "clear") return std::nullopt;
   return Given{"--lead", "LEAD,...", lead}.number(0.0, 10.0);
@@ -83,7 +84,7 @@ std::vector<std::string> leads_of(const Given& given) {
   return leads;
 }
 
-/// Nothing if help is asked for. Throws UsageError or ParameterError.
+/// Empty for --help. Throws UsageError or ParameterError.
 std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   Arguments a;
   CommandLine line;
@@ -121,7 +122,7 @@ std::vector<Recording> load(const std::vector<std::string>& paths) {
   return recordings;
 }
 
-/// A table in the output folder, if there is one; engines in other processes write to its end.
+/// A table in the output folder, if there is one; processes of engines append to it.
 std::ofstream table(const Arguments& arguments, const std::string& name) {
   std::ofstream csv;
   if (arguments.output.empty()) return csv;
@@ -149,7 +150,7 @@ void play_recording(const Recording& recording, const Row& row, const Arguments&
   }
 }
 
-/// Recordings at the same time; events in the recordings' order.
+/// Plays recordings concurrently; returns events in the recordings' order.
 std::vector<Event> play_row(const std::vector<Recording>& recordings, const Row& row,
                             const Arguments& arguments, unsigned jobs, const Player& player) {
   std::vector<std::vector<Event>> found(recordings.size());
@@ -188,7 +189,7 @@ void play_closings(const std::vector<Recording>& recordings, const Arguments& ar
   }
 }
 
-/// Outcomes of windows: of the first of each capture, and of all.
+/// Outcomes of the first window of each capture, and of all.
 struct Groups {
   std::vector<WindowOutcome> first, all;
 
@@ -229,7 +230,7 @@ void play_windows(const Arguments& arguments, const Contender& contender) {
   std::cout << line(spread) << std::endl;
 }
 
-/// What no model has a part in: how far the captured hands, each as one piece, have the object with them.
+/// Rigid baseline without a contact model: the captured hands carry the object as one piece.
 void play_windows_rigidly(const Arguments& arguments) {
   if (arguments.arctic.empty()) return;
   const Contender hand{"none", "rigid hand", arguments.configuration, {}};
@@ -240,14 +241,14 @@ void play_windows_rigidly(const Arguments& arguments) {
   groups.report("rigid", "", csv, hand);
 }
 
-/// Other engines play free bodies alone.
+/// Only rows of free bodies, for other engines.
 Arguments free_rows(Arguments arguments) {
   auto& rows = arguments.rows;
   rows.erase(std::remove_if(rows.begin(), rows.end(), [](const Row& row) { return row.rests; }), rows.end());
   return arguments;
 }
 
-/// In a process of its own: engines that cannot share one need not, and what crashes there fails there.
+/// Plays in a separate process: engines need not share one, and a crash affects only that engine.
 void play_engine(const std::vector<Recording>& recordings, const Arguments& arguments,
                  const std::string& module) {
   std::cout << std::flush;
@@ -267,7 +268,7 @@ void play_engine(const std::vector<Recording>& recordings, const Arguments& argu
     std::cerr << "real_grasps: " << engine_name(module) << " did not come to its end\n";
 }
 
-/// Plays all that the arguments ask for; prints it, and writes tables. Throws std::exception with one line.
+/// Plays, prints and writes tables by the arguments. Throws std::exception with one line.
 void run(const Arguments& arguments) {
   const std::vector<Recording> recordings = load(arguments.paths);
   begin_table(arguments, "real_grasps.csv", write_header);

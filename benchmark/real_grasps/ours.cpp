@@ -10,8 +10,8 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kFurthest = 1e3;       // no bounds: what is lost is lost [m]
-constexpr double kColumn = 0.5;         // height of what a resting body stands on [m]
+constexpr double kFurthest = 1e3;       // no bounds: a lost body stays lost [m]
+constexpr double kColumn = 0.5;         // height of the column under a resting body [m]
 constexpr double kColumnRadius = 0.02;  // [m]
 
 Body column_under(const Row& row, const Pose& place) {

@@ -16,10 +16,10 @@ namespace {
 struct Sample {
   double time;
   Hand hand;
-  std::array<Quaternion, kCapsules> turns{};  ///< of the capsules: z along them, no spin about them
+  std::array<Quaternion, kCapsules> turns{};  ///< of the capsules: z along them, without spin about them
 };
 
-/// The hand as our filter gives it, in a scene without bodies, for as long as it is seen.
+/// The hand after our filter, in a scene without bodies, while it is tracked.
 std::vector<Sample> filtered_hand(const std::vector<JointsFrame>& frames, const Configuration& configuration,
                                   std::uint32_t id) {
   Simulation tracker(Scene{}, configuration);
@@ -40,7 +40,7 @@ Vector3 along(const Capsule& capsule) {
   return capsule.end - capsule.start;
 }
 
-/// Each capsule is turned on from sample to sample by the shortest way.
+/// Rotates each capsule from sample to sample by the shortest rotation.
 void add_turns(std::vector<Sample>& samples) {
   for (std::size_t c = 0; c < kCapsules; ++c) {
     Vector3 last = Vector3::UnitZ();
@@ -76,7 +76,7 @@ class Parts {
     return {{{-half, half, samples_.front().hand.capsules[used_[part]].radius}}, pose(part, 1, 0.0)};
   }
 
-  /// `share` of the way from the sample before `next` to it.
+  /// Interpolates at the fraction `share` from the sample before `next` to it.
   Pose pose(std::size_t part, std::size_t next, double share) const {
     const std::size_t c = used_[part];
     const Capsule &from = samples_[next - 1].hand.capsules[c], &to = samples_[next].hand.capsules[c];

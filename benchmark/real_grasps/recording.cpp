@@ -51,7 +51,7 @@ HandJoints between(const HandJoints& from, const HandJoints& to, double part) {
   return hand;
 }
 
-/// Hands that both frames have.
+/// Interpolates the hands of both frames.
 JointsFrame between(const JointsFrame& from, const JointsFrame& to, Nanoseconds stamp) {
   JointsFrame frame;
   frame.stamp = stamp;
@@ -75,7 +75,7 @@ std::vector<JointsFrame> resampled(const std::vector<JointsFrame>& frames, doubl
   return result;
 }
 
-/// What a recording's description says of the object, or nothing. JSON is YAML.
+/// Object in a recording's description; empty if none. JSON is YAML.
 std::string object_of(const fs::path& description) {
   if (!fs::exists(description)) return "";
   return read_yaml<RecordingError>(description.string(), [&]() -> std::string {
@@ -95,7 +95,7 @@ void add_noise(HandJoints& hand, double noise, Random& random) {
   for (auto& finger : hand.joints)
     for (auto& joint : finger)
       if (joint) *joint += random.gaussian_vector(noise);
-  if (empty_metacarpal) hand.joints[0][0] = hand.joints[0][1];  // as Leap has the thumb's
+  if (empty_metacarpal) hand.joints[0][0] = hand.joints[0][1];  // as in Leap's model of the thumb
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void write_row(std::ostream& csv, const Contender& contender, const std::string&
       .end_row();
 }
 
-/// Of the events for which `counts`, those that succeed, by recording.
+/// Successful events among those for which `counts` holds, by recording.
 template <typename Counts, typename Succeeds>
 Interval by_recording(const std::vector<Event>& events, Counts counts, Succeeds succeeds) {
   std::map<std::string, Share> groups;

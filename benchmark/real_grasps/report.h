@@ -13,7 +13,7 @@
 
 namespace mrhi::real_grasps {
 
-/// One closing, what was put there, and what became of it.
+/// One closing, its body, and the outcome.
 struct Event {
   std::string recording;
   Closing closing;
@@ -21,14 +21,14 @@ struct Event {
   std::string object;  ///< see Recording::object
 };
 
-/// What the events of a row come to.
+/// Statistics of a row's events.
 struct Summary {
   std::size_t events = 0, held = 0, carried = 0, taken = 0;
   std::size_t fair = 0, held_fair = 0,
-              carried_fair = 0;  ///< of those nudged less than kFair as the hand closed
-  double force = 0.0;            ///< median of the p90 of a finger's force, where touched [N]
-  double away = 0.0;             ///< median of those carried [m]
-  double release = 0.0;          ///< median of those held [m/s]
+              carried_fair = 0;  ///< among those moved less than kFair before the hand closed
+  double force = 0.0;            ///< median of the 90th percentile of a finger's force, with contact [N]
+  double away = 0.0;             ///< median of carried bodies [m]
+  double release = 0.0;          ///< median of held bodies [m/s]
   double frame_time = 0.0;       ///< median [us]
   double frame_time_p99 = 0.0;
   Interval held_interval, carried_interval, held_fair_interval;  ///< grouped by recording
@@ -36,18 +36,18 @@ struct Summary {
 
 Summary summarise(const std::vector<Event>& events);
 
-/// Events of hands that had the same object before them.
+/// Events of hands with this kind of object.
 std::vector<Event> with_object(const std::string& object, const std::vector<Event>& events);
 
-/// What first set in motion those that were lost: of how many the back of the hand, the hand as a whole, a
-/// closing finger, an open hand, and nothing that was seen.
+/// Causes of the first motion of lost bodies: the back of the hand, the whole hand, a closing finger, an open
+/// hand, or none observed.
 struct LostTo {
   std::array<std::size_t, 4> blows{};  ///< by Blow
   std::size_t none = 0;
 };
 LostTo lost_to(const std::vector<Event>& events);
 
-/// A line of text each.
+/// Each as a line of text.
 std::string line(const Event& event);
 std::string line(const std::string& name, const std::vector<Event>& events);
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes);
@@ -63,7 +63,7 @@ void write_events_header(std::ostream& csv);
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
                   const std::vector<Event>& events);
 
-/// Shares of frames over the leads that windows were played with.
+/// Fractions of frames over the leads of windows.
 struct LeadSpread {
   std::vector<double> within_50mm, within_20mm;
 };

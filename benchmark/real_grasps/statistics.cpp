@@ -27,14 +27,14 @@ double quantile(std::vector<double> values, double q) {
 
 Interval wilson(std::size_t successes, std::size_t trials) {
   if (trials == 0) return {};
-  constexpr double z = 1.959964;  // 97.5 % of a normal distribution lie below
+  constexpr double z = 1.959964;  // 97.5th percentile of a normal distribution
   const double n = static_cast<double>(trials), p = ratio(successes, trials);
   const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
   const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
   return {successes > 0 ? middle - half : 0.0, successes < trials ? middle + half : 1.0};
 }
 
-// Efron & Tibshirani 1993, chapter 8: what is drawn again is what is independent, the groups.
+// Efron & Tibshirani 1993, chapter 8: resample independent units, the groups.
 Interval grouped(const std::vector<Share>& groups) {
   std::size_t successes = 0, trials = 0;
   for (const Share& group : groups) successes += group.successes, trials += group.trials;

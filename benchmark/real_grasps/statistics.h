@@ -6,14 +6,14 @@
 
 namespace mrhi::real_grasps {
 
-/// Value that the share `q` (0..1) of all does not exceed, interpolated between neighbours; 0 of none.
+/// Quantile `q` (0..1), interpolated between neighbours; 0 without values.
 double quantile(std::vector<double> values, double q);
 
 struct Interval {
   double low = 0.0, high = 1.0;
 };
 
-/// Wilson's interval of a share seen as `successes` of `trials`, at 95 % confidence.
+/// Wilson's interval of a ratio of `successes` to `trials`, at 95 % confidence.
 Interval wilson(std::size_t successes, std::size_t trials);
 
 /// Successes of the trials of one group, such as a recording.
@@ -21,9 +21,9 @@ struct Share {
   std::size_t successes = 0, trials = 0;
 };
 
-/// Interval of the share of all trials, at 95 % confidence, if trials of one group depend on each other: the
-/// bootstrap over groups, and at least Wilson's interval, as the bootstrap of shares near 0 and 1 is too
-/// narrow.
+/// Interval of the ratio over all groups, at 95 % confidence, if trials in a group depend on each other: the
+/// bootstrap over groups, and at least Wilson's interval, as the bootstrap is too narrow for ratios near 0
+/// and 1.
 Interval grouped(const std::vector<Share>& groups);
 
 }  // namespace mrhi::real_grasps

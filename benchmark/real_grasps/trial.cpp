@@ -9,12 +9,12 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kLossAllowed = 0.06;  // a grasp may end this long before the hand opens [s]
-constexpr double kPressed = 0.15;     // a hand that opens slowly lets go before its tips are as far apart [s]
-constexpr double kLeastAway = 0.025;  // from the grip that is still in the hand, for small bodies [m]
-constexpr double kPalmWindow = 0.05;  // over which the palm's velocity is taken, to both sides [s]
+constexpr double kLossAllowed = 0.06;  // time before opening at which a grasp may end [s]
+constexpr double kPressed = 0.15;     // a hand that opens slowly releases before its aperture has widened [s]
+constexpr double kLeastAway = 0.025;  // minimum of the allowed distance from the grip, for small bodies [m]
+constexpr double kPalmWindow = 0.05;  // averaging time of the palm's velocity, to both sides [s]
 
-/// The one whose time is nearest.
+/// Entry with the nearest time.
 template <typename Timed>
 const Timed& nearest(const std::vector<Timed>& all, double time) {
   return *std::min_element(all.begin(), all.end(), [time](const Timed& a, const Timed& b) {
@@ -24,7 +24,7 @@ const Timed& nearest(const std::vector<Timed>& all, double time) {
 
 Vector3 palm_velocity(const Track& track, double time) {
   const Sighting &from = nearest(track, time - kPalmWindow), &to = nearest(track, time + kPalmWindow);
-  const auto middle = [](const Sighting& hand) {  // of the knuckles, which every tracker gives
+  const auto middle = [](const Sighting& hand) {  // of the knuckles, which every tracker reports
     return Vector3(0.25 * (hand.joints[1][1] + hand.joints[2][1] + hand.joints[3][1] + hand.joints[4][1]));
   };
   return (middle(to) - middle(from)) / (to.time - from.time);

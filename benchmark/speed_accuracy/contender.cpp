@@ -13,7 +13,7 @@
 namespace mrhi::benchmark {
 namespace {
 
-// What a contender says: 'p' a block is done; otherwise a report, ended by a line "end".
+// Messages of a contender: 'p' after each block; finally a report, ended by a line "end".
 constexpr char kPause = 'p';
 constexpr double kLongestBlock = 30.0;  // [s]
 
@@ -42,7 +42,7 @@ void send(int pipe, const std::string& text) {
   }
 }
 
-/// Peers print what they like; the program's own output stays readable.
+/// Silences the output of peers, so that the program's own stays readable.
 void silence_output() {
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0) _exit(1);

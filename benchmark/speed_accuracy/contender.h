@@ -9,9 +9,8 @@
 
 namespace mrhi::benchmark {
 
-/// One engine's run in a process of its own: what crashes or hangs there fails there, and libraries that
-/// cannot share a process (Bullet's two precisions) need not. It works in blocks of some milliseconds, one at
-/// a time.
+/// One engine's run in a separate process: a crash or hang affects only that engine, and libraries that
+/// cannot share a process (Bullet's two precisions) need not. Runs in blocks of some milliseconds.
 class Contender {
  public:
   Contender(const EngineModule& module, const std::string& setting, const ScenePlan& scene, bool quick,
@@ -20,12 +19,12 @@ class Contender {
   Contender(const Contender&) = delete;
   Contender& operator=(const Contender&) = delete;
 
-  /// Lets it work for a block; false once it has finished, crashed, or used up its `seconds`.
+  /// Runs a block; returns false once it has finished, crashed, or used up its `seconds`.
   bool work();
 
   const std::string& engine() const { return engine_; }
   const std::string& setting() const { return setting_; }
-  /// Why the run was broken off, or empty.
+  /// Reason why the run was aborted, or empty.
   const std::string& trouble() const { return result_.trouble; }
   const RunResult& result() const { return result_; }
 

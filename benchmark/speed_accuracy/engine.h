@@ -16,42 +16,42 @@ struct Motion {
   Twist twist;  ///< world axes
 };
 
-/// One world in one physics engine, advanced by one step length.
+/// One world in one physics engine, with a fixed step.
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// Where the hand's part is as the step begins and as it ends. Not part of the measured time.
+  /// Sets the pose of a part of the hand at the start and end of the step. Not part of the measured time.
   virtual void move(std::size_t kinematic, const Pose& now, const Pose& next) = 0;
   /// Called once all parts have been moved, before step(). Not part of the measured time.
   virtual void before_step() {}
-  /// Collision, contact, integration: what is measured.
+  /// Measured: collision, contact, integration.
   virtual void step() = 0;
   /// Called after step(). Not part of the measured time.
   virtual void after_step() {}
   virtual Motion motion(std::size_t body) const = 0;
-  /// Asks that pressing() be told; before the first step.
+  /// Enables pressing(); call before the first step.
   virtual void watch_forces() {}
-  /// How hard the hand's part is pressed, as the last step found: the sum of its contacts' forces [N].
+  /// Load on a part of the hand in the last step: the sum of its contacts' forces [N].
   virtual double pressing(std::size_t /*kinematic*/) const { return std::nan(""); }
 };
 
-/// How worlds of one engine are made. One object in each engine's module.
+/// Factory of an engine's worlds. One object in each engine's module.
 class EngineMaker {
  public:
   virtual ~EngineMaker() = default;
-  /// The engine as it comes, and the best settings found, each described so that it can be repeated.
+  /// The engine's defaults and the best settings found, each described reproducibly.
   virtual std::vector<std::string> settings() const = 0;
-  /// Nothing if the engine has no means for this world.
+  /// Returns null if the engine does not support this world.
   virtual std::unique_ptr<Engine> make(const std::string& setting, const World& world, double step) const = 0;
 };
 
-/// Whether an engine says that it has hinges: kHinges.
+/// True if an engine declares support of hinges: kHinges.
 template <typename EngineType, typename = void>
 constexpr bool kHasHinges = false;
 template <typename EngineType>
 constexpr bool kHasHinges<EngineType, std::void_t<decltype(EngineType::kHinges)>> = true;
 
-/// Whether an engine says that bodies may be meshes: kMeshes.
+/// True if an engine declares support of meshes as bodies: kMeshes.
 template <typename EngineType, typename = void>
 constexpr bool kHasMeshes = false;
 template <typename EngineType>
@@ -62,7 +62,7 @@ inline bool has_meshes(const World& world) {
                      [](const BodySpec& body) { return std::holds_alternative<Mesh>(body.shape); });
 }
 
-/// Makes engines that can do every world, but for hinges and meshes, by a table of their settings.
+/// Factory of an engine that supports every world, except hinges and meshes, with a table of its settings.
 template <typename EngineType, const auto& kTable>
 class TableMaker final : public EngineMaker {
  public:
@@ -82,7 +82,7 @@ class TableMaker final : public EngineMaker {
 
 }  // namespace mrhi::benchmark
 
-/// The one symbol that an engine's module exports.
+/// The only symbol that an engine's module exports.
 #define MRHI_ENGINE_MODULE(Maker)                                                       \
   extern "C" __attribute__((visibility("default"))) const mrhi::benchmark::EngineMaker* \
   speed_accuracy_engine() {                                                             \

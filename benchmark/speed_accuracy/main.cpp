@@ -29,7 +29,7 @@ struct Arguments {
   bool quick = false;
   std::vector<std::string> scenes;   ///< names, or names of groups; empty: all
   std::vector<std::string> engines;  ///< empty: all
-  std::string output;                ///< folder, made if it is not there
+  std::string output;                ///< folder, created if missing
 };
 
 struct Plan {
@@ -50,7 +50,7 @@ std::vector<std::string> known_scenes(const std::vector<ScenePlan>& scenes) {
   return names;
 }
 
-/// Nothing if help is asked for. Throws UsageError.
+/// Empty for --help. Throws UsageError.
 std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   std::vector<std::string> engines;
   for (const EngineModule& module : engine_modules()) engines.push_back(module.name);
@@ -83,7 +83,7 @@ std::vector<double> steps_of(const ScenePlan& scene, bool quick) {
   return quick ? std::vector<double>{scene.steps.front()} : scene.steps;
 }
 
-/// All engines with one scene and step, taking turns, each round beginning with another.
+/// Runs all engines alternately with one scene and step, each round starting with another.
 std::vector<std::unique_ptr<Contender>> race(const Plan& plan, const ScenePlan& scene, double step) {
   std::vector<std::unique_ptr<Contender>> contenders;
   for (const auto& [module, settings] : plan.engines)
@@ -110,7 +110,7 @@ void make_folder(const std::string& path) {
   }
 }
 
-/// The charts need Python with matplotlib; without them the figures are there all the same.
+/// Charts need Python with matplotlib; without it only tables are written.
 void draw_charts(const std::string& csv) {
   const pid_t child = fork();
   if (child == 0) {

@@ -12,13 +12,13 @@ namespace mrhi::benchmark {
 
 void write_header(std::ostream& csv);
 
-/// The rows of one scene and step. `measures` holds by scene what it measures, as those that came through
-/// said; a contender that did not has failed in all of it.
+/// Writes the rows of one scene and step. `measures`: by scene, from the successful contenders; the others
+/// have failed in all of them.
 void write_rows(std::ostream& csv, const std::string& scene, double step,
                 const std::vector<std::unique_ptr<Contender>>& contenders,
                 std::map<std::string, std::vector<Measure>>& measures);
 
-/// What steps cost, a row for each run that came through.
+/// Writes the cost of steps, a row for each successful run.
 void write_times_header(std::ostream& csv);
 void write_times(std::ostream& csv, const std::string& scene, double step,
                  const std::vector<std::unique_ptr<Contender>>& contenders);

@@ -13,20 +13,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kBlock = 4e-3;               // [s]
-constexpr std::size_t kMaxSamples = 400'000;  // of step times; later ones replace earlier ones in turn
+constexpr std::size_t kMaxSamples = 400'000;  // of step times; later ones replace the oldest
 
 double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-/// Of this thread [us].
+/// Processor time of this thread [us].
 double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
-/// What two readings of the clock cost by themselves.
+/// Cost of two clock readings.
 template <typename Between>
 double clock_cost(Between between) {
   std::vector<double> costs;
@@ -96,7 +96,7 @@ class Stopwatch {
   std::size_t count_ = 0;
 };
 
-/// False if the engine has no means for the experiment's world.
+/// Returns false if the engine does not support the experiment's world.
 bool play(const EngineMaker& maker, const std::string& setting, Experiment& experiment, double step,
           Stopwatch& stopwatch) {
   stopwatch.begin_block();

@@ -10,23 +10,21 @@ namespace mrhi::benchmark {
 
 /// A free body or a fixture, centre of mass at its origin. SI units, world axes.
 struct BodySpec {
-  std::variant<Sphere, Box, Mesh>
-      shape;                          ///< engines without meshes that move are left out of worlds with any
-  double mass = 0.1;                  ///< [kg]
-  Vector3 inertia = Vector3::Ones();  ///< principal moments, body axes [kg m^2]
+  std::variant<Sphere, Box, Mesh> shape;  ///< worlds with meshes exclude engines without moving meshes
+  double mass = 0.1;                      ///< [kg]
+  Vector3 inertia = Vector3::Ones();      ///< principal moments, body axes [kg m^2]
   Pose pose;
   Twist twist;
   bool fixed = false;
 };
 
-/// What the hand moves: capsules that keep their places relative to each other. Nothing moves it but the
-/// hand.
+/// A part of the hand: capsules with constant relative poses. Only the hand moves it.
 struct KinematicSpec {
   std::vector<Capsule> capsules;  ///< in its own frame
   Pose pose;                      ///< at the start
 };
 
-/// What holds a body to the world, so that it turns about one axis alone.
+/// Joint between a body and the world that leaves rotation about one axis.
 struct HingeSpec {
   std::size_t body = 0;
   Vector3 anchor = Vector3::Zero();  ///< on the axis, world
@@ -34,15 +32,15 @@ struct HingeSpec {
   double friction = 0.0;             ///< Coulomb's [N m]
 };
 
-/// What every engine is given. One friction coefficient and one restitution hold between all surfaces.
+/// World for every engine. One friction coefficient and one restitution apply to all surfaces.
 struct World {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   double friction = 0.8;
   double restitution = 0.0;
-  bool sleep = true;  ///< what lies still may
+  bool sleep = true;  ///< bodies at rest may sleep
   std::vector<BodySpec> bodies;
   std::vector<KinematicSpec> kinematics;
-  std::vector<HingeSpec> hinges;  ///< engines without them are left out
+  std::vector<HingeSpec> hinges;  ///< exclude engines without hinges
 };
 
 /// A homogeneous box; `size` holds whole edge lengths [m].

@@ -187,15 +187,15 @@ Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum
 }
 
 /// Maximum number of parts of a step: spins that need more cannot be seen.
-constexpr double kMostParts = 1000.0;
+constexpr double kMaxParts = 1000.0;
 /// Square of an angular momentum that causes no visible rotation in a year [kg^2 m^4/s^2].
-constexpr double kNoSpin = 1e-200;
+constexpr double kMinSquaredMomentum = 1e-200;
 
 /// Rotates `orientation` by `by`, which need not be unit. The increment is rounded once. Dividing the product
 /// by its norm would round slow rotations alike in every step, and they would drift.
 ///
 ///     q <- q + q (b - 1),      b - 1 = ((1 + s) cos - 1, (1 + s) sin),      s = (1 - |q|^2) / 2
-///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: what is small is made small
+///     cos - 1 = -sin^2 / (1 + cos)           where cos > 0: no cancellation
 ///
 /// s corrects the error of |q| to first order, so q is never divided by its norm.
 void turn_on(const Quaternion& by, Quaternion& orientation) {
@@ -216,7 +216,7 @@ double spread(const Body& body) {
 
 /// Largest rotation of the momentum in the body in a short rotation [rad]: the series' remainders are below
 /// rounding.
-constexpr double kShortWay = 0.025;
+constexpr double kShortPath = 0.025;
 /// Largest rotation of the body in a short rotation [rad].
 constexpr double kShortAngle = 0.25;
 
@@ -231,9 +231,9 @@ double series(double x, double first, Others... others) {
 
 /// Solution of Euler's equations from the principal momentum m, as in free_rotation(). Series as in
 /// elliptic(), but without halving, which short rotations do not need.
-class Way {
+class MomentumPath {
  public:
-  Way(const Triple& m, const Triple& moments)
+  MomentumPath(const Triple& m, const Triple& moments)
       : m_(m),
         j_{moments.z - moments.y, moments.x - moments.z, moments.y - moments.x},
         slope_(slope(m)),
@@ -308,7 +308,8 @@ About about(double by_momentum, double squared_momentum) {
 /// the start, and
 ///
 ///     integral of f = t / 30 (16 f(t/2) + 7 f(t)) - t^2 / 60 f'(t)
-About about(const Way& way, const Triple& m, const Triple& n, const Triple& moments, double over, double t) {
+About about(const MomentumPath& way, const Triple& m, const Triple& n, const Triple& moments, double over,
+            double t) {
   const double over4 = 0.25 * over;
   const Triple rate = each(moments, m);
   const double twice_energy = rate.dot(m), mean = twice_energy * over;
@@ -337,9 +338,9 @@ void turn_on(double cosine, const Triple& sine, Quaternion& q) {
   q = Quaternion(w + (w_more * w - u.dot(vector)), u.x + more.x, u.y + more.y, u.z + more.z);
 }
 
-/// free_rotation() for short rotations, without roots and with few divisions. The shortest rotation of the
-/// momentum and the rotation about it have a product of norm sqrt(1 - e) if the first has the scalar part 1 -
-/// e and the second has its vector along m + n / 2.
+/// free_rotation() for short rotations, without roots and with few divisions. It multiplies the shortest
+/// rotation of the momentum by the rotation about it. The product has the norm sqrt(1 - e) if the scalar part
+/// of the first is 1 - e and the vector of the second is along m + n / 2.
 ///
 ///     (2 L^2 (1 - e), n x m)  then  (cos, sin m / L),  over 2 L^2:
 ///     scalar  cos (1 - e),     vector  cos n x m / 2 L^2 + sin / L (m + n / 2)
@@ -360,7 +361,7 @@ void turn_shortly(const Body& body, const Vector3& angular_momentum, double step
   const Triple m{axes[0].dot(local), axes[1].dot(local), axes[2].dot(local)};
   const Triple moments = triple(body.inverse_moments);
   const double over = 1.0 / m.dot(m);
-  const Way way(m, moments);
+  const MomentumPath way(m, moments);
   const Triple n = way.after(step);
   const About turn = about(way, m, n, moments, over, step);
 
@@ -391,18 +392,19 @@ void free_flight(const Body& body, const Vector3& gravity, double step, BodyStat
   if (turn == Turn::short_one) turn_shortly(body, state.angular_momentum, step, state.pose.orientation);
 }
 
-//     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortWay, (1/I_min) / kShortAngle)^2
+//     quickness |L|^2 h^2 <= 1,
+//     quickness = max((1/I_min - 1/I_max) / kShortPath, (1/I_min) / kShortAngle)^2
 //
-// So the momentum rotates by at most kShortWay in the body, and the body by at most kShortAngle. Squares are
+// So the momentum rotates by at most kShortPath in the body, and the body by at most kShortAngle. Squares are
 // compared, as a root of |L|^2 would cost more than all else. The form !(x > y) is also true for NaN.
 Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
   const double squared = angular_momentum.squaredNorm();
-  if (!(squared > kNoSpin)) return Turn::none;
+  if (!(squared > kMinSquaredMomentum)) return Turn::none;
   return quickness * squared * (step * step) <= 1.0 ? Turn::short_one : Turn::long_one;
 }
 
 double quickness(const Body& body) {
-  const double most = std::max(spread(body) / kShortWay, body.inverse_moments.maxCoeff() / kShortAngle);
+  const double most = std::max(spread(body) / kShortPath, body.inverse_moments.maxCoeff() / kShortAngle);
   return most * most;
 }
 
@@ -410,8 +412,7 @@ double quickness(const Body& body) {
 // (1/I_min - 1/I_max) |L|. A ball's momentum does not rotate, so one part suffices at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double way = spread(body) * angular_momentum.norm() * step;
-  const double enough = std::min(kMostParts, way / kFreeTurn);  // this order gives a number even if `way` is
-                                                                // NaN
+  const double enough = std::min(kMaxParts, way / kFreeTurn);  // in this order never NaN
   const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;

@@ -136,7 +136,7 @@ double JointLaw::Stop::over(double way) const {
 // Detent and latch are those at the start of the step.
 void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
-  blow_ = 0.0;
+  limit_impulse_ = 0.0;
   constant_ = 0.0;
   linear_ = joint.damping;
   // Evaluated at the end of the step, as contacts are: k (to - x - h v).
@@ -196,10 +196,10 @@ double JointLaw::size(double velocity) const {
          std::abs(latch_.force(way)) + stop_ * (lower_.over(way) + upper_.over(way));
 }
 
-// effort = t(v) + blow / h: mean of the joint's own forces over the step.
+// effort = t(v) + limit impulse / h: mean of the joint's own forces over the step.
 void JointLaw::settle(double velocity, JointState& state) const {
   const double way = step_ * velocity;
-  state.effort = force(velocity) + blow_ / step_;
+  state.effort = force(velocity) + limit_impulse_ / step_;
   // The anchor of dry friction follows where the force is at its limit.
   if (friction_.stiffness > 0.0)
     state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;

@@ -7,15 +7,15 @@ namespace mrhi {
 
 /// Forces of a joint as functions of its velocity at the end of the step: spring, detents, latch, damping,
 /// friction, limits. Each decreases as the velocity grows, so the step's problem stays convex. Limits,
-/// friction and latch are springs ten thousand times as stiff as the joint's inertia per squared step, the
-/// last two up to their force limit. So a held joint does not creep.
+/// friction and latch are springs, ten thousand times as stiff as the joint's inertia per squared step.
+/// Friction and latch have a force limit; up to it a held joint does not creep.
 class JointLaw {
  public:
   /// `inertia`: the joint's diagonal entry of the mass matrix; `usual`: regular step, as the last one of a
   /// frame may be shorter [s].
   void begin(const Joint& joint, const JointState& state, double inertia, double step, double usual);
   /// Records the impulse of a limit in an impact of this step [N m s].
-  void note_limit_impulse(double impulse) { blow_ += impulse; }
+  void note_limit_impulse(double impulse) { limit_impulse_ += impulse; }
 
   /// True if any force acts at speeds up to this one, in either direction.
   bool acts(double speed) const;
@@ -49,7 +49,7 @@ class JointLaw {
   Hold friction_, latch_;
   Stop lower_, upper_;
   double stop_ = 0.0;  // stiffness of limits and holds
-  double blow_ = 0.0;
+  double limit_impulse_ = 0.0;
   double step_ = 0.0;
 };
 

@@ -8,20 +8,20 @@ namespace {
 
 /// Largest rotation of a joint, or fall, in one part of a step [rad]. The error of a part goes with its fifth
 /// power (fourth order).
-constexpr double kPart = 0.03;
-constexpr double kMostParts = 1000.0;
+constexpr double kMaxPartAngle = 0.03;
+constexpr double kMaxParts = 1000.0;
 /// Budget of a step, about 5 ms: evaluations of the motion of a linkage of n bodies, times n^2; and the usual
 /// number of evaluations of a part.
-constexpr double kMaxWork = 60'000.0, kUsualWork = 24.0;
-constexpr int kMinRounds = 4;
+constexpr double kMaxWork = 60'000.0, kTypicalPartWork = 24.0;
+constexpr int kMinIterations = 4;
 /// Largest energy gain of a step by its error, over the kinetic energy at its end.
 constexpr double kMaxGain = 0.01;
 /// Length of the pendulum that bounds the rate of a fall from rest, w = sqrt(g / l) [m]. By its present rate
 /// alone, a linkage released from rest would take one part.
 constexpr double kFallLength = 0.1;
-constexpr int kMostRounds = 60;
+constexpr int kMaxIterations = 60;
 /// Relative change of the stages at which the iteration has converged.
-constexpr double kFound = 1e-16;
+constexpr double kConverged = 1e-16;
 
 const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
   return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
@@ -40,7 +40,7 @@ Quaternion turned(const Vector3& turn) {
 ///     theta' = w - 1/2 theta x w + (1/12 + |theta|^2 / 720) theta x (theta x w) + ...
 ///
 /// This is the series of dexp^-1 with Bernoulli's numbers; four times theta x equals -|theta|^2 times two of
-/// them. The remainder is of sixth order in theta, and a part rotates by about kPart at most.
+/// them. The remainder is of sixth order in theta, and a part rotates by about kMaxPartAngle at most.
 Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
   const Vector3 once = turn.cross(spin);
   return spin - 0.5 * once + (1.0 / 12.0 + turn.squaredNorm() / 720.0) * turn.cross(once);
@@ -134,7 +134,7 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) 
     go(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
     go(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
     const double change = round == 0 ? 1.0 : distance(guess_, two.point);
-    if (change <= kFound || (round > 8 && change >= last)) break;
+    if (change <= kConverged || (round > 8 && change >= last)) break;
     last = change;
     find_rate(one.point, gravity, one.rate);
     find_rate(two.point, gravity, two.rate);
@@ -220,7 +220,8 @@ void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
   find_velocity(now_);
 }
 
-// parts = 1 + h max(w, sqrt(g / l)) / kPart within the budget, with w the fastest of any body at the start.
+// parts = 1 + h max(w, sqrt(g / l)) / kMaxPartAngle within the budget, with w the fastest of any body at the
+// start.
 void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   start_ = now_;
   start_root_ = root_;
@@ -228,8 +229,8 @@ void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   const double before = energy(now_, gravity);
   const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
   const double bodies = motion_.size(), work = kMaxWork / (bodies * bodies);
-  const int parts = 1 + static_cast<int>(std::min({way / kPart, kMostParts, work / kUsualWork}));
-  const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinRounds, kMostRounds);
+  const int parts = 1 + static_cast<int>(std::min({way / kMaxPartAngle, kMaxParts, work / kTypicalPartWork}));
+  const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinIterations, kMaxIterations);
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);
     advance(gravity, step / parts, rounds);

@@ -18,7 +18,7 @@ struct Registration {
 /// Least-squares fit (Umeyama 1991) of `size` pairs of points of a hand. Empty if they do not determine it:
 /// fewer than three, or collinear.
 inline std::optional<Registration> registered(const Vector3* from, const Vector3* to, std::size_t size) {
-  constexpr double kLeastSpread = 1e-6;  // along the second principal direction [m^2]
+  constexpr double kMinSpread = 1e-6;  // along the second principal direction [m^2]
   if (size < 3) return std::nullopt;
   const auto mean = [size](const Vector3* points) -> Vector3 {
     Vector3 sum = Vector3::Zero();
@@ -36,7 +36,7 @@ inline std::optional<Registration> registered(const Vector3* from, const Vector3
     spread += offset.squaredNorm();
   }
   const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()[1] > kLeastSpread * static_cast<double>(size))) return std::nullopt;
+  if (!(svd.singularValues()[1] > kMinSpread * static_cast<double>(size))) return std::nullopt;
   Vector3 signs = Vector3::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
   found.scale = signs.dot(svd.singularValues()) / spread;

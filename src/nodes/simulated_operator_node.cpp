@@ -35,7 +35,7 @@ simulated operator on /leap_motion/leap_device.
 using Status = mr_hand_interaction::TrainingStatus;
 
 /// Longest catch-up after a late timer tick [periods].
-constexpr double kLongestMove = 2.0;
+constexpr double kMaxCatchUp = 2.0;
 
 Body body_of(const TaskObject& object) {
   constexpr double kUsualFriction = 0.8;
@@ -62,9 +62,7 @@ struct Parameters {
 
 Task checked_task(const std::string& name) {
   Task task = load_task(find_task_file(name, task_folders()));
-  for (const TaskObject& object : task.objects)
-    make_person({}, task, body_of(object), 0);  // or throws the
-                                                // reason
+  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // may throw
   return task;
 }
 
@@ -110,7 +108,7 @@ class OperatorPublisher {
   void take_status(const mr_hand_interaction::TrainingStatus& status) { status_ = status; }
   void tick() {
     const ros::Time now = ros::Time::now();
-    const double since = std::clamp(seconds_between(ticked_, now), 0.0, kLongestMove / rate_);
+    const double since = std::clamp(seconds_between(ticked_, now), 0.0, kMaxCatchUp / rate_);
     ticked_ = now;
     if (const auto fixed = fixed_.find(status_.object); fixed != fixed_.end()) {
       object_.name = fixed->first;
@@ -180,8 +178,7 @@ class OperatorPublisher {
   std::unique_ptr<Person> person_;
   std::uint32_t trial_ = 0;
   ros::Time ticked_;
-  double time_ = 0.0;  ///< time of the person's motion since the start of the trial, by the frames' stamps
-                       ///< [s]
+  double time_ = 0.0;  ///< person's time since the start of the trial, by the frames' stamps [s]
   std::vector<HandJoints> hands_;
 
   LeapHumanPublisher publisher_;

@@ -27,7 +27,7 @@ const char* const kHelp =
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
     "  --seed N                 a whole number; default 1\n";
 
-constexpr long kMost = 1000000;               // of integers
+constexpr long kMaxCount = 1000000;           // of integers
 constexpr double kStandardGravity = 9.80665;  // [m/s^2]
 
 struct Study {
@@ -43,7 +43,7 @@ struct Study {
 void read_operators(const Given& given, Study& study) {
   const std::size_t dash = given.text.find('-');
   const auto part = [&](const std::string& text) {
-    return static_cast<int>(Given{given.option, given.form, text}.whole(1, kMost));
+    return static_cast<int>(Given{given.option, given.form, text}.whole(1, kMaxCount));
   };
   study.first = part(given.text.substr(0, dash));
   study.last = dash == std::string::npos ? study.first : part(given.text.substr(dash + 1));
@@ -56,13 +56,13 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
   line.once("--operators", "FIRST-LAST", [&](const Given& given) { read_operators(given, study); });
   line.once("--group-size", "N",
-            [&](const Given& given) { study.group_size = static_cast<int>(given.whole(0, kMost)); });
+            [&](const Given& given) { study.group_size = static_cast<int>(given.whole(0, kMaxCount)); });
   line.each("--model", "NAME", [&](const Given& given) { study.models.push_back(given.text); });
   line.each("--gravity", "G",
             [&](const Given& given) { study.gravities.push_back(given.number(0.0, 10.0)); });
   line.each("--set", "KEY=VALUE", [&](const Given& given) { study.settings.push_back(given.setting()); });
   line.once("--seed", "N",
-            [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMost)); });
+            [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
   study.help = !line.read(arguments);
   if (study.help) return study;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
@@ -125,9 +125,7 @@ void play_session(const Study& study, int person, const std::string& model, doub
 
 void play(Study study) {
   study.task = find_task_file(study.task, task_folders());
-  for (const std::string& model : study.models)
-    configuration_of(study, model);  // checked before the first
-                                     // session
+  for (const std::string& model : study.models) configuration_of(study, model);  // checked first
   const Task task = load_task(study.task);
   OperatorStage stage;
   stage.scene_folders = scene_folders();

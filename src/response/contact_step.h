@@ -73,8 +73,7 @@ struct ContactStep {
   const Scene& scene;
   const Vector3& gravity;                   ///< [m/s^2]
   double step;                              ///< [s]
-  std::vector<Contact>& contacts;           ///< with hands, sorted by key; the model writes forces and
-                                            ///< impulses
+  std::vector<Contact>& contacts;           ///< with hands, sorted by key; output: forces and impulses
   std::vector<BodyContact>& body_contacts;  ///< between bodies, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
   StepChanges& changes;
@@ -84,9 +83,8 @@ struct ContactStep {
   const std::array<int, kMaxHands>* operators = nullptr;
 };
 
-/// True if the hands of the only operator are all that changes the body's momenta in the response, and act
-/// from the start of the step. The operator then receives the opposite of that change, whatever the contacts'
-/// forces.
+/// True if only the hands of the only operator change the body's momenta in the response, from the start of
+/// the step on. The operator then receives the opposite of that change, whatever the contacts' forces.
 inline bool reacts_by_momentum(const ContactStep& step, std::size_t body) {
   return step.scene.operators.size() == 1 && step.scene.joints.empty() && step.body_contacts.empty() &&
          step.changes.mean_impact_time(body) == 0.0;
@@ -100,8 +98,8 @@ class ContactModel {
 };
 
 /// Contacts between objects follow the law of `implicit` under every model. Throws std::invalid_argument for
-/// an unknown name. The model of a scene with joints keeps references to the state, for the joints' state,
-/// and to the events, to which it adds those of joints.
+/// an unknown name. The model of a scene with joints keeps references: to `state` for the joints, and to
+/// `events`, to which it adds those of joints.
 std::unique_ptr<ContactModel> make_contact_model(const Configuration& configuration, const Scene& scene,
                                                  SimulationState& state, std::vector<Event>& events);
 

@@ -11,11 +11,11 @@ namespace {
 
 /// Largest load of a face, as a multiple of its load under a force along the normal. A face on which little
 /// of the pad rests adds little.
-constexpr double kMostOnAFace = 2.5;
+constexpr double kMaxFaceLoad = 2.5;
 /// A shorter stretch is rounding and has no direction [m].
 constexpr double kMinStretch = 1e-9;
 /// Upper bound of friction over normal force at any edge of these parameters.
-constexpr double kMostFriction = 4.0;
+constexpr double kMaxEdgeFriction = 4.0;
 
 /// Normals of the perpendicular faces that meet at an edge or corner.
 struct MeetingFaces {
@@ -29,14 +29,14 @@ struct MeetingFaces {
   /// sum N_i.
   ///
   /// A single cone about n, 30 to 45 degrees from the faces, would let the pad squeeze the edge out. A load
-  /// N_i above kMostOnAFace n_i.n, with n_i.n its part of a unit force along n, is not supported.
-  bool bear(const Vector3& normal, const Vector3& drag, double friction) const {
+  /// N_i above kMaxFaceLoad n_i.n, with n_i.n its part of a unit force along n, is not supported.
+  bool supports(const Vector3& normal, const Vector3& drag, double friction) const {
     const Vector3 force = normal + drag;
     Vector3 rest = force;
     double push = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       const double out = std::max(0.0, normals[i].dot(force));
-      if (out > kMostOnAFace * normals[i].dot(normal)) return false;
+      if (out > kMaxFaceLoad * normals[i].dot(normal)) return false;
       rest -= out * normals[i];
       push += out;
     }
@@ -44,7 +44,7 @@ struct MeetingFaces {
   }
 };
 
-// Of a box, the three faces whose normals are on the side of n; of a cylinder, the end and the side at n's
+// For a box, the three faces whose normals are on the side of n; for a cylinder, the end and the side at n's
 // azimuth. A face parallel to n carries none of the normal force and is left out.
 MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
   constexpr double kSameNormal = 1e-6;
@@ -69,18 +69,18 @@ MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
 // single face.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction) {
   const MeetingFaces faces = faces_at(shape, normal);
-  double lowest = friction, highest = std::max(friction, kMostFriction);
-  if (faces.bear(normal, highest * along, friction)) return highest;
+  double lowest = friction, highest = std::max(friction, kMaxEdgeFriction);
+  if (faces.supports(normal, highest * along, friction)) return highest;
   for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (lowest + highest);
-    (faces.bear(normal, middle * along, friction) ? lowest : highest) = middle;
+    (faces.supports(normal, middle * along, friction) ? lowest : highest) = middle;
   }
   return lowest;
 }
 
-// grip = f_edge / mu (phi if the contact slips) multiplies the spring's friction limit. It is found for the
-// direction of the stretch at the start of the step, and held through the step, so that the step's problem
-// stays convex.
+// grip = f_edge / mu (phi if the contact slips) multiplies the spring's friction limit. Its direction is that
+// of the stretch at the start of the step. It is held through the step, so that the step's problem stays
+// convex.
 void grip_edges(ContactStep& step) {
   for (Contact& contact : step.contacts) {
     if (!contact.at_edge || !contact.touching()) continue;

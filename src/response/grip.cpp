@@ -21,7 +21,7 @@ Vector3 mean_tip(const Grip& grip, const Hand& hand) {
 /// Weight of the palm's rotation, as the radius of pads around its centre [m]. Objects rotate in the hand:
 /// within 0.2 s the median ARCTIC object rotates by 16 degrees against the palm, and by 9 against the pads
 /// that hold it.
-constexpr double kPalmTurns = 0.008;
+constexpr double kPalmRadius = 0.008;
 
 /// Weight of each end of a distal phalanx. The opposing contact groups weigh 1/2 each.
 std::array<double, kFingers> weights_of(const Grip& grip) {
@@ -57,18 +57,18 @@ Quaternion nearest_turn_of_any(const Matrix3& matrix) {
 /// determinant <= 0 would converge to a reflection, and a small one has an inverse of rounding errors: both
 /// take nearest_turn_of_any().
 Quaternion nearest_turn(const Matrix3& matrix) {
-  constexpr double kFlat = 1e-4, kSettled = 1e-28;  // relative to the matrix's norm, to its power
-  constexpr int kMostSteps = 12;
+  constexpr double kMinDeterminant = 1e-4, kConverged = 1e-28;  // relative to the matrix's norm, to its power
+  constexpr int kMaxIterations = 12;
   const double size = matrix.norm();
-  if (!(matrix.determinant() > kFlat * size * size * size)) return nearest_turn_of_any(matrix);
+  if (!(matrix.determinant() > kMinDeterminant * size * size * size)) return nearest_turn_of_any(matrix);
   Matrix3 turn = matrix;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const Matrix3 dual = turn.inverse().transpose();
     const double scale = std::sqrt(dual.norm() / turn.norm());
     const Matrix3 next = 0.5 * (scale * turn + (1.0 / scale) * dual);
     const double changed = (next - turn).squaredNorm();
     turn = next;
-    if (changed < kSettled) break;
+    if (changed < kConverged) break;
   }
   return Quaternion(turn).normalized();
 }
@@ -113,7 +113,7 @@ Pose moved_in_palm(const Grip& grip, const Hand& hand) {
     from += weights[i / 2] * grip.pads[i];
     to += weights[i / 2] * pads[i];
   }
-  Matrix3 spread = kPalmTurns * kPalmTurns * Matrix3::Identity();
+  Matrix3 spread = kPalmRadius * kPalmRadius * Matrix3::Identity();
   for (std::size_t i = 0; i < pads.size(); ++i)
     spread += weights[i / 2] * (pads[i] - to) * (grip.pads[i] - from).transpose();
   // The palm's centre is one opposing group, of weight 1/2, at the origin: x_i = y_i = 0.

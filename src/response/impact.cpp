@@ -61,7 +61,7 @@ void keep_from_gaining(std::vector<ImpactLaws>& points) {
     least += energy_gained(point.approach, point.plastic, point.after_plastic);
     exchanged += point.plastic.norm() * point.approach.norm();
   }
-  if (least > kNoGain * exchanged) {
+  if (least > kGainTolerance * exchanged) {
     for (ImpactLaws& point : points) {
       point.newtons = point.plastic, point.after_newtons = point.after_plastic;
       point.plastic.setZero(), point.after_plastic = point.approach;
@@ -88,7 +88,7 @@ void keep_from_gaining(std::vector<ImpactLaws>& points) {
 }
 
 double time_to_close(double gap, double rate, double acceleration) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
+  constexpr double kInfiniteTime = std::numeric_limits<double>::infinity();
   if (gap <= 0.0) return 0.0;
   // Zero of gap + rate t + a t^2 / 2 in the form without cancellation.
   //
@@ -97,9 +97,9 @@ double time_to_close(double gap, double rate, double acceleration) {
   // The first form excludes a = 0, and subtracts nearly equal numbers for a small a. Without a real root the
   // gap reverses before it closes. If the denominator is not positive it opens for good.
   const double discriminant = rate * rate - 2.0 * acceleration * gap;
-  if (discriminant < 0.0) return kNever;
+  if (discriminant < 0.0) return kInfiniteTime;
   const double closing = -rate + std::sqrt(discriminant);
-  return closing > 0.0 ? 2.0 * gap / closing : kNever;
+  return closing > 0.0 ? 2.0 * gap / closing : kInfiniteTime;
 }
 
 }  // namespace mrhi

@@ -22,10 +22,10 @@ void apply_impulse(const Vector3& impulse, const Vector3& point, BodyState& stat
 Vector3 relative_velocity(const Contact& contact, const Body& body, const BodyState& state);
 
 /// An energy gain below this fraction of the exchanged energy is rounding.
-constexpr double kNoGain = 1e-7;
+constexpr double kGainTolerance = 1e-7;
 
-/// A point of an impact under two laws, Newton's and one without restitution: impulses on the second body [N
-/// s], and the first surface's velocity relative to the second before and after the impact [m/s].
+/// A point of an impact under two laws, Newton's and one without restitution: impulses on the second body
+/// [N s], and the first surface's velocity relative to the second before and after the impact [m/s].
 struct ImpactLaws {
   Vector3 approach, newtons, after_newtons, plastic, after_plastic;
 };

@@ -11,7 +11,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteTime = std::numeric_limits<double>::infinity();
 /// First time at which two points `apart`, with the relative velocity `velocity`, are `distance` from each
 /// other [s].
 double time_to_reach(const Vector3& apart, const Vector3& velocity, double distance) {
@@ -21,7 +21,7 @@ double time_to_reach(const Vector3& apart, const Vector3& velocity, double dista
   const double outside = apart.squaredNorm() - distance * distance, closing = -apart.dot(velocity);
   if (outside <= 0.0) return 0.0;
   const double discriminant = closing * closing - velocity.squaredNorm() * outside;
-  if (closing <= 0.0 || discriminant < 0.0) return kNever;
+  if (closing <= 0.0 || discriminant < 0.0) return kInfiniteTime;
   return outside / (closing + std::sqrt(discriminant));
 }
 
@@ -65,11 +65,11 @@ double ImpactPoint::collision_time() const {
       is_of_balls()
           ? time_to_reach(b.arm - a.arm, a.velocity_of_centre() - b.velocity_of_centre(), radius_a + radius_b)
           : time_to_close(gap, rate() + time * acceleration, acceleration);
-  if (wait == kNever) return kNever;
+  if (wait == kInfiniteTime) return kInfiniteTime;
   ImpactPoint then = *this;
   then.advance_to(time + wait);
   const double speed = then.rate() + then.time * acceleration;
-  return classify(speed) == Approach::colliding ? then.time : kNever;
+  return classify(speed) == Approach::colliding ? then.time : kInfiniteTime;
 }
 
 void ImpactPoint::advance_to(double later) {

@@ -69,14 +69,11 @@ struct ImpactPoint {
 
   // Impact.
   Vector3 approach;                            // relative velocity before the impact [m/s]
-  double target = 0.0;                         // rate after the impact, extrapolated to the start of the step
-                                               // [m/s]
-  Vector3 normal_response;                     // change of the relative velocity by a unit impulse along n
-                                               // [1/kg]
+  double target = 0.0;                         // rate after it, extrapolated to the step's start [m/s]
+  Vector3 normal_response;                     // relative velocity by a unit impulse along n [1/kg]
   double normal_mass = 0.0;                    // effective [kg]
   double normal_impulse = 0.0;                 // accumulated [N s]
-  double tangential_mass = 0.0;                // lower bound of the effective mass over all tangential
-                                               // directions [kg]
+  double tangential_mass = 0.0;                // lower bound over all tangential directions [kg]
   Vector3 friction_impulse = Vector3::Zero();  // accumulated, on b [N s]
 
   Vector3 relative_velocity() const { return hand_velocity + a.velocity() - b.velocity(); }

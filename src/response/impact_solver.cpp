@@ -9,32 +9,31 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kUsualPoints = 64;          // capacity for one step; grows if needed
-constexpr double kSameTime = 1e-12;               // impacts closer in time are simultaneous [s]
-constexpr std::size_t kMaxImpactsPerContact = 4;  // limit for an island in one step, on average; then springs
-                                                  // act
+constexpr std::size_t kPointCapacity = 64;        // capacity for one step; grows if needed
+constexpr double kTimeTolerance = 1e-12;          // impacts closer in time are simultaneous [s]
+constexpr std::size_t kMaxImpactsPerContact = 4;  // of an island in one step, on average; then springs act
 /// Limit of relaxed points of an island, beyond which no further impact of the step is sought.
 constexpr std::size_t kMaxWork = 1500;
 /// Largest number of contacts between bodies of an island that is not large.
-constexpr std::size_t kFewLinks = 16;
+constexpr std::size_t kMaxSmallIslandLinks = 16;
 /// Number of points that all sweeps of a large island's impact relax together, and the least number of
 /// sweeps.
 constexpr int kLargeIslandWork = 1500, kMinSweeps = 8;
 /// Slowest approach that is an impact in a large island [m/s].
-constexpr double kSlow = 1e-3;
+constexpr double kMinImpactSpeed = 1e-3;
 /// Impulses diverge if their sum exceeds this multiple of the largest sum that the impacts can need. Each
 /// point needs at most (1 + epsilon) m |u|, as n'Kn >= 1/m. Between fingers that close from opposite
 /// directions each impulse drives the body into the other finger, and impulses grow from sweep to sweep.
-constexpr double kDiverged = 4.0;
+constexpr double kDivergenceFactor = 4.0;
 
 bool is_large(const Island& island) {
-  return island.links.size() > kFewLinks;
+  return island.links.size() > kMaxSmallIslandLinks;
 }
 
-/// Returns the slowest approach that is an impact: kSlow plus the speed that gravity adds in a step, h g
-/// [m/s].
+/// Returns the slowest approach that is an impact: kMinImpactSpeed plus the speed that gravity adds in a
+/// step, h g [m/s].
 double slow_in(const ContactStep& step) {
-  return kSlow + step.step * step.gravity.norm();
+  return kMinImpactSpeed + step.step * step.gravity.norm();
 }
 
 ImpactPoint::Partner partner(ContactStep& step, std::size_t index, const Vector3& arm) {
@@ -83,8 +82,8 @@ ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
   return point;
 }
 
-/// Sets the depth so that at constant velocity the springs find the actual gap at the end of the step,
-/// although an impact has changed the velocity within it.
+/// Sets the depth for the springs of a pair whose velocity an impact has changed within the step. At the
+/// constant velocity that springs assume, it gives the actual gap at the end of the step.
 ///
 ///     d+ = d - h u = -gap(h)      so      d = h u - gap(h)
 ///
@@ -105,11 +104,11 @@ const ImpactSolver::Precision ImpactSolver::kExact{500, 1e-13};
 const ImpactSolver::Precision ImpactSolver::kVisible{30, 1e-6};
 
 ImpactSolver::ImpactSolver() : precision_(kExact) {
-  points_.reserve(kUsualPoints);
-  impact_.reserve(kUsualPoints);
-  times_.reserve(kUsualPoints);
-  reported_.reserve(2 * kUsualPoints);
-  laws_.reserve(kUsualPoints);
+  points_.reserve(kPointCapacity);
+  impact_.reserve(kPointCapacity);
+  times_.reserve(kPointCapacity);
+  reported_.reserve(2 * kPointCapacity);
+  laws_.reserve(kPointCapacity);
 }
 
 // A point separates if gap + h n.(c1' - c2') > 0, with c2' by the velocity that springs alone cause at the
@@ -391,7 +390,7 @@ bool ImpactSolver::find_next_impact(double end) {
   // Resolved one after the other they would tip a box that lands flat.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto now = [&](std::size_t other) {
-      return times_[other] <= first + kSameTime && points_[i].same_pair(points_[other]);
+      return times_[other] <= first + kTimeTolerance && points_[i].same_pair(points_[other]);
     };
     bool in_impact = false;
     for (std::size_t other = 0; times_[i] < end && other < points_.size(); ++other)
@@ -445,7 +444,7 @@ bool ImpactSolver::solve(double max_impulse) {
       sum += point->normal_impulse;
     }
     if (error <= precision_.converged * scale) return true;
-    if (sum > kDiverged * max_impulse) return false;
+    if (sum > kDivergenceFactor * max_impulse) return false;
   }
   return true;
 }
@@ -462,7 +461,7 @@ void ImpactSolver::limit_energy(double max_impulse) {
     gain += energy_gained(point->approach, impulse, after);
     exchanged += impulse.norm() * point->approach.norm();
   }
-  if (gain <= kNoGain * exchanged) return;
+  if (gain <= kGainTolerance * exchanged) return;
   for (ImpactPoint* point : impact_) point->undo();
   for (ImpactPoint* point : impact_) {
     point->begin();

@@ -12,13 +12,13 @@ namespace mrhi {
 namespace {
 
 /// Fraction of the island's momentum, added to the scale of errors: smaller errors are rounding.
-constexpr double kRounding = 1e-6;
+constexpr double kMomentumTolerance = 1e-6;
 /// Largest error, over scale(), at which the forces are a warm start of the next step.
-constexpr double kFarOff = 0.01;
+constexpr double kMaxWarmStartError = 0.01;
 /// Separation speed beyond which springs apply no force [m/s].
 constexpr double kReleaseSpeed = 0.1;
 /// Largest number of bodies that are solved without a bound on effort.
-constexpr std::size_t kFewBodies = 4;
+constexpr std::size_t kMaxUnboundedBodies = 4;
 
 constexpr int kNoJoint = -1;
 
@@ -51,7 +51,7 @@ IslandProblem::Effort IslandProblem::effort_in_joints() const {
   Effort effort;
   effort.limits = 2;
   effort.held_iterations = 20;
-  if (wrenches_.size() <= kFewBodies) return effort;
+  if (wrenches_.size() <= kMaxUnboundedBodies) return effort;
   effort.iterations = 12;
   effort.limits = 1;
   effort.held_iterations = 16;
@@ -162,7 +162,7 @@ void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
 /// force acts.
 void IslandProblem::add_joint_forces() {
   gradient_.noalias() += jacobian_.transpose() * body_impulse_;
-  scale_ += kRounding * carried_;
+  scale_ += kMomentumTolerance * carried_;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (unknowns_[i].joint == kNoJoint) continue;
     const auto row = static_cast<Eigen::Index>(i);
@@ -244,7 +244,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
                            std::vector<JointState>& joints) {
   settle_rows(step, island);
   // Forces are the warm start of the next step, unless their error is large.
-  const double far = kFarOff * scale();
+  const double far = kMaxWarmStartError * scale();
   const bool lasts = agree || error_squared() <= far * far;
   for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
     const auto row = static_cast<Eigen::Index>(i);

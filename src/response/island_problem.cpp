@@ -11,13 +11,13 @@ namespace mrhi {
 namespace {
 
 /// Position error at the end of the step below which a body counts as solved [m].
-constexpr double kInvisibleDistance = 1e-9;
+constexpr double kPositionTolerance = 1e-9;
 /// Largest error, over scale(), at which momenta are taken from the forces.
-constexpr double kNearlyAgrees = 1e-4;
+constexpr double kConsistencyTolerance = 1e-4;
 /// Smallest mass ratio of an object to the operator who holds it at which both are solved together. A lighter
 /// object hardly moves a person, so the operator's velocity at the start of the step is stable at any step
 /// length.
-constexpr double kMinCoupled = 0.02;
+constexpr double kMinCoupledMassRatio = 0.02;
 
 /// Columns of X S, where X = [r]x + t n' maps a force at the arm r to its torque.
 struct TorqueSlope {
@@ -93,7 +93,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
   } else if (step.operators != nullptr && island.links.size() == 0) {
     const Body& body = step.scene.bodies[masses_[0].body];
     const int op = sole_operator(step, island);
-    if (op >= 0 && body.mass > kMinCoupled * step.scene.bodies[static_cast<std::size_t>(op)].mass)
+    if (op >= 0 && body.mass > kMinCoupledMassRatio * step.scene.bodies[static_cast<std::size_t>(op)].mass)
       couple(step, body, step.bodies[masses_[0].body], static_cast<std::size_t>(op));
   }
 }
@@ -133,7 +133,7 @@ void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   const Eigen::Index at = 6 * static_cast<Eigen::Index>(masses_.size());
   masses_.push_back({index, body.mass, rotation * body.inertia * rotation.transpose()});
-  unseen_ = std::min(unseen_, kInvisibleDistance / step_ * body.mass);
+  unseen_ = std::min(unseen_, kPositionTolerance / step_ * body.mass);
   start_.segment<3>(at) = state.linear_momentum / body.mass;
   start_.segment<3>(at + 3) =
       rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
@@ -408,7 +408,7 @@ double IslandProblem::energy() {
 }
 
 bool IslandProblem::nearly_agrees() const {
-  return error_squared() <= kNearlyAgrees * kNearlyAgrees * scale_ * scale_;
+  return error_squared() <= kConsistencyTolerance * kConsistencyTolerance * scale_ * scale_;
 }
 
 // Momenta consistent with the forces are M u* + h J' f: one body gains what the other loses, however far u

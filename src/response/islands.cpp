@@ -106,7 +106,7 @@ void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector
 void Islands::gather() {
   for (IslandBody& body : bodies_) body.root = root_of(body.root);
   for (Link& link : links_) link.root = root_of(link.root);
-  // Of a body's entries, the last is kept, which has the hands' contacts.
+  // Keeps the last of a body's entries, which has the hands' contacts.
   std::sort(bodies_.begin(), bodies_.end(), [](const IslandBody& x, const IslandBody& y) {
     return std::tie(x.root, x.body, y.last) < std::tie(y.root, y.body, x.last);
   });

@@ -8,7 +8,7 @@ namespace {
 
 /// Largest speed of any point of a linkage at rest [m/s]: a tenth of the speed below which a body may sleep
 /// (simulation/sleeping.cpp).
-constexpr double kStillSpeed = 1e-6;
+constexpr double kSleepSpeed = 1e-6;
 /// Time at rest after which a linkage sleeps [s].
 constexpr double kSleepDelay = 0.5;
 
@@ -133,7 +133,7 @@ void JointedModel::rest(const ContactStep& step, std::size_t linkage) {
     const auto b = static_cast<std::size_t>(link.body);
     const Twist twist = twist_of(scene_.bodies[b], step.bodies[b]);
     still =
-        still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kStillSpeed;
+        still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kSleepSpeed;
   }
   bool sleeps = still;
   for (const LinkageBody& link : linkages_[linkage].bodies) {

@@ -12,7 +12,7 @@ namespace {
 constexpr int kRelaxationBudget = 1000, kMinSweeps = 8, kMaxSweeps = 30;
 /// An island is nearly at rest if no body is faster than a fall of this many steps. It may take more sweeps,
 /// to come to rest.
-constexpr double kNearlyAtRest = 1.0;
+constexpr double kRestFallSteps = 1.0;
 constexpr int kMaxSweepsAtRest = 80;
 /// Iteration ends when a sweep changes velocities by less than this ratio of the contacts' total change.
 constexpr double kConverged = 1e-6;
@@ -312,14 +312,14 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
 
 /// Friction impulse that would keep the tangential spring from slipping at this sliding velocity: t' of
 /// prepare().
-[[gnu::always_inline]] inline Vector3 LargeIslandSolver::wanted_friction(const Point& point,
-                                                                         const Vector3& sliding) {
+[[gnu::always_inline]] inline Vector3 LargeIslandSolver::trial_friction(const Point& point,
+                                                                        const Vector3& sliding) {
   return point.kept * point.impulses.friction + point.stretch_impulse + point.damping * sliding;
 }
 
 /// Solves one contact with all others fixed.
 ///
-///     p' = find_normal_impulse(u.n - w p),   t' = disc(wanted_friction(P u + (p' - p) P W n), mu p' + bond)
+///     p' = find_normal_impulse(u.n - w p),   t' = disc(trial_friction(P u + (p' - p) P W n), mu p' + bond)
 ///
 /// Friction anticipates the sliding that the new normal impulse causes, so both belong to one iterate. Its
 /// limit is by the new normal impulse, not the last iterate's. This minimises no convex function, but its
@@ -336,7 +336,7 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
   const double more = wanted - impulses.normal;
   const Vector3 velocity = relative_velocity(point);
   const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
-  Vector3 friction = wanted_friction(point, sliding + more * point.sliding_response);
+  Vector3 friction = trial_friction(point, sliding + more * point.sliding_response);
   limit_friction(limit, friction);
   apply(point, more, friction - impulses.friction);
   impulses.normal = wanted;
@@ -405,7 +405,7 @@ bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
   const double limit = point.friction * point.impulses.normal + point.bond;
   if (limit == 0.0 && point.impulses.friction == Vector3::Zero()) return;
   const Vector3 velocity = relative_velocity(point);
-  Vector3 friction = wanted_friction(point, velocity - point.normal.dot(velocity) * point.normal);
+  Vector3 friction = trial_friction(point, velocity - point.normal.dot(velocity) * point.normal);
   limit_friction(limit, friction);
   apply(point, 0.0, friction - point.impulses.friction);
   point.impulses.friction = friction;
@@ -489,9 +489,9 @@ double LargeIslandSolver::accelerate(double last) {
   return square;
 }
 
-/// True if no body is faster than a fall of kNearlyAtRest steps.
+/// True if no body is faster than a fall of kRestFallSteps steps.
 bool LargeIslandSolver::is_nearly_at_rest(const ContactStep& step) const {
-  const double slow = kNearlyAtRest * step_ * step.gravity.norm();
+  const double slow = kRestFallSteps * step_ * step.gravity.norm();
   return std::all_of(bodies_.begin(), bodies_.end(),
                      [slow](const Body& body) { return body.motion.velocity.norm() < slow; });
 }
@@ -522,9 +522,9 @@ void LargeIslandSolver::solve(const ContactStep& step) {
   }
 }
 
-/// Writes the response that settle() reads. Forces are impulses over the step. `wanted` is that of
-/// wanted_friction(). At the fixed point it is k q+ where the contact sticks. It exceeds the limit where k q+
-/// does, as t' - t = give (k q+ - t).
+/// Writes the response that settle() reads. Forces are impulses over the step. The trial force is
+/// that of trial_friction(). At the fixed point it is k q+ where the contact sticks. It exceeds the limit
+/// where k q+ does, as t' - t = give (k q+ - t).
 void LargeIslandSolver::fill_response(std::size_t i) {
   const Point& point = points_[i];
   const Vector3 velocity = relative_velocity(point);
@@ -534,7 +534,7 @@ void LargeIslandSolver::fill_response(std::size_t i) {
   row.response.force = triple((point.impulses.friction - point.impulses.normal * point.normal) / step_);
   row.response.push = point.impulses.normal / step_;
   row.response.torque = point.impulses.twist / step_;
-  row.response.wanted_squared = wanted_friction(point, sliding).squaredNorm() / (step_ * step_);
+  row.response.trial_squared = trial_friction(point, sliding).squaredNorm() / (step_ * step_);
   row.response.drawn = triple(vector(row.spring.stretch) + point.ahead * sliding);
   row.spring.slip_limit = (point.friction * point.impulses.normal + point.bond) / step_;
 }

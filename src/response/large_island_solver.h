@@ -100,7 +100,7 @@ class LargeIslandSolver {
   void apply(const Point& point, double normal, const Vector3& friction);
   double find_normal_impulse(std::size_t i, double rate) const;
   double find_faded_impulse(std::size_t i, double rate, double plain) const;
-  static Vector3 wanted_friction(const Point& point, const Vector3& sliding);
+  static Vector3 trial_friction(const Point& point, const Vector3& sliding);
   void relax(std::size_t i);
   void relax(Patch& patch);
   bool relax_normals_together(const Patch& patch);

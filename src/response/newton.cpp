@@ -9,26 +9,26 @@
 //     H d = -g(u),     u <- u + s d,     s = 1 where it will do
 //
 // Forces have kinks where contacts open and slip. There H is one of the generalised Hessians, and this is a
-// semismooth Newton method (Qi & Sun 1993). Once the set of open contacts is found and all others stick,
-// forces are linear in u but for the release fade and the pad, and one step is practically exact. Where
-// contacts slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians
-// are reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
+// semismooth Newton method (Qi & Sun 1993). If the set of open contacts is known and all others stick, forces
+// are linear in u but for the release fade and the pad. One step is then practically exact. Where contacts
+// slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians are
+// reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
 namespace mrhi {
 namespace {
 
 /// A line search ends at this ratio of the energy's slope to that at its start.
-constexpr double kFlat = 0.01;
+constexpr double kSlopeTolerance = 0.01;
 /// Convergence is fast if a step reduces the error below this ratio: the Hessian hardly changes there.
-constexpr double kFast = 0.05;
+constexpr double kFastRatio = 0.05;
 /// Error, over scale(), from which fast convergence reaches Effort::converged in one more step.
-constexpr double kTrusted = 1e-5;
+constexpr double kLastStepError = 1e-5;
 /// The same for the first step, which has a Hessian of its own, if the warm start is this good: the error
 /// falls quadratically (measured: 4e-11 of 3e-5).
-constexpr double kTrustedAtOnce = 1e-4;
+constexpr double kFirstStepError = 1e-4;
 /// Error, over scale(), below which energy differences are rounding and a line search is useless.
-constexpr double kFine = 1e-5;
+constexpr double kEnergyPrecision = 1e-5;
 /// Error, over scale(), that is rounding of its terms.
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingError = 1e-12;
 
 }  // namespace
 
@@ -40,9 +40,9 @@ bool IslandProblem::solve() {
     evaluate(true);
     if (solved()) return true;
     const double error = error_squared();
-    const bool near = i > 0 && error < kFast * kFast * last;
+    const bool near = i > 0 && error < kFastRatio * kFastRatio * last;
     last = error;
-    const bool last_step = near ? error_below(kTrusted) : i == 0 && error_below(kTrustedAtOnce);
+    const bool last_step = near ? error_below(kLastStepError) : i == 0 && error_below(kFirstStepError);
     if (trusts_last_step && last_step) {
       advance(false, near);
       return false;
@@ -64,7 +64,7 @@ bool IslandProblem::error_below(double part) const {
 /// a small ratio of their impulse is a visible displacement.
 bool IslandProblem::solved() const {
   if (!error_below(effort_.converged)) return false;
-  return error_squared() <= unseen_ * unseen_ || error_below(kRounding);
+  return error_squared() <= unseen_ * unseen_ || error_below(kRoundingError);
 }
 
 /// Fallback where limits and velocity do not converge together. Solves the convex problem with limits held,
@@ -88,7 +88,7 @@ void IslandProblem::solve_with_held_limits() {
 void IslandProblem::advance(bool checked, bool same_hessian) {
   if (!same_hessian) factorise();
   find_direction();
-  const bool searches = checked && !error_below(kFine);
+  const bool searches = checked && !error_below(kEnergyPrecision);
   // Armijo's condition, E(u + d) <= E(u) + 1e-4 g.d, where g.d = -d'H d < 0 (Nocedal & Wright, Numerical
   // Optimization, 2006, 3.1).
   const double before = searches ? energy() : 0.0, slope = searches ? descent() : 0.0;
@@ -113,7 +113,7 @@ void IslandProblem::search_line(double slope_at_start) {
     part = next;
     evaluate(false);
     const double slope = descent();
-    if (std::abs(slope) <= kFlat * -slope_at_start) return;
+    if (std::abs(slope) <= kSlopeTolerance * -slope_at_start) return;
     (slope > 0.0 ? high : low) = next;
     (slope > 0.0 ? high_slope : low_slope) = slope;
   }

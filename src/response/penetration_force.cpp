@@ -34,7 +34,7 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
   const double wanted = spring_force.norm();
   const double sliding = material.dynamic_friction * normal_force;
   const bool slips = before == Friction::sticking ? wanted > material.static_friction * normal_force
-                                                  : wanted > kStickAgain * sliding;
+                                                  : wanted > kRestickRatio * sliding;
   if (!slips) return {spring_force, Friction::sticking};
   return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
 }

@@ -20,7 +20,7 @@ constexpr double release_fade(bool on) {
 
 /// A slipping contact sticks again once the friction that it needs is below this fraction of the sliding
 /// friction.
-constexpr double kStickAgain = 0.9;
+constexpr double kRestickRatio = 0.9;
 
 /// Normal part of the penetration force, into the object (Eqs. 16, 17) [N]. Depth is from where the phalanx's
 /// surface entered, `normal_velocity` as in Eq. 8, `fade` from release_fade().

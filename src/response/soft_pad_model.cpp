@@ -31,7 +31,7 @@ class SoftPadModel : public ContactModel {
 
 constexpr int kPads = SoftPadModel::kAlong * SoftPadModel::kAcross;
 /// Largest angle from the normal at which a phalanx has no direction along the surface [rad].
-constexpr double kStands = 1e-6;
+constexpr double kMinTilt = 1e-6;
 
 /// Geometry of the phalanx at its contact point: axes along the surface and across.
 struct Skin {
@@ -39,7 +39,7 @@ struct Skin {
       : radius(contact.radius), s(contact.axis_parameter), rise(contact.normal.dot(contact.axis)) {
     const Vector3 flat = contact.axis - rise * contact.normal;
     run = flat.norm();
-    if (run <= kStands * contact.axis.norm()) run = 0.0;
+    if (run <= kMinTilt * contact.axis.norm()) run = 0.0;
     slope = run > 0.0 ? rise / std::hypot(run, rise) : 0.0;
     along = run > 0.0 ? Vector3(flat / run) : contact.normal.unitOrthogonal();
     across = contact.normal.cross(along);

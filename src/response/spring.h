@@ -9,10 +9,10 @@ namespace mrhi {
 
 /// Force and torque of a spring contact at a given relative velocity and spin of its ends.
 struct SpringResponse {
-  Triple force;           ///< on 2 [N]
-  double push;            ///< normal force, >= 0 [N]
-  double wanted_squared;  ///< square of the tangential force that would prevent slip [N^2]
-  double torque;          ///< on 2 about n [N m]
+  Triple force;          ///< on 2 [N]
+  double push;           ///< normal force, >= 0 [N]
+  double trial_squared;  ///< square of the tangential force that would prevent slip [N^2]
+  double torque;         ///< on 2 about n [N m]
   // -d force / d velocity of 2 is tangential_slope (1 - n n') + normal_slope n n' - slip d d' [N s/m]:
   // symmetric, positive semidefinite.
   double normal_slope, tangential_slope, slip;
@@ -76,14 +76,14 @@ struct SpringContact {
 };
 
 /// Stiffness ratio of a finger that complies beyond its strength.
-constexpr double kGivingWay = 0.02;
+constexpr double kYieldedStiffness = 0.02;
 
 // With d the depth, D the pad, Y the depth at full stiffness for the finger's strength (`yields`), and k p
 // the normal force:
 //
-//     p = d^2 / 2D           p' = d / D        d <= D      the pulp stiffens (Serina et al. 1997)
+//     p = d^2 / 2D           p' = d / D        d <= D      the pad stiffens (Serina et al. 1997)
 //     p = d - D / 2          p' = 1            d > D       the two meet with the same slope
-//     p -> Y + e (p - Y)     p' -> e p'        p > Y       the finger gives way, e = kGivingWay
+//     p -> Y + e (p - Y)     p' -> e p'        p > Y       the finger complies, e = kYieldedStiffness
 //
 // The slope is zero only at d = 0, so two fingers that both comply still centre the object between them.
 // Without a pad 1 / 2D is 0, as infinity would give 0 times infinity. Without a strength limit Y is infinite.
@@ -92,8 +92,8 @@ inline void Spring::press(double deep, double& pressed, double& steepness) const
   pressed = deep - soft + soft * soft * half_over_pad;
   steepness = pad <= deep ? 1.0 : 2.0 * deep * half_over_pad;
   if (pressed <= yields) return;
-  steepness = kGivingWay * steepness;
-  pressed = yields + kGivingWay * (pressed - yields);
+  steepness = kYieldedStiffness * steepness;
+  pressed = yields + kYieldedStiffness * (pressed - yields);
 }
 
 // With k the stiffness, tau = `ahead`, v = n.u > 0 for separation, s the stretch, P = 1 - n n':
@@ -148,14 +148,14 @@ inline void Spring::respond(const Triple& u, double spin, bool renew_limits, Spr
   response.drawn = stretch + ahead * (u - rate * normal);
   // Squared sizes are compared, so the root is taken only if the contact slips.
   response.drawn_squared = response.drawn.dot(response.drawn);
-  response.wanted_squared = stiffness * stiffness * response.drawn_squared;
-  double borne = stiffness;
-  const bool slips = response.wanted_squared > slip_limit * slip_limit;
+  response.trial_squared = stiffness * stiffness * response.drawn_squared;
+  double secant = stiffness;
+  const bool slips = response.trial_squared > slip_limit * slip_limit;
   // A slipping spring has its limit force at any stretch.
-  if (slips) borne = slip_limit / std::sqrt(std::max(response.drawn_squared, 1e-300));
-  response.tangential_slope = slip_limit <= 0.0 ? 0.0 : borne * ahead;
+  if (slips) secant = slip_limit / std::sqrt(std::max(response.drawn_squared, 1e-300));
+  response.tangential_slope = slip_limit <= 0.0 ? 0.0 : secant * ahead;
   response.slip = slips ? response.tangential_slope : 0.0;
-  response.force = borne * response.drawn - push * normal;
+  response.force = secant * response.drawn - push * normal;
 
   // Torque and force have separate limits here. A real patch has a lower torque limit while it slides (the
   // limit surface; Howe & Cutkosky 1996).

@@ -111,8 +111,9 @@ void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& t
   touch.force = vector(solved.response.force);
   // Eqs. 19, 20 with mu while sticking and phi while sliding, by the normal force at the end of the step. A
   // slipping contact sticks again only well within the limit; otherwise it would change state in every step.
-  const double limit = (touch.friction == Friction::sticking ? 1.0 : kStickAgain) * solved.spring.slip_limit;
-  const bool sticks = solved.response.wanted_squared <= limit * limit;
+  const double limit =
+      (touch.friction == Friction::sticking ? 1.0 : kRestickRatio) * solved.spring.slip_limit;
+  const bool sticks = solved.response.trial_squared <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
   if (sticks || solved.response.push <= 0.0) return;
   follow(step, solved, touch);
@@ -298,7 +299,7 @@ void settle_grip(const ContactStep& step, const SpringContact& solved, int point
   }
   grip.force += force;
   grip.torque += vector(solved.arm).cross(force);
-  if (response.wanted_squared <= spring.slip_limit * spring.slip_limit) return;
+  if (response.trial_squared <= spring.slip_limit * spring.slip_limit) return;
   grip.slips = true;
   // Ideal plasticity: the anchor follows by the motion that the limit force does not take up. As in slide(),
   // with phi = mu: s + h u - s(h) = (h / e) (q+ - F / k).

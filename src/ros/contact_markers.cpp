@@ -14,18 +14,18 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kLongest = 0.12;        // of an arrow for an infinite force [m]
-constexpr double kHalfOfLongest = 3.0;   // force whose arrow is half as long [N]
-constexpr double kLetters = 0.009;       // height of a force's number [m]
-constexpr double kShortest = 0.004;      // [m]
-constexpr double kGap = 0.002;           // between the arrow and the back of the finger [m]
-constexpr double kPointSize = 0.005;     // [m]
-constexpr double kPieces = 14.0;         // of a ring
-constexpr double kLift = 0.0006;         // of a ring above the surface [m]
-constexpr double kLeastImpulse = 0.002;  // smallest impact with a ring [N s]
-constexpr double kHalfOfWidest = 0.02;   // impulse whose ring widens half as far as the widest [N s]
-constexpr double kWidest = 0.03;         // largest growth of a ring's radius [m]
-constexpr double kBroad = 0.004;         // initial width of an impact's ring [m]
+constexpr double kMaxLength = 0.12;         // of an arrow for an infinite force [m]
+constexpr double kHalfLengthForce = 3.0;    // force whose arrow is half as long [N]
+constexpr double kLetters = 0.009;          // height of a force's number [m]
+constexpr double kMinLength = 0.004;        // [m]
+constexpr double kGap = 0.002;              // between the arrow and the back of the finger [m]
+constexpr double kPointSize = 0.005;        // [m]
+constexpr double kPieces = 14.0;            // of a ring
+constexpr double kLift = 0.0006;            // of a ring above the surface [m]
+constexpr double kMinImpulse = 0.002;       // smallest impact with a ring [N s]
+constexpr double kHalfWidthImpulse = 0.02;  // impulse whose ring widens half as far as the widest [N s]
+constexpr double kMaxGrowth = 0.03;         // largest growth of a ring's radius [m]
+constexpr double kBroad = 0.004;            // initial width of an impact's ring [m]
 
 enum FrictionState { kSticks, kSlips, kStruck, kFrictionStates };
 
@@ -61,8 +61,8 @@ void add_force(const Contact& contact, const PictureStyle& style, int id, const 
                const MarkerLayer& numbers) {
   const double newtons = contact.force.norm();
   if (newtons < style.least_force) return;
-  const double length = kLongest * newtons / (newtons + kHalfOfLongest);
-  if (length < kShortest) return;
+  const double length = kMaxLength * newtons / (newtons + kHalfLengthForce);
+  if (length < kMinLength) return;
   const Vector3 direction = contact.force / newtons;
   const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
   const Vector3 begin = end - length * direction;
@@ -115,7 +115,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, const PictureSt
 void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& stamp) {
   for (const Contact& contact : contacts) {
     const double impulse = contact.impulse.norm();
-    if (impulse < kLeastImpulse) continue;
+    if (impulse < kMinImpulse) continue;
     const auto known = std::find_if(impacts_.begin(), impacts_.end(), [&](const Impact& impact) {
       return impact.key.same_pair(contact.key) && seconds_between(impact.last, stamp) < 0.5 * kSeen;
     });
@@ -137,8 +137,8 @@ void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, const M
   int id = 0;
   for (const Impact& impact : impacts_) {
     const double gone = age(impact) / kSeen;
-    const double strength = impact.impulse / (impact.impulse + kHalfOfWidest);
-    const double inner = impact.radius + (0.35 + gone) * strength * kWidest;
+    const double strength = impact.impulse / (impact.impulse + kHalfWidthImpulse);
+    const double inner = impact.radius + (0.35 + gone) * strength * kMaxGrowth;
     Marker& ring = layer.add(id++, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), style.impacts);
     add_ring({inner, inner + (1.0 - 0.6 * gone) * kBroad}, on_surface(impact.point, impact.normal), ring);
     std_msgs::ColorRGBA paint = style.impacts;

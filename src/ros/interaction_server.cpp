@@ -357,8 +357,7 @@ struct InteractionServer::Impl {
   StampCheck while_paused_;  ///< of frames during a pause; the simulation checks all others
   ResultPublisher results_;
   NodeDiagnostics diagnostics_;
-  DurationHistogram step_times_, picture_latency_;  ///< since the last report; the latter from the hand's
-                                                    ///< arrival
+  DurationHistogram step_times_, picture_latency_;  ///< since the last report; from the hand's arrival
   std::uint64_t dropped_while_paused_ = 0;
   Placing placing_;
   Tuning tuning_;

@@ -11,9 +11,9 @@
 namespace mrhi {
 
 /// Writes a frame as leap_motion/Human in its newest version. The frame is in the device's frame and has at
-/// most one hand of each side; throws std::invalid_argument for two. As in the driver's messages, missing
-/// parts of a hand are zero or absent from its list, and bone orientations are Leap's (z towards the wrist, y
-/// out of the back), conjugated. `rate`: frames per second.
+/// most one hand of each side; throws std::invalid_argument for two. Missing parts of a hand are zero or
+/// absent from its list, as in the driver's messages. So are bone orientations: Leap's (z towards the wrist,
+/// y out of the back), conjugated. `rate`: frames per second.
 void write_leap(const JointsFrame& frame, const std::string& frame_id, std::uint32_t sequence, float rate,
                 topic_tools::ShapeShifter& message);
 

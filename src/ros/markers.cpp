@@ -61,13 +61,12 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
-constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger at which a body becomes translucent
-                                                  // [m]
-constexpr double kLeastOpacity = 0.6;
+constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger that make a body translucent [m]
+constexpr double kMinOpacity = 0.6;
 
 double opacity_around(double depth) {
   const double seen = std::clamp((depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
-  return 1.0 - (1.0 - kLeastOpacity) * seen;
+  return 1.0 - (1.0 - kMinOpacity) * seen;
 }
 
 bool same(const Pose& a, const Pose& b) {

@@ -40,11 +40,12 @@ Standing standing() {
 void tell(Standing before, Standing now) {
   const char* const uri = ros::master::getURI().c_str();
   if (now == Standing::no_master)
-    ROS_WARN("no ROS master at %s any more; what is connected goes on, nothing new can connect", uri);
+    ROS_WARN("no ROS master at %s: existing connections stay, new ones are impossible", uri);
   if (now == Standing::unknown)
     ROS_ERROR(
-        "the ROS master at %s has been started anew and does not know this node; what is connected goes on, "
-        "nothing new can connect: start this node again",
+        "the ROS master at %s was restarted and does not know this node; existing connections stay, new ones "
+        "are "
+        "impossible: start this node again",
         uri);
   if (now == Standing::known && before == Standing::no_master) ROS_INFO("the ROS master at %s is back", uri);
 }

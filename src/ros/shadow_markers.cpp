@@ -14,9 +14,9 @@ namespace {
 using Point = Eigen::Vector2d;
 using visualization_msgs::Marker;
 
-constexpr int kMostBodies = 8;
+constexpr int kMaxBodies = 8;
 constexpr int kFirstBody = kIdsPerHand;  // first id of bodies' shadows; lower ones are of hands
-constexpr double kStays = 0.0005;        // [m]
+constexpr double kMinMotion = 0.0005;    // [m]
 constexpr double kGrid = 0.1;            // height of rviz's grid [m]
 constexpr double kClearance = 0.05;      // of free bodies above the ground [m]
 constexpr double kCell = 0.008;          // [m]
@@ -26,7 +26,7 @@ constexpr double kDark = 0.5;            // opacity for an object on the ground
 constexpr double kFaintAt = 0.3;         // height at which half of that remains [m]
 constexpr double kSoft = 0.006;          // width of the soft edge for an object on the ground [m]
 constexpr double kSoftening = 0.05;      // increase per metre of height
-constexpr double kLeastOpacity = 0.02;
+constexpr double kMinOpacity = 0.02;
 constexpr double kSunk = 0.02;    // greater depths below the ground have no shadow [m]
 constexpr double kHighest = 1.0;  // [m]
 constexpr std::size_t kMeshPoints = 300;
@@ -154,7 +154,7 @@ class Shadow {
   void add_cell(const Point& begin, int row, int column, const std::vector<double>& below,
                 const std::vector<double>& above, Marker& marker) const {
     const auto i = static_cast<std::size_t>(column);
-    if (std::max({below[i], below[i + 1], above[i], above[i + 1]}) < kLeastOpacity) return;
+    if (std::max({below[i], below[i + 1], above[i], above[i + 1]}) < kMinOpacity) return;
     const auto add_corner = [&](int right, int up) {
       const Point place = begin + kCell * Point(column + right, row + up);
       const std::vector<double>& values = up ? above : below;
@@ -201,15 +201,16 @@ double ground_height(const Scene& scene) {
   return ground;
 }
 
-/// Keeps a shadow whose object has moved by less than kStays.
+/// Keeps a shadow whose object has moved by less than kMinMotion.
 template <typename Outlines>
 void ShadowMarkers::add_one(int id, std::vector<Vector3> from, const Outlines& outlines, bool all,
                             const MarkerLayer& layer) {
   Cast& cast = casts_[id];
   const bool moved =
       cast.from.size() != from.size() ||
-      !std::equal(from.begin(), from.end(), cast.from.begin(),
-                  [](const Vector3& a, const Vector3& b) { return (a - b).squaredNorm() < kStays * kStays; });
+      !std::equal(from.begin(), from.end(), cast.from.begin(), [](const Vector3& a, const Vector3& b) {
+        return (a - b).squaredNorm() < kMinMotion * kMinMotion;
+      });
   if (!moved && !all) return;
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(0.0, 0.0, 0.0, 0.99));
   if (moved) {
@@ -239,7 +240,7 @@ void ShadowMarkers::add(const SimulationState& state, const FrameResult& result,
         i, std::move(from), [&] { return outlines_of(hand); }, all, layer);
   }
   int bodies = 0;
-  for (std::size_t i = 0; i < scene_.bodies.size() && bodies < kMostBodies; ++i) {
+  for (std::size_t i = 0; i < scene_.bodies.size() && bodies < kMaxBodies; ++i) {
     const Body& body = scene_.bodies[i];
     if (body.fixed) continue;
     const Pose& pose = state.bodies[i].pose;

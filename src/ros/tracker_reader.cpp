@@ -14,7 +14,7 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kMostFrames = 10'000;
+constexpr std::size_t kMaxFrames = 10'000;
 
 std::string named(const geometry_msgs::TransformStamped& transform) {
   return "from '" + text::one_line(transform.header.frame_id, 64) + "' to '" +
@@ -128,8 +128,8 @@ void TransformMemory::set_fixed(const geometry_msgs::TransformStamped& transform
 /// Transforms out of order are valid: the buffer sorts them. A clock that stands still or jumps is ignored: a
 /// frame's stream has the time of its own stamps, plus the time since the last of them.
 std::string TransformMemory::set(const geometry_msgs::TransformStamped& transform, Nanoseconds now) {
-  if (streams_.size() >= kMostFrames && streams_.count(transform.child_frame_id) == 0)
-    return named(transform) + ": there are " + std::to_string(kMostFrames) + " frames already";
+  if (streams_.size() >= kMaxFrames && streams_.count(transform.child_frame_id) == 0)
+    return named(transform) + ": there are " + std::to_string(kMaxFrames) + " frames already";
   const Nanoseconds stamp = from_ros_time(transform.header.stamp);
   Stream& stream = streams_[transform.child_frame_id];
   std::optional<Nanoseconds> expected;

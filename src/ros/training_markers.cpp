@@ -19,11 +19,10 @@ using Status = mr_hand_interaction::TrainingStatus;
 constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
 constexpr double kTimer = 0.02;                        // of the timer's letters
 constexpr double kMark = 0.014;                        // of a place's number [m]
-constexpr double kMarkRoom = 1.35;                     // distance from a target to its number, over its
-                                                       // ring's radius
+constexpr double kMarkRoom = 1.35;                     // from a target to its number, over its ring's radius
 constexpr double kLine = 1.4;                          // line spacing, over the letters' height
 constexpr int kIdsPerPlace = 100;
-constexpr std::size_t kLongest = 44;  // letters per line
+constexpr std::size_t kMaxLetters = 44;  // letters per line
 
 /// 0.3 m in front of the camera of rviz/training.rviz, at the upper edge of its view: the hands' workspace is
 /// behind it.
@@ -50,12 +49,12 @@ void write(const MarkerLayer& layer, int id, const Vector3& place, const std::st
   layer.add(id, Marker::TEXT_VIEW_FACING, upright(place), Vector3::Constant(height), white()).text = text;
 }
 
-/// Breaks a text between words into lines of at most kLongest letters.
+/// Breaks a text between words into lines of at most kMaxLetters letters.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    if (lines.empty() || lines.back().size() + 1 + word.size() > kLongest) {
+    if (lines.empty() || lines.back().size() + 1 + word.size() > kMaxLetters) {
       lines.push_back(word);
     } else {
       lines.back() += ' ' + word;

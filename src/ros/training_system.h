@@ -38,14 +38,14 @@ namespace mrhi {
 struct TrainingParameters {
   /// Throws ParameterError with the first that is unknown, missing or invalid.
   explicit TrainingParameters(const ros::NodeHandle& private_node) {
-    constexpr double kLongestBreak = 3600.0;  // [s]
+    constexpr double kMaxBreak = 3600.0;  // [s]
     NodeParameters known;
     known.text("task", task).text("participant", header.participant).text("group", header.group);
     known.text("handedness", header.handedness).text("condition", header.condition);
     known.whole("seed", 0, header.seed).whole("session", 1, header.session).whole("number", 1, number);
     known.truth("simulated", header.simulated).truth("operator", by_operator).truth("auto_start", auto_start);
     known.text("folder", folder).text("simulation", simulation);
-    known.number("auto_next", -kLongestBreak, kLongestBreak, auto_next, " [s], below 0: not by itself");
+    known.number("auto_next", -kMaxBreak, kMaxBreak, auto_next, " [s], below 0: not by itself");
     known.read(private_node);
     const char* const home = std::getenv("HOME");
     if (home != nullptr && folder.compare(0, 2, "~/") == 0) folder = home + folder.substr(1);
@@ -74,8 +74,7 @@ struct TrainingParameters {
 
   std::string task = "pick_and_place";  ///< ~task: name or YAML file
   SessionHeader header;       ///< ~participant, ~group, ~handedness, ~condition, ~seed, ~session, ~simulated
-  std::optional<int> number;  ///< ~number: of the participant, from 1; default: the one at the end of the
-                              ///< name
+  std::optional<int> number;  ///< ~number: of the participant, from 1; default: the end of the name
   std::string folder;         ///< ~folder: of the session; a leading ~ is the home directory
   std::string simulation = "interaction_node";  ///< ~simulation: name of the node with the objects
   double auto_next = 3.0;    ///< ~auto_next: break after a trial [s]; below 0: wait for ~next
@@ -154,7 +153,7 @@ class TrainingScene {
   /// Sets the task's gravity and fixtures, and removes all free bodies and devices but this one, which is
   /// reset to its start. Resets an operator too. Returns an error, or an empty string.
   std::string prepare(const TaskObject& object) {
-    if (!names_) return "the simulation has not told yet what moves in its scene";
+    if (!names_) return "the simulation has not published its objects yet";
     if (needs_operator_ && !has_operator_)
       return "the simulation has no operator; allowed: its scene is that of the task (" + task_.scene + ")";
     for (const TaskObject& other : task_.objects) {

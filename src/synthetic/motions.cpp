@@ -229,8 +229,7 @@ ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& 
   return script.motion();
 }
 
-constexpr double kHatchFace = 0.115;  // position of a fingertip that rotates a latch, in front of the hatch
-                                      // [m]
+constexpr double kHatchFace = 0.115;  // a fingertip that rotates a latch is this far before the hatch [m]
 
 /// The fingertip moves a latch, 45 mm from its axle, `up` or down by a quarter turn. Keyframes with
 /// velocities every 30 degrees keep it on the arc.

@@ -90,8 +90,8 @@ struct FingertipContact {
 };
 
 /// `preferred` with the fingers of `contacts` placed so that their tips, as spheres of the finger's radius,
-/// are `gap` off the surface, or at each contact's depth if gap is negative. Contacts are in the frame of
-/// `wrist`; right hand. `worst_error`, if set, receives the largest Reach::error.
+/// are `gap` off the surface. If gap is negative, the tips are at each contact's depth instead. Contacts are
+/// in the frame of `wrist`; right hand. `worst_error`, if set, receives the largest Reach::error.
 HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
                              const std::vector<FingertipContact>& contacts, double gap,
                              const HandPosture& preferred, double* worst_error = nullptr);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kApproach = 0.10;                        // straight to the object with the hand open [m]
 constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
-constexpr double kLeastTime = 0.3;                        // minimum of a movement [s]
+constexpr double kMinDuration = 0.3;                      // minimum of a movement [s]
 constexpr double kCatchable = 0.1;                        // faster objects are not pursued [m/s]
 constexpr double kAstray = 0.05;                          // from the object's expected position [m]
 constexpr double kOutOfHand = 0.04;                       // from the object's position in the hand [m]
@@ -21,16 +21,14 @@ constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
                  kGoAside = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.61;         // fraction of the path to the object at which the hand begins to
-                                         // close
+constexpr double kWidest = 0.61;         // fraction of the path after which the hand begins to close
 constexpr double kTouch = 0.07;          // from feeling to acting [s]
 constexpr double kCorrecting = 2.0;      // rate of correcting a seen error [1/s]
 constexpr double kFastCorrection = 0.1;  // [m/s]
 constexpr double kUnseen = 0.5;          // unseen fraction of an error
 constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
-constexpr double kUsualStiffness = 800.0, kLeastStiffness = 20.0;  // of the grip [N/m]
-constexpr double kUnfelt = 0.15;        // fraction of the wanted grip: less means that something else holds
-                                        // the object
+constexpr double kInitialStiffness = 800.0, kMinStiffness = 20.0;  // of the grip [N/m]
+constexpr double kUnfelt = 0.15;        // of the wanted grip: below it something else holds the object
 constexpr double kClosingSpeed = 0.05;  // maximum rate of the depth [m/s]
 constexpr double kSwing = 1.0;          // [Hz]
 
@@ -52,7 +50,7 @@ SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& obj
       tremor_(skill.tremor, random_),
       mass_(object.mass),
       friction_(std::max(0.1, object.material.static_friction)),
-      stiffness_(kUsualStiffness) {
+      stiffness_(kInitialStiffness) {
   prepare_grasp();
   const Pose at = wrist_about({object.start.position, Quaternion::Identity()});
   now_ = {shifted(at, kApproach * retreat_ + kRest), relaxed_posture()};
@@ -79,7 +77,7 @@ HandPlace SimulatedOperator::planned(double time) const {
   const double on_way = time - began_;
   HandPlace place = hand_at(way_, on_way);
   if (!fingers_.empty()) place.posture = hand_at(fingers_, on_way).posture;
-  const double share = minimum_jerk(std::clamp(on_way / std::max(way_.back().time, kLeastTime), 0.0, 1.0));
+  const double share = minimum_jerk(std::clamp(on_way / std::max(way_.back().time, kMinDuration), 0.0, 1.0));
   place.wrist.position += on_way * drift_ + 2.0 * share * (1.0 - share) * bow_ + corrected_ + swung(time);
   return place;
 }
@@ -126,7 +124,7 @@ void SimulatedOperator::squeeze(double time, double since) {
   const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
   const bool helped = share == 1.0 && touch.sight.held && touch.sight.grip < kUnfelt * wanted_;
   if (pressed && !helped) {
-    const double found = std::max(kLeastStiffness, touch.sight.grip / touch.depth);
+    const double found = std::max(kMinStiffness, touch.sight.grip / touch.depth);
     stiffness_ += std::min(1.0, since / kLearning) * (found - stiffness_);
   }
   const double load = mass_ * (acceleration(time) - touch.sight.gravity).norm();
@@ -173,7 +171,7 @@ void SimulatedOperator::watch(double time, const Moment& seen) {
   if (seen.sight.place && seen.sight.twist.linear.norm() <= kCatchable) return reach(time, seen);
   if (phase_ == Phase::watching) return;
   plan(Phase::withdrawing, seen);  // stops in place
-  then(kLeastTime, shifted(now_.wrist, 0.5 * kLeastTime * velocity_), now_.posture);
+  then(kMinDuration, shifted(now_.wrist, 0.5 * kMinDuration * velocity_), now_.posture);
 }
 
 /// One movement: the hand opens on its path, and has closed around the object on arrival.
@@ -266,7 +264,7 @@ void SimulatedOperator::prepare_grasp() {
   misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
 }
 
-/// Of the grasps allowed by the object's symmetry, the one that rotates the wrist least.
+/// Returns the wrist pose of the grasp with the least rotation among those allowed by the object's symmetry.
 Pose SimulatedOperator::wrist_about(const Pose& object) {
   const Quaternion comfortable = usual_.wrist.orientation;
   const auto strain = [&](const Quaternion& turn) {
@@ -323,7 +321,7 @@ double SimulatedOperator::distance_from_grip(const Moment& seen) const {
 
 double SimulatedOperator::movement_time(double distance, double width) const {
   const double fitts = skill_.movement_start + skill_.movement_per_bit * std::log2(distance / width + 1.0);
-  return std::max(kLeastTime, fitts);
+  return std::max(kMinDuration, fitts);
 }
 
 }  // namespace mrhi

@@ -11,7 +11,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kSpread = 0.2, kLeast = 0.5, kMost = 1.6;  // of one person relative to the group
+constexpr double kSpread = 0.2, kMinFactor = 0.5, kMaxFactor = 1.6;  // of one person relative to the group
 
 /// A value for both groups.
 struct Figure {
@@ -128,7 +128,7 @@ OperatorSkill draw_skill(const std::string& group, std::uint64_t seed) {
   Random random(seed);
   for (const Figure& figure : kFigures)
     if (figure.personal)
-      skill.*figure.value *= std::min(kMost, std::max(kLeast, 1.0 + kSpread * random.gaussian()));
+      skill.*figure.value *= std::min(kMaxFactor, std::max(kMinFactor, 1.0 + kSpread * random.gaussian()));
   return skill;
 }
 

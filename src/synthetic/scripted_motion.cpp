@@ -18,8 +18,7 @@ constexpr double kPalmShare = 0.68;  // fraction of the distance from the wrist 
 
 /// Dimensions in degrees and millimetres, for a table as in anatomy.
 struct Anatomy {
-  const double (&bones)[kBonesPerFinger];  ///< metacarpal to distal; the thumb's first is empty in Leap's
-                                           ///< model
+  const double (&bones)[kBonesPerFinger];  ///< metacarpal to distal; the thumb's first is empty, as Leap's
   double radius;
   Vector3 base;
   double metacarpal_yaw, metacarpal_pitch;  ///< towards the thumb, towards the palm

@@ -12,7 +12,7 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kLongestLine = 64 * 1024;
+constexpr std::size_t kMaxLineBytes = 64 * 1024;
 
 namespace fs = std::filesystem;
 
@@ -54,7 +54,7 @@ std::optional<std::string> file_text(const std::string& file, std::size_t most) 
   return text;
 }
 
-FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), room_(kLongestLine + 1) {
+FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), room_(kMaxLineBytes + 1) {
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw FileError(file_ + ": " + why + "; allowed: a file that may be read");
   stream_.open(file, std::ios::binary);
@@ -66,7 +66,7 @@ bool FileLines::next(std::string& line) {
   const auto taken = static_cast<std::size_t>(stream_.gcount());
   if (stream_.fail() && taken + 1 >= room_.size())
     throw FileError(file_ + ":" + std::to_string(number_) + ": is longer than " +
-                    std::to_string(kLongestLine) + " bytes; allowed: at most that");
+                    std::to_string(kMaxLineBytes) + " bytes; allowed: at most that");
   if (stream_.fail()) return false;
   line.assign(room_.data(), stream_.eof() ? taken : taken - 1);
   constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it

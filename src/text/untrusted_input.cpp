@@ -17,8 +17,8 @@ namespace mrhi {
 namespace {
 
 constexpr int kDeepest = 32;
-constexpr std::size_t kMostElements = 100'000;
-constexpr std::size_t kMostAttributes = 64;  // per element: libraries compare each with all before it
+constexpr std::size_t kMaxElements = 100'000;
+constexpr std::size_t kMaxAttributes = 64;  // per element: libraries compare each with all before it
 
 /// Length in bytes of the UTF-8 character that begins with `lead`; 0: invalid.
 std::size_t length_of(unsigned char lead) {
@@ -218,11 +218,11 @@ std::optional<std::string> xml_danger(const std::string& xml) {
     return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
   if (tags.deepest() > kDeepest)
     return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
-  if (tags.elements() > kMostElements)
-    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMostElements);
-  if (tags.attributes() > kMostAttributes)
+  if (tags.elements() > kMaxElements)
+    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMaxElements);
+  if (tags.attributes() > kMaxAttributes)
     return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
-           std::to_string(kMostAttributes);
+           std::to_string(kMaxAttributes);
   return {};
 }
 

@@ -13,7 +13,7 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kMostBytes = 256 * 1024;
+constexpr std::size_t kMaxBytes = 256 * 1024;
 constexpr int kDeepest = 32;
 
 /// Scans a document without building it.
@@ -80,7 +80,7 @@ YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::si
 }
 
 YAML::Node load_yaml_file(const std::string& file) {
-  const std::optional<std::string> text = file_text(file, kMostBytes + 1);
+  const std::optional<std::string> text = file_text(file, kMaxBytes + 1);
   if (!text) throw YamlError(file + ": cannot be read; allowed: a readable YAML file");
   return load_yaml(file, *text);
 }

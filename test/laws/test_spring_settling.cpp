@@ -85,7 +85,7 @@ TEST(Settling, what_slides_sticks_again_only_below_nine_tenths_of_what_sliding_g
   for (const double part : {0.85, 0.95}) {
     Touch touch(part * kDynamic * kDepth, Friction::slipping);
     touch.settle_implicit();
-    EXPECT_EQ(touch.contact.friction, part < kStickAgain ? Friction::sticking : Friction::slipping) << part;
+    EXPECT_EQ(touch.contact.friction, part < kRestickRatio ? Friction::sticking : Friction::slipping) << part;
   }
 }
 

@@ -1,5 +1,5 @@
-// Whether what an explanation says of people's grasps is so: what it says was missing is given, and the body
-// then stays in the hand for longer.
+// Checks explanations of people's grasps: the force that an explanation reports as missing is added, and the
+// body then stays in the hand longer.
 #include <gtest/gtest.h>
 
 #include <yaml-cpp/yaml.h>
@@ -22,8 +22,8 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kLonger = 0.1;      // that counts as held for longer [s]
-constexpr double kFilterLag = 0.04;  // of what the explanation sees, which is filtered, at the most [s]
+constexpr double kLonger = 0.1;      // minimum gain of holding time [s]
+constexpr double kFilterLag = 0.04;  // maximum lag of the explanation, whose input is filtered [s]
 
 struct Setting {
   Row row;
@@ -53,7 +53,7 @@ void play(const std::vector<JointsFrame>& frames, Simulation& simulation,
   }
 }
 
-/// Runs in folders of their own, as replay writes them, explained all at once.
+/// Runs in separate folders, as replay writes them, explained together.
 class Runs {
  public:
   void add(const std::vector<JointsFrame>& frames, const Closing& closing, const Setting& setting) {
@@ -70,7 +70,7 @@ class Runs {
     run.end(simulation, "");
   }
 
-  /// The losses of each run, as in explain.json.
+  /// Losses of each run, from explain.json.
   std::vector<YAML::Node> losses() const {
     const std::string command =
         "/usr/bin/python3 benchmark/real_grasps/test/explain_all.py " + (folder_ / "runs");
@@ -93,7 +93,7 @@ HandJoints* hand_in(JointsFrame& frame, std::uint32_t id) {
   return nullptr;
 }
 
-/// The knuckles, and where the metacarpals begin.
+/// Knuckles, and carpal ends of the metacarpals.
 Eigen::Matrix3Xd palm_of(const HandJoints& hand) {
   Eigen::Matrix3Xd points(3, 8);
   for (int finger = 1; finger < kFingers; ++finger)
@@ -104,7 +104,7 @@ Eigen::Matrix3Xd palm_of(const HandJoints& hand) {
   return points;
 }
 
-/// From a time on the fingers keep their places in the palm, which goes on as recorded.
+/// From `since` on the fingers keep their pose in the palm, which moves as recorded.
 std::vector<JointsFrame> with_fingers_kept(std::vector<JointsFrame> frames, std::uint32_t id, double since) {
   std::optional<HandJoints> kept;
   for (JointsFrame& frame : frames) {
@@ -124,7 +124,7 @@ std::vector<JointsFrame> with_fingers_kept(std::vector<JointsFrame> frames, std:
   return frames;
 }
 
-/// Whether the body is touched at the first frame from that time on; true if the recording ends before.
+/// True if the body is touched at the first frame from `time` on, or if the recording ends before.
 bool touched_at(double time, const std::vector<JointsFrame>& frames, const Closing& closing,
                 const Setting& setting) {
   Simulation simulation = simulation_of(setting, closing);
@@ -169,8 +169,7 @@ std::vector<YAML::Node> losses_of(const std::vector<Case>& cases, const Setting&
   return runs.losses();
 }
 
-/// Of each first loss that a hand is said to have brought about by opening: whether the body stays where its
-/// fingers do not open.
+/// For each first loss attributed to an opening hand: whether the body stays if the fingers do not open.
 void keep_fingers_closed(const Setting& setting, Tally& tally) {
   const std::vector<Case> cases = cases_of(setting.row);
   const std::vector<YAML::Node> losses = losses_of(cases, setting);
@@ -187,8 +186,8 @@ void keep_fingers_closed(const Setting& setting, Tally& tally) {
   }
 }
 
-// Of more than 20 cubes and of 17 spheres. Where it is not so, fingers went through the body and it is out
-// before they open for good.
+// Over more than 20 cubes and 17 spheres. In the exceptions fingers went through the body, and it was out
+// before they opened.
 TEST(ExplainedGrasps, WhatIsLetGoByAHandThatOpensStaysInOneThatDoesNot) {
   MRHI_NEED_RECORDINGS(testing::recordings());
   for (const Setting& setting : {Setting{{"cube", Kind::pinch, false, 0.04, 0.1}, 0.8, true},
@@ -206,7 +205,7 @@ bool slid(const YAML::Node& loss) {
   return cause == "too_little_friction" || cause == "too_little_force";
 }
 
-/// The losses of a setting; of those in which the body slid, whether it stays at 1.2 times the friction told.
+/// Losses of a setting; for those by sliding, whether the body stays at 1.2 times the reported friction.
 void try_friction(const Setting& setting, int& count, Tally& tally) {
   const std::vector<Case> cases = cases_of(setting.row);
   const std::vector<YAML::Node> losses = losses_of(cases, setting);
@@ -226,7 +225,7 @@ void try_friction(const Setting& setting, int& count, Tally& tally) {
   }
 }
 
-// The friction told is not asserted: recorded hands that let a body slide mostly open as well.
+// The reported friction is not asserted: most recorded hands that let a body slide also open.
 TEST(ExplainedGrasps, EachLossHasItsParagraph) {
   MRHI_NEED_RECORDINGS(testing::recordings());
   int losses = 0;

@@ -1,4 +1,4 @@
-// Which closings are found, what counts as held, and the statistics; on recordings that the tests make.
+// Which closings are found, which count as held, and the statistics; on synthetic recordings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kPeriod = 0.01;  // [s]
 const Row kCube{"cube", Kind::pinch, false, 0.04, 0.1};
-constexpr double kLimit = 0.04 + 2.0 * 0.0088;  // between the tips as they begin to touch the cube [m]
+constexpr double kLimit = 0.04 + 2.0 * 0.0088;  // distance of the fingertips at first touch with the cube [m]
 
-/// Tips of thumb and index about the origin, `opening(time)` apart.
+/// Tips of thumb and index around the origin, at the distance `opening(time)`.
 Recording two_tips(double seconds, const std::function<double(double)>& opening) {
   std::vector<JointsFrame> frames;
   for (int i = 0; i * kPeriod < seconds; ++i) {
@@ -34,7 +34,7 @@ Recording two_tips(double seconds, const std::function<double(double)>& opening)
   return make_recording("two_tips", std::move(frames));
 }
 
-/// Open by 0.1 m, closed to `least` from `from` to `to`, 0.05 s on the way.
+/// Open by 0.1 m, closed to `least` from `from` to `to`, with 0.05 s of motion.
 std::function<double(double)> closing_once(double from, double to, double least) {
   return [=](double t) {
     const double inside = std::min(t - from, to - t) / 0.05;
@@ -90,7 +90,7 @@ TEST(Clearance, IsTheDistanceOfTheSkinFromTheBody) {
   EXPECT_NEAR(clearance(recording.sightings[0], ball, {}), 0.05 - 0.03 - 0.0088, 1e-12);
 }
 
-/// A body that stays at `place`, grasped at 1 s, pressed until 2.1 s, in a hand that opens at 2 s.
+/// A body at rest at `place`, grasped at 1 s, loaded until 2.1 s, in a hand that opens at 2 s.
 struct Told {
   Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
   Closing closing = closings(recording, kCube).at(0);
@@ -139,7 +139,7 @@ TEST(Held, NudgedAndReleasedAreTold) {
   EXPECT_NEAR(*outcome.let_go, 2.1, 1e-6);
 }
 
-/// The scripted hand that grasps a cube of 40 mm, with one of 44 mm: its tips end up 2 mm deep in that.
+/// A scripted hand that grasps a cube of 40 mm, applied to one of 44 mm, which its tips penetrate by 2 mm.
 std::vector<Event> scripted(const Configuration& configuration, const Disturbance& disturbance = {}) {
   SyntheticHandOptions options;
   options.motion = "grasp_cube";
@@ -188,11 +188,11 @@ TEST(Disturbed, IsEvenlySpacedAsNoisyAsSaidAndTheSameForOneSeed) {
     EXPECT_NE(tip, *other[i].hands.at(0).joints[0][4]);
     squares += (tip - Vector3(-0.05, 0, 0)).squaredNorm() / 3.0;
   }
-  // The deviation of 360 numbers is known within 1 / sqrt(720) = 3.7 %; four times that.
+  // The deviation of 360 numbers has a relative error of 1 / sqrt(720) = 3.7 %; four times that.
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(frames.size())), 0.002, 0.15 * 0.002);
 }
 
-/// What first sets the scene's cube in motion in a scripted hand's way, or one `aside` of it [m].
+/// First action on the scene's cube in a scripted hand's path, or on one displaced by `aside` [m].
 std::optional<FirstBlow> blow_of(const std::string& motion, double aside = 0.0) {
   SyntheticHandOptions options;
   options.motion = motion;
@@ -225,7 +225,7 @@ TEST(FirstBlow, IsToldByWhatTheHandDid) {
 }
 
 TEST(Statistics, WilsonsIntervalIsThatOfTables) {
-  // Brown, Cai and DasGupta (2001), equation 4, by hand.
+  // Calculated by hand from Brown, Cai and DasGupta (2001), equation 4.
   EXPECT_NEAR(wilson(8, 10).low, 0.4902, 1e-4);
   EXPECT_NEAR(wilson(8, 10).high, 0.9433, 1e-4);
   EXPECT_EQ(wilson(0, 10).low, 0.0);
@@ -239,7 +239,7 @@ TEST(Statistics, AQuantileLiesBetweenItsNeighbours) {
   EXPECT_DOUBLE_EQ(quantile({}, 0.9), 0.0);
 }
 
-// Trials of one group that all end alike are one trial, as far as an interval goes.
+// Trials of one group with equal outcomes count as one trial for an interval.
 TEST(Statistics, AnIntervalByGroupsIsWiderWhereTheirTrialsDependOnEachOther) {
   const std::vector<Share> apart(40, {0, 1});
   std::vector<Share> even = apart, clustered;
@@ -270,8 +270,8 @@ TEST(Recordings, TheirDescriptionMaySayWhatTheHandHadBeforeIt) {
   std::filesystem::remove_all(folder);
 }
 
-/// Two hands that move by `step` along x from frame to frame, the left one twice as fast, and an object that
-/// is at `object` steps.
+/// Two hands that move by `step` along x from frame to frame, the left one twice as fast, and an object at
+/// `object` steps.
 Window carried(double step, double object) {
   Window window;
   for (int i = 0; i < 5; ++i) {
@@ -314,7 +314,7 @@ TEST(Arctic, AnObjectOnAHingeIsLetFreeWithTheSpeedThatItsHingeHad) {
   Body lid = body_of(kCube, {Vector3(5.05, 0, 0), Quaternion::Identity()}, {}), box = lid;
   box.name = "box", lid.name = "lid";
   box.start.position.x() = 5.0;           // out of the hands' reach
-  box.mass *= 90.0, box.inertia *= 90.0;  // as good as fixed beside a lid of a tenth of a gram
+  box.mass *= 90.0, box.inertia *= 90.0;  // practically fixed beside a lid of a tenth of a gram
   lid.mass *= 1e-3, lid.inertia *= 1e-3;
   window.scene.bodies = {box, lid};
   Joint hinge;
@@ -333,7 +333,7 @@ TEST(Arctic, AnObjectOnAHingeIsLetFreeWithTheSpeedThatItsHingeHad) {
   }
 }
 
-// The hands go along x by 3 cm a frame and have reached 8.9 cm with their skin in the first one.
+// The hands move along x by 3 cm per frame; their skin is at 8.9 cm in the first one.
 TEST(Arctic, AWindowIsLedFromWhereNoHandTouchesItsObject) {
   Window window = carried(0.03, 0.0);
   window.scene.bounds = {Vector3::Constant(-10.0), Vector3::Constant(10.0)};

@@ -10,15 +10,15 @@ namespace {
 
 struct Setting {
   const char* name;
-  float unit;            // the length [m] that its tolerances take for a metre
+  float unit;            // length unit of its tolerances [m]
   int substeps;          // 4 by default
   float hertz;           // of contacts, 30 by default
-  bool restitution_low;  // restitution at any speed, not above one unit a second alone
+  bool restitution_low;  // restitution at any speed; false: only above one unit per second
 };
 
-// Its tolerances are made for people and cars: half a centimetre of overlap is allowed. A smaller unit is its
-// own way to small things (b3SetLengthUnitsPerMeter). Tried on pinch, slap, plate, stack and squeeze: units
-// of 5 cm and 1 m; 1, 4 and 8 substeps; contacts of 10, 30, 240 and 1000 Hz.
+// Its tolerances are for people and cars: half a centimetre of overlap is allowed. A smaller length unit is
+// its documented means for small objects (b3SetLengthUnitsPerMeter). Tried on pinch, slap, plate, stack and
+// squeeze: units of 5 cm and 1 m; 1, 4 and 8 substeps; contacts of 10, 30, 240 and 1000 Hz.
 constexpr Setting kSettings[] = {
     {"default", 1.0F, 4, 30.0F, false},
     {"unit 5 cm; 1 substep", 0.05F, 1, 30.0F, true},

@@ -1,4 +1,4 @@
-// Built twice, against Bullet in single and in double precision; the two must never meet in one process.
+// Built twice, with Bullet in single and in double precision, which must not share a process.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletDynamicsCommon.h>
@@ -14,15 +14,15 @@ namespace {
 struct Setting {
   const char* name;
   bool awake;        // bodies never fall asleep
-  bool split;        // split impulse at any depth (Bullet's own only begins at 40 mm)
+  bool split;        // split impulse at any depth (Bullet's default begins at 40 mm)
   int iterations;    // of the solver, 10 by default
   double stiffness;  // of the hand's surface [N/m], 0: rigid
   double damping;    // of the hand's surface [N s/m]
 };
 
 // "soft contact": Bullet's contact stiffness and damping, the best on pinch, catch and squeeze of 500, 2000
-// and 10000 N/m with 1, 10 and 50 N s/m, each with 10 and 50 iterations. "split impulse": the best found for
-// slaps and plates, restitution at any speed.
+// and 10000 N/m with 1, 10 and 50 N s/m, each with 10 and 50 iterations. "split impulse": the best for slaps
+// and plates, with restitution at any speed.
 constexpr Setting kSettings[] = {
     {"default", false, false, 10, 0.0, 0.0},
     {"soft contact 500 N/m 10 N s/m; no sleeping", true, false, 10, 500.0, 10.0},
@@ -69,7 +69,7 @@ class BulletEngine final : public Engine {
   }
 
   void move(std::size_t kinematic, const Pose&, const Pose& next) override {
-    // Bullet takes a kinematic body's velocity from where its motion state puts it.
+    // Bullet derives a kinematic body's velocity from its motion state.
     hand_[kinematic]->getMotionState()->setWorldTransform(to_bullet(next));
   }
   void step() override { world_.stepSimulation(step_, 0); }
@@ -154,7 +154,7 @@ class BulletEngine final : public Engine {
     return body;
   }
 
-  /// Friction is a motor to rest.
+  /// Friction is a motor with target speed zero.
   void add(const HingeSpec& spec, const Pose& pose) {
     hinges_.push_back(
         std::make_unique<btHingeConstraint>(*bodies_[spec.body], to_bullet(pose.to_local(spec.anchor)),

@@ -12,12 +12,12 @@ namespace dyn = dart::dynamics;
 struct Setting {
   const char* name;
   bool pgs;
-  double error_reduction;     // part of the overlap that is undone per step, 0.01 by default
-  double reduction_velocity;  // of that, at most [m/s], 1e-3 by default
+  double error_reduction;     // fraction of the overlap corrected per step, 0.01 by default
+  double reduction_velocity;  // its maximum [m/s], 1e-3 by default
   double force_mixing;        // 1e-5 by default
 };
 
-// All with the Bullet collision back end: FCL's replaces capsules by spheres. The last two are the best on
+// All use the Bullet collision back end: FCL's replaces capsules by spheres. The last two are the best on
 // pinch, catch and squeeze of 36 combinations of these three and the solver.
 constexpr Setting kSettings[] = {
     {"Bullet collision; Dantzig; default", false, 0.01, 1e-3, 1e-5},
@@ -98,7 +98,7 @@ class DartEngine final : public Engine {
     bodies_.push_back(pair.second);
   }
 
-  /// A skeleton that is not mobile is moved by nothing but us; contacts see the velocity it is given.
+  /// A skeleton that is not mobile only moves as set here; contacts see its velocity.
   void add(const KinematicSpec& spec) {
     const auto skeleton = dyn::Skeleton::create("hand_" + std::to_string(hand_.size()));
     const auto pair = skeleton->createJointAndBodyNodePair<dyn::FreeJoint>();

@@ -1,5 +1,5 @@
 #include <Jolt/Jolt.h>
-// Jolt's own header comes first.
+// Jolt's main header must come first.
 #include <Jolt/Core/Factory.h>
 #include <Jolt/Core/JobSystemSingleThreaded.h>
 #include <Jolt/Core/TempAllocator.h>
@@ -27,14 +27,14 @@ namespace {
 struct Setting {
   const char* name;
   JPH::uint velocity_steps, position_steps;  // 10 and 2 by default
-  float slop;                                // overlap that is left [m], 0.02 by default
-  float speculative;                         // contacts are looked for so far ahead [m], 0.02 by default
+  float slop;                                // remaining overlap [m], 0.02 by default
+  float speculative;                         // distance of speculative contacts [m], 0.02 by default
   bool tuned;  // gyroscopic torque, no damping, no sleep, restitution at any speed, sharp boxes
 };
 
-// The default's slop, as deep as a fingertip is thick, is what holds a grasp still: with none the hand pushes
-// its object out. Tried on pinch, slap, plate, stack and squeeze: 4, 10 and 30 velocity steps, slop 0, 0.02,
-// 0.1 and 20 mm, speculative distances of 2 and 20 mm.
+// The default slop, as deep as a fingertip is thick, keeps a grasp at rest: without slop the hand pushes its
+// object out. Tried on pinch, slap, plate, stack and squeeze: 4, 10 and 30 velocity steps, slop 0, 0.02, 0.1
+// and 20 mm, speculative distances of 2 and 20 mm.
 constexpr Setting kSettings[] = {
     {"default", 10, 2, 0.02F, 0.02F, false},
     {"4+1 iterations; no sleep", 4, 1, 0.02F, 0.02F, true},
@@ -67,7 +67,7 @@ struct Library {
   }
 };
 
-/// What meets what: free bodies everything, the hand and fixtures free bodies alone.
+/// Collision filter: free bodies collide with everything, the hand and fixtures only with free bodies.
 struct Layers {
   Layers() {
     for (JPH::ObjectLayer layer = 0; layer < kLayers; ++layer) {
@@ -114,7 +114,7 @@ class JoltEngine final : public Engine {
   }
 
  private:
-  /// The library must run before any member of Jolt's is made.
+  /// The library must be started before any member of Jolt's types is constructed.
   static const World& started(const World& world) {
     static const Library library;
     return world;

@@ -13,13 +13,13 @@ namespace {
 struct Setting {
   const char* name;
   const char* option;    // attributes of <option>
-  bool feed_forward;     // the hand's acceleration is given
-  double time_constant;  // solref [s], never below two steps (MuJoCo's own limit); 0: MuJoCo's default 0.02
-  bool direct;           // solref by stiffness and damping, the damping from the restitution
+  bool feed_forward;     // the hand's acceleration is applied as a force
+  double time_constant;  // solref [s], at least two steps (MuJoCo's limit); 0: MuJoCo's default 0.02
+  bool direct;           // solref by stiffness and damping, with the damping from the restitution
 };
 
-// The hand's parts are heavy free bodies whose place and velocity are set in every step: mocap bodies have no
-// velocity in MuJoCo, so that friction could not drag anything along.
+// The hand's parts are heavy free bodies whose pose and velocity are set in every step: MuJoCo's mocap bodies
+// have no velocity, so their friction could not drag anything.
 constexpr Setting kSettings[] = {
     {"default", "", false, 0.0, false},
     {"hand acceleration given; solref 0.004 or 2 steps; noslip 3; elliptic cone; implicit integrator",
@@ -52,7 +52,7 @@ std::string mesh_name(std::size_t body) {
   return "mesh_" + std::to_string(body);
 }
 
-/// MuJoCo takes a mesh as its convex hull.
+/// MuJoCo replaces a mesh by its convex hull.
 std::string meshes(const World& world) {
   std::string text_of_all;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
@@ -77,7 +77,7 @@ std::string inertial(double mass, const Vector3& inertia) {
          "\"/>";
 }
 
-/// Damping ratio at which a bounce gives back the part `restitution` of the speed.
+/// Damping ratio for a coefficient of restitution.
 double damping_ratio(double restitution) {
   if (restitution <= 1e-3) return 1.0;
   const double l = std::log(restitution);
@@ -87,7 +87,7 @@ double damping_ratio(double restitution) {
 std::string solref(const Setting& setting, const World& world, double step) {
   std::ostringstream out;
   if (setting.direct) {
-    // As stiff as the step resolves: a half period of contact is eight steps.
+    // As stiff as the step resolves: half a period of contact is eight steps.
     const double rate = M_PI / (8.0 * step);
     out << " solref=\"" << -rate * rate << ' ' << -2.0 * damping_ratio(world.restitution) * rate << "\"";
   } else if (setting.time_constant > 0.0) {
@@ -96,13 +96,13 @@ std::string solref(const Setting& setting, const World& world, double step) {
   return out.str();
 }
 
-/// Numbers of working memory: some matrices of all degrees of freedom, up to half a gigabyte.
+/// Working memory in numbers: some matrices of all degrees of freedom, up to half a gigabyte.
 std::size_t stack_size(const World& world) {
   const std::size_t freedoms = 6 * (world.bodies.size() + world.kinematics.size());
   return std::min<std::size_t>(400'000 + 16 * freedoms * freedoms, 64'000'000);
 }
 
-/// What lets a body move: all ways, or about its hinge. In its own frame.
+/// Joint of a body: free, or its hinge. In its own frame.
 std::string freedom(const World& world, std::size_t body) {
   for (const HingeSpec& hinge : world.hinges) {
     if (hinge.body != body) continue;
@@ -115,7 +115,7 @@ std::string freedom(const World& world, std::size_t body) {
 }
 
 std::string xml(const Setting& setting, const World& world, double step) {
-  // Room for constraints, which MuJoCo takes as dense rows: four contacts of four rows on the floor.
+  // Capacity for constraints, which MuJoCo stores as dense rows: four contacts of four rows on the floor.
   const std::size_t rows = world.gravity.isZero() ? 4 : 16;
   std::ostringstream out;
   out.precision(17);
@@ -206,7 +206,7 @@ class MujocoEngine final : public Engine {
       set_twist(joint, now.orientation, twist);
       return;
     }
-    // From the velocity of the last step to that of this one: what the step starts from and what it leads to.
+    // From the velocity of the last step to that of this one, at its start and end.
     Twist& last = last_[kinematic];
     set_twist(joint, now.orientation, last);
     linear += kHandMass / step_ * (twist.linear - last.linear);
@@ -217,10 +217,10 @@ class MujocoEngine final : public Engine {
   void step() override { mj_step(model_, data_); }
 
   void after_step() override {
-    // MuJoCo puts a world that has blown up back to its start and goes on.
+    // MuJoCo resets an unstable world to its start and continues.
     for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
       if (data_->warning[kind].number > 0) throw std::runtime_error("unstable");
-    if (hinged_) mj_kinematics(model_, data_);  // which a step leaves as it began
+    if (hinged_) mj_kinematics(model_, data_);  // a step leaves poses as at its start
   }
 
   Motion motion(std::size_t index) const override {
@@ -239,7 +239,7 @@ class MujocoEngine final : public Engine {
     for (int i = 0; i < data_->ncon; ++i) {
       const mjContact& contact = data_->contact[i];
       if (model_->geom_bodyid[contact.geom1] != body && model_->geom_bodyid[contact.geom2] != body) continue;
-      mjtNum force[6];  // in the contact's frame; the first three are no torques
+      mjtNum force[6];  // in the contact's frame; the first three are forces
       mj_contactForce(model_, data_, i, force);
       sum += Vector3(force[0], force[1], force[2]).norm();
     }
@@ -257,7 +257,7 @@ class MujocoEngine final : public Engine {
     return {{position, Quaternion(q[0], q[1], q[2], q[3])}, {spin.cross(position - anchor), spin}};
   }
 
-  /// MuJoCo has a free body's angular velocity in body axes.
+  /// MuJoCo stores a free body's angular velocity in body axes.
   void set_twist(int joint, const Quaternion& turn, const Twist& twist) {
     mjtNum* v = data_->qvel + model_->jnt_dofadr[joint];
     Eigen::Map<Vector3> linear(v), angular(v + 3);

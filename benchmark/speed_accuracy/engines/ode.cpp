@@ -11,15 +11,15 @@ namespace {
 
 struct Setting {
   const char* name;
-  bool dantzig;      // dWorldStep; else dWorldQuickStep
+  bool dantzig;      // dWorldStep; false: dWorldQuickStep
   int iterations;    // of QuickStep, 20 by default
   double stiffness;  // of contacts [N/m], 0: rigid with ODE's own error reduction
   double damping;    // [N s/m]
-  bool aligned;      // the friction pyramid has an edge along the sliding
+  bool aligned;      // the friction pyramid has an edge along the sliding direction
 };
 
-// Friction is Coulomb's (dContactApprox1) throughout: ODE's own default takes mu as a force in newtons. Soft:
-// the best on pinch, creep and catch of 1000 to 50000 N/m with 3 to 150 N s/m; none is best at every step.
+// Coulomb friction (dContactApprox1) throughout: ODE's default takes mu as a force in newtons. Soft: the best
+// on pinch, creep and catch of 1000 to 50000 N/m with 3 to 150 N s/m; none is best at every step.
 constexpr Setting kSettings[] = {
     {"QuickStep default; Coulomb pyramid", false, 20, 0.0, 0.0, false},
     {"Dantzig default; Coulomb pyramid", true, 0, 0.0, 0.0, false},
@@ -178,7 +178,7 @@ class OdeEngine final : public Engine {
     hand_.push_back(body);
   }
 
-  /// Friction is a motor to rest.
+  /// Friction is a motor with target speed zero.
   void add(const HingeSpec& spec) {
     const dJointID hinge = dJointCreateHinge(world_, nullptr);
     dJointAttach(hinge, bodies_[spec.body], nullptr);
@@ -244,7 +244,7 @@ class OdeEngine final : public Engine {
   dSpaceID space_;
   dJointGroupID contacts_;
   std::vector<dBodyID> bodies_, hand_;
-  std::deque<MeshData> meshes_;  // whose places stay, as of these:
+  std::deque<MeshData> meshes_;  // a deque, as ODE keeps their addresses
   bool watched_ = false;
   std::deque<Feedback> feedback_;
 };

@@ -9,18 +9,17 @@
 namespace mrhi::benchmark {
 namespace {
 
-// Every contact model with the paper's hand, which no load stops, as the peers' hands and the closed forms
-// have it; `implicit` also with stiffer fingers, and with the hand as it ships: its strength, mass and pads.
-// No filter, as the hand's poses are given. Measured is Simulation::step(). The broad phase is done once per
-// frame, in begin(), together with following the hand: "with begin" measures both, as peers do theirs within
-// a step. "whole frame" is what an application pays: also contacts and events are reported and the hand is
-// rendered.
+// Every contact model with the paper's hand, which no load stops, like the peers' hands and the closed forms;
+// `implicit` also with stiffer fingers, and with the default hand: its strength, mass and pads. Without a
+// filter, as the hand's poses are given. Simulation::step() is measured. The broad phase runs once per frame,
+// in begin(), with tracking of the hand. "with begin" measures both, which peers do within a step. "whole
+// frame" is an application's cost: it includes reported contacts and events, and rendering of the hand.
 enum class Measured { step, begin_and_step, whole_frame };
 
 struct Setting {
   const char* name;
   ContactModelKind model;
-  double stiffness;  // [N/m], 0: the model's own
+  double stiffness;  // [N/m], 0: the model's default
   Measured measured;
   bool shipped_hand = false;
 };

@@ -14,8 +14,8 @@ struct Setting {
   double stiffness;  // of the contact material [Pa] (Hertz)
 };
 
-// Spheres and boxes on a half space, spheres on spheres; Simbody has no capsule and no box on box. Contact is
-// Hertz's with Hunt and Crossley's dissipation.
+// Supports spheres and boxes on a half space, and spheres on spheres; Simbody has no capsule and no box on
+// box. Contact is Hertz's with Hunt and Crossley's dissipation.
 constexpr Setting kSettings[] = {
     {"Runge-Kutta-Merson; default accuracy 1e-3; 1 MPa", 1e-3, 1e6},
     {"Runge-Kutta-Merson; accuracy 1e-6; 1 MPa", 1e-6, 1e6},
@@ -46,7 +46,7 @@ class SimbodyEngine final : public Engine {
   SimbodyEngine(const Setting& setting, const World& world, double step)
       : step_(step), gravity_(forces_, matter_, to_simbody(world.gravity)) {
     contacts_.setTransitionVelocity(1e-3);
-    // Hunt and Crossley: e = 1 - c v, taken at 1 m/s.
+    // Hunt and Crossley: e = 1 - c v, at 1 m/s.
     material_ =
         SimTK::ContactMaterial(setting.stiffness, 1.0 - world.restitution, world.friction, world.friction, 0);
     for (const BodySpec& spec : world.bodies) add(spec);
@@ -78,7 +78,7 @@ class SimbodyEngine final : public Engine {
  private:
   void add(const BodySpec& spec) {
     if (spec.fixed) {
-      // Its upper face, as a half space; Simbody's lies on the side of +x.
+      // Its upper face, as a half space; Simbody's is on the side of +x.
       const double top = spec.pose.position.z() + std::get<Box>(spec.shape).half_extents.z();
       const SimTK::Rotation down(0.5 * SimTK::Pi, SimTK::YAxis);
       matter_.Ground().updBody().addContactSurface(

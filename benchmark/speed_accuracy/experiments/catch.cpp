@@ -1,5 +1,5 @@
-// Catching: a ball drifts into an open hand that moves along, and the fingers close over it. Once held it
-// should rest in the hand.
+// Catching: a ball drifts into an open hand that moves with it, and the fingers close over it. Once held it
+// should be at rest in the hand.
 #include "../experiment.h"
 #include "pinch_hand.h"
 
@@ -7,13 +7,13 @@ namespace mrhi::benchmark {
 namespace {
 
 constexpr double kBall = 0.03, kPalm = 0.01, kFinger = 0.008;  // radii [m]
-constexpr double kApproach = 0.3;                              // of the ball to the palm [m/s]
+constexpr double kApproach = 0.3;                              // of the ball towards the palm [m/s]
 constexpr double kArrival = 0.35;                              // [s]
 constexpr double kOpening = 1.2;                               // of the fingers [rad]
 constexpr double kEnd = 1.5, kJudged = 0.3;                    // [s]
 const Vector3 kHandVelocity(0, 0.2, 0);                        // [m/s]
 
-/// A finger bent once, reaching from its knuckle up and over the ball; `side` +1 finger, -1 thumb.
+/// A finger with one bend, from its knuckle up and over the ball; `side` +1 finger, -1 thumb.
 KinematicSpec finger(double side) {
   const Vector3 knuckle = Vector3::Zero(), bend(0, 0, 0.045), tip(-side * 0.025, 0, 0.066);
   return {{{knuckle, bend, kFinger}, {bend, tip, kFinger}}, {}};

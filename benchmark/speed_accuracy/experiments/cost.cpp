@@ -1,4 +1,5 @@
-// What a step costs with more objects, far apart, near each other, or on the floor, and with more contacts.
+// Cost of a step with increasing numbers of objects, far apart, close together, or on the floor, and of
+// contacts.
 #include "../experiment.h"
 #include "pinch_hand.h"
 
@@ -26,7 +27,7 @@ class Objects final : public Experiment {
     world.kinematics = PinchHand().parts();
     return world;
   }
-  /// The hand moves, out of reach of everything.
+  /// The hand moves out of reach of all objects.
   void hand(int, double t, std::vector<Pose>& poses) const override {
     for (int finger = 0; finger < PinchHand::kParts; ++finger) {
       poses[static_cast<std::size_t>(finger)] =
@@ -61,7 +62,7 @@ class Objects final : public Experiment {
   double error_ = 0.0;
 };
 
-/// A plate between ever more fingertips, as many on either side.
+/// A plate between increasing numbers of fingertips, equal on both sides.
 class Contacts final : public Experiment {
  public:
   explicit Contacts(int count) : count_(count) {}

@@ -1,5 +1,5 @@
-// Many bodies that meet: dice and cubes dropped in a heap, blocks that a hand pushes over a table, a block of
-// cubes at rest. The same scenes as benchmark/crowds, for engines that have no scene files.
+// Large islands: dropped dice and cubes in a heap, blocks pushed over a table by a hand, a block of cubes at
+// rest. The scenes of benchmark/crowds, for engines without scene files.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,14 +12,14 @@ namespace {
 constexpr double kGravity = 9.81;    // [m/s^2]
 constexpr double kDensity = 1000.0;  // [kg/m^3]
 
-/// Always the same, between -1 and 1.
+/// Pseudo-random, between -1 and 1.
 double scattered(int i) {
   return 2.0 * std::fmod(0.618033988749895 * i + 0.37 * std::fmod(0.7548776662 * i * i, 1.0), 1.0) - 1.0;
 }
 Quaternion turned(int i) {
   return Quaternion(1.0, scattered(3 * i), scattered(3 * i + 1), scattered(3 * i + 2)).normalized();
 }
-/// Of the cubes of a square of `side`, `pitch` apart, in layers.
+/// Position of a cube in layers of a square of `side` cubes with spacing `pitch`.
 Vector3 in_square(int i, int side, double pitch) {
   const double middle = 0.5 * (side - 1);
   return pitch * Vector3(i % side - middle, i / side % side - middle, i / (side * side));
@@ -28,7 +28,7 @@ int edge_of(double count) {
   return std::max(1, static_cast<int>(std::lround(std::cbrt(count))));
 }
 
-/// What every crowd has: equal boxes on a floor, and how far one gets below it.
+/// Common part: equal boxes on a floor, and the deepest penetration of it.
 class Crowd : public Experiment {
  public:
   Crowd(int count, double edge, double seconds) : Crowd(count, Vector3::Constant(edge), seconds) {}
@@ -61,15 +61,15 @@ class Crowd : public Experiment {
 
   int count_;
   Vector3 size_;
-  double edge_, seconds_;  // edge: the smallest
+  double edge_, seconds_;  // edge_: the smallest
   bool lost_ = false;
 
  private:
-  static constexpr double kFar = 1.9;  // [m]: thrown off the floor
+  static constexpr double kFar = 1.9;  // thrown off the floor [m]
   double deepest_ = 0.0;
 };
 
-/// Let go a hand's breadth above the floor, turned every way: they come to rest.
+/// Dropped from a hand's breadth above the floor, in random orientations: they come to rest.
 class Heap final : public Crowd {
  public:
   using Crowd::Crowd;
@@ -80,7 +80,7 @@ class Heap final : public Crowd {
   }
 
  private:
-  static constexpr double kAtRest = 0.2;  // at the end [s]
+  static constexpr double kAtRest = 0.2;  // time at the end [s]
   Pose start(int i) const override {
     const Vector3 place = in_square(i, edge_of(0.2 * count_), 1.8 * edge_) +
                           0.1 * edge_ * Vector3(scattered(i), scattered(i + 7), 0) +
@@ -120,7 +120,7 @@ class Push final : public Crowd {
   }
 };
 
-/// Cubes whose faces lie on each other, with a gap sideways: none moves. None may sleep.
+/// Cubes stacked face to face, with gaps sideways: none moves. None may sleep.
 class Block final : public Crowd {
  public:
   Block(int count, double gap) : Crowd(count, 0.04, count > 500 ? 0.1 : 0.5), gap_(gap) {}
@@ -144,7 +144,7 @@ class Block final : public Crowd {
   double moved_ = 0.0;
 };
 
-/// A wall in stretcher bond, out of plumb by more than it can stand: it falls over.
+/// A wall in stretcher bond, inclined beyond its stability: it falls over.
 class Wall final : public Crowd {
  public:
   Wall() : Crowd(kRows * kBricks, Vector3(0.08, 0.04, 0.03), 3.0) {}
@@ -167,7 +167,7 @@ void add_crowd_scenes(std::vector<ScenePlan>& scenes) {
                        std::function<std::unique_ptr<Experiment>(bool)> make) {
     scenes.push_back({name, "crowd", steps, std::move(make)});
     scenes.back().full_only = full_only;
-    scenes.back().budget = 4.0;  // what is slower has had its say
+    scenes.back().budget = 4.0;  // enough for slow engines
   };
   const auto heap = [](int count, double edge) {
     return [count, edge](bool) { return std::make_unique<Heap>(count, edge, 2.5); };

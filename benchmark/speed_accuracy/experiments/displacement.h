@@ -8,7 +8,7 @@
 
 namespace mrhi::benchmark {
 
-/// How a held object moves in the hand, from a moment on at which it has settled.
+/// Motion of a held object in the hand, after it has settled.
 class Displacement {
  public:
   /// `pose` of the object in the hand's frame.
@@ -24,7 +24,7 @@ class Displacement {
   double greatest_turn() const { return greatest_turn_; }  ///< [rad]
   double last() const { return places_.empty() ? 0.0 : places_.back().norm(); }
 
-  /// Rms of what is left of the movement after a running mean over `window` [s]; [m].
+  /// Rms of the motion minus its running mean over `window` [s]; [m].
   double jitter(double window) const {
     if (times_.size() < 3) return 0.0;
     const double step = (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);

@@ -1,4 +1,4 @@
-// Many elastic spheres in zero gravity: momentum and energy stay what they were.
+// Many elastic spheres in zero gravity: momentum and energy are conserved.
 #include <random>
 
 #include "../experiment.h"
@@ -50,7 +50,7 @@ class Elastic final : public Experiment {
     energy_error_ = std::abs(energy / energy_ - 1.0);
     return false;
   }
-  /// Spheres that pass through each other keep their momentum too: nearly all must have been struck.
+  /// Spheres that pass through each other conserve momentum too: nearly all must have collided.
   std::vector<Measure> measures() const override {
     const bool failed = 2 * struck_ < velocities_.size() || !(energy_error_ < 2.0);
     return {{"_energy", 100.0 * energy_error_, "%", failed},

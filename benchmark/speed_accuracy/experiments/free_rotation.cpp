@@ -1,5 +1,5 @@
 // Scene (b): free rotation about the intermediate axis. Angular momentum and energy are constant; the body
-// turns over with a period that elliptic integrals give.
+// flips with a period given by elliptic integrals.
 #include "../experiment.h"
 
 namespace mrhi::benchmark {
@@ -19,7 +19,7 @@ double elliptic_k(double m) {
   return M_PI / (2.0 * a);
 }
 
-/// Time between two reversals of the spin about the middle axis (Landau & Lifshitz, Mechanics, 37).
+/// Time between two reversals of the spin about the intermediate axis (Landau & Lifshitz, Mechanics, 37).
 double flip_period() {
   const Vector3& i = kInertia;
   const double twice_energy = kSpin.dot(i.cwiseProduct(kSpin)), l2 = i.cwiseProduct(kSpin).squaredNorm();

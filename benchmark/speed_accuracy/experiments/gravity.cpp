@@ -1,4 +1,4 @@
-// Under gravity on a fixture: sliding to a stop, bouncing without loss, a stack that stands.
+// Gravity on a fixture: sliding to a stop, bouncing without loss, a stable stack.
 #include "../experiment.h"
 
 namespace mrhi::benchmark {
@@ -7,7 +7,7 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr double kCube = 0.05;     // edge [m]
 
-/// A cube slides over the floor in several directions; it stops after v^2 / (2 mu g).
+/// A cube slides over the floor in several directions and stops after v^2 / (2 mu g).
 class Sliding final : public Experiment {
  public:
   int trials() const override { return 4; }
@@ -45,7 +45,7 @@ class Sliding final : public Experiment {
   bool lost_ = false;
 };
 
-/// A ball of restitution 1 falls from 0.5 m: its energy stays.
+/// A ball of restitution 1 falls from 0.5 m and conserves its energy.
 class Bouncing final : public Experiment {
  public:
   explicit Bouncing(double seconds) : seconds_(seconds) {}
@@ -59,7 +59,7 @@ class Bouncing final : public Experiment {
     world.bodies.push_back(floor_slab());
     return world;
   }
-  /// In the air only: in a compliant contact part of the energy is in the spring.
+  /// In the air only: during compliant contact part of the energy is in the spring.
   bool observe(int, double, const Engine& engine) override {
     const Motion motion = engine.motion(0);
     const double height = motion.pose.position.z() - kRadius;
@@ -74,7 +74,7 @@ class Bouncing final : public Experiment {
     squares_ += error * error;
     return !lost_;
   }
-  /// A ball that lies on the floor, where it was to bounce, has failed.
+  /// A ball at rest on the floor instead of bouncing has failed.
   std::vector<Measure> measures() const override {
     const int high = samples_ - low_;
     return {

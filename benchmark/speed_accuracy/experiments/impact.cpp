@@ -1,12 +1,12 @@
-// Scene (c): a phalanx hits a cube, and a thin plate. Newton's law gives the speed after a central blow by a
-// hand that nothing stops: (1 + e) times the hand's, with no spin.
+// Scene (c): a phalanx hits a cube, and a thin plate. Newton's law gives the speed after a central impact by
+// a driven hand: (1 + e) times the hand's, without spin.
 #include "../experiment.h"
 
 namespace mrhi::benchmark {
 namespace {
 
 constexpr double kSpeed = 3.0;  // [m/s]
-constexpr int kPhases = 25;     // of the blow within a step and a 120 Hz frame
+constexpr int kPhases = 25;     // phases of the impact within a step and a 120 Hz frame
 
 class Blow : public Experiment {
  public:
@@ -22,7 +22,7 @@ class Blow : public Experiment {
     return world;
   }
 
-  /// Comes from 0.1 m away, so that engines that take velocities from poses have the right one in time.
+  /// Starts 0.1 m away, so that engines that derive velocities from poses have the right one in time.
   void hand(int trial, double t, std::vector<Pose>& poses) const override {
     const double first_gap = 0.1 + kSpeed / 60.0 * trial / kPhases;
     const double x = 0.5 * size_.x() + 0.008 + first_gap - kSpeed * std::min(t, stop(trial));
@@ -43,7 +43,7 @@ class Blow : public Experiment {
   virtual void note(int trial, const Motion& motion) = 0;
 
  private:
-  /// The hand stops 0.1 m after the touch: two of the longest steps later.
+  /// The hand stops 0.1 m after first touch: two of the longest steps later.
   double stop(int trial) const { return (0.2 + kSpeed / 60.0 * trial / kPhases) / kSpeed; }
 
   Vector3 size_;

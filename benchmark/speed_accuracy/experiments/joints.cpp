@@ -1,6 +1,6 @@
-// What hangs on a hinge and is pushed at a known place along a known way: a door by its handle, a valve by
-// both ends of its bar. The hand's parts turn about the hinge with it, so that nothing slides: with rigid
-// contact the angle is the hand's, and the force is what inertia and the hinge's friction ask for.
+// A hinged body is pushed at a known point along a known path: a door by its handle, a valve by both ends of
+// its bar. The hand's parts rotate about the hinge with it, so nothing slides. With rigid contact the angle
+// is the hand's, and the force follows from inertia and the hinge's friction.
 #include "../experiment.h"
 #include "pinch_hand.h"
 
@@ -8,11 +8,11 @@ namespace mrhi::benchmark {
 namespace {
 
 constexpr double kRadius = 0.008, kHalfTip = 0.0125;  // of a fingertip [m]
-constexpr double kGap = 0.002, kApproach = 0.1;       // the hand comes from there in that time [m, s]
-constexpr double kSettled = 0.3;                      // after it, from when on forces are looked at [s]
-constexpr double kLost = 0.05;                        // of the hand: that is no answer [m]
+constexpr double kGap = 0.002, kApproach = 0.1;       // distance and duration of the hand's approach [m, s]
+constexpr double kSettled = 0.3;                      // time after it from which forces are measured [s]
+constexpr double kLost = 0.05;                        // distance from the hand: the run is invalid [m]
 
-/// A fingertip along the axis that touches the face y = `side` * `half` from outside, `arm` off the axis.
+/// A fingertip along the axis that touches the face y = `side` * `half` from outside, with lever `arm`.
 Capsule fingertip(double arm, double half, double side) {
   const Vector3 centre(arm, side * (half + kRadius), 0.0);
   return {centre - kHalfTip * Vector3::UnitZ(), centre + kHalfTip * Vector3::UnitZ(), kRadius};
@@ -50,7 +50,7 @@ class Turned : public Experiment {
   }
 
  protected:
-  virtual double angle(double t) const = 0;  // of the hand once it touches [rad]
+  virtual double angle(double t) const = 0;  // of the hand after first touch [rad]
   virtual void feel(const Engine&) {}
   double inertia() const {
     return mass_ * ((size_.x() * size_.x() + size_.y() * size_.y()) / 12.0 + centre_.squaredNorm());
@@ -69,9 +69,9 @@ class Turned : public Experiment {
   bool lost_ = false;
 };
 
-/// A door of 40 by 60 cm and 2 kg, pushed 35 cm off its hinge ever faster: 1 rad in a second. It is slippery,
-/// so that force is what pushes: within a step engines take the hand's way as straight, and what that is off
-/// an arc would go into friction.
+/// A door of 40 by 60 cm and 2 kg, pushed 35 cm from its hinge with constant acceleration: 1 rad in a second.
+/// Its surface is slippery, so that only the normal force pushes: within a step engines move the hand on a
+/// straight line, and its deviation from the arc would cause friction.
 class Door final : public Turned {
  public:
   Door() {
@@ -102,7 +102,7 @@ class Door final : public Turned {
   int count_ = 0;
 };
 
-/// A bar of 16 cm on a stiff valve, turned by a quarter at both ends as a hand turns it.
+/// A bar of 16 cm on a stiff valve, rotated by a quarter turn at both ends.
 class Valve final : public Turned {
  public:
   Valve() {

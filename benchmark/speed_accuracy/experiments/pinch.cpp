@@ -1,5 +1,5 @@
 // Scene (a): a cube held in a pinch while the hand swings, shakes, or is tracked with noise. A rigid cube
-// held by dry friction would not move in the hand at all.
+// under dry friction would not move in the hand.
 #include <memory>
 #include <random>
 
@@ -12,7 +12,7 @@ namespace mrhi::benchmark {
 namespace {
 
 constexpr double kSettled = 0.5;  // [s]
-constexpr double kRamp = 0.5;     // over which the motion swells [s]
+constexpr double kRamp = 0.5;     // duration of the motion's onset [s]
 constexpr double kLost = 0.03;    // [m]
 constexpr double kDegrees = M_PI / 180.0;
 
@@ -20,11 +20,11 @@ struct Motion3 {
   double amplitude, frequency;  // [m], [Hz]
   bool noisy;
   int further_cubes;
-  int squares = 0;            // along an edge of the cube's faces, each of two triangles; 0: no mesh, a box
+  int squares = 0;            // along an edge of the cube, each of two triangles; 0: a box, no mesh
   double frame_rate = 120.0;  // of the noisy tracker [Hz]
 };
 
-/// The same body by its surface's triangles, 12 squares^2 of them.
+/// The same body as a mesh of 12 squares^2 triangles.
 BodySpec meshed(BodySpec body, int squares) {
   const Vector3 half = std::get<Box>(body.shape).half_extents;
   body.shape = Mesh{std::make_shared<TriangleMesh>(testing::tessellated_box(half, squares)), ""};
@@ -43,7 +43,7 @@ class Noise {
   }
 
  private:
-  /// Sums of twelve uniform numbers: the same on every machine, unlike std::normal_distribution.
+  /// Sums of twelve uniform numbers: equal on every machine, unlike std::normal_distribution.
   static Vector3 normal3(std::mt19937& generator) {
     Vector3 v = Vector3::Constant(-6.0);
     for (int i = 0; i < 36; ++i) v[i % 3] += static_cast<double>(generator()) / 4294967296.0;
@@ -97,7 +97,7 @@ class Pinch final : public Experiment {
   }
 
  private:
-  /// Comes to rest again in the last half second, where it began.
+  /// Returns to rest at the start in the last half second.
   Vector3 sway(double t) const {
     const double envelope = smooth(t - kSettled, kRamp) * smooth(seconds_ - 0.25 - t, kRamp);
     const double way = motion_.amplitude * std::sin(2.0 * M_PI * motion_.frequency * (t - kSettled));
@@ -125,7 +125,7 @@ class Pinch final : public Experiment {
   bool lost_ = false;
 };
 
-/// A pinch held still: what moves, creeps.
+/// A pinch held still: any motion is creep.
 class Creep final : public Experiment {
  public:
   Creep(double gravity, double seconds) : gravity_(gravity), seconds_(seconds) {}
@@ -133,7 +133,7 @@ class Creep final : public Experiment {
   World world(int) const override {
     World world;
     world.gravity = Vector3(0, 0, -gravity_);
-    // Nothing bears the cube at first: it falls by some millimetres until the fingers have closed.
+    // Nothing supports the cube at first: it falls by some millimetres until the fingers have closed.
     world.bodies.push_back(box(Vector3::Constant(2.0 * hand_.half), 0.1));
     world.kinematics = hand_.parts();
     return world;
@@ -141,7 +141,7 @@ class Creep final : public Experiment {
   void hand(int, double t, std::vector<Pose>& poses) const override {
     for (int finger = 0; finger < PinchHand::kParts; ++finger) {
       Pose& pose = poses[static_cast<std::size_t>(finger)];
-      // Fast enough that the cube falls little before it is held.
+      // Fast enough for the cube to fall little before it is held.
       pose = hand_.finger(finger, 4.0 * t, Vector3::Zero());
     }
   }
@@ -156,7 +156,7 @@ class Creep final : public Experiment {
   }
 
  private:
-  static constexpr double kWatched = 1.0;  // from here on [s]
+  static constexpr double kWatched = 1.0;  // start of observation [s]
   double gravity_, seconds_;
   PinchHand hand_;
   Displacement displacement_;
@@ -180,7 +180,7 @@ void add_pinch_scenes(std::vector<ScenePlan>& scenes) {
   for (const auto& [name, squares] : {std::pair{"pinch_swing_mesh_972", 9}, {"pinch_swing_mesh_10092", 29}}) {
     add(name, {0.1, 0.5, false, 0, squares});
     scenes.back().steps = {0.001, 1.0 / 120.0};
-    scenes.back().budget = 3.0;  // some take milliseconds a step
+    scenes.back().budget = 3.0;  // some need milliseconds per step
   }
   const auto creep = [&scenes](const char* name, double gravity) {
     scenes.push_back({name, "creep", {}, [gravity](bool quick) {

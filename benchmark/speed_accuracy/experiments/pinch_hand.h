@@ -8,7 +8,7 @@
 
 namespace mrhi::benchmark {
 
-/// Minimum-jerk way from 0 to 1 within `duration` [s] (Flash & Hogan 1985).
+/// Minimum-jerk path from 0 to 1 within `duration` [s] (Flash & Hogan 1985).
 inline double smooth(double t, double duration) {
   const double x = std::clamp(t / duration, 0.0, 1.0);
   return x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
@@ -40,7 +40,7 @@ struct PinchHand {
     return parts;
   }
 
-  /// The finger's place at time t while the hand is at `hand`.
+  /// The finger's pose at time t while the hand is at `hand`.
   Pose finger(int finger, double t, const Vector3& hand) const {
     const double gap = 0.01 - (0.01 + overlap) * smooth(t, kClosing);
     const double across = finger == 0 ? 0.0 : (finger - 2.5) * kSpacing;

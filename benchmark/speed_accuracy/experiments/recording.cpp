@@ -1,7 +1,6 @@
-// A tracked hand closes on an object: the error of "recording" is against our own converged solution,
-// "recording_self" from each engine's own solution at a small step. Where there is no recording a scripted
-// hand with a tracker's noise and rate stands in, and the scenes are "scripted_hand" and
-// "scripted_hand_self".
+// A tracked hand closes on an object. The error of "recording" is against our own converged solution, that of
+// "recording_self" against each engine's own solution at a small step. Without a recording a scripted hand
+// with a tracker's noise and rate is used, and the scenes are "scripted_hand" and "scripted_hand_self".
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -76,7 +75,7 @@ class RecordedHand {
     return {0.5 * (start + end), Quaternion::FromTwoVectors(Vector3::UnitZ(), end - start)};
   }
 
-  /// Between the tips of thumb and index where they are closest, one axis along the line between them.
+  /// Between the tips of thumb and index at their closest, with one axis along the line between them.
   Pose grasp() const {
     double closest = 1e9;
     Pose pose;
@@ -116,7 +115,7 @@ struct Shared {
 
 class Recording final : public Experiment {
  public:
-  /// `reference` empty: told from the engine's own run.
+  /// `reference` empty: from the engine's own run.
   Recording(const RecordedHand& hand, const Track& reference, double own_reference_step)
       : hand_(hand), reference_(reference), own_reference_step_(own_reference_step) {}
 

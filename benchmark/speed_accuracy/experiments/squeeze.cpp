@@ -1,5 +1,5 @@
 // Deep squeeze: two fingertips are tracked 15 mm into a 10 mm plate from both sides, and open again. Each
-// should go on pushing from its own side, so that the plate stays where it is and, let go, does not fly off.
+// should push from its own side throughout, so that the plate stays in place and does not fly off on release.
 #include "../experiment.h"
 #include "pinch_hand.h"
 
@@ -22,7 +22,8 @@ class DeepSqueeze final : public Experiment {
   void hand(int, double t, std::vector<Pose>& poses) const override {
     const double way = smooth(t, kClosing) - smooth(t - kOpen, kClosing);
     const double x = 0.5 * kThickness + kRadius + kGap - (kGap + kDepth) * way;
-    // Opposite each other, so that nothing turns the plate, and off its centre, so that no symmetry holds it.
+    // Opposite each other, so that the plate has no torque, and off its centre, so that symmetry does not
+    // hold it.
     poses[0] = {Vector3(x, 0.006, 0.004), Quaternion::Identity()};
     poses[1] = {Vector3(-x, 0.006, 0.004), Quaternion::Identity()};
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStep = 0.001, kGravity = 9.81, kSeconds = 0.5;
 
-/// A ball in free fall, unless told to go wrong on the way.
+/// A ball in free fall, optionally with a fault.
 class Fall : public Experiment {
  public:
   enum class Mishap { none, exception, crash, endless };
@@ -62,12 +62,12 @@ EngineModule ours() {
 TEST(SpeedAccuracy, every_engine_and_setting_drops_a_body_by_half_g_t_squared) {
   for (const EngineModule& module : engine_modules()) {
     for (const std::string& setting : settings_of(module)) {
-      if (module.name == "jolt" && setting == "default") continue;  // damps whatever moves
+      if (module.name == "jolt" && setting == "default") continue;  // it damps all motion
       const auto contender = run(module, setting, fall());
       ASSERT_EQ(contender->trouble(), "") << module.name << " (" << setting << ")";
       const auto& measures = contender->result().measures;
       ASSERT_EQ(measures.size(), 2u);
-      // Symplectic Euler, which most use, is off by g t h / 2; single precision adds 1e-6.
+      // Symplectic Euler, which most engines use, has an error of g t h / 2; single precision adds 1e-6.
       EXPECT_LE(measures[0].error, 0.51 * kGravity * kSeconds * kStep)
           << module.name << " (" << setting << ")";
       EXPECT_LE(measures[1].error, 1e-4) << module.name << " (" << setting << ")";
@@ -81,7 +81,7 @@ TEST(SpeedAccuracy, a_door_goes_with_the_hand_and_an_engine_without_hinges_is_le
   for (const ScenePlan& scene : all_scenes()) {
     if (scene.name != "door") continue;
     for (const EngineModule& module : engine_modules()) {
-      if (module.name == "bullet_f32") continue;  // which is 20 mm off
+      if (module.name == "bullet_f32") continue;  // its error is 20 mm
       const auto contender = run(module, settings_of(module).front(), scene);
       ASSERT_EQ(contender->trouble(), "") << module.name;
       const bool hinges = module.name != "dart" && module.name != "simbody" && module.name != "box3d";
@@ -106,7 +106,7 @@ TEST(SpeedAccuracy, a_cube_of_triangles_is_held_as_a_box_is_and_an_engine_withou
              of_box = run(ours(), "implicit", scenes.at("pinch_swing"));
   ASSERT_FALSE(of_mesh->result().measures.empty());
   EXPECT_FALSE(of_mesh->result().measures[0].failed);
-  // The manifold's points are the mesh's corners: where they are counts as little as 1 um.
+  // The manifold's points are the mesh's corners, whose position affects the result by 1 um.
   EXPECT_NEAR(of_mesh->result().measures[0].error, of_box->result().measures[0].error, 0.001) << "mm";
   for (const EngineModule& module : engine_modules()) {
     if (module.name != "dart" && module.name != "simbody" && module.name != "jolt" && module.name != "box3d")

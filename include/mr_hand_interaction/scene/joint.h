@@ -64,10 +64,10 @@ struct Joint {
 /// Pose of the joint's frame, which is the child's link frame, relative to its pose at position 0.
 Pose joint_motion(const Joint& joint, double position);
 
-/// Sets the start poses of all jointed bodies from the joints' start positions, and sorts the joints so that
-/// a body's own precedes those of its children. Throws std::invalid_argument with one line for joints that
-/// form no tree: a loop, two joints to one body, a fixture as child, an unknown parent, or numbers out of
-/// their limits.
+/// Sets the start poses of all jointed bodies from the joints' start positions. Sorts the joints: a body's
+/// own precedes those of its children. Throws std::invalid_argument with one line for joints that form no
+/// tree: a loop, two joints to one body, a fixture as child, an unknown parent, or numbers out of their
+/// limits.
 void arrange_joints(Scene& scene);
 
 /// The free body at the root of a body's linkage; the body itself if it is free. Empty for fixtures and for

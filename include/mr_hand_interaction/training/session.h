@@ -80,8 +80,9 @@ struct HandRow {
 class SessionFolder {
  public:
   /// Creates the folder, or resumes the session in it; a line that a crash has truncated is removed. Throws
-  /// SessionError if the folder belongs to another session or setup, has other tables of these names, is in
-  /// use by another program, or cannot be read or written. All files are checked before any is changed.
+  /// SessionError if the folder belongs to another session or setup, or has other tables of these names.
+  /// Throws also if it is in use by another program, or cannot be read or written. All files are checked
+  /// before any is changed.
   SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
   ~SessionFolder();
 

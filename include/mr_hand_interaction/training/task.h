@@ -43,8 +43,7 @@ struct Goal {
   Quaternion orientation = Quaternion::Identity();  ///< of the object's link
   double tolerance = 0.03;                          ///< [m]; `rest` without a position: infinite
   std::optional<double> angle_tolerance;            ///< [rad]; empty: any orientation
-  std::optional<Vector3> axis;       ///< unit, of the object: only this axis is aligned as in `orientation`,
-                                     ///< in either direction
+  std::optional<Vector3> axis;       ///< unit, of the object: the only aligned axis, in either direction
   Vector3 size = Vector3::Zero();    ///< of the box about `position` [m]
   double hold = 0.0;                 ///< required duration of the condition [s]
   Leaving leaving = Leaving::reset;  ///< effect on the time held so far

@@ -29,8 +29,7 @@ struct Observation {
   int tracking_losses = 0;           ///< hands lost since the last observation
   int touches = 0;                   ///< contacts of a hand with a body that began since the last observation
   std::optional<OperatorMotion> person;  ///< empty: the scene has no operator
-  bool put_back = false;                 ///< left the bounds since the last observation, and was reset to its
-                                         ///< start
+  bool put_back = false;                 ///< has since left the bounds and was reset to its start
   std::vector<std::pair<std::string, double>> joints;  ///< names and positions [rad], [m]
 };
 
@@ -51,12 +50,11 @@ struct TrialMeasures {
   int manipulation_drops = 0;  ///< drops in the stage of manipulation: the paper's attempts
   double path_length = 0.0;    ///< of the object while held [m]
   std::optional<double> grip_force_mean, grip_force_max;  ///< while held [N]; mean over time
-  std::optional<double> release_drift;                    ///< distance from the place of release, drift_time
-                                                          ///< later [m]
+  std::optional<double> release_drift;                    ///< from the place of release, drift_time later [m]
   std::optional<double> release_speed;                    ///< at release [m/s]
   int tracking_losses = 0;
   int touches = 0;  ///< number of first touches of a hand with an object or a fixture
-  /// Of the last goal `rest` with a position: speed at which its body first came within the tolerance [m/s];
+  /// For the last goal `rest` with a position: speed at which its body first came within the tolerance [m/s];
   /// errors of position and orientation when the goal was achieved [m], [rad].
   std::optional<double> arrival_speed, misplacement, misalignment;
   std::optional<double> operator_speed, operator_spin;  ///< at the end of the trial [m/s], [rad/s]

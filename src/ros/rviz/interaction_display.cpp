@@ -194,31 +194,31 @@ class InteractionDisplay : public rviz::Display {
     };
     auto* hand = add_layer("hand", "Hand", true, "The rendered hand: never inside an object");
     colour("hand", "Skin", to_qt(kSkin));
-    touching_ = new rviz::ColorProperty("Touching", to_qt(tone_.touching), "Where it presses", hand);
+    touching_ = new rviz::ColorProperty("Touching", to_qt(tone_.touching), "Where it is in contact", hand);
     auto* ghost =
-        add_layer("ghost", "Ghost", true, "The tracked hand, where it is elsewhere than the rendered one");
+        add_layer("ghost", "Ghost", true, "The tracked hand, where it differs from the rendered one");
     colour("ghost", "Color", to_qt(style.ghost));
-    threshold("ghost", "From [m]", style.ghost_from, "Unseen where it is nearer to the rendered hand");
-    ghost_alpha_ = new rviz::FloatProperty("Alpha", style.ghost.a, "At its most opaque", ghost);
+    threshold("ghost", "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
+    ghost_alpha_ = new rviz::FloatProperty("Alpha", style.ghost.a, "Maximum opacity", ghost);
     ghost_alpha_->setMin(0.0f);
     ghost_alpha_->setMax(1.0f);
-    add_layer("objects", "Objects", true, "What hands move");
-    add_layer("fixtures", "Fixtures", true, "What does not move");
+    add_layer("objects", "Objects", true, "Free and jointed bodies");
+    add_layer("fixtures", "Fixtures", true, "Immovable bodies");
     add_layer("contacts", "Contacts", true, "A dot at each contact");
     colour("contacts", "Color", to_qt(style.contacts));
     auto* friction = add_layer("friction", "Friction", true, "A ring around each contact");
     colour("friction", "Sticks", to_qt(style.sticks));
     slips_ = new rviz::ColorProperty("Slips", to_qt(style.slips), "", friction);
-    add_layer("forces", "Forces", true, "An arrow behind each finger that presses");
+    add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
     colour("forces", "Color", to_qt(style.forces));
     threshold("forces", "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
-    add_layer("newtons", "Newtons", false, "The forces in numbers");
-    add_layer("share", "Share", false, "How much of what friction bears is used: blue none, orange all");
-    add_layer("impacts", "Impacts", true, "A ring where a hand has struck, that fades within 0.15 s");
+    add_layer("newtons", "Newtons", false, "The forces as numbers");
+    add_layer("share", "Share", false, "Friction utilisation: blue none, orange full");
+    add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
     colour("impacts", "Color", to_qt(style.impacts));
-    add_layer("shadows", "Shadows", true, "Straight below hands and objects");
-    add_layer("text", "Text", true, "What is held, contact model and gravity");
-    add_layer("capsules", "Capsules", false, "The rendered hand as it is simulated");
+    add_layer("shadows", "Shadows", true, "Vertically below hands and objects");
+    add_layer("text", "Text", true, "Held objects, contact model and gravity");
+    add_layer("capsules", "Capsules", false, "The rendered hand as simulated");
   }
 
   void subscribe() {
