@@ -7,14 +7,14 @@
 
 namespace mrhi {
 
-/// How far a hand has got with an object; each level includes those before it.
+/// Level of a hand's interaction with an object; each level includes the lower ones.
 enum class InteractionLevel : std::uint8_t { none, hover, contact, grasp };
 
 /// A hand's interaction with one body.
 struct Interaction {
   InteractionLevel level = InteractionLevel::none;
-  Nanoseconds agreed = 0;  ///< when the level last was what the contacts say
-  bool shown_in = false;   ///< the body appeared: the hand is shown in it until it is once clear of it
+  Nanoseconds agreed = 0;  ///< when the level last agreed with the contacts
+  bool shown_in = false;   ///< the body was spawned in the hand, which is shown in it until it is clear of it
 };
 
 /// Numbers are those of InteractionEvent.msg.
@@ -28,9 +28,9 @@ enum class EventKind : std::uint8_t {
   hand_lost,
   hand_found,
   out_of_bounds,
-  joint_limit,  ///< a joint has come to one of its limits
-  detent,       ///< has snapped into another detent
-  latch_open    ///< has been pulled out of its latch
+  joint_limit,  ///< a joint has reached one of its limits
+  detent,       ///< a joint has snapped into another detent
+  latch_open    ///< a joint has been pulled out of its latch
 };
 
 struct Event {
@@ -40,9 +40,8 @@ struct Event {
   std::uint32_t hand_id = 0;  ///< 0 for out_of_bounds and joint events
 };
 
-/// Moves `interaction` towards the level that the contacts say now, one event per level in their fixed order.
-/// A grasp begins once it has lasted a little and ends once it has been gone a little, a contact likewise, so
-/// that one noisy frame makes no event.
+/// Moves `interaction` towards the level `seen`, with one event per level in their fixed order. Grasps begin,
+/// and grasps and contacts end, with a short delay, so that one noisy frame makes no event.
 void update_interaction(InteractionLevel seen, Event event, Interaction& interaction,
                         std::vector<Event>& events);
 

@@ -15,48 +15,47 @@
 
 namespace mrhi {
 
-/// What a frame of input led to. `none` means that it was taken. See StampCheck.
+/// Why a frame was rejected; `none`: it was taken. See StampCheck.
 enum class Rejection : std::uint8_t {
   none,
-  stamp_not_increasing,  ///< repeats or goes back; a stream that has really restarted is taken from its third
-                         ///< frame
+  stamp_not_increasing,  ///< repeats or goes back; a restarted stream is taken from its third frame
   stamp_ahead,           ///< far ahead of its stream; after a real gap, frames are taken from the second
-  no_stamp               ///< beyond what a stamp can be
+  no_stamp               ///< outside the range of stamps
 };
 const char* to_string(Rejection rejection);
 
-/// What grasp assist adds to the contacts of a hand with a body.
+/// Force that grasp assist adds to the contacts of a hand with a body.
 struct GraspSupport {
   std::uint8_t hand = 0;            ///< index of the hand's track
   std::uint16_t body = 0;           ///< index in Scene::bodies
-  Vector3 force = Vector3::Zero();  ///< on the body, mean over the time since the frame before, world [N]
+  Vector3 force = Vector3::Zero();  ///< on the body, mean over the time since the previous frame, world [N]
 };
 
-/// What one frame led to. Valid until the next frame.
+/// Result of one frame. Valid until the next frame.
 struct FrameResult {
   Nanoseconds stamp = 0;
   std::vector<Hand> tracked;           ///< filtered
   std::vector<RenderedHand> rendered;  ///< same order
-  /// Touching at the frame's end, or since the frame before. Their forces are means over the time since then:
-  /// the momentum transferred by it. Those that have ended have no depth.
+  /// Contacts at the frame's end or since the previous frame. Forces are means over that time: the
+  /// transferred momentum divided by it. Contacts that have ended have no depth.
   std::vector<Contact> contacts;
   std::vector<GraspSupport> assists;  ///< of all active grips, by hand and body
   std::vector<Event> events;
-  /// What came out as no number, and was left out or put back at its start: "object 'cube'". Empty, if all is
-  /// well.
+  /// Items with values that are not finite, such as "object 'cube'", which were left out or put back at their
+  /// start.
   std::vector<std::string> not_finite;
   bool restarted = false;  ///< time went back (a looping bag): everything is at its start
 };
 
-/// The stages of a step, in their order.
+/// Stages of a step, in order.
 enum class Stage : std::uint8_t { neighbours, hand_contacts, body_contacts, response, flight };
 constexpr int kStages = 5;
 const char* to_string(Stage stage);
 
 /// Hands and objects through time. One call per frame:
 ///   if (simulation.begin(frame) == Rejection::none) { while (simulation.step()) {} use(simulation.end()); }
-/// or advance(), which does just that. Who waits for forces rather than for the picture calls report() before
-/// end(). Copyable by copying state().
+/// or advance(), which does the same. A program that needs forces before the rendered hands calls report()
+/// before end(). Copyable by copying state().
 class Simulation {
  public:
   /// Throws std::invalid_argument if the scene has no usable body state (see complete(Body&)), or for a step
@@ -64,46 +63,45 @@ class Simulation {
   Simulation(Scene scene, const Configuration& configuration);
   ~Simulation();
 
-  /// Takes the hands at the frame's stamp and plans the way from the last stamp to this one. `expected`: the
-  /// stamp that a frame of now should have, where a clock of the input tells; so a gap is known from a stray
+  /// Takes the hands at the frame's stamp and plans the steps from the last stamp to this one. `expected`:
+  /// the stamp of a present frame by the input's clock, if known, which distinguishes a gap from a stray
   /// stamp.
   Rejection begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected = {});
   /// Advances by one step of at most Configuration::step, or over the whole of a short frame in which nothing
-  /// comes near anything; false, without a step, once the frame's stamp is reached.
+  /// comes near anything. Returns false, without a step, once the frame's stamp is reached.
   bool step();
-  /// Contacts with their forces, events and tracked hands of the frame, whose rendered hands are still to
-  /// come. Call after step() has returned false.
+  /// Reports contacts with their forces, events and tracked hands of the frame, without rendered hands. Call
+  /// after step() has returned false.
   const FrameResult& report();
-  /// All that the frame led to: renders the hands, after report() if that was not called.
+  /// Returns the complete result: calls report() if that was not done, and renders the hands.
   const FrameResult& end();
 
   Rejection advance(const HandFrame& frame);
   const FrameResult& result() const;
-  /// Deepest penetration of a rendered capsule in any body, fixtures too, as the frame ended [m], >= 0. Left
-  /// out are bodies that have appeared in the hand, until it is clear of them.
+  /// Deepest penetration of a rendered capsule in any body or fixture at the frame's end [m], >= 0. Omits
+  /// bodies that were spawned in the hand, until it is clear of them.
   double deepest_rendered() const;
 
-  /// With no frames coming: moves on to `time`, which the next frame then continues from with the same bits
-  /// as if this had not been called. Does nothing until hold_time after the last frame. True if a new result
-  /// is there.
+  /// Advances to `time` without frames. The next frame continues with the same bits as if this had not been
+  /// called. Does nothing until hold_time after the last frame. True if there is a new result.
   bool advance_without_hands(Nanoseconds time);
 
-  /// Everything back to its start; the next frame may have any stamp.
+  /// Puts everything back to its start. The next frame may have any stamp.
   void reset();
 
-  /// For those who measure: `ended` is called at the end of each stage of a step. The simulation itself reads
-  /// no clock.
+  /// For measurements: calls `ended` at the end of each stage of a step. The simulation itself reads no
+  /// clock.
   void watch(std::function<void(Stage)> ended);
 
   const Scene& scene() const;
   const Configuration& configuration() const;
-  /// Between the steps of a frame, bodies that nothing may reach within it are still where it began.
+  /// Between the steps of a frame, isolated bodies are still where the frame began.
   const SimulationState& state() const;
   /// Stamp up to which bodies have been advanced, between the steps of a frame too.
   Nanoseconds time() const;
   void set_state(const SimulationState& state);
-  /// Takes over where a simulation of another scene or configuration is, by the names of bodies; see
-  /// scene_change.h. Call between frames.
+  /// Continues from the state of a simulation of another scene or configuration. Bodies are identified by
+  /// name. Call between frames.
   void go_on_from(const Simulation& other);
 
  private:

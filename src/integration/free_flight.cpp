@@ -45,8 +45,8 @@ double kinetic_energy(const Body& body, const BodyState& state) {
 
 namespace {
 
-/// Within this, S is its series to the ninth order, to rounding [rad].
-constexpr double kSeries = 1.0 / 32.0;
+/// Largest angle at which S equals its series of the ninth order to rounding [rad].
+constexpr double kMaxSeriesAngle = 1.0 / 32.0;
 
 using Array = Eigen::Array4d;
 
@@ -61,7 +61,7 @@ using Array = Eigen::Array4d;
 /// this knows S, c, d > 0 alone: hence no more than a quarter of a period.
 Array elliptic(double a, double b, Array times, double longest) {
   double part = 1.0;
-  for (double angle = std::sqrt(std::max(a, b)) * longest; part * angle > kSeries;) part *= 0.5;
+  for (double angle = std::sqrt(std::max(a, b)) * longest; part * angle > kMaxSeriesAngle;) part *= 0.5;
   times *= part;
   const double s = a + b, p = a * b;
   const double s3 = -s / 6.0, s5 = (s * s + 12.0 * p) / 120.0, s7 = -s * (s * s + 132.0 * p) / 5040.0,
@@ -141,14 +141,15 @@ Travel travel_of(const Vector3& inverse_moments, const Vector3& momentum, double
   return travel;
 }
 
-/// Rate at which `momentum` turns in the body, at most, times the step, in one free_rotation [rad].
-constexpr double kFreeTurn = 0.25;
+/// Largest turn of `momentum` in the body in one free_rotation [rad].
+constexpr double kMaxMomentumTurn = 0.25;
 
-/// How a body that nothing twists has turned after `step` seconds: body axes, as it ends against as it began.
+/// Rotation of a torque-free body in `step` seconds: its body axes at the end relative to the start.
 /// `inverse_moments` are 1/I along its principal axes [1/(kg m^2)], which are the axes here, the second
 /// between the others; `momentum` is its angular momentum [kg m^2/s] in them as the step begins, not zero.
 ///
-/// Not unit: the caller has to divide by its norm. Exact to rounding for turns of up to about kFreeTurn.
+/// Not unit: the caller has to divide by its norm. Exact to rounding for turns of up to about
+/// kMaxMomentumTurn.
 ///
 /// The momentum goes by the addition theorem of Jacobi's elliptic functions, written so that it knows no
 /// amplitudes: with J = 1/I, j = (J3 - J2, J1 - J3, J2 - J1), 2 the intermediate axis, and S, c, d the
@@ -186,10 +187,10 @@ Quaternion free_rotation(const Vector3& inverse_moments, const Vector3& momentum
   return turned;
 }
 
-/// More parts than this no step is divided into: spins that need it are beyond what can be seen.
-constexpr double kMostParts = 1000.0;
-/// Square of an angular momentum that turns nothing in a year [kg^2 m^4/s^2].
-constexpr double kNoSpin = 1e-200;
+/// Largest number of substeps: spins that need more are too fast to be seen.
+constexpr double kMaxSubsteps = 1000.0;
+/// Largest square of an angular momentum that is treated as zero: it turns nothing in a year [kg^2 m^4/s^2].
+constexpr double kMinSpinSquared = 1e-200;
 
 /// Turns `orientation` on by `by`, which need not be unit. What is added is rounded but once: were the
 /// product divided by its norm, slow turns would be rounded the same way in every step and drift.
@@ -214,9 +215,9 @@ double spread(const Body& body) {
   return body.inverse_moments.maxCoeff() - body.inverse_moments.minCoeff();
 }
 
-/// The momentum turns in the body by at most this in a short turn [rad]: series end below rounding.
-constexpr double kShortWay = 0.025;
-/// And the body turns by at most this [rad].
+/// Largest turns of the momentum in the body, and of the body, in a short turn: truncated series are exact to
+/// rounding [rad].
+constexpr double kShortMomentumTurn = 0.025;
 constexpr double kShortAngle = 0.25;
 
 double series(double, double last) {
@@ -247,7 +248,7 @@ class Way {
           product * (1224.0 / 362880.0 * squared + 3024.0 / 362880.0 * product);
   }
 
-  /// By how much the momentum differs from m after the time t.
+  /// Difference of the momentum from m after the time t.
   Triple after(double t) const {
     const double t2 = t * t;
     const double s = t + t * (t2 * (s3_ + t2 * (s5_ + t2 * (s7_ + t2 * s9_)))), q = s * s;
@@ -389,27 +390,30 @@ void free_flight(const Body& body, const Vector3& gravity, double step, BodyStat
   if (turn == Turn::short_one) turn_shortly(body, state.angular_momentum, step, state.pose.orientation);
 }
 
-//     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortWay, (1/I_min) / kShortAngle)^2
+//     quickness |L|^2 h^2 <= 1,   quickness = max((1/I_min - 1/I_max) / kShortMomentumTurn, (1/I_min) /
+//     kShortAngle)^2
 //
-// which is that the momentum goes by no more than kShortWay in the body and the body turns by no more than
-// kShortAngle, in squares, since a root of |L|^2 would cost more than the rest. The form !(x > y) is also
-// true of what is not a number.
+// which is that the momentum goes by no more than kShortMomentumTurn in the body and the body turns by no
+// more than kShortAngle, in squares, since a root of |L|^2 would cost more than the rest. The form !(x > y)
+// is also true of what is not a number.
 Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
   const double squared = angular_momentum.squaredNorm();
-  if (!(squared > kNoSpin)) return Turn::none;
+  if (!(squared > kMinSpinSquared)) return Turn::none;
   return quickness * squared * (step * step) <= 1.0 ? Turn::short_one : Turn::long_one;
 }
 
 double quickness(const Body& body) {
-  const double most = std::max(spread(body) / kShortWay, body.inverse_moments.maxCoeff() / kShortAngle);
+  const double most =
+      std::max(spread(body) / kShortMomentumTurn, body.inverse_moments.maxCoeff() / kShortAngle);
   return most * most;
 }
 
-// In parts in which the momentum turns by no more than kFreeTurn in the body: |dL/dt| <= |L| (1/I_min -
-// 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
+// In parts in which the momentum turns by no more than kMaxMomentumTurn in the body: |dL/dt| <= |L| (1/I_min
+// - 1/I_max) |L|. A ball's, whose moments are equal, does not turn, and takes one part at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double way = spread(body) * angular_momentum.norm() * step;
-  const double enough = std::min(kMostParts, way / kFreeTurn);  // in this order a number even if way is none
+  const double enough =
+      std::min(kMaxSubsteps, way / kMaxMomentumTurn);  // in this order a number even if way is none
   const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;

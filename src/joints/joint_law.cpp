@@ -8,15 +8,13 @@
 namespace mrhi {
 namespace {
 
-/// What holds is a spring that answers this much more stiffly than the joint's inertia does within a step:
-/// what would have moved it by a millimetre in a step moves it by a tenth of a micrometre.
-/// With K = 1e4 I / h^2 the Hessian I + h^2 K has 1e4 times the joint's own entry. It is a penalty that
-/// goes with step and inertia, no stiffness of the scene's, so that it costs H no more of its condition at
-/// short steps and heavy doors.
-constexpr double kStopOverInertia = 1e4;
+/// Ratio of a stop's stiffness to the joint's inertia over the squared step: a force that would move the
+/// joint by a millimetre in a step moves it by a tenth of a micrometre. With K = 1e4 I / h^2 the Hessian I +
+/// h^2 K has 1e4 times the joint's own entry. The penalty scales with step and inertia, so that the condition
+/// of the Hessian is the same for short steps and heavy doors.
+constexpr double kStopStiffnessRatio = 1e4;
 
-/// Half-way to its nearest neighbour a detent gives way, and there its spring has the force that it is known
-/// by.
+/// A detent yields half-way to its nearest neighbour, where its spring has the nominal force.
 /// k_d = force / (gap / 2), gap the least between neighbours: the spring draws to one place, x_d, and there
 /// is a jump from -force to force where the next one's takes over.
 double detent_stiffness(const Detents& detents) {
@@ -30,9 +28,8 @@ double place_of(const Detents& detents, std::size_t index) {
   return detents.at[std::min(index, detents.at.size() - 1)];
 }
 
-/// At a limit is what is so near it; what has been there has left when this far off [rad, m].
-/// Two thresholds: a joint that presses on its limit moves by what holds it gives, and with one would be
-/// told to arrive again and again.
+/// Distances from a limit at which a joint arrives at it, and leaves it [rad, m]. Two thresholds, because a
+/// loaded joint moves by the compliance of its stop: with one it would be reported to arrive again and again.
 constexpr double kAtLimit = 1e-5, kOffLimit = 1e-3;
 
 std::size_t nearest(const std::vector<double>& places, double to) {
@@ -81,8 +78,8 @@ double joint_velocity(const Scene& scene, std::size_t index, const std::vector<B
   return axis.dot(own.linear - carried);
 }
 
-// From the place alone, after the flight: what has passed a place within the step and come back is not
-// told.
+// Uses only the position after the flight: a joint that passes a position and returns within the step is not
+// reported.
 JointChange note_place(const Joint& joint, JointState& state) {
   JointChange change;
   const double below = joint.upper - state.position, above = state.position - joint.lower;
@@ -118,7 +115,7 @@ double JointLaw::Hold::energy(double way) const {
   const double size = std::abs(wanted(way));
   return (size < most ? 0.5 * size * size : most * (size - 0.5 * most)) / stiffness;
 }
-// How far x+ is beyond the limit: max(0, +-h v - room). K times it pushes back, and never draws.
+// Distance of x+ beyond the limit: max(0, +-h v - room). K times it pushes back, and never pulls.
 double JointLaw::Stop::over(double way) const {
   return std::max(0.0, sign * way - room);
 }
@@ -130,10 +127,10 @@ double JointLaw::Stop::over(double way) const {
 //            one)
 //
 // each term at the step's end, as contacts are: k and K add h k and h K to the slope, so that no stiffness
-// asks for a shorter step. K = kStopOverInertia * inertia / h^2.
-// Of what is beyond a limit already only h / h_usual is put right in a step, as Baumgarte (1972) has it
-// with a rate and not at once: all of it within a short step is a velocity of depth / h. The detent and the
-// latch are those of the step's start.
+// asks for a shorter step. K = kStopStiffnessRatio * inertia / h^2.
+// Only the fraction h / h_usual of an existing violation is corrected in a step (Baumgarte 1972): correcting
+// all of it within a short step would be a velocity of depth / h. The detent and the latch are those of the
+// step's start.
 void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
   step_ = step;
   blow_ = 0.0;
@@ -146,12 +143,11 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   };
   if (joint.spring) spring(joint.spring->stiffness, joint.spring->rest);
   if (joint.detents) spring(detent_stiffness(*joint.detents), place_of(*joint.detents, state.detent));
-  stop_ = kStopOverInertia * inertia / (step * step);
+  stop_ = kStopStiffnessRatio * inertia / (step * step);
   friction_ = latch_ = {};
   if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
   if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
-  // What has swung beyond a limit comes back as fast as in a usual step: all the way within a far shorter one
-  // would be a throw.
+  // A joint beyond its limit returns as fast as in a usual step: within a far shorter one it would be thrown.
   const auto room = [part = std::min(1.0, step / usual)](double left) {
     return left < 0.0 ? part * left : left;
   };
@@ -159,7 +155,8 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   upper_ = {room(joint.upper - state.position), 1.0};
 }
 
-// Who says no is left to its flight, which knows no forces. A limit counts from twice a step's way on.
+// A joint on which nothing acts is left to ballistic flight. A limit counts within twice a step's
+// displacement.
 bool JointLaw::acts(double speed) const {
   constexpr double kNear = 1e-6;
   const double near = 2.0 * step_ * speed + kNear;
@@ -189,7 +186,7 @@ double JointLaw::energy(double velocity) const {
   return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
 }
 
-// Not of the sum: a spring and a stop that bear against each other both act, and errors are measured by them.
+// Sums magnitudes, because errors are relative to all forces that act, also those that cancel.
 double JointLaw::size(double velocity) const {
   const double way = step_ * velocity;
   return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(way)) +

@@ -5,10 +5,10 @@
 
 namespace mrhi {
 
-/// What a joint's own forces give, as functions of its velocity at the step's end: spring, detents, latch,
-/// damping, friction, limits. Each of them falls as the velocity grows, so that the step's problem stays
-/// convex. Limits, friction and the latch hold by springs to a place that are ten thousand times as stiff as
-/// the joint's inertia within a step, the last two up to their force: what they hold does not creep.
+/// The joint's own forces as functions of its velocity at the step's end: spring, detents, latch, damping,
+/// friction, limits. Each decreases with the velocity, so that the step's problem stays convex. Limits,
+/// friction and the latch are springs ten thousand times as stiff as the joint's inertia within a step, the
+/// last two up to their force: a held joint does not creep.
 class JointLaw {
  public:
   /// `inertia`: of the joint alone, its entry of the mass matrix; `usual`: step, of which frames leave
@@ -23,14 +23,14 @@ class JointLaw {
   double force(double velocity) const;   ///< [N m]
   double slope(double velocity) const;   ///< -d force / d velocity, >= 0
   double energy(double velocity) const;  ///< whose slope is -force [W]
-  /// What limits and holds bear, and springs draw: the size of what acts [N m].
+  /// Sum of the magnitudes of all forces that act [N m].
   double size(double velocity) const;
 
-  /// What lasts of it once the joint moves at `velocity` to the step's end.
+  /// Updates the joint's state once its velocity at the step's end is known.
   void settle(double velocity, JointState& state) const;
 
  private:
-  /// A spring that bears at most `most`, whose end moves with the joint: stiffness * (stretch - step *
+  /// A spring with the largest force `most`, whose end moves with the joint: stiffness * (stretch - step *
   /// velocity).
   struct Hold {
     double stiffness = 0.0, stretch = 0.0, most = 0.0;
@@ -53,13 +53,13 @@ class JointLaw {
   double step_ = 0.0;
 };
 
-/// What a joint has come to in a step.
+/// Events of a joint in a step.
 struct JointChange {
   bool reached_limit = false, entered_detent = false, opened_latch = false;
 };
 JointChange note_place(const Joint& joint, JointState& state);
 
-/// Where a joint begins, at rest.
+/// Initial state of a joint, at rest.
 JointState start_state(const Joint& joint);
 
 }  // namespace mrhi

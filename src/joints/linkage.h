@@ -27,7 +27,7 @@ struct Linkage {
   bool floats() const { return bodies.front().joint == LinkageBody::kNone; }
   int joints() const { return static_cast<int>(bodies.size()) - (floats() ? 1 : 0); }
   int unknowns() const { return joints() + (floats() ? 6 : 0); }
-  /// Of the joint that body `i` hangs on.
+  /// Column of the joint that body `i` hangs on.
   int column(int i) const { return floats() ? i + 5 : i; }
 };
 
@@ -58,10 +58,10 @@ class LinkageMotion {
   void move(const Vector& velocity);
   /// Momenta of the unknowns that an impulse and its moment about the centre give, added.
   void push(int body, const Vector3& impulse, const Vector3& moment, Eigen::Ref<Vector> momenta) const;
-  /// How the unknowns move a body: velocity of its centre, and angular, a column each. Rows that are zero
-  /// before: columns of those that do not move it are left alone.
+  /// Jacobian of a body's linear and angular velocity by the unknowns. Expects zero rows: columns of unknowns
+  /// that do not move the body are not written.
   void add_jacobian(int body, Eigen::Ref<Matrix> six_rows) const;
-  /// What changes the joints' momenta by themselves: gravity [m/s^2], and that their axes move.
+  /// Rates of the joints' momenta by gravity [m/s^2] and by the motion of their axes.
   void find_rates(const Vector3& gravity, Vector& rates);
 
   const Placed& at(int body) const { return placed_[static_cast<std::size_t>(body)]; }

@@ -6,22 +6,22 @@
 namespace mrhi {
 namespace {
 
-/// No joint turns, or falls, by more than this in one part of a step [rad].
-/// The error of one part goes with the fifth power of it (fourth order).
-constexpr double kPart = 0.03;
-constexpr double kMostParts = 1000.0;
-/// Budget of a step, so that it takes no more than about 5 ms: places at which the motion of a linkage of n
-/// bodies is found, times n^2; and how many a part usually takes.
+/// Largest turn of a joint in one substep [rad]. The error of a substep grows with its fifth power (fourth
+/// order).
+constexpr double kMaxTurn = 0.03;
+constexpr double kMaxSubsteps = 1000.0;
+/// Budget of a step, which limits it to about 5 ms: evaluations of the motion of a linkage of n bodies, times
+/// n^2; and the usual number in a substep.
 constexpr double kMaxWork = 60'000.0, kUsualWork = 24.0;
-constexpr int kMinRounds = 4;
-/// Energy that a step may gain by its own error, as a part of the kinetic energy at its end.
+/// Limits of the iterations that solve for the stages.
+constexpr int kMinIterations = 4, kMaxIterations = 60;
+/// Relative change of the stages below which the iteration has converged.
+constexpr double kConverged = 1e-16;
+/// Largest energy error of a step, as a fraction of the kinetic energy at its end.
 constexpr double kMaxGain = 0.01;
-/// What falls from rest turns as a pendulum of this length does, at most [m].
-/// w = sqrt(g / l): by its rate alone what is let go from rest would be taken in one part.
+/// Shortest pendulum that bounds the acceleration of a linkage falling from rest [m], w = sqrt(g / l): by its
+/// rate alone it would take one substep.
 constexpr double kFallLength = 0.1;
-constexpr int kMostRounds = 60;
-/// The stages are found when a round changes them by less than this, of their size.
-constexpr double kFound = 1e-16;
 
 const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
   return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
@@ -40,7 +40,7 @@ Quaternion turned(const Vector3& turn) {
 ///     theta' = w - 1/2 theta x w + (1/12 + |theta|^2 / 720) theta x (theta x w) + ...
 ///
 /// the series of dexp^-1 with Bernoulli's numbers, and theta x four times = -|theta|^2 theta x twice. What
-/// is left off is of the sixth power in theta, and a part turns by about kPart at most.
+/// is left off is of the sixth power in theta, and a part turns by about kMaxTurn at most.
 Vector3 turn_rate(const Vector3& turn, const Vector3& spin) {
   const Vector3 once = turn.cross(spin);
   return spin - 0.5 * once + (1.0 / 12.0 + turn.squaredNorm() / 720.0) * turn.cross(once);
@@ -66,7 +66,7 @@ void LinkageFlight::read(const std::vector<JointState>& joints, const std::vecto
   root_ = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose.orientation;
 }
 
-/// Of the unknowns, in the frame of the centre of mass if it floats.
+/// Velocities of the unknowns, in the frame of the centre of mass if the linkage floats.
 ///
 ///     M(q) u = p,      p = (0, L, p_joints) of one that floats
 ///
@@ -92,7 +92,7 @@ void LinkageFlight::find_rate(const Point& point, const Vector3& gravity, Point&
   if (linkage_.floats()) rate.turn = turn_rate(point.turn, velocity_.segment<3>(3));
 }
 
-/// Of all bodies: the rate at which axes and arms turn.
+/// Largest rate at which axes and arms of any body turn.
 double LinkageFlight::fastest() const {
   double rate = 0.0;
   for (int i = 0; i < motion_.size(); ++i) rate = std::max(rate, motion_.at(i).angular.norm());
@@ -134,7 +134,7 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) 
     go(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
     go(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
     const double change = round == 0 ? 1.0 : distance(guess_, two.point);
-    if (change <= kFound || (round > 8 && change >= last)) break;
+    if (change <= kConverged || (round > 8 && change >= last)) break;
     last = change;
     find_rate(one.point, gravity, one.rate);
     find_rate(two.point, gravity, two.rate);
@@ -179,7 +179,7 @@ void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& b
   now_.momenta = velocity_.tail(now_.momenta.size());
 }
 
-/// Of the joints and what turns, after find_velocity() at the point [J].
+/// Energy of joints and rotations, after find_velocity() at the point [J].
 ///
 ///     H = p.u / 2 - sum m g.c,      p.u with L.w of one that floats
 double LinkageFlight::energy(const Point& point, const Vector3& gravity) const {
@@ -220,8 +220,8 @@ void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
   find_velocity(now_);
 }
 
-// parts = 1 + h max(w, sqrt(g / l)) / kPart, w the fastest of any body at the start, as far as the budget
-// allows.
+// Substeps: 1 + h max(w, sqrt(g / l)) / kMaxTurn, with w the largest rate of any body at the start, within
+// the budget.
 void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   start_ = now_;
   start_root_ = root_;
@@ -229,8 +229,8 @@ void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   const double before = energy(now_, gravity);
   const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
   const double bodies = motion_.size(), work = kMaxWork / (bodies * bodies);
-  const int parts = 1 + static_cast<int>(std::min({way / kPart, kMostParts, work / kUsualWork}));
-  const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinRounds, kMostRounds);
+  const int parts = 1 + static_cast<int>(std::min({way / kMaxTurn, kMaxSubsteps, work / kUsualWork}));
+  const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinIterations, kMaxIterations);
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);
     advance(gravity, step / parts, rounds);
@@ -248,8 +248,9 @@ void LinkageFlight::fly(const Vector3& gravity, double step, std::vector<JointSt
   write(Vector3::Zero(), Vector3::Zero(), joints, bodies);
 }
 
-/// What floats: its centre falls, its total angular momentum about it stays, and only shape and orientation
-/// are integrated, in the frame of the centre of mass. Rounding is put right at the root.
+/// Flight of a floating linkage: the centre of mass falls, the angular momentum about it is conserved, and
+/// only shape and orientation are integrated, in the frame of the centre of mass. Rounding is corrected at
+/// the root.
 ///
 ///     C(h) = C + h v + h^2 g / 2,     P(h) = P + m h g,      L about C stays
 void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,

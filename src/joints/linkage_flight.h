@@ -16,7 +16,8 @@ class LinkageFlight {
  public:
   LinkageFlight(const Scene& scene, const Linkage& linkage);
 
-  /// By `step` seconds. Joints' positions and bodies' momenta are taken and given back; poses follow.
+  /// Advances by `step` seconds: reads and writes the joints' positions and the bodies' momenta; poses
+  /// follow.
   void fly(const Vector3& gravity, double step, std::vector<JointState>& joints,
            std::vector<BodyState>& bodies);
 
@@ -30,7 +31,7 @@ class LinkageFlight {
   struct Stage {
     Point point, rate;
   };
-  /// Of all bodies: the centre of mass, momentum, and angular momentum about that centre.
+  /// The whole linkage: centre of mass, momentum, and angular momentum about that centre.
   struct Whole {
     Vector3 centre, linear, angular;
   };

@@ -8,7 +8,8 @@
 
 namespace mrhi {
 
-/// Which surfaces of two bodies touch. Ordered, so that contacts are always treated in the same order.
+/// Key of the touching surfaces of two bodies. Ordered, so that contacts are always processed in the same
+/// order.
 struct BodyContactKey {
   std::uint16_t a;       ///< index in Scene::bodies: a fixture, or a free body listed before b
   std::uint16_t b;       ///< a free body
@@ -32,16 +33,16 @@ struct BodyContact {
   Vector3 anchor_a = Vector3::Zero();  ///< point of a, body frame, that sticks to
   Vector3 anchor_b = Vector3::Zero();  ///< this point of b, body frame
   Friction friction = Friction::sticking;
-  bool struck = false;  ///< the impulse of this approach has been given
-  double still = 0.0;   ///< for how long both bodies have been as good as at rest [s]
+  bool struck = false;  ///< the impact of this approach is over
+  double still = 0.0;   ///< time for which both bodies have been still [s]
 
   // This step.
   Vector3 point = Vector3::Zero();    ///< midway between the surfaces, where they touch or will touch
   Vector3 normal = Vector3::UnitZ();  ///< n
   Vector3 arm_a = Vector3::Zero();    ///< from the centre of a to the point
   Vector3 arm_b = Vector3::Zero();    ///< from the centre of b to the point
-  /// From the point to where friction acts, along the surface: the friction of a face that spins is that of
-  /// all its places, and these are nearer to its middle than its corners [m].
+  /// Offset from the point to where friction acts, along the surface: the friction of a spinning face acts on
+  /// all its points, which are nearer to its centre than its corners [m].
   Vector3 friction_offset = Vector3::Zero();
   Vector3 stretch = Vector3::Zero();  ///< anchor a less anchor b, across n [m]
   Material material;                  ///< of the two together
@@ -49,8 +50,8 @@ struct BodyContact {
   double share = 1.0;                 ///< of the pair's stiffness; the shares of its points sum to 1
   double first_touch = -1.0;          ///< of a pair still apart: from the step's start [s], >= 0
 
-  // What the response made of it in this step.
-  Vector3 force = Vector3::Zero();    ///< near it lies the next step's [N]
+  // Results of the response in this step.
+  Vector3 force = Vector3::Zero();    ///< also the warm start of the next step [N]
   Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
 };
 

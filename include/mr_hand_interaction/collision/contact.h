@@ -8,8 +8,8 @@
 
 namespace mrhi {
 
-/// Which surfaces touch. Ordered, so that contacts are always treated in the same order. Fields stand from
-/// the least significant up, so that a compiler reads the order in one go.
+/// Key of the touching surfaces. Ordered, so that contacts are always processed in the same order. Fields are
+/// in ascending significance, so that the key can be read as one number.
 struct ContactKey {
   std::uint8_t point;    ///< 0, and 1 where a capsule lies along a face and touches at two points
   std::uint8_t shape;    ///< of the body
@@ -31,43 +31,44 @@ enum class Approach : std::uint8_t { separating, resting, colliding };
 
 enum class Friction : std::uint8_t { sticking, slipping };
 
-/// What lasts of a contact while the surfaces touch.
+/// Memory of a contact while the surfaces touch.
 struct ContactMemory {
   ContactKey key{};
   Friction friction = Friction::sticking;
   bool struck = false;   ///< the impact of this approach is over
-  bool ignored = false;  ///< overlapped as hand or body appeared: touches nothing until they have separated
+  bool ignored = false;  ///< overlapped when hand or body appeared: no contact until they have separated
   Vector3 god_object = Vector3::Zero();     ///< c, on the object's surface, body frame
   Vector3 entry_normal = Vector3::UnitZ();  ///< of the face by which the phalanx entered, body frame
   Vector3 touched_from = Vector3::UnitZ();  ///< n as the touch began, palm frame
-  double axis_parameter = 0.0;              ///< s of the phalanx's axis point that presses
+  double axis_parameter = 0.0;              ///< s of the phalanx's loaded axis point
   bool at_edge = false;                     ///< where faces of the object meet
   double depth = 0.0;                       ///< n.(c - p): > 0 inside [m]
-  /// Turn of the phalanx about n against the object since the touch, as far as it is held [rad].
+  /// Turn of the phalanx about n relative to the object since the first contact, up to slip [rad].
   double twist = 0.0;
-  double compliance = 0.0;  ///< part of the depth without force, of a finger that closes on the body [m]
+  double compliance = 0.0;          ///< depth without force, of a finger that closes on the body [m]
   Vector3 force = Vector3::Zero();  ///< that the contact model last found [N]
 
   bool touching() const { return depth > 0.0 && !ignored; }
   double pressed() const { return depth - compliance; }
 };
 
-/// One touch of a hand (body 1) with an object (body 2): the god object with its memory, where things are in
-/// this step, and what acts. World frame unless said otherwise; n points from the object to the hand; impulse
-/// and force act on the OBJECT.
+/// One contact of a hand (body 1) with an object (body 2): the god object with its memory, the geometry of
+/// this step, and the forces. World frame unless said otherwise; n points from the object to the hand;
+/// impulse and force act on the OBJECT.
 struct Contact : ContactMemory {
   Vector3 point = Vector3::Zero();       ///< c in world
   Vector3 normal = Vector3::UnitZ();     ///< n
   Vector3 hand_point = Vector3::Zero();  ///< p: the phalanx's surface point that entered at c
-  Vector3 lever = Vector3::Zero();  ///< by which p, brought back to the surface the way it came, is off n [m]
+  Vector3 lever =
+      Vector3::Zero();  ///< offset of p from n, after p is moved back to the surface along its path [m]
   Vector3 hand_velocity = Vector3::Zero();  ///< of p [m/s]
   double hand_spin = 0.0;                   ///< n.w of the phalanx [rad/s]
   Vector3 axis = Vector3::Zero();           ///< of the phalanx, from start to end [m]
   double radius = 0.0;                      ///< of the phalanx [m]
   double patch = 0.0;                       ///< radius of the touching patch [m]
-  double grip = 1.0;                        ///< friction over that of a face, for the way that it is drawn
-  double share = 1.0;                       ///< of the phalanx's stiffness; the shares of its points sum to 1
-  double strength = HandStrength::kUnlimited;  ///< most that this point pushes with [N]
+  double grip = 1.0;   ///< ratio of friction to that of a face, in the direction of the tangential force
+  double share = 1.0;  ///< of the phalanx's stiffness; the shares of its points sum to 1
+  double strength = HandStrength::kUnlimited;  ///< largest normal force of this point [N]
   double inverse_mass = 0.0;                   ///< of the phalanx in an impact, effective [1/kg]
   double carrier_inverse_mass = 0.0;           ///< of the hand's operator there along n, effective [1/kg]
   std::optional<double> restitution;           ///< of an impact, 0 to 1; unset: the object's

@@ -15,19 +15,19 @@ namespace mrhi {
 /// Merges the frames of several trackers, in world and stamped by one clock, into one stream. A merged frame
 /// has the stamp of a frame of the leading stream: the first that delivers, while it goes on. The hands of
 /// the other streams are interpolated at that stamp, so a merged frame waits for their next ones. A stream
-/// has ended when two of its intervals, or 0.1 s, have gone by without a frame. Depends on the frames alone.
+/// ends after two of its intervals, or 0.1 s, without a frame. Depends only on the frames.
 class HandMerger {
  public:
   enum class Mode : std::uint8_t {
-    people,  ///< each stream sees hands of its own; ids are made different: id * streams + stream
+    people,  ///< each stream sees its own hands; ids become unique: id * streams + stream
     fused    ///< all streams see the hands of one person: one hand of a side, with ids 1 (left) and 2 (right)
   };
 
   /// At least one stream.
   HandMerger(std::size_t streams, Mode mode);
 
-  /// Merged frames that are complete with this frame of a stream, oldest first. A frame that is not after the
-  /// one before it in its stream begins its stream anew.
+  /// Takes a frame of a stream, and returns the merged frames that it completes, oldest first. A frame that
+  /// is not after the previous one restarts its stream.
   std::vector<HandFrame> take(std::size_t stream, const HandFrame& frame);
 
  private:
@@ -36,10 +36,10 @@ class HandMerger {
     Nanoseconds interval = 0;      ///< between the last two; 0: not known
 
     bool goes_on(Nanoseconds now) const;
-    /// Hands in the frames on both sides of the stamp, in between.
+    /// Hands interpolated at the stamp from the frames around it.
     std::vector<Hand> at(Nanoseconds stamp) const;
   };
-  /// One side of the person that all streams see.
+  /// One hand of the person that all streams see.
   struct FusedSide {
     std::vector<double> weights;            ///< of the streams, slowly changing
     std::vector<std::optional<Hand>> seen;  ///< by each stream, in the merged frame before
@@ -62,16 +62,15 @@ class HandMerger {
   std::array<FusedSide, 2> sides_;
 };
 
-/// Left and right hands that come in streams of their own, brought together in frames by their stamps alone,
-/// so that a replay does as the live node. Of two streams that go on, a frame waits for the other side's:
-/// they belong together if they are no farther apart than half the interval of the faster stream, whose
-/// frames that find no partner are left out. A stream has ended when two of its intervals, or 0.1 s, have
-/// gone by without a frame.
+/// Pairs left and right hands of separate streams by their stamps alone, so that a replay repeats the live
+/// node. While both streams continue, a frame waits for one of the other side: they are a pair if their
+/// stamps differ by at most half the interval of the faster stream, whose frames without a partner are
+/// dropped. A stream ends after two of its intervals, or 0.1 s, without a frame.
 class HandPairs {
  public:
-  /// The frame that is complete with this one of a side, if one is.
+  /// Takes a frame of one side, and returns the frame that it completes, if any.
   std::optional<HandFrame> take(Side side, const HandFrame& frame);
-  /// What still waits, at the end of a recording.
+  /// The frame that still waits at the end of a recording.
   std::optional<HandFrame> rest();
 
  private:
@@ -87,14 +86,14 @@ class HandPairs {
   Side waiting_side_ = Side::left;
 };
 
-/// Joints that a tracker loses for moments stay with their hand: each is moved on as those that are seen
-/// before and after have moved together (three, not in one line, must be). For trackers that report at most
-/// one hand of a side. By stamps alone, so that a replay does as the live node.
+/// Fills joints that a tracker loses for moments: each moves rigidly with the joints that are in both frames
+/// (at least three, not collinear). For trackers that report at most one hand of a side. Depends only on
+/// stamps, so that a replay repeats the live node.
 class JointGaps {
  public:
-  static constexpr Nanoseconds kLongest = 200'000'000;  ///< as tracking/hold_time ships
+  static constexpr Nanoseconds kLongest = 200'000'000;  ///< the default of tracking/hold_time
 
-  /// Puts in what was seen no longer ago than kLongest.
+  /// Fills joints that were seen within kLongest.
   void fill(JointsFrame& frame);
 
  private:

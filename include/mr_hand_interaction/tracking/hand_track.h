@@ -9,7 +9,7 @@
 namespace mrhi {
 
 constexpr int kMaxFilterWindow = 16;  ///< frames
-constexpr int kNoiseWindow = 16;      ///< samples that tell the noise of a tracker
+constexpr int kNoiseWindow = 16;      ///< samples from which a tracker's noise is estimated
 
 /// The last raw samples of one hand, newest first.
 struct SampleHistory {
@@ -17,8 +17,7 @@ struct SampleHistory {
   std::array<double, kMaxFilterWindow> elapsed{};  ///< since the sample before [s]; 0 of a first one
   int size = 0;
 
-  /// Puts `sample`, taken `since` seconds after the one before, in front and forgets all but the newest
-  /// `keep`.
+  /// Adds `sample`, taken `since` seconds after the previous one, at the front, and keeps the newest `keep`.
   void push(const Hand& sample, double since, int keep);
 };
 
@@ -28,7 +27,7 @@ Vector3& hand_point(Hand& hand, std::size_t point);
 const Vector3& hand_point(const Hand& hand, std::size_t point);
 bool has_point(const Hand& hand, std::size_t point);
 
-/// How a hand moves, in world.
+/// Velocity of a hand, in world.
 struct HandVelocity {
   std::array<Vector3, kHandPoints> points;  ///< [m/s]
   Vector3 turn = Vector3::Zero();           ///< of the palm [rad/s]
@@ -39,22 +38,22 @@ struct HandVelocity {
 /// Root mean square over the points of the capsules that `hand` has [m/s].
 double rms_speed(const HandVelocity& velocity, const Hand& hand);
 
-/// How far an estimate may be off, the same for every point and axis: variances of position and speed, and
-/// their covariance.
+/// Error of an estimate, the same for every point and axis: variances of position and speed, and their
+/// covariance.
 struct MotionVariance {
   double position = 0.0;  ///< [m^2]
   double mixed = 0.0;     ///< [m^2/s]
   double speed = 0.0;     ///< [m^2/s^2]; 0: no estimate yet
 };
 
-/// How much a tracker's samples of one hand have been seen to tremble: variances on an axis.
+/// Observed noise of a tracker's samples of one hand: variances on an axis.
 struct SeenNoise {
   std::array<double, kNoiseWindow> variances{};  ///< one for each of the last samples, newest first [m^2]
-  int size = 0;                                  ///< of them are there
-  double variance = 0.0;                         ///< what they come to [m^2]; 0: too few yet
+  int size = 0;                                  ///< number of variances
+  double variance = 0.0;                         ///< the estimate [m^2]; 0: too few samples yet
 };
 
-/// What a filter remembers of one hand; each uses the part that it needs.
+/// Memory of a filter for one hand; each filter uses the part that it needs.
 struct FilterMemory {
   SampleHistory history;
   Hand filtered;            ///< the last result
@@ -64,44 +63,45 @@ struct FilterMemory {
 
   bool empty() const { return history.size == 0; }
   void clear() { history.size = 0; }
-  /// What was before is forgotten: the hand appears with `sample`.
+  /// Resets the memory: the hand appears with `sample`.
   void restart(const Hand& sample);
 };
 
 constexpr int kMaxHands = 4;            ///< followed at once
 constexpr double kMeanVelocity = 0.03;  ///< time constant of HandTrack::mean_velocity [s]
 
-/// After a short loss the hand does not snap from where it was held to where it is: it catches up, continuous
-/// in velocity and never ahead of the tracked hand.
+/// Return of a hand after a short loss: it catches up from its held pose to the tracked hand, with continuous
+/// velocity and never ahead of it.
 struct Rejoin {
   Hand from;                 ///< pose that was held
   Nanoseconds begin = 0;     ///< stamp of the first frame after the loss
   Nanoseconds duration = 0;  ///< 0: not catching up
 };
 
-/// While one filter takes over from another the hand goes from the pose of the one to that of the other.
+/// Transition from one filter to another, in which the hand moves from the pose of the one to that of the
+/// other.
 struct FilterChange {
   FilterConfiguration from;
-  FilterMemory memory;  ///< of the old filter, which runs on meanwhile
+  FilterMemory memory;  ///< of the old filter, which continues meanwhile
   Nanoseconds begin = 0;
 };
 
 /// The path of a hand's points between two frames: a cubic whose velocity is continuous from frame to frame,
-/// so that a held body is not struck anew at every frame. With f the fraction of the frame, D the chord from
+/// so that a held body gets no impact at every frame. With f the fraction of the frame, D the chord from
 /// the first pose to the second and b, e the bends,
 ///     p(f) = p(0) + f D + f (1 - f)^2 b - f^2 (1 - f) e,     T p'(0) = D + b,     T p'(1) = D + e
 /// which is Hermite's. Without bends a point moves on a straight line at constant speed.
 struct HandPath {
   HandVelocity start_bend, end_bend;  ///< b and e [m], of the palm's turn [rad]
   double longest_bend = 0.0;          ///< limit of all points, at either frame [m]
-  HandVelocity velocity;              ///< at the second frame, as the path arrives there
+  HandVelocity velocity;              ///< at the second frame
   /// Newton's backward divided differences of the poses, of order 1 to 3, at the second frame [m/s^order].
   std::array<HandVelocity, 3> differences;
   std::array<double, 3> intervals{};  ///< of the last frames, newest first [s]
   int order = 0;                      ///< number of differences that are known
-  /// Of the fourth differences, and of all that is extrapolated: means over the last frames [m^2/s^2].
+  /// Energies of the fourth differences and of the extrapolated part: means over the last frames [m^2/s^2].
   double noise = 0.0, energy = 0.0;
-  double extrapolated = 0.0;  ///< of `velocity`: what it has beyond the chord's, fastest point [m/s]
+  double extrapolated = 0.0;  ///< part of `velocity` beyond the chord's, fastest point [m/s]
 };
 
 /// Weights of the chord and of both bends in a displacement along a HandPath, or in a velocity [1/s].
@@ -119,11 +119,11 @@ struct PathWeights {
 /// One hand followed through time.
 struct HandTrack {
   bool active = false;    ///< false: this slot is free
-  bool held = false;      ///< not in the last frame: keeps its pose until hold_time is over
-  bool appeared = false;  ///< at the last frame it came from nowhere, or jumped: it was not there before
-  bool emerged = false;   ///< at the frame before: what it overlaps as it begins to move is ignored
-  Hand previous;          ///< filtered pose at the frame before
-  Hand current;           ///< filtered pose at the last frame
+  bool held = false;      ///< missing in the last frame: keeps its pose until hold_time is over
+  bool appeared = false;  ///< new at the last frame, or jumped there
+  bool emerged = false;  ///< appeared at the previous frame: what it overlaps as it begins to move is ignored
+  Hand previous;         ///< filtered pose at the previous frame
+  Hand current;          ///< filtered pose at the last frame
   Nanoseconds last_seen = 0;
   FilterMemory filter;
   Rejoin rejoin;
@@ -134,24 +134,23 @@ struct HandTrack {
 
 /// Continues the path of the track to its current pose, `elapsed` seconds (above 0) after the previous one.
 ///
-/// The velocity at the new frame is the derivative of the polynomial through the last five poses. What that
-/// adds to the chord's velocity is reduced by the ratio of noise in it, as their fourth difference shows it,
-/// one factor for the whole hand: trembling samples are joined smoothly, and not extrapolated. Past a stop
-/// that nothing announced, the path swings no further than kMaxOvershoot.
+/// The velocity at the new frame is the derivative of the polynomial through the last five poses. Its
+/// difference from the chord's velocity is reduced by the fraction of noise in it, which the fourth
+/// differences show, by one factor for the whole hand: noisy samples are joined smoothly, and not
+/// extrapolated. The path overshoots a sudden stop by at most kMaxOvershoot.
 void extend_path(double elapsed, HandTrack& track);
 
-/// How long a hand takes to catch up with one that has gone `way` [m] in the `away` seconds of its loss and
-/// goes on as fast: what keeps it to 5 m/s^2, but 0.05 to 0.4 s.
+/// Time for catching up with a hand that has moved by `way` [m] in the `away` seconds of its loss and keeps
+/// that speed: limits the acceleration to 5 m/s^2, from 0.05 to 0.4 s.
 Nanoseconds rejoin_duration(double way, double away);
 
-/// The hand at `stamp` on its way from where it was held to the tracked hand (minimum jerk: Flash & Hogan
-/// 1985).
+/// The hand at `stamp` between its held pose and the tracked hand (minimum jerk: Flash & Hogan 1985).
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp);
 
-/// Longest way of a joint that both hands have [m].
+/// Largest distance between the places of a joint that both hands have [m].
 double farthest_joint(const Hand& from, const Hand& to);
 
-/// Pose between two of one hand: all points move on straight lines.
+/// Interpolates between two poses of one hand: all points move on straight lines.
 Hand blend(const Hand& from, const Hand& to, double fraction);
 
 }  // namespace mrhi

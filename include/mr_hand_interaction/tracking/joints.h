@@ -24,7 +24,7 @@ struct HandJoints {
   /// j0..j4).
   std::array<std::array<std::optional<Vector3>, 5>, kFingers> joints;
   std::array<std::optional<float>, kFingers> finger_width;  ///< diameter
-  /// Diameter of single bones; it goes before the finger's.
+  /// Diameters of single bones, which take precedence over the finger's.
   std::array<std::array<std::optional<float>, kBonesPerFinger>, kFingers> bone_width;
 };
 
@@ -33,17 +33,17 @@ struct JointsFrame {
   std::vector<HandJoints> hands;
 };
 
-/// The reason why a hand cannot be used ("index tip is not finite"), or empty if it can.
+/// Reason why a hand is unusable ("index tip is not finite"); empty if it is usable.
 std::string defect(const HandJoints& hand);
 
-/// Fills what the tracker left out (palm, wrist, metacarpals, radii) from anatomy, places it in world by the
-/// device's pose and derives orientation from the joints alone. Wrist and sizes are rounded to float32 as in
-/// the messages, so that a live node and a replay, and every version of a driver's message, give the same
+/// Fills missing parts (palm, wrist, metacarpals, radii) from anatomy, places the hand in world by the
+/// device's pose and derives its orientation from the joints alone. Wrist and sizes are rounded to float32 as
+/// in the messages, so that a live node and a replay, and every version of a driver's message, give the same
 /// bits. Throws std::invalid_argument if the hand has a defect.
 Hand complete_hand(const HandJoints& joints, const Pose& device_in_world);
 
-/// The frame with those hands that have no defect; each defect is added to `defects`. Nothing if there were
-/// hands and none is usable, so that what was good before stays.
+/// The frame with the hands that have no defect. Adds each defect to `defects`. Nothing if there were hands
+/// and none is usable, so that the last usable frame remains.
 std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& device_in_world,
                                         std::vector<std::string>& defects);
 

@@ -25,7 +25,7 @@ class SessionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What session.yaml says; docs/study.md has its meaning.
+/// Content of session.yaml; docs/study.md has its meaning.
 struct SessionHeader {
   std::string participant, group, handedness, condition;
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
@@ -38,8 +38,8 @@ struct SessionHeader {
   std::string software;
 };
 
-/// What a session is played with: files by their names, with their bytes. A session's folder keeps them below
-/// setup/, so that a session that goes on goes on with the same. Empty: nothing is kept.
+/// Setup of a session: bytes of files by name. A session's folder keeps them below setup/, so that a resumed
+/// session has the same setup. Empty: nothing is kept.
 struct SessionSetup {
   std::map<std::string, std::string> files;
 };
@@ -76,35 +76,34 @@ struct HandRow {
 };
 
 /// A session's folder: session.yaml, setup/, trials.csv, events.csv, and once there are hands hands.csv and
-/// hands_raw.csv. What is logged is in the file when the call returns, whatever becomes of this program.
+/// hands_raw.csv. A logged row is in the file when the call returns, even if the program crashes then.
 class SessionFolder {
  public:
-  /// Makes the folder, or goes on with the one that is there: a line that a crash has cut off is taken away.
-  /// Throws SessionError if it is that of another session or of another setup, has other tables of these
-  /// names, is in use by another program, or cannot be read or written. All that is there is looked at before
-  /// anything is touched.
+  /// Creates the folder, or resumes an existing session; removes a line that a crash has cut off. Throws
+  /// SessionError if the folder is of another session or setup, has other tables of these names, is in use by
+  /// another program, or cannot be read or written. Checks everything before it changes anything.
   SessionFolder(const std::string& folder, const SessionHeader& header, const SessionSetup& setup = {});
   ~SessionFolder();
 
   const std::string& path() const { return path_; }
   bool resumed() const { return resumed_; }
-  /// What was in trials.csv: without measures.
+  /// Rows of trials.csv, without measures.
   const std::vector<TrialRow>& earlier_trials() const { return earlier_; }
   int last_trial() const { return last_trial_; }   ///< highest number in either file; 0: none
   double last_time() const { return last_time_; }  ///< of events.csv [s]
-  /// What was taken away, for the log.
+  /// Descriptions of removed lines, for the log.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Throws SessionError once the files that are written to are no more what is found under their names.
+  /// Throws SessionError if an open file was removed or replaced.
   void check_there() const;
 
-  /// These throw SessionError, too, if the disk does not take it.
+  /// Log a row. Throw SessionError likewise, or if the disk is full.
   void log(const EventRow& row);
   void log(const TrialRow& row);
   void log(const HandRow& row);
 
  private:
-  /// A file that rows are added to, and which one it is.
+  /// A file to which rows are appended, with its identity.
   struct Table {
     std::string file;
     std::ofstream out;
@@ -131,22 +130,22 @@ class SessionFolder {
 /// Numbers are those of TrainingStatus.msg.
 enum class SessionPhase : std::uint8_t { ready, running, paused, finished };
 
-/// What a session asks of and tells to the program that runs it; both may be empty.
+/// Functions of the program that runs a session; both may be empty.
 struct SessionHooks {
-  std::function<std::string()> utc;                   ///< what time it is, for EventRow::utc
+  std::function<std::string()> utc;                   ///< the present time, for EventRow::utc
   std::function<void(const EventRow& row)> on_event;  ///< after each row of events.csv
 };
 
-/// Place of a participant in the Latin square: the number at the end of the name ("P07": 7), counted from 0
-/// where it is counted from 1 by people. Throws SessionError for a name without one.
+/// Row of a participant in the Latin square, from 0: the number at the end of the name, from 1 ("P07": 6).
+/// Throws SessionError for a name without a number.
 std::uint64_t participant_place(const std::string& participant);
 
-/// A participant's trials, one after the other, and their log. Each combination of object and repetition that
-/// has no row yet, or only rows that say aborted, is still to be done.
+/// A participant's trials in sequence, and their log. Each combination of object and repetition without a
+/// row, or with aborted rows only, is still to be done.
 class Session {
  public:
-  /// `header`: gravity, task and order are those of the task. `place`: see participant_place. `now`: stamps
-  /// are counted from here; a session that goes on counts on from its last event.
+  /// `header`: gravity, task and order are those of the task. `place`: see participant_place. `now`: origin
+  /// of times; those of a resumed session continue from its last event.
   Session(Task task, const SessionHeader& header, std::uint64_t place, const std::string& folder,
           Nanoseconds now, const SessionSetup& setup = {}, SessionHooks hooks = {});
 
@@ -167,12 +166,11 @@ class Session {
   void log_hand(HandRow row, Nanoseconds stamp);
   /// Running and paused only.
   void pause(bool paused, Nanoseconds now);
-  /// The running trial, or the next one, is passed over.
+  /// Skips the running trial, or the next one.
   void skip(Nanoseconds now);
-  /// The running trial is aborted and is the next one; if none is running, the one before is to be done
-  /// again.
+  /// Aborts the running trial, which is then the next one. If none is running, repeats the previous one.
   void repeat(Nanoseconds now);
-  /// A parameter of the running system is from now on another one than `setup` says, or that one again.
+  /// Logs that a parameter of the running system was changed from `setup`, or restored.
   void note_parameter(const std::string& name, const std::string& value, bool as_begun, Nanoseconds now);
   /// For the end of the program: a running trial is aborted.
   void abort(Nanoseconds now);
