@@ -11,17 +11,17 @@
 namespace mrhi {
 namespace {
 
-/// Contacts are followed from this gap on, at most; pairs farther apart are swept through the step [m].
-constexpr double kMostFollowed = 0.001;
-/// Surfaces this far apart have ended their approach: the next one may strike again [m].
-constexpr double kApart = 1e-5;
-/// Boxes that overlap by less than this in two directions touch along an edge only, which carries nothing:
-/// they pass each other. From there to twice that a strip gains its full stiffness. Where anything is about
-/// to move farther within the step, such pairs have contacts all the same [m].
-constexpr double kLeastBreadth = 1e-6;
-/// What is struck may leave this much faster than what strikes it (twice, by far heavier things). Of masses M
-/// and m the struck one leaves with (1 + e) v M / (M + m) < 2 v.
-constexpr double kStruck = 2.0;
+/// Largest gap of a contact; pairs farther apart are swept through the step [m].
+constexpr double kMaxGap = 0.001;
+/// Gap at which an approach has ended, so that the next one may cause an impact again [m].
+constexpr double kMinSeparation = 1e-5;
+/// Smallest breadth of a load-bearing contact region [m]. Boxes that overlap by less in two directions touch
+/// only along an edge and pass each other. From there to twice that, the stiffness grows to its full value.
+/// Pairs that may move farther within the step have contacts all the same.
+constexpr double kMinBreadth = 1e-6;
+/// Largest ratio of a body's velocity after an impact to that of the body that hits it: of masses M and m the
+/// lighter one leaves with (1 + e) v M / (M + m) < 2 v.
+constexpr double kMaxImpactSpeedRatio = 2.0;
 
 /// Geometric means: two alike bodies have their own, and either's zero is the pair's. A touch's stiffness is
 /// `contact/object_stiffness`, whatever the pair.
@@ -33,7 +33,7 @@ Material together(const Material& a, const Material& b) {
   return material;
 }
 
-/// By its spin about its centre alone: |w| R [m/s].
+/// Bound of a body's surface speed due to its spin: |w| R [m/s].
 double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
@@ -85,29 +85,28 @@ std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
 }
 
 std::optional<Touch> find_touch(const ShapePair& pair, double step, double followed, double margin) {
-  const double least_breadth = followed < 2.0 * kApart ? kLeastBreadth : kAnyBreadth;
+  const double least_breadth = followed < 2.0 * kMinSeparation ? kMinBreadth : kAnyBreadth;
   const Manifold manifold = pair.now(margin, least_breadth);
   if (manifold.count == 0) return std::nullopt;
   if (manifold.deepest().depth >= -followed) return Touch{manifold};
   return swept(pair, step, margin);
 }
 
-/// The anchors' stretch is kept; they move along with the place where friction acts, so that rolling
-/// stretches nothing.
+/// Moves the anchors to the point of friction and keeps their stretch, so that rolling stretches nothing.
 ///
-/// xi = A - B less its part along n, from the two body-fixed places that stick to each other. Both are set
-/// anew half of it to either side of that place: A - B is still xi, but a pair that rolls or turns has its
-/// anchors where it touches now, at the arms that its forces have.
+/// xi = A - B without its part along n, from the two body-fixed points that stick to each other. Both are
+/// placed half of it to either side of the point of friction: A - B is still xi, but the anchors of a pair
+/// that rolls or turns are where it touches now, at the arms of its forces.
 void anchor(const MovingBody& a, const MovingBody& b, BodyContact& contact) {
   const Vector3 place = contact.point + contact.friction_offset;
   contact.anchor_a = a.pose.to_local(place + 0.5 * contact.stretch);
   contact.anchor_b = b.pose.to_local(place - 0.5 * contact.stretch);
 }
 
-/// Corners that are this much alike in their distances from the middle may be places on a rim.
-constexpr double kOnRim = 0.01;
-/// Mean distance of a disc's places from its middle, over its radius.
-constexpr double kDisc = 2.0 / 3.0;
+/// Largest relative spread of corners' distances from the centre that may lie on a rim.
+constexpr double kRimTolerance = 0.01;
+/// Mean distance of a disc's points from its centre, over its radius.
+constexpr double kDiscMeanRadius = 2.0 / 3.0;
 
 /// True if four places on the rim of a can's cap touch.
 bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place, 4>& places) {
@@ -124,7 +123,7 @@ bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place
   std::transform(places.begin(), places.end(), distances.begin(),
                  [&](const Place& place) { return std::hypot(place[0] - middle[0], place[1] - middle[1]); });
   const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
-  return *most - *least < kOnRim * *most;
+  return *most - *least < kRimTolerance * *most;
 }
 
 /// Draws the places of friction in towards the centre of the load, by spread_of(): sliding has the same force
@@ -147,7 +146,8 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
     even += contact.point / count;
   }
   centre = load > 0.0 ? Vector3(centre / load) : even;
-  const double spread = count == 4 && on_rim(pair, normal, places) ? kDisc : spread_of(places, count);
+  const double spread =
+      count == 4 && on_rim(pair, normal, places) ? kDiscMeanRadius : spread_of(places, count);
   for (int i = 0; i < count; ++i) {
     BodyContact& contact = *region[static_cast<std::size_t>(i)];
     const Vector3 inwards = (1.0 - spread) * (centre - contact.point);
@@ -155,7 +155,7 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   }
 }
 
-/// What all points of a touch have in common.
+/// Properties common to all points of a touch.
 struct Common {
   Material material;
   Vector3 centre_a, centre_b;  // when they touch
@@ -167,14 +167,13 @@ Common common_of(const ShapePair& pair, const Touch& touch) {
           pair.b.at(then).position};
 }
 
-/// Of a strip of contact, as a part of the pair's.
+/// Stiffness of a strip of contact, as a fraction of the pair's.
 double stiffness_of(double breadth) {
-  return std::clamp(breadth / kLeastBreadth - 1.0, 0.0, 1.0);
+  return std::clamp(breadth / kMinBreadth - 1.0, 0.0, 1.0);
 }
 
-/// Of a pair that meets within the step points are where they will touch, and arms are from where the centres
-/// will be then; the depth is no more than 0 until it has happened. A pair's stiffness is shared by its
-/// points alike.
+/// For a pair that meets within the step, points are where it will touch, arms start from the centres at that
+/// time, and the depth is at most 0 until then. All points have equal fractions of the pair's stiffness.
 BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
                          const Common& common, const ManifoldPoint& point, const BodyContact* memory) {
   BodyContact contact;
@@ -187,7 +186,7 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count_of(point.region);
   contact.first_touch = touch.time;
   if (!lasting) contact.force.setZero();
-  contact.struck = contact.struck && point.depth > -kApart;
+  contact.struck = contact.struck && point.depth > -kMinSeparation;
   contact.material = common.material;
   contact.arm_a = point.point - common.centre_a;
   contact.arm_b = point.point - common.centre_b;
@@ -256,7 +255,7 @@ double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::
     const double spin = body.inverse_inertia.trace() * bodies[b].angular_momentum.norm();  // at most
     fastest = std::max(fastest, bodies[b].linear_momentum.norm() / body.mass + body.bounding_radius * spin);
   }
-  return std::min(kMostFollowed, kApart + kStruck * step * fastest);
+  return std::min(kMaxGap, kMinSeparation + kMaxImpactSpeedRatio * step * fastest);
 }
 
 /// The axis-aligned box that a body may touch another from within in this step. A box turned by R reaches
@@ -284,14 +283,14 @@ BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const Bo
   return reach;
 }
 
-/// The contact of the last step, if there was one. Keys are asked for in their order.
+/// The contact of the previous step, if there was one. Keys must be queried in order.
 const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
                                                 const std::vector<BodyContact>& before) {
   while (reached_ < before.size() && before[reached_].key < key) ++reached_;
   return reached_ < before.size() && before[reached_].key == key ? &before[reached_] : nullptr;
 }
 
-/// The margin is as far as the two may close in the step; what is farther apart has no manifold.
+/// The margin is the distance that the two can close in the step; pairs farther apart have no manifold.
 void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vector<BodyState>& bodies,
                                   double step, const std::vector<BodyContact>& before) {
   const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
@@ -314,7 +313,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
       const std::size_t first = found_.size();
       std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
       for (const ManifoldPoint& point : touch->manifold) {
-        if (touch->time >= 0.0 && point.depth < -kApart) continue;  // meets later
+        if (touch->time >= 0.0 && point.depth < -kMinSeparation) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
         found_.push_back(make_contact(key, pair, *touch, common, point, memory_of(key, before)));

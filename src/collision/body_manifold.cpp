@@ -27,22 +27,21 @@ AxisSpan span_on(const ManifoldShape& shape, const Capsule& capsule, const Close
                                : contact_span(capsule, shape.shape, features);
 }
 
-/// How a capsule lies on a shape, in its frame.
+/// Contact of a capsule along a shape, in the shape's frame.
 struct Lying {
   ClosestFeatures features;
   AxisSpan span;
 
-  /// How far the capsule is above the surface's plane where its axis is at s.
+  /// Height of the capsule above the surface's plane at the axis parameter s.
   double gap(const Capsule& capsule, double s) const {
     return features.normal.dot(capsule.axis_point(s) - features.point) - capsule.radius;
   }
 };
 
-/// What hangs over an edge is nearest there as soon as it tilts: the face is what its middle or its ends
-/// stand over. A bar that tilts by less than kSameFace on the table's edge is nearest at the edge, with a
-/// normal between the face's and the edge's, and would lose its second point. So its middle, then its ends,
-/// are asked by themselves: whichever is over a face with nearly that normal has the face, if the bar is as
-/// deep by it as it is by the edge.
+/// A capsule that hangs over an edge is nearest there as soon as it tilts. A bar that tilts by less than
+/// kSameFace on the table's edge would get a normal between the face's and the edge's, and lose its second
+/// point. Therefore its centre, then its ends, are tested separately: the first that is over a face with
+/// nearly that normal defines the face, if the bar is as deep by it as by the edge.
 Lying lying_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features,
                double margin) {
   const Lying found{features, span_on(shape, capsule, features)};

@@ -18,9 +18,9 @@ struct ManifoldPoint {
   std::uint8_t region = 0;  ///< of the surface, with a normal of its own
 };
 
-/// How two shapes touch. Empty if they are farther apart than the margin. Only meshes that are not convex
-/// touch in several regions at a time, as a die in a cup touches floor and wall; the first has the deepest
-/// point, the others overlap.
+/// Contact points of two shapes. Empty if they are farther apart than the margin. Only non-convex meshes
+/// touch in several regions at once, as a die in a cup touches floor and wall; the first region has the
+/// deepest point, the others overlap.
 struct Manifold {
   static constexpr int kMaxRegions = 3;
   Vector3 normal = Vector3::UnitZ();  ///< unit, world, out of b towards a: moving a along it separates
@@ -61,8 +61,8 @@ struct ManifoldShape {
 
 constexpr double kAnyBreadth = -1e300;  ///< [m]
 
-/// Where the shapes, placed in world, overlap or are nearer than `margin` >= 0 [m]: at most 4 points, the
-/// deepest among them. Deterministic; no memory, no allocation. Two prisms that overlap by less than
+/// Manifold of the shapes, placed in world, that overlap or are within `margin` >= 0 [m]: at most 4 points,
+/// the deepest among them. Deterministic; no memory, no allocation. Two prisms that overlap by less than
 /// `least_breadth` in two directions across each other, like diagonal neighbours of a stack, do not touch.
 ///
 /// Sphere, box and cylinder with each other: the deepest point is as deep as the shortest translation that

@@ -7,12 +7,12 @@
 
 namespace mrhi {
 
-/// Where a capsule of the hand (body 1) and a shape (body 2) are closest, or overlap least. All in the frame
+/// Closest points of a capsule of the hand (body 1) and a shape (body 2), or of least overlap. In the frame
 /// of the arguments.
 ///
 /// With a(s) the axis's point and r the capsule's radius:
 ///     a(s) = point + (distance + r) normal,   distance = normal.(a(s) - point) - r,
-/// but for a point that had to be held to the shape's border. The capsule's own surface point is a(s) - r
+/// except for a point that was clamped to the shape's border. The capsule's own surface point is a(s) - r
 /// normal. A capsule is its axis thickened, and is away from a shape by r less than the axis. With the axis
 /// outside, its nearest distance is > 0 and the normal is along the gap. With the axis inside, the gap's
 /// direction is the wrong way round, and the nearest surface of one point says nothing about the rest of the
@@ -32,9 +32,9 @@ struct ClosestFeatures {
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere);
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box);
 
-/// Part s0..s1 of a capsule's axis that stands over the flat (or straight) piece of surface at `features`, so
-/// that a finger lying along a face touches with two points. s0 == s1 where it touches at a point. Over
-/// something flat depth is linear in s: the two ends tell all.
+/// Part s0..s1 of a capsule's axis over the flat (or straight) piece of surface at `features`, so that a
+/// finger lying along a face touches with two points. s0 == s1 for a single point. Over a flat surface depth
+/// is linear in s: the two ends determine it.
 struct AxisSpan {
   double s0, s1;
   bool at_edge = false;  ///< of a box or a cylinder

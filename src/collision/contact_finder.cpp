@@ -7,8 +7,9 @@
 namespace mrhi {
 namespace {
 
-/// Contacts are followed from this gap on, plus what the pair can close within a step [m]. More than
-/// kSeparation, so that a touch is forgotten while it is still followed: what comes back strikes anew.
+/// Largest gap of a contact, plus the distance that the pair can close within a step [m]. Larger than
+/// kSeparation, so that a contact loses its memory before it ends: a phalanx that returns causes a new
+/// impact.
 constexpr double kMargin = 0.001;
 
 Capsule to_local(const Pose& pose, const Capsule& capsule) {
@@ -91,8 +92,8 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
   }
 }
 
-/// Nearer than kMargin: the features of now. Farther: only if the pair meets within the step, and then with
-/// the face that it meets, whose distance is told as of now: n.(a(s) - point) - r.
+/// Within kMargin, the present features. Beyond, only if the pair meets within the step, and then the face
+/// that it meets with its present distance n.(a(s) - point) - r.
 void ContactFinder::find_touch(const TouchingPair& pair, double step, double margin,
                                const std::vector<Contact>& before) {
   const PlacedCollider& collider =
@@ -104,7 +105,7 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
     const auto met = swept(pair, collider, step, margin);
     if (!met) return;
     features = *met;
-    // Told as the capsule is now: the place on the surface that will be met.
+    // The present distance from the point of the surface that will be met.
     features.distance =
         features.normal.dot(in_shape.axis_point(features.axis_parameter) - features.point) - in_shape.radius;
   }

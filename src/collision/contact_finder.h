@@ -35,7 +35,7 @@ class ContactFinder {
     Matrix3 rotation;
     Vector3 position;
   };
-  /// The same of a body that has been placed; `span` becomes the stretch that lies flat, if it is asked for.
+  /// The same for a placed body; sets `span`, if given, to the part that lies flat.
   std::optional<ClosestFeatures> closest(const Capsule& capsule, int body, int shape,
                                          const PlacedFrame& frame, double margin,
                                          AxisSpan* span = nullptr) const;

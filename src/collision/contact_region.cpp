@@ -5,12 +5,12 @@
 namespace mrhi {
 namespace {
 
-/// Points less deep than the deepest by this are as deep [m].
-constexpr double kAsDeep = 1e-6;
-/// Areas are as large if they differ by less than these.
+/// Largest difference between equal depths [m].
+constexpr double kSameDepth = 1e-6;
+/// Relative and absolute differences up to which areas are equal.
 constexpr double kSameArea = 1e-3, kNoArea = 1e-12;
-/// Three points whose triangle is smaller than this part of the region's size squared are in line.
-constexpr double kStraight = 1e-4;
+/// Largest triangle of three collinear points, as a fraction of the region's size squared.
+constexpr double kCollinear = 1e-4;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ void ContactRegion::remove_gaps(double margin) {
   count = kept;
 }
 
-/// By insertion: stable, no allocation, and there are twelve at most. Corners of a convex polygon are in
-/// order by their angle about any place within, such as their mean.
+/// Insertion sort: stable, without allocation, for at most twelve corners. Corners of a convex polygon are
+/// ordered by their angle about any inner point, such as their mean.
 void ContactRegion::sort_around() {
   double u = 0.0, v = 0.0;
   for (int i = 0; i < count; ++i) u += (*this)[i].place[0] / count, v += (*this)[i].place[1] / count;
@@ -58,9 +58,9 @@ double ContactRegion::triangle(int i) const {
       cross((*this)[(i + count - 1) % count].place, (*this)[i].place, (*this)[(i + 1) % count].place));
 }
 
-/// Of those as deep the first in the polygon's order.
+/// The first of the deepest corners, in the polygon's order.
 std::uint8_t ContactRegion::first_deepest() const {
-  const double deep = deepest() - kAsDeep;
+  const double deep = deepest() - kSameDepth;
   return std::find_if(points.begin(), points.begin() + count,
                       [&](const RegionPoint& p) { return p.depth >= deep; })
       ->feature;
@@ -74,7 +74,7 @@ void ContactRegion::straighten() {
   for (int i = 1; i < count; ++i)
     longest = std::max(longest, std::hypot((*this)[i].place[0] - first[0], (*this)[i].place[1] - first[1]));
   for (int i = count - 1; i >= 0 && count > 2; --i) {
-    if ((*this)[i].feature != kept && triangle(i) < kStraight * longest * longest) erase(i);
+    if ((*this)[i].feature != kept && triangle(i) < kCollinear * longest * longest) erase(i);
   }
 }
 
@@ -153,8 +153,8 @@ bool first_is_reference(double area_a, double area_b, const Vector3& normal) {
 
 /// Depth changes by slope per metre across the face, so that kDepth / slope changes it by 1 um.
 double border_tolerance(double size, double slope) {
-  constexpr double kMost = 0.00015, kDepth = 1e-6;
-  return std::min({kMost, 0.005 * size, kDepth / std::max(slope, 1e-12)});
+  constexpr double kMaxTolerance = 0.00015, kDepth = 1e-6;  // [m]
+  return std::min({kMaxTolerance, 0.005 * size, kDepth / std::max(slope, 1e-12)});
 }
 
 }  // namespace mrhi

@@ -65,20 +65,18 @@ struct ContactRegion {
   std::uint8_t first_deepest() const;
 };
 
-/// How much nearer to the middle the places of a face are than its corners, on average: the mean distance of
-/// a convex polygon's places from the mean of its corners, over that of the corners. A face that presses
-/// evenly and spins has the friction of all its places. 1/2 of a line, 1 of a point. In any order, at most
-/// four corners.
+/// Ratio of the mean distance of a convex polygon's points from the mean of its corners to that of the
+/// corners: a spinning face under an even load has the friction of all its points. 1/2 for a line, 1 for a
+/// point. At most four corners, in any order.
 double spread_of(std::array<Place, 4> corners, int count);
 
 /// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it
 /// is the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal);
 
-/// How far beyond a face's border a corner may lie and still be the one that touches: neither rounding nor
-/// creep must change what two aligned boxes are said to touch with. `slope` is the tangent of the angle
-/// between the faces; depths change by less than 1 um [m]. At the border a corner counts as the place on it:
-/// it moves by up to the tolerance, and its depth by slope times that.
+/// Largest distance of a touching corner beyond a face's border [m]: neither rounding nor creep must change
+/// the features of two aligned boxes. `slope` is the tangent of the angle between the faces. The corner is
+/// moved to the border, which changes its depth by slope times the distance, less than 1 um.
 double border_tolerance(double size, double slope);
 
 inline void add_point(Manifold& manifold, const Vector3& point, double depth, int feature) {

@@ -14,12 +14,13 @@ namespace {
 using Outline = FlatFace::Outline;
 
 constexpr double kQuarter = 1.5707963267948966;
-/// No direction that a scene is likely to have: half-way between two rim points lies off every such.
+/// Angle of the first rim point: no direction that is likely in a scene lies on or half-way between rim
+/// points.
 constexpr double kFirstRimPoint = 0.25;
-/// Rim points are fixed to the cylinder while the rim is out of level by less than the first, and follow the
-/// lowest from the second on [m]: a can that stands keeps the points that friction holds, one that rolls on
-/// its rim has a point where it is lowest.
-constexpr double kLevel = 1e-6, kTilted = 20e-6;
+/// Rim points are fixed to the cylinder while its rim is level within the first, and follow the lowest point
+/// beyond the second [m]: a standing can keeps the points that friction holds, one that rolls on its rim has
+/// a point where it is lowest.
+constexpr double kMaxLevel = 1e-6, kMinTilt = 20e-6;
 /// A disc's rim is crossed by an edge, or another rim, where that comes in (0) and where it goes out (1).
 constexpr int kIn = 0, kOut = 1;
 
@@ -85,7 +86,7 @@ class Clipping {
   }
 
  private:
-  /// How far the end of an offset from the frame's plane is above it, along the normal. x = in plane + height
+  /// Height of the end of an offset above the frame's plane, along the normal. x = in plane + height
   /// n with f.x = height (f.n): per_height_ is 1 / (f.n), 1 for the reference itself and about -1 for the
   /// incident face, which looks the other way.
   double height(const Vector3& offset) const { return per_height_ * offset.dot(frame_.normal); }
@@ -117,7 +118,7 @@ class Clipping {
            k});
     }
   }
-  /// Of a line only the first corner leads on.
+  /// True for the second corner of a line, which starts no edge.
   bool is_end(int corner) const { return other_.is(Outline::line) && corner == polygon_.count - 1; }
 
   /// Corners kept for the tolerance are put onto the border, and their depth is that of the place there.
@@ -131,8 +132,8 @@ class Clipping {
       region_[i].depth = depth(place);
     }
   }
-  /// Where a line of the polygon crosses a border. Two borders of the frame meet in its corner: number i is
-  /// between the borders i - 1 and i.
+  /// Feature of a crossing of the polygon's line with a border. Corner i of the frame is between its borders
+  /// i - 1 and i.
   std::uint8_t crossing_feature(int line, int border) const {
     if (line >= 4) {
       const int next = line - 4 == (border + 1) % 4 ? line - 4 : border;
@@ -141,11 +142,10 @@ class Clipping {
     return crossing(frame_.edges[static_cast<std::size_t>(border)],
                     other_.edges[static_cast<std::size_t>(line)]);
   }
-  /// By one border (Sutherland & Hodgman 1974). What is out by less than the tolerance stays, and counts as
-  /// on the border. With b = sign x_d - half_d of either end, the crossing is at the part b_from / (b_from -
-  /// b_to) of the way: the signs differ, and nothing cancels. Its place on the border is set, not left to
-  /// rounding, so that the next border sees what lies on its own line. If no corner is out the polygon stays
-  /// as it is, names and all.
+  /// Clips by one border (Sutherland & Hodgman 1974). Corners outside by less than the tolerance stay, and
+  /// count as on the border. With b = sign x_d - half_d of either end, the crossing is at the fraction b_from
+  /// / (b_from - b_to): the signs differ, so that nothing cancels. Its coordinate on the border is set
+  /// exactly for the next border. If no corner is outside, the polygon is unchanged, with its names.
   void clip(int border) {
     const Border side = kBorders[static_cast<std::size_t>(border)];
     const std::size_t d = side.dimension;
@@ -196,8 +196,8 @@ class Clipping {
     }
     if (closed) region_.sort_around();
   }
-  /// To the left of all four sides, or to the right: a rectangle that is seen from below goes round the other
-  /// way, which `turn` tells. The cross product with a side is its length times the distance from it.
+  /// True if the point is left of all four sides, or right of all: a rectangle seen from below has the other
+  /// sense, which `turn` gives. The cross product with a side is its length times the distance from it.
   bool in_polygon(const Place& place) const {
     const double turn = cross(polygon_[0].place, polygon_[1].place, polygon_[2].place) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < 4; ++i) {
@@ -229,8 +229,8 @@ class Clipping {
     if (to_is_in && other_.is(Outline::line)) add(to.place, to.feature);
   }
 
-  /// How far a place, seen on the other disc, is beyond its rim. x less (x.m / n.m) n is the place on the
-  /// other's plane above or below, along n.
+  /// Distance of a point, projected on the other disc, beyond its rim. x less (x.m / n.m) n is the place on
+  /// the other's plane above or below, along n.
   double beyond_rim(const Place& place) const {
     const Vector3 offset = frame_.at(place) - other_.centre;
     return (offset - offset.dot(other_.normal) / normal_.dot(other_.normal) * normal_).norm() -
@@ -296,14 +296,14 @@ bool in_frame_of(const FlatFace& reference, const FlatFace& incident) {
 
 /// The rim is out of level by 2 r |slope| from its highest to its lowest, the gradient's direction. Turned by
 /// less than an eighth of a turn, one way or the other, to the nearest of the four: a quarter turn leaves the
-/// four in place, but for their names. From kLevel to kTilted the points glide there in proportion, so that
-/// none jumps.
+/// four in place, but for their names. From kMaxLevel to kMinTilt the points glide there in proportion, so
+/// that none jumps.
 std::array<double, 4> rim_angles(double radius, const Place& slope) {
   double first = kFirstRimPoint;
   const double rise = 2.0 * radius * length(slope);
-  if (rise > kLevel) {
+  if (rise > kMaxLevel) {
     const double lowest = std::atan2(slope[1], slope[0]) - kFirstRimPoint;
-    const double follow = std::min(1.0, (rise - kLevel) / (kTilted - kLevel));
+    const double follow = std::min(1.0, (rise - kMaxLevel) / (kMinTilt - kMaxLevel));
     first += follow * (lowest - kQuarter * std::round(lowest / kQuarter));
   }
   return {{first, first + kQuarter, first + 2 * kQuarter, first + 3 * kQuarter}};

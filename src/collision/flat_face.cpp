@@ -3,12 +3,12 @@
 namespace mrhi {
 namespace {
 
-/// What is round meets a face with its cap above, with a line of its side below this cosine.
-constexpr double kCapOrSide = 0.7071067811865476;
+/// Cosine above which a round shape meets a face with its cap, and below which with a line of its side.
+constexpr double kMinCapCosine = 0.7071067811865476;
 
-/// Lines that cross at this angle touch at a point [rad].
-constexpr double kCrosses = 0.1;
-/// Depths that differ by less than this along a line are the same [m].
+/// Smallest angle at which crossing lines touch at a point [rad].
+constexpr double kMinCrossingAngle = 0.1;
+/// Largest difference of depths along a level line [m].
 constexpr double kLevelLine = 1e-9;
 
 double clamp(double x, double lo, double hi) {
@@ -71,7 +71,7 @@ FlatFace face_towards(const Prism& prism, const Vector3& outward) {
 }
 
 FlatFace lying_towards(const Prism& prism, const Vector3& outward) {
-  const bool on_side = prism.round && std::abs(prism.axis().dot(outward)) < kCapOrSide;
+  const bool on_side = prism.round && std::abs(prism.axis().dot(outward)) < kMinCapCosine;
   return on_side ? FlatFace::of(side_line(prism, outward)) : face_towards(prism, outward);
 }
 
@@ -112,11 +112,11 @@ Manifold line_on_line(const Line& a, const Line& b, const Vector3& normal, int f
   const double across = a.along.cross(b.along).norm();
   const double ends = std::abs(a.along.dot(b.along)) * b.half, middle = apart.dot(a.along);
   const double from = std::max(-a.half, middle - ends), to = std::min(a.half, middle + ends);
-  if (a.half == 0.0 || b.half == 0.0 || across >= kCrosses || from >= to) {
+  if (a.half == 0.0 || b.half == 0.0 || across >= kMinCrossingAngle || from >= to) {
     add(crossing(a, b, apart), feature);
     return manifold;
   }
-  const double part = 1.0 - across / kCrosses;
+  const double part = 1.0 - across / kMinCrossingAngle;
   const double rises =
       normal.dot(b.along * (a.along.dot(b.along) < 0.0 ? -1.0 : 1.0) - a.along) * (to - from);
   double kept = across < 1e-9 ? 0.5 * (from + to) : clamp(crossing(a, b, apart), from, to);

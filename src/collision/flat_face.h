@@ -35,8 +35,8 @@ struct Line {
   Vector3 at(double t) const { return middle + t * along; }
 };
 
-/// What a shape has straight across a direction: a flat piece with its outline, or a line on it. Corners of a
-/// rectangle go round; edge i leads from corner i to the next, and stands on the side kBorders[i].
+/// Part of a shape that is perpendicular to a direction: a flat face with its outline, or a line. Corners of
+/// a rectangle are in cyclic order; edge i leads from corner i to the next, and is on the side kBorders[i].
 ///
 /// A place (x, y) on it is centre + x along[0] + y along[1]; its normal points out of its own shape. Of a
 /// face along[0] x along[1] is the normal or its opposite: corners go round left or right.
@@ -73,11 +73,11 @@ inline std::array<int, 2> edge_ends(int edge) {
 /// The flat face whose outward normal is nearest to `outward`.
 FlatFace face_towards(const Prism& prism, const Vector3& outward);
 
-/// What of it lies on a plane that it is pressed to along `outward`: a face, or the line of a round side.
+/// Part of the prism that lies on a plane with the normal `outward`: a face, or the line of a round side.
 FlatFace lying_towards(const Prism& prism, const Vector3& outward);
 
-/// What of it is straight across a direction to within `tolerance` (the cosine), farthest along it; the edge
-/// along `beside`, if there are two. A point if nothing is.
+/// Line of the prism that is perpendicular to a direction within `tolerance` (the cosine) and farthest along
+/// it; the edge along `beside` if there are two. A point if there is none.
 Line line_facing(const Prism& prism, const Vector3& n, double tolerance, const Vector3& beside);
 
 /// The line of a round side that is farthest along `facing`. The tolerance lets any direction pass, even one
@@ -91,8 +91,7 @@ inline Line side_line(const Prism& prism, const Vector3& facing) {
 /// coordinates) tilts it noticeably.
 std::array<double, 4> rim_angles(double radius, const Place& slope);
 
-/// How two faces touch, by the normal of `reference`: the corners of what of one stands over the other, at
-/// most four of them.
+/// Manifold of two faces along the normal of `reference`: at most four corners of their overlap.
 Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin);
 
 /// Two lines that face each other along `normal` (out of b towards a): at two points (names `feature`, + 1)

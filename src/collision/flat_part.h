@@ -42,13 +42,13 @@ class Chord {
     const double half = std::sqrt(std::max(0.0, radius * radius - miss * miss)) / length;
     clip(nearest - half, nearest + half);
   }
-  /// Where it ends; nothing if the line misses the shape.
+  /// Parameter at which the line leaves the shape; nothing if it misses.
   std::optional<double> out() const { return out_ < in_ ? std::nullopt : std::optional<double>(out_); }
 
  private:
-  /// A line that runs along a side at this distance from it still meets the shape [m].
+  /// Largest distance from a side at which a line along it still meets the shape [m].
   static constexpr double kBorder = 1e-9;
-  /// Components of the direction below this are rounding.
+  /// Largest component of a direction that is rounding.
   static constexpr double kLevel = 1e-12;
 
   void clip(double from, double to) { in_ = std::max(in_, from), out_ = std::min(out_, to); }
@@ -56,7 +56,7 @@ class Chord {
   double in_ = -std::numeric_limits<double>::infinity(), out_ = -in_;
 };
 
-/// Normals that differ by less than this are the same [rad].
+/// Largest angle between equal normals [rad].
 constexpr double kSameNormal = 1e-6;
 
 inline AxisSpan at_point(const ClosestFeatures& features) {
@@ -78,12 +78,12 @@ inline AxisSpan over(const Stretch& stretch, const ClosestFeatures& features) {
 /// the side, about s: continuous in psi, where a switch from two points to one would throw what friction has
 /// stored from one to the other.
 inline AxisSpan beside_round_side(const Segment& axis, const ClosestFeatures& features, double half) {
-  constexpr double kCrosses = 0.1;  // touches at a point [rad]
+  constexpr double kMinCrossingAngle = 0.1;  // touches at a point [rad]
   Stretch stretch;
   stretch.clip_to_slab(axis.start.z(), axis.along.z(), half);
   const AxisSpan beside = over(stretch, features);
   const double across = std::abs(Vector3::UnitZ().cross(features.normal).dot(axis.along));
-  const double part = std::max(0.0, 1.0 - across / (kCrosses * axis.along.norm()));
+  const double part = std::max(0.0, 1.0 - across / (kMinCrossingAngle * axis.along.norm()));
   const double s = features.axis_parameter;
   return {s + part * (beside.s0 - s), s + part * (beside.s1 - s)};
 }

@@ -6,10 +6,10 @@
 namespace mrhi {
 namespace {
 
-/// The surface's normal may turn by this much from one step to the next while a phalanx slides over it; a
-/// larger turn means that the nearest way out is no longer the way in, and the entry face is kept (cosine).
-constexpr double kSameFace = 0.5;
-/// Below this a contact is at rest [m/s].
+/// Smallest cosine between the normals of successive steps of a phalanx that slides over a surface. A larger
+/// turn means that the nearest surface is no longer the one entered by, and the entry face is kept.
+constexpr double kMinSameFaceCosine = 0.5;
+/// Largest speed of a contact at rest [m/s].
 constexpr double kRestingSpeed = 1e-9;
 
 /// The plane of the face that the phalanx pushes on, in the body's frame.
@@ -23,7 +23,7 @@ struct ContactPlane {
 /// another face, and say nothing of this one.
 ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
   if (memory == nullptr || !pair.refinements.entry_face ||
-      memory->entry_normal.dot(features.normal) >= kSameFace)
+      memory->entry_normal.dot(features.normal) >= kMinSameFaceCosine)
     return {features.point, features.normal, false};
   return {memory->god_object, memory->entry_normal, true};
 }
@@ -75,13 +75,13 @@ struct Press {
   double spin;
 };
 
-/// Where the god object is, in the body's frame. One that has not been pressed yet follows the finger: the
-/// stretch begins at the touch. When another point of the phalanx comes to press, it moves along by as much:
-/// the stretch between the two, which is what friction has stored, stays.
+/// The god object in the body's frame. Before the contact it follows the finger, so that the spring starts
+/// without stretch. If another point of the phalanx takes the load, the god object moves with it: the
+/// stretch, in which friction is stored, stays the same.
 ///
-/// Zilles & Salisbury 1995: of all places on the active plane the one nearest to the point that it stands
-/// for, which is its projection x + n n.(q - x). A single plane is active, that of the entry face; where
-/// faces meet, the nearest features choose.
+/// Zilles & Salisbury 1995: the point of the active plane nearest to the finger's point, which is its
+/// projection x + n n.(q - x). A single plane is active, that of the entry face; where faces meet, the
+/// nearest features choose.
 Vector3 god_object(const Press& press, double s, const Contact* pressed) {
   const Vector3 point = pressed != nullptr
                             ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * press.along)
@@ -103,15 +103,15 @@ Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
   return length * (way_back - contact.normal.dot(way_back) * contact.normal);
 }
 
-/// The lever begins at zero with the touch, w = n, and grows as palm and body turn against each other. What
-/// slips begins anew.
+/// The lever is zero at the first contact, w = n, and grows as palm and body turn relative to each other. It
+/// is reset by slip.
 void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact) {
   const Matrix3& palm = pair.hand.palm;
   contact.lever.setZero();
   if (held != nullptr) {
     contact.lever = lever(palm, held->at_edge, contact);
     if (held->at_edge == contact.at_edge) return;
-    // What has been stored on a face counts on at the edge, and the other way round.
+    // The stretch stored on a face continues at the edge, and the other way round.
     contact.point -= contact.lever;
     contact.god_object = pair.moving.to_local(contact.point);
     contact.lever.setZero();
@@ -119,7 +119,7 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
   contact.touched_from = palm.transpose() * contact.normal;
 }
 
-/// Where the point at s is. `memory` is the contact that it goes on from, or null.
+/// Places the contact's point at s. `memory` is the contact that it continues, or null.
 ///
 /// The patch is Hertz's, a^2 = r d for a ball of radius r pressed in by d (Johnson 1985), whose depth counts
 /// up to r.
@@ -150,9 +150,9 @@ void place(const Press& press, double s, const Contact* memory, Contact& contact
   swing_back(press.pair, held ? memory : nullptr, contact);
 }
 
-/// Contact `point` of the pair, going on from its memory, or beginning. `nearest` tells what the pair did. A
-/// second point that comes to an old pair does what the first has done: it must not strike again, nor press
-/// where its neighbour has given way or is ignored.
+/// Contact `point` of the pair, continued from its memory or new. `nearest` is the state of the pair: a
+/// second point of an old pair inherits it, so that it causes no new impact, and applies no force where its
+/// neighbour complies or is ignored.
 void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory,
                    const ContactMemory* nearest, ContactMemory& contact) {
   if (memory != nullptr) {

@@ -9,7 +9,7 @@
 
 namespace mrhi {
 
-/// Surfaces that have come apart by more than this forget each other [m].
+/// Gap beyond which a contact loses its memory [m].
 constexpr double kSeparation = 0.0005;
 
 /// One capsule of a hand near one shape of a body, and how their contact is modelled.

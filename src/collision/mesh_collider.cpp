@@ -11,8 +11,8 @@ namespace mrhi {
 namespace {
 
 constexpr double kUnlimited = 1e300;
-/// Faces on which a finger lies flat for less than this are part of a curve, that it touches at a point [m].
-constexpr double kLeastFlat = 0.002;
+/// Shortest length on which a finger lies flat on a face [m]; shorter faces are parts of a curved surface.
+constexpr double kMinFlatLength = 0.002;
 
 /// The parts of a mesh whose parts may overlap; none of another.
 std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
@@ -28,8 +28,8 @@ std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-/// Where the nearest part was found last, by the place of the segment's middle: a guess to begin the next
-/// search with. No result depends on it, so that all who ask may share it.
+/// The nearest part found last, by the place of the segment's centre: an initial guess for the next search.
+/// No result depends on it, so that all callers may share it.
 ///
 /// The place's cell in a grid of 32 across the mesh is hashed to one of a prime number of entries: two cells
 /// that share one only make worse guesses. Relaxed order is enough, as a guess stands for itself.
@@ -57,16 +57,16 @@ class GuessMemory {
   std::array<std::atomic<int>, 1021> parts_;
 };
 
-/// What was near to segments that were asked for, so that who asks again from almost the same place needs no
-/// search. No result depends on it either; who finds an entry in use by another goes without.
+/// Parts near recent segments, so that a query from almost the same place needs no search. No result depends
+/// on it either; a caller that finds an entry in use by another does without.
 ///
 /// Entries lie in sets by the 2 mm cells of both ends, four to a set. The set is locked by a flag while it is
-/// read or written, and no one waits. A segment that has moved by kStill or more gets an entry for its place
-/// alone, without parts: gathering them pays only if it stays.
+/// read or written, and no caller waits. A segment that has moved by kMaxMotion or more gets an entry for its
+/// place alone, without parts: gathering them pays only if it stays.
 class NearMemory {
  public:
-  /// The answer if it is known; else `search()`, and what it found is remembered if the segment has kept so
-  /// still that this may serve once more.
+  /// Returns the nearest feature, from memory if possible, else by `search()`, whose result is stored if the
+  /// segment hardly moves.
   template <typename Search>
   MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range, const Search& search) {
     Set& set = sets_[name_of(segment) % sets_.size()];
@@ -81,7 +81,7 @@ class NearMemory {
     NearParts& entry = set.entries[closest];
     if (least < entry.slack) return MeshNearest(shape.surface, segment, range, entry);
     MeshNearest found = search();
-    if (least < kStill) {
+    if (least < kMaxMotion) {
       entry = found.found() ? found.near_parts(shape.tree) : NearParts{};
     } else {
       set.next = (set.next + 1) % set.entries.size();
@@ -93,7 +93,7 @@ class NearMemory {
   }
 
  private:
-  static constexpr double kCell = 0.002, kStill = 2e-5;  // [m]
+  static constexpr double kCell = 0.002, kMaxMotion = 2e-5;  // [m]
 
   struct Use {
     explicit Use(std::atomic_flag& taken) : flag(taken) {}
@@ -179,7 +179,7 @@ ClosestFeatures MeshCollider::Impl::leave(const MeshShape& of, const Segment& se
   return leave_mesh(segment, of.surface, of.tree, face_at(of, nearest), known ? &*known : nullptr);
 }
 
-/// A part's faces have numbers of their own: none is told.
+/// Reports no face, because a part's faces have numbers of their own.
 std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& segment) const {
   std::optional<ClosestFeatures> best;
   for (const MeshShape& part : parts) {
@@ -193,9 +193,9 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
   return best;
 }
 
-/// Where the solid is hollow, an end may have its shortest way out to an edge or a corner that points
-/// inwards. The end's own nearest place is at depth d along the normal -gap / d, out of the solid; the
-/// segment has come out with it only if the other end is not behind: normal.(other - end) >= 0.
+/// In a hollow solid the nearest surface of an end may be an edge or a corner that points inwards. The end's
+/// nearest point is at depth d along the normal -gap / d, out of the solid. The segment is outside with it
+/// only if the other end is not behind: normal.(other - end) >= 0.
 void MeshCollider::Impl::leave_by_end(const MeshShape& of, const Segment& segment, double s,
                                       std::optional<ClosestFeatures>& best) const {
   const Vector3 end = segment.at(s);
@@ -213,7 +213,7 @@ MeshCollider::MeshCollider(const TriangleMesh& mesh) : impl_(std::make_unique<co
 MeshCollider::~MeshCollider() = default;
 
 std::shared_ptr<const MeshCollider> shared_collider(const std::shared_ptr<const TriangleMesh>& mesh) {
-  // By ownership, so that no other mesh at the same place in memory is taken for it.
+  // Compared by ownership, because another mesh may get the same address later.
   using Known = std::map<std::weak_ptr<const TriangleMesh>, std::weak_ptr<const MeshCollider>,
                          std::owner_less<std::weak_ptr<const TriangleMesh>>>;
   static std::mutex mutex;
@@ -283,7 +283,7 @@ AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& featu
   if (features.face < 0 || axis.along.isZero(0.0)) return {s, s};
   const MeshSurface& surface = impl_->shape.surface;
   const Stretch over = surface.over(surface.faces()[static_cast<std::size_t>(features.face)], axis, s);
-  if ((over.s1 - over.s0) * axis.along.norm() < kLeastFlat) return {s, s};
+  if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
 }
 

@@ -26,8 +26,8 @@ class MeshCollider {
   /// solid that is not convex, the shortest way out through what is nearest.
   std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
 
-  /// What of the capsule's axis stands over the flat face that `closest` found; a point if that is not a
-  /// face, or one of a curved surface's.
+  /// Part of the capsule's axis over the flat face that `closest` found; a point for an edge, a corner, or a
+  /// face of a curved surface.
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 
   const MeshShape& shape() const;
@@ -37,8 +37,8 @@ class MeshCollider {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The collider of `mesh`: one for all scenes of the process that have this mesh, made for the first of them.
-/// So a change of a scene prepares no mesh anew. Throws as the constructor does. Any thread may call it.
+/// The collider of `mesh`, shared by all scenes of the process that have this mesh: a change of a scene does
+/// not prepare it again. Throws as the constructor does. Any thread may call it.
 std::shared_ptr<const MeshCollider> shared_collider(const std::shared_ptr<const TriangleMesh>& mesh);
 
 }  // namespace mrhi

@@ -77,7 +77,7 @@ TriangleMesh sorted(const TriangleMesh& mesh) {
   return result;
 }
 
-/// Of each triangle's three sides (from vertex k to the next) the triangle and the side beyond it.
+/// The neighbouring triangle, and its side, at each of a triangle's three sides (from vertex k to the next).
 class Neighbourhood {
  public:
   /// Of a closed surface whose triangles all face outwards each line has as many sides up as down. Sides of
@@ -213,10 +213,10 @@ class FaceFinder {
     planes_.back().add(areas_[slot(triangle)], centre);
   }
 
-  /// The one is flat beside the other, or so thin that it has no direction of its own. By the height of the
-  /// one's apex above the other's plane, A.(apex - corner) / |A|, the lesser of the two: a length, as the
-  /// tolerance is. An angle would ask much of slivers, whose apex is near the side that they share. Triangles
-  /// that face each other (A.B <= 0) are a fold, however flat.
+  /// True if two neighbouring triangles are in one plane, or one is too thin to have a direction of its own.
+  /// Tests the smaller height of one's apex above the other's plane, A.(apex - corner) / |A|: a length, like
+  /// the tolerance. An angle would be too strict for slivers, whose apex is near the shared side. Triangles
+  /// that face each other (A.B <= 0) are a fold.
   bool goes_on(int triangle, int side, const Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
     const Vector3 &area = areas_[slot(triangle)], &other = areas_[slot(beyond.triangle)];
@@ -369,8 +369,8 @@ class SeamFinder {
   std::vector<Seam> seams_;
 };
 
-/// Of a triangle's corner: normals of the faces round a vertex, weighted by it, do not depend on how the
-/// faces are cut into triangles (Thuermer & Wuethrich 1998), and tell inside from outside (Baerentzen &
+/// Angle at a triangle's corner: normals of the faces around a vertex, weighted by it, do not depend on how
+/// the faces are cut into triangles (Thuermer & Wuethrich 1998), and tell inside from outside (Baerentzen &
 /// Aanaes 2005).
 double corner_angle(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));

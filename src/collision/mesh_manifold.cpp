@@ -9,22 +9,22 @@
 namespace mrhi {
 namespace {
 
-/// Touches whose normals are within 20 degrees of the deepest's belong to it.
-constexpr double kAgrees = 0.94;
+/// Smallest cosine between the normals of touches in one region (20 degrees).
+constexpr double kMinSameRegionCosine = 0.94;
 constexpr double kSameDepth = 1e-6;
 /// Names of a byte: 0 to 99 corners and 100 to 127 edges of what sticks out in b, and 128 beyond these of
 /// what sticks out in a.
 constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
-/// An edge that touches with its end leaves that to the corner there. Else one place would have two names.
+/// Margin at an edge's ends, which belong to the corners there: else one point would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
-/// A search for the way out from deeper than kDeep, or on the surface itself, takes some 30 times what
-/// another takes [m]. A visit of a shape makes kMostDeep at most: fine meshes far within each other, which no
-/// scene begins with, must not hold a step up.
+/// A search from deeper than kDeep, or on the surface itself, costs about 30 times as much as others [m].
+/// Each visit of a shape makes at most kMaxDeepSearches, so that fine meshes deep inside each other do not
+/// delay a step.
 constexpr double kDeep = 0.002, kCoincides = 1e-9;
-constexpr int kMostDeep = 300;
+constexpr int kMaxDeepSearches = 300;
 
-/// What may stick out of a shape: a corner (both ends the same) or an edge, in world.
+/// A corner (both ends the same) or an edge of a shape, in world.
 struct Probe {
   Vector3 start, end;
   int name;
@@ -52,7 +52,7 @@ struct Probing {
   const Pose& other_pose;
   bool other_is_b;
   double margin;
-  mutable int deep_left = kMostDeep;  // of the visit
+  mutable int deep_left = kMaxDeepSearches;  // of the visit
 
   void note(const ClosestFeatures& features) const {
     if (features.distance < -kDeep || std::abs(features.distance) < kCoincides) --deep_left;
@@ -109,15 +109,15 @@ struct Probes {
   }
 
  private:
-  /// Where the other shape is, as seen from a capsule within this one; zero: beyond reach. Features are of
-  /// the other shape and its normal points out of it, to this one: less that is where it lies.
+  /// Direction from a capsule inside this shape to the other; zero beyond reach. Features are of the other
+  /// shape, with the normal out of it: the direction is its negative.
   Vector3 facing_from(const Capsule& inside, double reach) const {
     const Pose& other = probing.other_pose;
     const auto features = closest_on(
         probing.other, {other.to_local(inside.start), other.to_local(inside.end), inside.radius}, reach);
     return features ? Vector3(-(other.orientation * features->normal)) : Vector3::Zero();
   }
-  /// Of a form without corners or edges that are known: the place that faces the other.
+  /// Adds the support point of a shape without known corners or edges.
   void of_other() const {
     const Pose& pose = probing.pose;
     const Vector3 facing =
@@ -154,7 +154,7 @@ struct Probes {
     see(Probe::corner(line.at(line.half), 9));
     see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
   }
-  /// A corner belongs to the first of its edges: it is asked once, whichever edges are visited.
+  /// A corner belongs to the first of its edges, so that it is tested once.
   void of_mesh(const MeshSurface& surface, int part) const {
     const int index = part - static_cast<int>(surface.faces().size());
     if (index < 0) return;
@@ -214,7 +214,7 @@ class Touches {
   template <typename Wanted, typename See>
   void measure(const Wanted& wanted, const See& see) const {
     for (const Probing& probing : both_) {
-      probing.deep_left = kMostDeep;
+      probing.deep_left = kMaxDeepSearches;
       const auto wanted_here = [&](const MeshTree::Node& node) {
         return probing.deep_left > 0 && wanted(probing, node);
       };
@@ -231,9 +231,9 @@ class Touches {
   std::size_t count_ = 0;
 };
 
-/// Of the touches that agree with the deepest those farthest out in eight directions across its normal. The
-/// first direction is 0.1 rad off u, so that none lies along a box's sides, where two corners would be as far
-/// out but for rounding.
+/// The touches of the deepest one's region that are farthest in eight directions across its normal. The first
+/// direction is 0.1 rad off u, so that none is along a box's sides, where rounding would decide between two
+/// corners.
 class Spread {
  public:
   Spread(const Touches& touches, const Touch& deepest) : deepest_(deepest) {
@@ -260,7 +260,7 @@ class Spread {
     return farther && probing.most(node) >= -probing.margin;
   }
   void see(const Touch& touch) {
-    if (touch.normal.dot(deepest_.normal) < kAgrees) return;
+    if (touch.normal.dot(deepest_.normal) < kMinSameRegionCosine) return;
     for (std::size_t k = 0; k < kDirections; ++k) {
       const double far = out_[k].dot(touch.point - deepest_.point);
       if (far > farthest_[k] + kSameDepth) farthest_[k] = far, outermost_[k] = touch;
@@ -321,7 +321,7 @@ Manifold chosen(const Touches& touches, bool convex) {
     if (convex || region + 1 == Manifold::kMaxRegions) break;
     deepest = touches.deepest(0.0, [&](const Touch& touch) {
       for (int k = 0; k <= region; ++k)
-        if (touch.normal.dot(manifold.normal_of(k)) >= kAgrees) return false;
+        if (touch.normal.dot(manifold.normal_of(k)) >= kMinSameRegionCosine) return false;
       return true;
     });
   }

@@ -63,7 +63,7 @@ void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see
   }
 }
 
-/// The limit shrinks as nearer parts are found: it is asked anew at every node.
+/// The limit shrinks as nearer parts are found: it is evaluated at every node.
 void MeshNearest::search(const MeshTree& tree, double range) {
   visit(
       tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });
@@ -242,8 +242,7 @@ class WayOutSearch {
 
   bool found() const { return face_.face >= 0 || edge_index_ >= 0; }
 
-  /// How deep a node is at least. Where the way has to lead through a part, that is no farther than it is
-  /// deep.
+  /// Lower bound of a node's depth.
   double cost(const MeshTree::Node& node) const {
     const double depth = node.depth(segment_);
     if (surface_.convex()) return depth;

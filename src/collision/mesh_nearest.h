@@ -6,8 +6,8 @@
 
 namespace mrhi {
 
-/// What may be nearest to a segment whose ends are within `slack` of those given: all other parts are farther
-/// by then.
+/// Parts that may be nearest to a segment whose ends are within `slack` of the given ones. All others are
+/// farther.
 struct NearParts {
   static constexpr std::size_t kMost = 40;
 
@@ -16,7 +16,7 @@ struct NearParts {
   std::array<int, kMost> parts;
   std::size_t count = 0;
 
-  /// How far the farther end is from there.
+  /// Larger distance of the segment's ends from the given ones.
   double moved(const Segment& segment) const {
     return std::sqrt(std::max((segment.start - start).squaredNorm(), (segment.end() - end).squaredNorm()));
   }

@@ -5,10 +5,10 @@
 namespace mrhi {
 namespace {
 
-/// Edges that bend by less are as good as flat [rad]. |n0 x n1| is the sine of the bend.
+/// Largest bend of a flat edge [rad]. |n0 x n1| is the sine of the bend.
 constexpr double kFlat = 1e-6;
-/// A place is clear of a border if it is within it by more than this part of the border's length, a gap clear
-/// of a plane if it is off it by more than this part of its own.
+/// Smallest distance of a point from a border, as a fraction of the border's length, and of a gap from a
+/// plane, as a fraction of its own length, that counts as clear.
 constexpr double kClear = 1e-5;
 
 double nearest_to(const Vector3& place, const Segment& segment) {

@@ -8,7 +8,7 @@
 
 namespace mrhi {
 
-/// Where a list has what is told by its number.
+/// Index of a numbered item in a list.
 inline std::size_t slot(int number) {
   return static_cast<std::size_t>(number);
 }

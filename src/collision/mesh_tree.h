@@ -91,7 +91,7 @@ void MeshTree::search(const Cost& cost, const Limit& limit, const See& see) cons
   }
 }
 
-/// What a MeshCollider holds, for those who ask for a mesh's parts.
+/// A mesh prepared for contact: its surface, tree and parts.
 struct MeshShape {
   explicit MeshShape(const TriangleMesh& mesh) : surface(mesh), tree(surface) {}
 

@@ -40,14 +40,15 @@ std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::ve
 
 namespace {
 
-// Room around a body at rest, and as a part of its size; what a moving one has beyond that: its way in some
-// time. More room is asked for more rarely, but lists more pairs that are not near.
-constexpr double kRoom = 0.002;  // [m]
-constexpr double kRoomPart = 0.1;
-constexpr double kRoomTime = 0.01;  // [s]
-/// From this gap on contacts are followed, with what gravity adds to a step's way [m]. It holds
-/// ContactFinder's margin, 1 mm, and a fall of 2 mm, from rest within 20 ms at 1 g.
-constexpr double kFollowed = 0.004;
+// Margin of a body's sphere in the Verlet list: a constant [m], a fraction of the body's size, and the
+// distance that a moving body covers in a time [s]. A larger margin lasts longer, but lists more distant
+// pairs.
+constexpr double kMargin = 0.002;
+constexpr double kMarginFraction = 0.1;
+constexpr double kMarginTime = 0.01;
+/// Largest gap at which pairs are listed [m]: ContactFinder's margin of 1 mm, and a fall of 2 mm, from rest
+/// within 20 ms at 1 g.
+constexpr double kMaxGap = 0.004;
 
 }  // namespace
 
@@ -115,7 +116,7 @@ void Neighbours::begin_step(const std::vector<BodyState>& bodies, double step) {
 double Neighbours::reach_of(std::size_t body, const BodyState& state, double seconds) const {
   const Body& b = scene_.bodies[body];
   const double way = b.fixed ? 0.0 : seconds * state.linear_momentum.norm() / b.mass;
-  return b.bounding_radius + way + kFollowed;
+  return b.bounding_radius + way + kMaxGap;
 }
 
 /// The foot of the centre on the axis half-way, held in 0..1, is as near as it gets to it.
@@ -150,9 +151,9 @@ bool Neighbours::may_meet(std::size_t a, std::size_t b, const std::vector<BodySt
   return apart <= reach_of(a, bodies[a], seconds) + reach_of(b, bodies[b], seconds);
 }
 
-/// A body leaves if |moved| + |v| step may be more than its slack, asked as
-/// 2 (moved^2 + (v step)^2) > slack^2 without a root. Just placed it holds, as the slack has 2 v step in it
-/// and sqrt(2) v step is asked for.
+/// A body leaves if |moved| + |v| step may exceed its slack, tested as 2 (moved^2 + (v step)^2) > slack^2
+/// without a root. A body that was just placed stays: its slack contains 2 v step, and the test needs sqrt(2)
+/// v step.
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {
   bool any = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -166,8 +167,9 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
                               travel * travel * bodies[b].linear_momentum.squaredNorm());
     if (way <= room.slack_squared) continue;
     const double speed = body.fixed ? 0.0 : bodies[b].linear_momentum.norm() / body.mass;
-    const double slack = kRoom + kRoomPart * body.bounding_radius + (kRoomTime + 2.0 * step) * speed;
-    room = {position, slack * slack, body.bounding_radius + slack + kFollowed};
+    const double slack =
+        kMargin + kMarginFraction * body.bounding_radius + (kMarginTime + 2.0 * step) * speed;
+    room = {position, slack * slack, body.bounding_radius + slack + kMaxGap};
     broad_phase_.update(static_cast<int>(b), position, room.radius);
     any = true;
   }

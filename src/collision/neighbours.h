@@ -83,22 +83,23 @@ struct CarriedFrame {
   double margin = 0.0;             ///< largest distance of what the carrier does from that [m]
 };
 
-/// Who may come near whom. Each body has a sphere with room to move in around it (a Verlet list: Verlet
-/// 1967); only when a body is about to leave its sphere is the broad phase asked anew. A cache of the state,
-/// not part of it: what it lists may be more than needed, never less.
+/// Broad phase: lists the pairs of bodies, and of hands and bodies, that may touch. Each body has a sphere
+/// with a margin (Verlet list: Verlet 1967); the lists are updated when a body is about to leave its sphere.
+/// A cache of the state, not part of it: it may list more pairs than needed, never fewer.
 class Neighbours {
  public:
   explicit Neighbours(const Scene& scene);  ///< keeps a reference
 
-  /// Once a frame: the hands' way in it. `carried`: by slot, null for a hand that is tracked in world.
+  /// Call once a frame, with the hands' paths in it. `carried`: by slot, null for a hand that is tracked in
+  /// world.
   using Carried = std::array<const CarriedFrame*, kMaxHands>;
   void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
                    const Carried& carried = {});
-  /// Every step, of `step` seconds.
+  /// Call for every step of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
-  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`. By
-  /// what is where alone, not by what is listed.
+  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`. Uses
+  /// positions and velocities, not the lists.
   bool may_meet_hand(std::size_t body, const BodyState& state, double seconds) const;
   bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
 

@@ -47,12 +47,11 @@ struct Solid {
   }
 };
 
-/// The diameter of the largest ball that is within both bodies, as far as it is found [m].
+/// Diameter of the largest ball found inside both bodies, a lower bound of their overlap [m].
 ///
-/// From places all over the first body, its middle first, the search goes into the body that it is less deep
-/// in, half the difference of both depths at a time, which leads to the middle of a layer that two flat faces
-/// share. What is found is in both. A manifold's depth, between corners and edges, knows nothing of faces
-/// that coincide.
+/// The search starts from points all over the first body, its centre first, and moves into the body in which
+/// it is less deep by half the difference of both depths, which leads to the middle of a layer between two
+/// flat faces. A manifold's depth, between corners and edges, does not detect coinciding faces.
 double common_ball(const Solid& a, const Solid& b) {
   constexpr int kAcross = 5, kMostSteps = 16;
   const Eigen::AlignedBox3d box = box_around(a.body);

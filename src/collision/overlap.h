@@ -10,11 +10,11 @@
 
 namespace mrhi {
 
-/// What two bodies may overlap, as things that rest on each other do [m].
+/// Largest overlap of two bodies that is allowed at the start, as of bodies at rest on each other [m].
 constexpr double kOverlap = 0.001;
 
-/// How deep body `a` is in body `b` [m]; 0: not at all. If a mesh is one of them it may be less than that,
-/// but above kOverlap whenever they share a ball of this diameter.
+/// Depth of body `a` in body `b` [m]; 0 if they do not overlap. If a mesh is one of them it may be less than
+/// that, but above kOverlap whenever they share a ball of this diameter.
 double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
                std::size_t a, std::size_t b);
 

@@ -9,7 +9,7 @@
 namespace mrhi {
 namespace {
 
-/// An edge or a side faces a direction that is across it by this.
+/// Largest component along an edge or side of a direction that it faces.
 constexpr double kFaces = 1e-6, kAlmostFaces = 0.01;
 constexpr double kAnyDistance = 1e300;
 /// Names of two points at which lines touch.

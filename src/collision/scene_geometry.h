@@ -29,15 +29,15 @@ class PlacedCollider {
     return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
   }
 
-  /// Between the body's frame and the shape's.
+  /// Transforms between the body's frame and the shape's.
   ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both
-  /// Shapes that have the body's frame are asked without a rotation, which would only add its rounding.
+  /// Shapes that have the body's frame skip the rotation, which would only add rounding.
   Capsule to_shape(const Capsule& in_body) const {
     if (has_bodys_frame_) return in_body;
     return {rotation_.transpose() * (in_body.start - position_),
             rotation_.transpose() * (in_body.end - position_), in_body.radius};
   }
-  /// A mesh's face is not taken along: `span` has to be asked in the shape's frame.
+  /// Drops a mesh's face: call `span` in the shape's frame.
   ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
     if (has_bodys_frame_) return in_shape;
     return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,
@@ -52,8 +52,8 @@ class PlacedCollider {
   const Vector3 position_;
 };
 
-/// What collision makes of a scene's shapes, once, at loading. Refers to the scene. Its parts refer to shapes
-/// in the scene and to meshes behind pointers, not to each other's places in these lists, which may grow.
+/// Colliders of a scene's shapes, created once at loading. Keeps references to the scene, its shapes and
+/// meshes. No collider refers to another one's place in these lists, which may grow.
 struct SceneGeometry {
   explicit SceneGeometry(const Scene& scene);
 

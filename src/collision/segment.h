@@ -7,12 +7,11 @@
 
 namespace mrhi {
 
-/// What a segment rises or runs by less than this counts as nothing: it is parallel, or a point [m].
-/// Components below it are set to 0 once, as the segment is made, so that all that follows may ask for exact
-/// zeros. It is a length, not an angle: a rise of 1e-12 m is some thousand times the rounding of coordinates
-/// near 1 m.
+/// Components of a segment below this are zero: it is parallel, or a point [m].
+/// The constructor sets components below it to 0, so that later code can test for exact zeros. It is a
+/// length, not an angle: a rise of 1e-12 m is some thousand times the rounding of coordinates near 1 m.
 constexpr double kParallel = 1e-12;
-/// An axis nearer to a surface than this lies on it: the direction between the two would be rounding [m]. The
+/// Largest distance of an axis that lies on a surface: the direction between them would be rounding [m]. The
 /// distance comes out of a difference of coordinates near 1 m, right to some 1e-16 m: at 1e-11 m a direction
 /// made of it is still right to 1e-5 rad.
 constexpr double kOnSurface = 1e-11;
@@ -31,7 +30,7 @@ struct Segment {
   Vector3 start, along;
 };
 
-/// How far x lies beyond -half..half, with its sign; nothing within rounding. The squared distance from a box
+/// Signed distance of x beyond -half..half; 0 within rounding. The squared distance from a box
 /// is the sum of these squared (Ericson, Real-Time Collision Detection, 5.1.3). The limit is absolute, some
 /// ulps of a coordinate of 1 m, and makes the zeros exact that ConvexMinimum counts on: a clamp and a product
 /// that meet at a face's plane differ by an ulp.
@@ -45,9 +44,8 @@ struct Stretch {
   double s0 = 0.0, s1 = 1.0;
 
   double middle() const { return std::max(0.0, std::min(0.5 * (s0 + s1), 1.0)); }
-  /// Keeps what has |x0 + s * dx| <= half. Both ends within are looked at first: the quotients below would
-  /// cut an end off by an ulp. What runs level beside the slab is kept whole, so that who asks must know that
-  /// it is over it.
+  /// Clips to |x0 + s * dx| <= half. Returns early if both ends are within, as the quotients below could cut
+  /// an end off by an ulp. Keeps a level segment beside the slab: the caller must know that it is over it.
   void clip_to_slab(double x0, double dx, double half) {
     if (std::abs(x0) <= half && std::abs(x0 + dx) <= half) return;
     clip(-x0, -dx, half), clip(x0, dx, half);
@@ -73,13 +71,13 @@ struct Stretch {
   }
 };
 
-/// Closes in on the minimum of a convex function of s in 0..1 by its slope at chosen places. Where the slope
-/// is zero over a stretch, its middle is the minimum.
+/// Minimises a convex function of s in 0..1 by its slope at chosen points. If the slope is zero over an
+/// interval, its centre is the minimum.
 ///
 /// The slope f'(s) of a convex f never falls: it brackets the minimum in lo..hi with f'(lo) < 0 < f'(hi), and
 /// where f' is linear between the two its zero is lo + (hi - lo) f'(lo) / (f'(lo) - f'(hi)), without
-/// iterations. So all places where f' bends have to be added before linear() is asked. A zero counts only if
-/// it is exact.
+/// iterations. All points where f' bends have to be added before a call of linear(). A zero counts only if it
+/// is exact.
 class ConvexMinimum {
  public:
   ConvexMinimum(double slope_at_0, double slope_at_1) : slope_lo_(slope_at_0), slope_hi_(slope_at_1) {
@@ -133,7 +131,7 @@ inline double clamp_unit(double x) {
   return std::max(0.0, std::min(x, 1.0));
 }
 
-/// Where a segment and an edge are nearest to each other.
+/// Nearest points of a segment and an edge.
 struct SegmentPair {
   Stretch stretch;  ///< of the segment
   double t;         ///< along the edge, facing the stretch's middle
@@ -147,7 +145,7 @@ struct SegmentPair {
 ///
 /// The determinant a e - b^2 is |d1 x d2|^2 (Lagrange), but cancels below some 1e-8 rad: so the cross product
 /// says what is parallel. Between the two s may come out anywhere, even as no number, which clamp_unit makes
-/// 0; the projections to and fro then still end at a nearest pair, one of many.
+/// 0; the alternating projections then still end at one of many nearest pairs.
 inline SegmentPair nearest_stretch(const Segment& segment, const Vector3& corner, const Vector3& edge) {
   const Vector3 offset = segment.start - corner, &along = segment.along;
   const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);

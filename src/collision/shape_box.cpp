@@ -32,9 +32,9 @@ double nearest(const Segment& axis, const Vector3& half) {
   return minimum.linear();
 }
 
-/// The dimension in which the whole axis is outside the box, while it is between the faces of the others; or
-/// none. Then that face is nearest for every s, and the distance is linear in s: no search. An axis that is
-/// only kOnSurface away goes the long way, which tells a touch from an overlap.
+/// The dimension in which the whole axis is outside the box while it is between the faces of the others, or
+/// none. That face is then nearest for every s, and the distance is linear in s. An axis within kOnSurface
+/// takes the general search, which distinguishes a touch from an overlap.
 int outside_dimension(const Capsule& capsule, const Vector3& half) {
   int outside = -1;
   for (int i = 0; i < 3; ++i) {
@@ -148,8 +148,8 @@ ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
   return features;
 }
 
-/// A quick look before the closed form is asked: is the capsule beyond `margin` from a face's plane? Each
-/// face's plane bounds the distance from below by |m_i| - |l_i| / 2 - half_i.
+/// Rejects capsules beyond `margin` of a face's plane before the closed form: each plane gives the lower
+/// bound |m_i| - |l_i| / 2 - half_i of the distance.
 ClosestFeatures Box::closest(const Capsule& capsule, double margin) const {
   const Vector3 half_length = 0.5 * (capsule.end - capsule.start).cwiseAbs();
   const Vector3 gap = capsule.centre().cwiseAbs() - half_length - half_extents;

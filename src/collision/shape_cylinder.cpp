@@ -188,7 +188,7 @@ ClosestFeatures Cylinder::closest(const Capsule& capsule, double) const {
   return features;
 }
 
-/// By the normal: along z a cap, across z the side, anything between the rim.
+/// The normal tells the feature: a cap along z, the side across z, the rim between.
 AxisSpan Cylinder::span(const Capsule& capsule, const ClosestFeatures& features) const {
   const Segment axis(capsule);
   if (axis.along.isZero(0.0)) return at_point(features);

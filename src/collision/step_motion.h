@@ -32,12 +32,12 @@ struct MovingBody {
   bool appeared;         ///< as this step began
 };
 
-/// How a phalanx moves: its ends as given, its turn about its own axis as the palm's.
+/// Motion of a phalanx: its ends as given, its spin about its own axis as the palm's.
 ///
-/// The two ends' velocities v0, v1 tell five of the six numbers of a rigid motion: v1 - v0 = w x a has what
-/// of w is across the axis a,
+/// The two ends' velocities v0, v1 give five of the six numbers of a rigid motion: v1 - v0 = w x a gives the
+/// part of w across the axis a,
 ///     swing = a x (v1 - v0) / a^2,
-/// as a x (w x a) = a^2 w - (a.w) a. A change of length along a drops out. The spin about a is not to be seen
+/// as a x (w x a) = a^2 w - (a.w) a. A change of length along a drops out. The spin about a cannot be seen
 /// from the ends: spin = swing + (a.w_palm) a / a^2.
 struct PhalanxMotion {
   Vector3 axis;                     ///< from start to end [m]
@@ -61,7 +61,7 @@ struct CarrierMotion {
   Twist twist;       ///< of that centre, world axes
 
   Vector3 to_world(const Vector3& local) const { return rotation * local + origin; }
-  /// Of a point that moves with the frame [m/s].
+  /// Velocity of a point that moves with the frame [m/s].
   Vector3 velocity(const Vector3& point) const { return twist.linear + twist.angular.cross(point - centre); }
 };
 
@@ -106,7 +106,7 @@ struct MovingHand {
     return carrier->twist.linear.norm() +
            carrier->twist.angular.norm() * ((point - carrier->centre).norm() + distance + kPhalanx);
   }
-  /// Of an end that is at `point` [m/s].
+  /// Velocity of an end that is at `point` [m/s].
   Vector3 velocity(const EndPath& path, const Vector3& point) const {
     const Vector3 own = path.displacement(rate);
     if (carrier == nullptr) return own;

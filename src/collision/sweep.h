@@ -4,7 +4,7 @@
 
 namespace mrhi {
 
-/// How near two things are at a time, and how fast that changes.
+/// Distance of two shapes at a time, and its rate.
 template <typename Features>
 struct Separation {
   Features features;
@@ -31,13 +31,13 @@ struct FirstTouch {
 /// steps, and is no touch then.
 template <typename Features, typename SeparationAt>
 std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, double duration) {
-  constexpr double kTouch = 1e-6;  // nearer is a touch [m]
+  constexpr double kMaxTouchGap = 1e-6;  // [m]
   constexpr int kMaxSteps = 30;
   double time = 0.0;
   for (int i = 0; i < kMaxSteps; ++i) {
     const std::optional<Separation<Features>> now = separation(time);
     if (!now) return std::nullopt;
-    if (now->distance <= kTouch) return FirstTouch<Features>{time, now->features};
+    if (now->distance <= kMaxTouchGap) return FirstTouch<Features>{time, now->features};
     if (now->rate >= 0.0) return std::nullopt;
     // The tangent's zero: t + d / -d'. Where d is convex, the tangent is below it, so that this is never
     // late.

@@ -56,7 +56,7 @@ const RecordedFile* find_file(const RecordedFiles& files, const std::string& nam
   return nullptr;
 }
 
-/// What is spawned whole may have no name: its text names it (FNV-1a).
+/// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it (FNV-1a).
 std::string spawned_file(const ObjectRequest& request) {
   std::string name = request.name;
   if (name.empty()) {
@@ -150,8 +150,8 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   return request;
 }
 
-/// What `read` gives; where a part has another form than it needs, as a text where a map should be, that is
-/// reported in our words.
+/// Returns what `read` returns. Reports a part of the wrong form, such as a text instead of a map, in our
+/// words.
 template <class Read>
 auto in_form(const Read& read) {
   try {
@@ -415,7 +415,7 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
   options.mesh_files = written_to(folder, world.files);
   Scene scene = scene_of_files(world, options, folder);
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
-  // What is not in the scene came with others, and has gone again.
+  // A removed body that is not in the scene was added by a request.
   std::vector<std::string> gone_since;
   for (const std::string& name : world.removed) {
     if (const std::optional<int> body = find_body(scene, name)) {

@@ -27,7 +27,8 @@ RecordedFiles contents_of(const std::vector<SceneFile>& files);
 /// Writes `files` into `folder`, for SceneOptions::mesh_files.
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files);
 
-/// What a spawn adds, with its meshes ready for collision, and the files that it was read from.
+/// The bodies that a spawn adds, with their meshes ready for collision, and the files that they were read
+/// from.
 struct PreparedSpawn {
   PreparedSpawn(const ObjectRequest& request, const SceneOptions& options);
   PreparedSpawn(const PreparedSpawn&) = delete;
@@ -38,7 +39,7 @@ struct PreparedSpawn {
   RecordedFiles files;
 };
 
-// What a running simulation may be asked for besides hands.
+// Changes of a running simulation, other than hands.
 struct Spawn {
   ObjectRequest request;                               ///< with its name, and a URDF as text
   std::shared_ptr<const PreparedSpawn> prepared = {};  ///< of the request; null: prepared when it is made
@@ -58,7 +59,7 @@ struct Restrain {
   bool on = true;
 };
 struct Reset {};
-/// Stops the clock; the simulation itself is not told.
+/// Stops the clock; the simulation does not know.
 struct Pause {
   bool on = true;
 };
@@ -71,7 +72,7 @@ void make(const Change& change, LiveSimulation& simulation);
 /// In words, for people: "spawn 'box'".
 std::string to_text(const Change& change);
 
-/// As YAML in which numbers keep their bits. URDFs stand in files_of().
+/// YAML in which numbers keep their bits. URDFs are in files_of().
 std::string to_yaml(const Change& change);
 /// The URDF that a change brings, and the meshes that were read for it.
 RecordedFiles files_of(const Change& change);
@@ -84,7 +85,7 @@ struct Added {
   std::vector<std::string> roots = {};
 };
 
-/// What a simulation began with and what has been changed of it since: enough to build its scene anew on
+/// Initial scene and parameters of a simulation and all changes since: enough to build its scene again on
 /// another machine.
 struct World {
   std::string version;                            ///< of the package that ran
@@ -97,7 +98,7 @@ struct World {
   std::vector<Added> added;                       ///< what has come and is there, in its order
 };
 
-/// Of a scene's file: reads it, the YAML beside it and the meshes that `scene`, which it was loaded as, has.
+/// World of a scene's file: reads it, the YAML beside it and the meshes of `scene`, as which it was loaded.
 World world_of_file(const std::string& urdf_file, const Scene& scene, const Configuration& configuration);
 void set_parameters(const Configuration& configuration, World& world);
 
@@ -108,7 +109,7 @@ std::string to_yaml(const World& world);
 /// Throws std::invalid_argument with one line.
 World world_from_yaml(const std::string& yaml, const RecordedFiles& files);
 
-/// The parameters of the world; those that are not known here are told in `unknown`, and left out.
+/// The parameters of the world. Unknown ones are reported in `unknown` and left out.
 Configuration configuration_of(const World& world, std::vector<std::string>& unknown);
 /// Files are written to `folder` to be read. Throws SceneError.
 Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder);
@@ -130,7 +131,7 @@ struct LogEntry {
   std::uint64_t lost = 0;          ///< frames that have not reached the node, so far
 };
 
-/// What a live simulation was given, in its order.
+/// The recorded inputs of a live simulation, in order.
 class LogSource {
  public:
   virtual ~LogSource() = default;

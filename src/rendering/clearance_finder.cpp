@@ -6,12 +6,14 @@
 namespace mrhi {
 namespace {
 
-/// Farther than this from a body a hand was on no side of it [m].
-constexpr double kFarthest = 0.5;
-constexpr double kRound = 0.005;  // [m]
-constexpr double kFlat = 1e-4;    // [m]
-/// Normals of one side of a body differ by no more than this (cosine).
-constexpr double kSameSide = 0.5;
+/// Largest distance from a body at which a hand was on one side of it [m].
+constexpr double kMaxSideDistance = 0.5;
+/// Tolerance by which a plane of the previous frame may ask for more than the hand and bodies have moved [m].
+constexpr double kRoundness = 0.005;
+/// Tolerance of the test that a plane bounds a shape [m].
+constexpr double kPlaneTolerance = 1e-4;
+/// Smallest cosine between normals of one side of a body.
+constexpr double kMinSameSideCosine = 0.5;
 
 const Contact* touching(const std::vector<Contact>& contacts, int slot, int capsule, int body, int shape) {
   for (const Contact& contact : contacts) {
@@ -27,7 +29,7 @@ double deepest_end(const Capsule& capsule, const Vector3& normal) {
   return normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;
 }
 
-/// Of a capsule above a plane [m].
+/// Height of a capsule's surface above a plane [m].
 double height(const Capsule& capsule, const Vector3& normal, const Vector3& point) {
   return std::min(normal.dot(capsule.start - point), normal.dot(capsule.end - point)) - capsule.radius;
 }
@@ -36,11 +38,11 @@ bool outside(const Capsule& capsule, const Vector3& normal, const Vector3& point
   return height(capsule, normal, point) > -ClearanceFinder::kShallow;
 }
 
-/// No plane that keeps a capsule out of a shape is nearer than the nearest way out; where a shape is hollow,
-/// or has turned, a plane of before may be. A plane has all of a convex shape below it, so that the height
-/// above it is a bound from below of the distance: larger than the distance it is no such plane.
+/// True if the plane can bound the shape. The height above a plane that has all of a convex shape below it is
+/// a lower bound of the distance. A plane of an earlier frame may violate this if the shape is hollow or has
+/// turned.
 bool keeps_out(const Capsule& capsule, const Vector3& normal, const Vector3& point, double distance) {
-  return height(capsule, normal, point) <= distance + kFlat;
+  return height(capsule, normal, point) <= distance + kPlaneTolerance;
 }
 
 /// n.a(s) - height - r, with n.x = height the plane and r the capsule's radius.
@@ -48,10 +50,10 @@ double gap(const Capsule& capsule, const Clearance& clearance) {
   return clearance.normal.dot(capsule.axis_point(clearance.s)) - clearance.height - capsule.radius;
 }
 
-/// The entry of this key, made if there is none. What is known of another side of the shape goes.
+/// The entry of this key, created if there is none. Removes entries of another side of the shape.
 Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clearance>& clearances) {
   const auto other_side = [&](const Clearance& known) {
-    return known.key.same_pair(key) && known.normal.dot(normal) < kSameSide;
+    return known.key.same_pair(key) && known.normal.dot(normal) < kMinSameSideCosine;
   };
   clearances.erase(std::remove_if(clearances.begin(), clearances.end(), other_side), clearances.end());
   for (Clearance& known : clearances) {
@@ -63,20 +65,21 @@ Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clear
 }
 
 constexpr int kMaxSweeps = 40;
-constexpr double kSettled = 1e-5;       // no gap changes by more in a sweep [m]
-constexpr double kFarthestTurn = 0.25;  // in one go: rotations are linearised [rad]
+/// The solver has converged if no gap changes by more in a sweep [m].
+constexpr double kConverged = 1e-5;
+/// Largest turn of a joint in one solution: rotations are linearised [rad].
+constexpr double kMaxTurn = 0.25;
 
 using Array4 = Eigen::Array4d;
 
-/// A finger's share of the unknowns: `free` without regard to the limits, `held` within them.
+/// The unknowns of one finger: `free` without limits, `held` within them.
 struct Part {
   FingerOffset lower, upper, compliance, free, held;
 };
 
-/// With multipliers l >= 0 of the gaps, W (q - q0) = J^T l, less what limits hold. W is diagonal, so that for
-/// given l the best q within the limits is each component of q0 + W^-1 J^T l clamped by itself: `free` before
-/// and `held` after it. The dual function of l that is left is concave, and going up along one l after the
-/// other leads to its top.
+/// With multipliers l >= 0 of the gaps, W (q - q0) = J^T l up to the forces of limits. W is diagonal: for
+/// given l, the best q within the limits is q0 + W^-1 J^T l (`free`) with each component clamped (`held`).
+/// The remaining dual function of l is concave, so that coordinate ascent reaches its maximum.
 class OffsetProblem {
  public:
   OffsetProblem(const HandOffset& reference, const OffsetBounds& bounds, HandChain& chain,
@@ -95,7 +98,7 @@ class OffsetProblem {
     for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       double largest = 0.0;
       for (Clearance& clearance : clearances_) largest = std::max(largest, relax(clearance));
-      if (largest < kSettled) return;
+      if (largest < kConverged) return;
     }
   }
 
@@ -113,8 +116,7 @@ class OffsetProblem {
   }
 
  private:
-  /// Bounds are taken together, limits last, so that lower <= upper whatever pace asks for: joints' limits
-  /// are never given up.
+  /// Intersects the bounds. Limits come last, so that lower <= upper and joint limits always hold.
   void use(int finger, const HandOffset& reference, HandChain& chain, const HandOffset& from) {
     const auto f = static_cast<std::size_t>(finger);
     if (used_[f]) return;
@@ -123,25 +125,24 @@ class OffsetProblem {
     Part& part = parts_[f];
     const FingerOffset swing = fingers_chain.swing(bounds_.swing);
     const FingerOffset &now = from.fingers[f], &before = bounds_.before.fingers[f];
-    part.upper =
-        fingers_chain.upper().min(now + kFarthestTurn).min(before + swing).max(fingers_chain.lower());
-    part.lower = fingers_chain.lower().max(now - kFarthestTurn).max(before - swing).min(part.upper);
+    part.upper = fingers_chain.upper().min(now + kMaxTurn).min(before + swing).max(fingers_chain.lower());
+    part.lower = fingers_chain.lower().max(now - kMaxTurn).max(before - swing).min(part.upper);
     part.compliance = fingers_chain.compliance();
     part.free = reference.fingers[f];
     part.held = part.free.max(part.lower).min(part.upper);
   }
 
-  /// rest = gap - J q_k, so that the gap is rest + J q. Pressures of the last pass are put in first.
+  /// rest = gap - J q_k, so that the gap is rest + J q. Warm start with the pressures of the last pass.
   void begin(Clearance& clearance, int finger, const HandOffset& from) {
     clearance.rest = clearance.gap - (clearance.by_shift.head<3>() * from.shift.array()).sum();
     shift_ += (kShiftCompliance * clearance.pressure) * clearance.by_shift;
     if (finger < 0) return;
     const auto f = static_cast<std::size_t>(finger);
     clearance.rest -= (clearance.by_finger * from.fingers[f]).sum();
-    give_way(parts_[f], clearance, clearance.pressure);
+    comply(parts_[f], clearance, clearance.pressure);
   }
 
-  static void give_way(Part& part, const Clearance& clearance, double pressure) {
+  static void comply(Part& part, const Clearance& clearance, double pressure) {
     part.free += (pressure * part.compliance) * clearance.by_finger;
     part.held = part.free.max(part.lower).min(part.upper);
   }
@@ -155,10 +156,9 @@ class OffsetProblem {
     return finger < 0 ? nullptr : &parts_[static_cast<std::size_t>(finger)];
   }
 
-  /// Closes one gap, or lets go as far as it is open; returns by how much it changes [m].
-  /// dgap / dl = J W^-1 J^T over what is free to move; a step of -gap / (dgap / dl) brings the gap to 0, or
-  /// the pressure to 0 if it would pull. Where a joint meets its limit on the way the gap falls short, and
-  /// the next sweep goes on.
+  /// Closes one gap, or reduces its pressure if it is open. Returns the change of the gap [m].
+  /// dgap / dl = J W^-1 J^T over the free joints. A step of -gap / (dgap / dl) brings the gap to 0, or the
+  /// pressure to 0 if it would become negative. If a joint meets its limit, the next sweep continues.
   double relax(Clearance& clearance) {
     Part* part = part_of(clearance);
     const double gap = gap_of(clearance, part);
@@ -169,11 +169,11 @@ class OffsetProblem {
     const double change = pressure - clearance.pressure;
     clearance.pressure = pressure;
     shift_ += (kShiftCompliance * change) * clearance.by_shift;
-    if (part != nullptr) give_way(*part, clearance, change);
+    if (part != nullptr) comply(*part, clearance, change);
     return std::abs(change) * compliance;
   }
 
-  /// Of the joints that their limits let go the way that closes the gap.
+  /// Compliance of the joints that can still turn in the direction that closes the gap.
   static double free_compliance(const Part& part, const FingerOffset& by_finger, double gap) {
     double sum = 0.0;
     for (int i = 0; i < 4; ++i) {
@@ -193,7 +193,7 @@ class OffsetProblem {
 
 }  // namespace
 
-/// The box about the tracked hand against the ball about each body.
+/// Tests the box about the tracked hand against the bounding sphere of each body.
 bool ClearanceFinder::begin(const Setting& setting, double margin) {
   near_.clear();
   shown_in_.clear();
@@ -238,7 +238,7 @@ Vector3 ClearanceFinder::velocity(int body, const Vector3& point,
   return twist.linear + twist.angular.cross(point - bodies[b].pose.position);
 }
 
-/// Near is who is so by the balls about capsule and body.
+/// Visits pairs of capsule and body whose bounding spheres are within `margin`.
 template <typename See>
 void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& hand, double margin,
                                 const See& see) {
@@ -254,8 +254,8 @@ void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& han
   }
 }
 
-/// What was found in earlier passes stays, measured with its plane of then: dropped, a gap that has been
-/// closed by its pressure would open again, and the passes would go to and fro.
+/// Keeps clearances of earlier passes with their planes. Without them a gap that its pressure has closed
+/// would open again, and the passes would oscillate.
 double ClearanceFinder::find(const Hand& placed, const Setting& setting, double margin,
                              std::vector<Clearance>& clearances) const {
   double least = margin;
@@ -291,11 +291,10 @@ bool ClearanceFinder::clear(const Hand& hand) const {
   return clear;
 }
 
-/// The face that the capsule keeps to. Deep inside the nearest way out may lead through the body: then it is
-/// the side on which the capsule was shown last, told by the god object if it is on that side too. In order:
-/// shallow, the nearest surface; the god object's plane, if the hand was shown on its side; the plane that
-/// was nearest before. A plane of before is no longer believed once it asks for more than the hand and bodies
-/// have moved.
+/// The face outside which the capsule stays. In order: the nearest surface if the capsule is shallow; the god
+/// object's plane if the hand was shown on its side; the plane that was nearest in the previous frame. Deep
+/// inside, the nearest surface may be on the far side of the body. A plane of the previous frame is rejected
+/// if it asks for more than the hand and bodies have moved.
 ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Near& near,
                                             const ClosestFeatures& features, const AxisSpan& span,
                                             const Setting& setting) const {
@@ -306,19 +305,20 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
   const Capsule* before = setting.shown_before == nullptr ? nullptr : &setting.shown_before->capsules[i];
   if (const Contact* contact = touching(setting.contacts, setting.slot, c, near.body, near.shape)) {
     const bool same_side = before == nullptr || outside(*before, contact->normal, contact->point);
-    if (same_side && contact->normal.dot(features.normal) >= kSameSide) return nearest;
+    if (same_side && contact->normal.dot(features.normal) >= kMinSameSideCosine) return nearest;
     const double s = deepest_end(capsule, contact->normal);
     const bool keeps = keeps_out(capsule, contact->normal, contact->point, features.distance);
     if (same_side && keeps) return {contact->normal, contact->point, s, s};
   }
   if (before == nullptr || before->radius <= 0.0) return nearest;
-  const auto last = finder_.closest(*before, near.body, near.shape, near.frame, kFarthest);
-  if (!last || last->distance < -kShallow || last->normal.dot(features.normal) >= kSameSide) return nearest;
-  // A way that is longer than what the hand has gone leads around a corner.
+  const auto last = finder_.closest(*before, near.body, near.shape, near.frame, kMaxSideDistance);
+  if (!last || last->distance < -kShallow || last->normal.dot(features.normal) >= kMinSameSideCosine)
+    return nearest;
+  // A distance longer than the displacement since then leads around a corner.
   const double s = features.axis_parameter;
-  // r - n.(a - q): by how much the capsule is below the plane of before.
-  const double way = capsule.radius - last->normal.dot(capsule.axis_point(s) - last->point);
-  if (way > setting.moved + kRound) return nearest;
+  // r - n.(a - q): depth of the capsule below that plane.
+  const double depth = capsule.radius - last->normal.dot(capsule.axis_point(s) - last->point);
+  if (depth > setting.moved + kRoundness) return nearest;
   if (!keeps_out(capsule, last->normal, last->point, features.distance)) return nearest;
   return {last->normal, last->point, s, s};
 }

@@ -8,20 +8,21 @@
 namespace mrhi {
 namespace {
 
-// How readily joints give way beside the whole hand (kShiftCompliance): a fingertip yields some thirty times
-// as far by bending as by shifting the hand, and sideways less readily than by bending.
-constexpr double kBending = 1.0 / (0.03 * 0.03);   // [rad^2/m^2]
-constexpr double kSideways = 1.0 / (0.05 * 0.05);  // [rad^2/m^2]
-constexpr double kLoose = 1.0;                     // of a finger that nothing ties to the palm
-constexpr double kShortest = 0.001;                // reach of a joint [m]
-/// Which part of a bent thumb's own plane tells its hinges' axis, against the anatomical one.
-constexpr double kAnatomical = 0.15;
+/// Compliances of joints relative to kShiftCompliance, in flexion and abduction [rad^2/m^2]: a fingertip
+/// yields about thirty times as far by flexion as by a shift of the hand, and less by abduction.
+constexpr double kFlexionCompliance = 1.0 / (0.03 * 0.03), kAbductionCompliance = 1.0 / (0.05 * 0.05);
+/// Compliance of a finger without a proximal phalanx, which is not connected to the palm.
+constexpr double kLooseCompliance = 1.0;
+/// Smallest distance from a joint to the fingertip that bounds a turn [m].
+constexpr double kMinReach = 0.001;
+/// Weight of the anatomical axis of a thumb's hinges relative to the axis about which the thumb is bent.
+constexpr double kAnatomicalWeight = 0.15;
 
 Vector3 direction(const Capsule& bone) {
   return (bone.end - bone.start).normalized();
 }
 
-/// Where the finger's root joint counts from: straight on, and the axis about which it flexes.
+/// Zero direction of the finger's root joint, and the axis about which it flexes.
 struct RootFrame {
   Vector3 along, hinge;
 };
@@ -94,20 +95,20 @@ void FingerChain::find_axes(const Hand& tracked) {
   swing_ = along.cross(root_).normalized();
   hinge_ = swing_.cross(along);
   if (finger_ != 0 || !has(tracked, 2) || !has(tracked, 3)) return;
-  // A thumb turns about its own length when it opposes: once bent it tells the axis itself.
+  // An opposing thumb turns about its own length: the bend itself then shows the axis.
   const Vector3 middle = direction(tracked.capsules[proximal + 1]);
   Vector3 bent = along.cross(middle) + middle.cross(direction(tracked.capsules[proximal + 2]));
   bent -= bent.dot(along) * along;
   const double length = bent.norm();
   if (length > 0.0) {
-    const Vector3 blended = kAnatomical * hinge_ + (std::max(0.0, bent.dot(hinge_)) / length) * bent;
+    const Vector3 blended = kAnatomicalWeight * hinge_ + (std::max(0.0, bent.dot(hinge_)) / length) * bent;
     hinge_ = blended.normalized();
   }
 }
 
-/// Offsets count from the tracked angles: lower <= angle + offset <= upper, with each limit put out to where
-/// the joint was tracked, so that 0 is among them. reach is the length from a joint on along the bones: no
-/// way to the tip is longer.
+/// Offsets count from the tracked angles: lower <= angle + offset <= upper. Limits are widened to the tracked
+/// angle, so that 0 is allowed. The reach of a joint is the length of the bones beyond it, which bounds its
+/// distance from the tip.
 void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
   const auto bone = [&](int index) -> const Capsule& {
     return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
@@ -214,19 +215,19 @@ FingerOffset FingerChain::gradient(int bone, const Vector3& x, const Vector3& n)
 }
 
 /// sum |turn| reach: arcs are no shorter than chords, and turns of a chain add at most.
-double FingerChain::way(const FingerOffset& change) const {
+double FingerChain::displacement(const FingerOffset& change) const {
   if (!tied_) return change.head<3>().matrix().norm();
   return (change.abs() * reach_).sum();
 }
 
-FingerOffset FingerChain::swing(double way) const {
-  if (!tied_) return FingerOffset::Constant(way);
-  return way * FingerOffset(1.0, 0.5, 0.5, 0.5) / reach_.max(kShortest);
+FingerOffset FingerChain::swing(double distance) const {
+  if (!tied_) return FingerOffset::Constant(distance);
+  return distance * FingerOffset(1.0, 0.5, 0.5, 0.5) / reach_.max(kMinReach);
 }
 
 FingerOffset FingerChain::compliance() const {
-  if (!tied_) return FingerOffset(kLoose, kLoose, kLoose, 0.0);
-  return {kBending, kSideways, kBending, kBending};
+  if (!tied_) return FingerOffset(kLooseCompliance, kLooseCompliance, kLooseCompliance, 0.0);
+  return {kFlexionCompliance, kAbductionCompliance, kFlexionCompliance, kFlexionCompliance};
 }
 
 JointLimits joint_limits(int finger) {

@@ -11,19 +11,21 @@
 namespace mrhi {
 namespace {
 
-constexpr double kFarthestPush = 0.1;  // bodies nearer than this may be met while the hand is pushed out [m]
-constexpr double kFromNowhere = 1.0;   // that a hand is said to have moved that was not there before [m]
-/// A hand stays this long behind a body that the tracked hand has passed through, without coming nearer by as
-/// much as this [m].
-constexpr Nanoseconds kStaysBehind = 1'000'000'000;
-constexpr double kProgress = 0.001;
+/// Search margin around a hand that is pushed out: it may meet bodies within this distance [m].
+constexpr double kPushMargin = 0.1;
+/// Displacement that is assumed for a hand without a previous frame [m].
+constexpr double kUnknownDisplacement = 1.0;
+/// Longest time for which a hand stays behind a body that the tracked hand has passed through [ns], without
+/// coming nearer by this [m].
+constexpr Nanoseconds kMaxTimeBehind = 1'000'000'000;
+constexpr double kMinProgress = 0.001;
 
-/// Around the tracked hand, in which bodies are looked for [m].
+/// Search margin for bodies around the tracked hand [m].
 double margin(const HandOffset& offset) {
-  return offset.zero() ? kAhead : offset.shift.norm() + kFarthestPush;
+  return offset.zero() ? kLookAhead : offset.shift.norm() + kPushMargin;
 }
 
-/// To the bit: what is placed anew from the same numbers is the same.
+/// Compares bits: a hand placed again from the same numbers is the same.
 bool same_place(const Hand& a, const Hand& b) {
   const auto same = [](const Capsule& x, const Capsule& y) {
     return x.radius == y.radius && x.start == y.start && x.end == y.end;
@@ -33,29 +35,30 @@ bool same_place(const Hand& a, const Hand& b) {
          std::equal(a.capsules.begin(), a.capsules.end(), b.capsules.begin(), same);
 }
 
-bool same_way(const HandOffset& a, const HandOffset& b) {
+bool same_offset(const HandOffset& a, const HandOffset& b) {
   const auto same = [](const FingerOffset& x, const FingerOffset& y) { return (x == y).all(); };
   return a.shift == b.shift && a.lag.whole.coeffs() == b.lag.whole.coeffs() &&
          a.lag.frame.coeffs() == b.lag.frame.coeffs() &&
          std::equal(a.fingers.begin(), a.fingers.end(), b.fingers.begin(), same);
 }
 
-constexpr double kHeld = 0.0005;    // joints that their limits keep from staying by less do not matter [m]
-constexpr double kFirstTurn = 0.2;  // of the search for axes of the palm in which they can [rad]
-constexpr double kLastTurn = 0.02;  // [rad]
-constexpr double kFlatPalm = 1e-4;  // less than this is no palm [m^2]
+/// The search for axes of the palm ends when joint limits displace phalanges by less than this [m].
+constexpr double kMaxLimitDisplacement = 0.0005;
+/// First and last turn of that search [rad].
+constexpr double kFirstTurn = 0.2, kLastTurn = 0.02;
+/// Smallest cross product of the palm's bones that defines its axes [m^2].
+constexpr double kMinPalmArea = 1e-4;
 
-/// Axes of a palm by its bones: wrist and roots of index and little finger. By its orientation if it has
-/// none. x between the roots of index and little finger as seen from the wrist, z across both, y = z x x. z
-/// points into a right hand's palm and out of a left hand's back: no matter, as only the turn between two of
-/// one hand is asked for.
+/// Axes of a palm from its bones (wrist, roots of index and little finger), or its orientation without them.
+/// x points from the wrist between both roots, z is normal to both, y = z x x. z points out of a right hand's
+/// palm and out of a left hand's back; only rotations between two poses of one hand are computed.
 Quaternion axes_by_bones(const Hand& hand) {
   const int index = capsule_index(1, 1), little = capsule_index(4, 1);
   if (!hand.has(index) || !hand.has(little)) return hand.palm.orientation;
   const Vector3 a = hand.capsules[static_cast<std::size_t>(index)].start - hand.wrist;
   const Vector3 b = hand.capsules[static_cast<std::size_t>(little)].start - hand.wrist;
   const Vector3 out = a.cross(b);
-  if (out.norm() < kFlatPalm) return hand.palm.orientation;
+  if (out.norm() < kMinPalmArea) return hand.palm.orientation;
   Matrix3 axes;
   axes.col(0) = (a + b).normalized();
   axes.col(2) = out.normalized();
@@ -63,44 +66,48 @@ Quaternion axes_by_bones(const Hand& hand) {
   return Quaternion(axes);
 }
 
-constexpr double kTimeConstant = 0.05;   // [s]
-constexpr double kLongestWay = 0.0008;   // in a frame, of the hand, and again of a finger on it [m]
-constexpr double kHome = 1e-6;           // nearer than this is back [m]
-constexpr double kLongestTurn = 0.0004;  // in a frame, of a fingertip with the palm [m]
-constexpr double kHandReach = 0.15;      // of the hand from its palm's position [m]
-constexpr double kFingerReach = 0.1;     // of a finger from its root [m]
+/// Time constant with which an offset returns to zero [s].
+constexpr double kTimeConstant = 0.05;
+/// Largest return of the hand in a frame, and again of a finger on it [m].
+constexpr double kMaxReturn = 0.0008;
+/// Largest return of a fingertip with the palm in a frame [m].
+constexpr double kMaxPalmReturn = 0.0004;
+/// Offsets below this are zero [m].
+constexpr double kMinOffset = 1e-6;
+/// Distance from the palm's position to the fingertips, and from a finger's root to its tip [m].
+constexpr double kHandReach = 0.15, kFingerReach = 0.1;
 
-/// What is left of an offset that reaches this far. An offset of the size `way` goes back by the part 1 -
-/// exp(-t / 50 ms), but by no more than `longest`: exponential when near, a constant way a frame when far.
-double share_left(double way, double decayed, double longest = kLongestWay) {
-  if (way <= kHome) return 0.0;
-  return 1.0 - std::min(1.0 - decayed, longest / way);
+/// Fraction of an offset of the size `distance` [m] that remains after a frame. The offset decays
+/// exponentially, but by no more than `max_return` [m] a frame.
+double remaining_fraction(double distance, double decay, double max_return = kMaxReturn) {
+  if (distance <= kMinOffset) return 0.0;
+  return 1.0 - std::min(1.0 - decay, max_return / distance);
 }
 
-Quaternion turned_back(const Quaternion& turn, double reach, double decayed) {
+Quaternion turned_back(const Quaternion& turn, double reach, double decay) {
   const double angle = turn.angularDistance(Quaternion::Identity());
-  const double left = share_left(reach * angle, decayed, kLongestTurn);
+  const double left = remaining_fraction(reach * angle, decay, kMaxPalmReturn);
   return left == 0.0 ? Quaternion::Identity() : Quaternion::Identity().slerp(left, turn);
 }
 
-double decayed_share(const HandOffset& offset, Nanoseconds stamp) {
+double decay_since(const HandOffset& offset, Nanoseconds stamp) {
   return std::exp(-to_seconds(stamp - offset.stamp) / kTimeConstant);
 }
 
-/// The offset on its way back to none, likewise, within the joints' limits of now: an offset that was right a
-/// frame ago may be beyond them. `chain` has the palm so (lag_returning).
+/// The offset after a frame's return towards zero, within the present limits of the joints. `chain` has the
+/// palm with its lag after the frame (lag_returning).
 HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& chain) {
   HandOffset left = offset;
   if (offset.zero()) return left;
   left.lag = lag_returning(offset, stamp);
-  const double decayed = decayed_share(offset, stamp);
-  left.shift *= share_left(offset.shift.norm(), decayed);
+  const double decay = decay_since(offset, stamp);
+  left.shift *= remaining_fraction(offset.shift.norm(), decay);
   for (int f = 0; f < kFingers; ++f) {
     FingerOffset& turned = left.fingers[static_cast<std::size_t>(f)];
     if ((turned == 0.0).all() && left.lag.zero()) continue;
     const FingerChain& finger = chain.finger(f);
     turned = turned.max(finger.lower()).min(finger.upper());
-    turned *= share_left(finger.way(turned), decayed);
+    turned *= remaining_fraction(finger.displacement(turned), decay);
     if (!left.lag.zero()) turned = turned.max(finger.lower()).min(finger.upper());
   }
   return left;
@@ -108,7 +115,7 @@ HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& cha
 
 }  // namespace
 
-/// By the share of each contact. The mean, by shares w, as it goes: m <- m + w / sum w (x - m).
+/// Points are weighted by the share w of each contact. Running mean: m <- m + w / sum w (x - m).
 void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered) {
   rendered.touching.fill(false);
   std::array<double, kCapsules> shares{};
@@ -140,41 +147,41 @@ void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
   impl.keep_outside(impl.begin());
   for (const bool fixtures : {false, true}) {
     const bool stays_behind = impl.left_behind();
-    if (impl.leap <= kTolerated && !stays_behind) break;
+    if (impl.leap <= kMaxDepth && !stays_behind) break;
     if (!impl.show_in(fixtures)) continue;
     impl.keep_outside(impl.finder.begin(setting, margin(offset)));
   }
-  const bool away = !impl.offset.zero();
-  if (!away) rendered.hand = track.current;
+  const bool is_offset = !impl.offset.zero();
+  if (!is_offset) rendered.hand = track.current;
   impl.offset.stamp = stamp;
   offset = impl.offset;
-  if (away) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
+  if (is_offset) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
 }
 
-/// The hand outside of all bodies but those that it is shown in; the finder has begun with what is `near` it.
+/// Places the hand outside all bodies except those that it is shown in. `near`: the finder has found bodies.
 void HandRenderer::Impl::keep_outside(bool near) {
   *placed = track->current;
   setting->shown_before = nullptr;
   setting->moved = 0.0;
-  const bool away = !last->zero();
+  const bool is_offset = !last->zero();
   offset = HandOffset();
   clearances.clear();
-  if (away || near) {
+  if (is_offset || near) {
     chain.begin(track->current, lag_returning(*last, stamp));
     offset = returning(*last, stamp, chain);
     chain.place(offset, *placed);
   }
   const HandOffset reference = offset;
-  const double least = near ? finder.find(*placed, *setting, kAhead, clearances) : 0.0;
-  pushed = least < -kClear;
+  const double least = near ? finder.find(*placed, *setting, kLookAhead, clearances) : 0.0;
+  pushed = least < -kClearDepth;
   leap = 0.0;
-  if (pushed || away) look_back();
+  if (pushed || is_offset) look_back();
   if (pushed) push_out(least);
   if (setting->shown_before != nullptr) keep_pace(reference);
 }
 
-/// Bodies and joints leave the hand no way out that is not a leap: it is shown in them until it is clear of
-/// them, as in a body that appears. True if there are such.
+/// Called if the hand can only leave the bodies by a leap: it is then shown in them until it is clear, as in
+/// a body that is spawned there. Returns false if it was shown in all of them already.
 bool HandRenderer::Impl::show_in(bool fixtures) const {
   bool any = false;
   for (const Clearance& clearance : clearances) {
@@ -186,8 +193,8 @@ bool HandRenderer::Impl::show_in(bool fixtures) const {
   return any;
 }
 
-/// Finds what is near the hand, but for what it is shown in. That ends with what the hand, as it was shown,
-/// was clear of.
+/// Finds the bodies near the hand, except those that it is shown in. The hand is no longer shown in bodies
+/// that it was clear of in the previous frame.
 bool HandRenderer::Impl::begin() {
   const bool near = finder.begin(*setting, margin(*last));
   if (!finder.shown_in_any()) return near;
@@ -199,27 +206,27 @@ bool HandRenderer::Impl::begin() {
   return finder.begin(*setting, margin(*last));
 }
 
-/// At the frame before.
+/// Restores the hand as it was shown in the previous frame.
 ///
-/// `moved` bounds what can have come into each other since: the farthest joint's way and the fastest body's,
-/// |v| + |w| R times the time.
+/// `moved` bounds the relative displacement since then: that of the farthest joint, and |v| + |w| R of the
+/// fastest body times the time.
 void HandRenderer::Impl::look_back() {
-  if (last->zero()) finder.begin(*setting, kFarthestPush);
-  setting->moved = kFromNowhere;
+  if (last->zero()) finder.begin(*setting, kPushMargin);
+  setting->moved = kUnknownDisplacement;
   if (track->appeared) return;
   const Shown& known = kept[static_cast<std::size_t>(setting->slot)];
   tracked_before = track->previous;
   offset_before = *last;
   chain_before_set = false;
-  if (known.known && same_way(known.offset, offset_before) && same_place(known.tracked, tracked_before)) {
+  if (known.known && same_offset(known.offset, offset_before) && same_place(known.tracked, tracked_before)) {
     before = known.hand;
   } else {
     place_before();
   }
   setting->shown_before = &before;
-  tracked_way = farthest_joint(track->previous, track->current);
+  tracked_displacement = farthest_joint(track->previous, track->current);
   elapsed = to_seconds(stamp - offset_before.stamp);
-  setting->moved = tracked_way + finder.fastest_body(setting->bodies) * elapsed;
+  setting->moved = tracked_displacement + finder.fastest_body(setting->bodies) * elapsed;
 }
 
 void HandRenderer::Impl::place_before() {
@@ -229,14 +236,14 @@ void HandRenderer::Impl::place_before() {
   chain_before_set = true;
 }
 
-/// As it was placed then.
+/// The finger as it was placed in the previous frame.
 FingerChain& HandRenderer::Impl::finger_before(int index) {
   if (!chain_before_set) place_before();
   return chain_before.finger(index);
 }
 
-/// True once the tracked hand has been clear of everything for a while and the rendered one has not come any
-/// nearer to it.
+/// True once the tracked hand has been clear of all bodies for kMaxTimeBehind and the rendered hand has not
+/// come nearer to it.
 bool HandRenderer::Impl::left_behind() {
   const auto holds = [&](const Contact& contact) {
     return contact.key.hand == setting->slot && contact.touching();
@@ -246,12 +253,12 @@ bool HandRenderer::Impl::left_behind() {
     offset.left = 0.0;
     return false;
   }
-  const double left = way(HandOffset(), offset);
-  if (offset.left == 0.0 || left < offset.left - kProgress) {
+  const double left = displacement(HandOffset(), offset);
+  if (offset.left == 0.0 || left < offset.left - kMinProgress) {
     offset.left = left;
     offset.left_since = stamp;
   }
-  return stamp - offset.left_since >= kStaysBehind;
+  return stamp - offset.left_since >= kMaxTimeBehind;
 }
 
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
@@ -273,43 +280,44 @@ double deepest_penetration(const Hand& hand, const ContactFinder& finder, const 
   return deepest;
 }
 
-/// With this lag, how far joints' limits keep phalanges from where they were shown, all fingers together [m].
-double HandRenderer::Impl::held_by_limits(const PalmLag& lag) {
+/// Distance by which joint limits keep phalanges from where they were shown, with this lag, summed over the
+/// fingers [m].
+double HandRenderer::Impl::limit_displacement(const PalmLag& lag) {
   chain.begin(setting->tracked, lag);
   double held = 0.0;
   for (int f = 0; f < kFingers; ++f) {
     const FingerChain& finger = chain.finger(f);
     const FingerOffset wanted = finger.pointing(before, finger_before(f));
-    held += finger.way(wanted - wanted.max(finger.lower()).min(finger.upper()));
+    held += finger.displacement(wanted - wanted.max(finger.lower()).min(finger.upper()));
   }
   return held;
 }
 
-/// The palm's axes are not turned from how they were shown. frame whole R_tracked = R_before.
+/// The frame lag with which the palm's axes stay as they were shown: frame whole R_tracked = R_before.
 Quaternion HandRenderer::Impl::frame_staying(const Quaternion& whole) const {
   return (before.palm.orientation * (whole * setting->tracked.palm.orientation).conjugate()).normalized();
 }
 
-/// The palm's bones are not turned from how they were shown; its axes, to which joints' limits count, such
-/// that the fingers can stay too, as far as there are such. Compass search: a turn about each axis of world
-/// either way, as long as it is better, then half the turn. What limits hold has kinks, so that no derivative
-/// is asked for.
+/// The lag with which the palm's bones stay as they were shown. Its axes, about which joint limits count, are
+/// chosen so that the fingers can stay as well. Compass search: turns about each world axis either way while
+/// that improves, then half the turn. The objective has kinks, so no derivative is used.
 PalmLag HandRenderer::Impl::lag_staying() {
   PalmLag lag;
   lag.whole = (axes_by_bones(before) * axes_by_bones(setting->tracked).conjugate()).normalized();
-  double held = held_by_limits(lag);
+  double held = limit_displacement(lag);
   const auto try_frame = [&](const Quaternion& frame) {
     const PalmLag other{lag.whole, frame.normalized()};
-    const double then = held_by_limits(other);
+    const double then = limit_displacement(other);
     if (then >= held) return false;
     held = then, lag = other;
     return true;
   };
   try_frame(frame_staying(lag.whole));
-  for (double turn = kFirstTurn; turn > kLastTurn && held > kHeld; turn *= 0.5) {
+  for (double turn = kFirstTurn; turn > kLastTurn && held > kMaxLimitDisplacement; turn *= 0.5) {
     for (int direction = 0; direction < 6; ++direction) {
       const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * Vector3::Unit(direction % 3);
-      while (held > kHeld && try_frame(Quaternion(Eigen::AngleAxisd(turn, axis)) * lag.frame)) {
+      while (held > kMaxLimitDisplacement &&
+             try_frame(Quaternion(Eigen::AngleAxisd(turn, axis)) * lag.frame)) {
       }
     }
   }
@@ -327,9 +335,9 @@ bool HandOffset::zero() const {
 PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp) {
   PalmLag left;
   if (offset.lag.zero()) return left;
-  const double decayed = decayed_share(offset, stamp);
-  left.whole = turned_back(offset.lag.whole, kHandReach, decayed);
-  left.frame = turned_back(offset.lag.frame, kFingerReach, decayed);
+  const double decay = decay_since(offset, stamp);
+  left.whole = turned_back(offset.lag.whole, kHandReach, decay);
+  left.frame = turned_back(offset.lag.frame, kFingerReach, decay);
   return left;
 }
 

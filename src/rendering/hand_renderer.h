@@ -18,9 +18,9 @@ class HandRenderer {
   HandRenderer(const Scene& scene, const ContactFinder& finder);
   ~HandRenderer();
 
-  /// The hand of a track at its frame's `stamp`. `contacts` are those of now, with the faces that phalanges
-  /// entered by. `offset` is the hand's of the frame before and becomes that of now. `interactions` are the
-  /// hand's, one per body: they tell in which bodies the hand may be shown, and this is ended here.
+  /// Renders the hand of a track at its frame's `stamp`. `contacts` are the present ones, with the faces that
+  /// phalanges entered by. `offset` is the hand's of the previous frame, and is updated. `interactions` are
+  /// the hand's, one per body: `shown_in` marks bodies in which the hand may be shown, and is cleared here.
   void render(const HandTrack& track, int slot, Nanoseconds stamp, const std::vector<BodyState>& bodies,
               const std::vector<Contact>& contacts, Interaction* interactions, HandOffset& offset,
               RenderedHand& rendered);
@@ -30,7 +30,7 @@ class HandRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What touches, and with what force, by the contacts of the hand in `slot`.
+/// Sets which capsules touch, and with what force, from the contacts of the hand in `slot`.
 void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered);
 
 /// Deepest penetration of any of the hand's capsules into any body, but for those that it is shown in

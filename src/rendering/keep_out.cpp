@@ -6,23 +6,28 @@
 namespace mrhi {
 namespace {
 
-/// What stays as it was shown where a hand goes too far: its offset; or the palm, which lags, with axes that
-/// the joints' limits ask for; or its axes as well, about which fingers bend.
+/// Part of a hand that stays as it was shown if the hand would move too far: its offset; or the palm, which
+/// lags, with axes chosen by joint limits; or also its axes, about which fingers bend.
 enum class Stays { offset, palm, axes };
 
 constexpr int kMaxPasses = 12;
-constexpr int kMostInVain = 2;       // passes on end that bring a hand no better into step
-constexpr double kBetter = 0.9;      // a gap of this share of the best one is better
-constexpr double kSwing = 0.0005;    // that a fingertip may turn by in a frame, and this share of what hand
-constexpr double kSwingShare = 0.8;  // and bodies move: the rest is the whole hand's to give way [m]
-constexpr double kAnyway = 1.0;      // no bound [m]
-constexpr double kPace = 0.0018;     // that a joint may go beyond what the farthest tracked one does [m]
-/// A pass that moves no joint farther is not looked at again: what is met anew is no deeper than that [m].
-constexpr double kSmallStep = 1e-4;
+/// Passes without improvement after which the hand is not brought into step any further.
+constexpr int kMaxVainPasses = 2;
+/// A gap below this fraction of the best one is an improvement.
+constexpr double kImprovement = 0.9;
+/// Bound of a fingertip's turn in a frame: this [m] plus this fraction of the displacement of hand and
+/// bodies. The whole hand takes the rest.
+constexpr double kMinSwing = 0.0005, kSwingFraction = 0.8;
+/// Swing without a bound [m].
+constexpr double kUnbounded = 1.0;
+/// Distance by which a joint may move farther than the farthest tracked joint in a frame [m].
+constexpr double kPaceMargin = 0.0018;
+/// A pass that moves joints by less is the last one: new penetrations are no deeper than that [m].
+constexpr double kMinStep = 1e-4;
 
 constexpr std::uint16_t kNoBody = std::numeric_limits<std::uint16_t>::max();
 
-/// Of one end of a capsule: 0 its start, 1 its end.
+/// Key of one end of a capsule: 0 is its start, 1 its end.
 ContactKey key_of(std::size_t capsule, int end) {
   ContactKey key{};
   key.point = key.shape = static_cast<std::uint8_t>(end);
@@ -33,22 +38,22 @@ ContactKey key_of(std::size_t capsule, int end) {
 
 }  // namespace
 
-/// How far the joints of a shown hand may go in a frame.
+/// Limits the displacement of a shown hand's joints in a frame.
 class Pace {
  public:
-  /// From where they were in `before`, `way` at the most [m]. Keeps a reference.
-  Pace(const Hand& before, double way) : before_(before), way_(way) {}
+  /// Joints stay within `limit` of where they were in `before` [m]. Keeps a reference.
+  Pace(const Hand& before, double limit) : before_(before), limit_(limit) {}
 
-  /// By how much the joint goes too far that goes the farthest [m]; < 0: none does.
-  double beyond(const Hand& placed) const { return farthest_joint(before_, placed) - way_; }
+  /// Distance by which the farthest joint exceeds the limit [m]; negative if none does.
+  double beyond(const Hand& placed) const { return farthest_joint(before_, placed) - limit_; }
 
-  /// Each joint that goes too far, and each in `clearances` already, must keep off the plane that touches the
-  /// ball it may be in. Returns the least gap [m], at most 0.
+  /// Adds a clearance for each joint beyond the limit, and updates those of joints in `clearances`. Returns
+  /// the smallest gap [m], at most 0.
   ///
-  /// The ball |x - x0| <= way is not linear: its tangent plane at the joint's side, with n = (x0 - x) / |x0 -
-  /// x|, has n.x >= n.x0 - way, and the gap there is way - |x - x0|. The height has the capsule's radius
-  /// taken off, so that a clearance's gap, which takes it off too, is that of the axis. Where a joint moves
-  /// aside, the plane turns from pass to pass.
+  /// The ball |x - x0| <= limit is linearised: its tangent plane at the joint's side, with n = (x0 - x) /
+  /// |x0 - x|, has n.x >= n.x0 - limit, and the gap there is limit - |x - x0|. The capsule's radius is
+  /// subtracted from the height, as a clearance's gap subtracts it too: the gap is that of the axis. If a
+  /// joint moves aside, the plane turns from pass to pass.
   double keep(const Hand& placed, std::vector<Clearance>& clearances) const {
     double least = 0.0;
     for (std::size_t c = 0; c < kCapsules; ++c) {
@@ -56,7 +61,7 @@ class Pace {
       if (from.radius <= 0.0 || to.radius <= 0.0) continue;
       for (int end = 0; end < 2; ++end) {
         const Vector3 &start = end == 0 ? from.start : from.end, &now = end == 0 ? to.start : to.end;
-        const double gap = way_ - (now - start).norm();
+        const double gap = limit_ - (now - start).norm();
         const ContactKey key = key_of(c, end);
         auto known = std::find_if(clearances.begin(), clearances.end(),
                                   [&](const Clearance& clearance) { return clearance.key == key; });
@@ -67,7 +72,7 @@ class Pace {
           known->s = end;
         }
         known->normal = (start - now).normalized();
-        known->height = known->normal.dot(start) - way_ - to.radius;
+        known->height = known->normal.dot(start) - limit_ - to.radius;
         known->gap = gap;
         least = std::min(least, gap);
       }
@@ -75,7 +80,7 @@ class Pace {
     return least;
   }
 
-  /// Takes the joints out of `clearances` again.
+  /// Removes the clearances of joints.
   static void forget(std::vector<Clearance>& clearances) {
     const auto ours = [](const Clearance& clearance) { return clearance.key.body == kNoBody; };
     clearances.erase(std::remove_if(clearances.begin(), clearances.end(), ours), clearances.end());
@@ -83,28 +88,28 @@ class Pace {
 
  private:
   const Hand& before_;
-  double way_;
+  double limit_;
 };
 
-/// Deeper than kShallow the side on which the hand was shown before has a say, which the first look at the
-/// frame did not know: gaps are found anew.
+/// Deeper than kShallow, gaps depend on the side on which the hand was shown before, which the first search
+/// of the frame did not know: they are computed again.
 void HandRenderer::Impl::push_out(double least) {
   const HandOffset reference = offset;
   if (least < -ClearanceFinder::kShallow) begin_anew(reference);
-  keep_out(reference, kSwingShare * setting->moved + kSwing);
+  keep_out(reference, kSwingFraction * setting->moved + kMinSwing);
 }
 
-/// A hand that is held away from the axis about which the tracked one turns swings farther: where the bodies
-/// leave room, it gives way.
+/// A hand that is kept away from the axis about which the tracked hand turns would swing farther than it.
+/// Limits that where the bodies leave space.
 ///
-/// In turn: from what is solved, at the pace that bodies push at; at the hand's own; then from the offset
-/// that leaves the hand as it was shown, with the palm's lag in more and more. The best so far is kept, and
-/// only what is no deeper than allowed counts.
+/// Tries in order: the solved offset at the pace of pushing bodies; at the hand's own pace; then the offset
+/// that leaves the hand as it was shown, with more and more of the palm's lag. Keeps the best result that is
+/// no deeper than allowed.
 void HandRenderer::Impl::keep_pace(const HandOffset& reference) {
-  if (farthest_joint(before, *placed) <= tracked_way + kPace) return;
-  const Pace pace(before, tracked_way + kPace);
-  const double pushed_by = pushed_way();
-  const Pace hurried(before, tracked_way + pushed_by + kPace);
+  if (farthest_joint(before, *placed) <= tracked_displacement + kPaceMargin) return;
+  const Pace pace(before, tracked_displacement + kPaceMargin);
+  const double push = push_distance();
+  const Pace pushed_pace(before, tracked_displacement + push + kPaceMargin);
   double least_beyond = pace.beyond(*placed);
   HandOffset best = offset;
   const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
@@ -112,32 +117,32 @@ void HandRenderer::Impl::keep_pace(const HandOffset& reference) {
     settle(nearest_to, swing, &at, tolerated);
     Pace::forget(clearances);
     const double beyond = pace.beyond(*placed);
-    if (beyond >= least_beyond || finder.find(*placed, *setting, kAhead, clearances) < -tolerated) return;
+    if (beyond >= least_beyond || finder.find(*placed, *setting, kLookAhead, clearances) < -tolerated) return;
     least_beyond = beyond;
     best = offset;
   };
-  const double swing = kSwingShare * setting->moved + kSwing;
-  if (least_beyond > pushed_by) in_step(hurried, reference, swing, kTolerated);
-  if (least_beyond > kTolerated && pushed_by > 0.0) in_step(pace, reference, swing, kTolerated);
+  const double swing = kSwingFraction * setting->moved + kMinSwing;
+  if (least_beyond > push) in_step(pushed_pace, reference, swing, kMaxDepth);
+  if (least_beyond > kMaxDepth && push > 0.0) in_step(pace, reference, swing, kMaxDepth);
   PalmLag lag = reference.lag;
   for (const Stays stays : {Stays::offset, Stays::palm, Stays::axes}) {
-    if (least_beyond <= kTolerated + pushed_by) break;
+    if (least_beyond <= kMaxDepth + push) break;
     if (stays == Stays::palm) lag = lag_staying();
     if (stays == Stays::axes) lag.frame = frame_staying(lag.whole);
     chain.begin(setting->tracked, lag);
     const HandOffset stay = staying(lag);
     begin_anew(stay);
-    in_step(hurried, stay, kAnyway, stays == Stays::offset ? kTolerated : kDeepest);
+    in_step(pushed_pace, stay, kUnbounded, stays == Stays::offset ? kMaxDepth : kMaxPaceDepth);
   }
-  leap = std::max(0.0, least_beyond - pushed_by);
+  leap = std::max(0.0, least_beyond - push);
   offset = best;
   chain.begin(setting->tracked, offset.lag);
   chain.place(offset, *placed);
 }
 
-/// The longest way by which a body that the hand leans on has come towards it since the frame before [m]. n.v
-/// of the body's point at the capsule's surface, n out of the body: > 0 comes at the hand.
-double HandRenderer::Impl::pushed_way() const {
+/// Largest displacement of a loaded body towards the hand since the previous frame [m]: n.v of the body's
+/// point at the capsule's surface, with n out of the body.
+double HandRenderer::Impl::push_distance() const {
   double fastest = 0.0;
   for (const Clearance& clearance : clearances) {
     if (clearance.pressure <= 0.0) continue;
@@ -149,8 +154,8 @@ double HandRenderer::Impl::pushed_way() const {
   return fastest * elapsed;
 }
 
-/// The hand does not move from where it was shown. Joints as they pointed, within the limits that they have
-/// in the palm of now; the shift takes the palm's own way off.
+/// The offset that leaves the hand where it was shown: joints keep their directions within their present
+/// limits, and the shift cancels the palm's displacement.
 HandOffset HandRenderer::Impl::staying(const PalmLag& lag) {
   HandOffset stay;
   stay.lag = lag;
@@ -160,42 +165,42 @@ HandOffset HandRenderer::Impl::staying(const PalmLag& lag) {
   return stay;
 }
 
-/// Given up in this order: the bound on a fingertip's turn; nearness to the offset of before, for where the
-/// hand was shown; bending round what is in the way, for a shift of the whole.
+/// Relaxes, in this order: the bound of a fingertip's turn; the reference offset, in favour of where the hand
+/// was shown; bending around obstacles, in favour of a shift of the whole hand.
 void HandRenderer::Impl::keep_out(const HandOffset& reference, double swing) {
-  if (settle(reference, swing) > -kTolerated) return;
+  if (settle(reference, swing) > -kMaxDepth) return;
   begin_anew(reference);
-  if (settle(reference, kAnyway) > -kTolerated) return;
+  if (settle(reference, kUnbounded) > -kMaxDepth) return;
   if (setting->shown_before != nullptr) {
     const HandOffset stay = staying(offset.lag);
     begin_anew(stay);
-    if (settle(stay, kAnyway) > -kTolerated) return;
+    if (settle(stay, kUnbounded) > -kMaxDepth) return;
   }
   begin_anew(reference);
   shift_out();
 }
 
-/// Sequential quadratic programming: gaps are found where the hand is and linearised. Returns the least gap
+/// Sequential quadratic programming: gaps are linearised where the hand is placed. Returns the smallest gap
 /// [m].
 ///
 /// Rows J of the gaps are n for the shift and FingerChain::gradient for joints. A plane is the surface's
-/// tangent there: on what is curved, or once joints turn, it is right for small steps only, and gaps are
-/// found anew at the place that was solved for.
+/// tangent there. On curved surfaces, and once joints turn, it is right for small steps only, so that gaps
+/// are computed again at the solution.
 double HandRenderer::Impl::settle(const HandOffset& reference, double swing, const Pace* pace,
                                   double tolerated) {
-  const int most_in_vain = tolerated > kTolerated ? kMaxPasses : kMostInVain;
+  const int max_vain_passes = tolerated > kMaxDepth ? kMaxPasses : kMaxVainPasses;
   double least = 0.0, best = std::numeric_limits<double>::lowest();
-  int in_vain = 0;
-  for (int pass = 0; pass < kMaxPasses && in_vain < most_in_vain; ++pass) {
+  int vain_passes = 0;
+  for (int pass = 0; pass < kMaxPasses && vain_passes < max_vain_passes; ++pass) {
     linearise();
     const HandOffset from = offset;
     const double expected = solve_offset(reference, {*last, swing}, chain, clearances, offset);
     chain.place(offset, *placed);
-    if (expected > -kClear && way(from, offset) < kSmallStep) return expected;
-    least = finder.find(*placed, *setting, kAhead, clearances);
+    if (expected > -kClearDepth && displacement(from, offset) < kMinStep) return expected;
+    least = finder.find(*placed, *setting, kLookAhead, clearances);
     if (pace != nullptr) least = std::min(least, pace->keep(*placed, clearances));
-    if (least > -kClear) return least;
-    in_vain = pace != nullptr && least < kBetter * best ? in_vain + 1 : 0;
+    if (least > -kClearDepth) return least;
+    vain_passes = pace != nullptr && least < kImprovement * best ? vain_passes + 1 : 0;
     best = std::max(best, least);
   }
   return least;
@@ -205,7 +210,7 @@ void HandRenderer::Impl::begin_anew(const HandOffset& reference) {
   offset = reference;
   chain.place(offset, *placed);
   clearances.clear();
-  finder.find(*placed, *setting, kAhead, clearances);
+  finder.find(*placed, *setting, kLookAhead, clearances);
 }
 
 ///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
@@ -220,26 +225,26 @@ void HandRenderer::Impl::linearise() {
   }
 }
 
-double HandRenderer::Impl::way(const HandOffset& from, const HandOffset& to) {
+double HandRenderer::Impl::displacement(const HandOffset& from, const HandOffset& to) {
   double farthest = 0.0;
   for (int f = 0; f < kFingers; ++f) {
     const auto i = static_cast<std::size_t>(f);
     const FingerOffset change = to.fingers[i] - from.fingers[i];
-    if (!(change == 0.0).all()) farthest = std::max(farthest, chain.finger(f).way(change));
+    if (!(change == 0.0).all()) farthest = std::max(farthest, chain.finger(f).displacement(change));
   }
   return farthest + (to.shift - from.shift).norm();
 }
 
-/// The clearances contradict each other: the hand as it is goes as a whole to that side of the deepest body
-/// which is the nearest. For a side with the normal n and height h the hand's deepest capsule is at
-/// min n.a - r - h < 0, and the hand is out by as much along n.
+/// Fallback for contradictory clearances: shifts the whole hand to the nearest side of the deepest body. For
+/// a side with the normal n and height h, the deepest capsule is at min n.a - r - h < 0, and the hand is
+/// outside after a shift by that along n.
 void HandRenderer::Impl::shift_out() {
   constexpr int kMaxBodies = 4;
   for (int attempt = 0; attempt < kMaxBodies; ++attempt) {
     const auto deepest =
         std::min_element(clearances.begin(), clearances.end(),
                          [](const Clearance& a, const Clearance& b) { return a.gap < b.gap; });
-    Vector3 way = Vector3::Zero();
+    Vector3 shift = Vector3::Zero();
     double least = std::numeric_limits<double>::max();
     for (const Clearance& side : clearances) {
       if (side.key.body != deepest->key.body || side.key.shape != deepest->key.shape) continue;
@@ -251,40 +256,38 @@ void HandRenderer::Impl::shift_out() {
       }
       if (-reach >= least) continue;
       least = -reach;
-      way = -reach * side.normal;
+      shift = -reach * side.normal;
     }
-    offset.shift += way;
+    offset.shift += shift;
     chain.place(offset, *placed);
     clearances.clear();
-    if (finder.find(*placed, *setting, kAhead, clearances) > -kTolerated) return;
+    if (finder.find(*placed, *setting, kLookAhead, clearances) > -kMaxDepth) return;
   }
   lead_out();
 }
 
-/// Leads the hand as it is out along that of its palm's axes on which it is out the soonest. No step is
-/// longer than what is left of the way out. Sphere tracing (Hart 1996): with a gap of -d the hand cannot be
-/// out before it has gone d, so that a step of d passes over no way out; near the surface kShortestStep gets
-/// it on.
+/// Shifts the hand along the palm's axis on which it is outside after the shortest distance. Sphere tracing
+/// (Hart 1996): with a gap of -d the hand is still inside after less than d, so that a step of d skips no
+/// solution; kMinTraceStep ensures progress near the surface.
 void HandRenderer::Impl::lead_out() {
-  constexpr double kFarthestOut = 0.5;      // [m]
-  constexpr double kShortestStep = 0.0005;  // [m]
-  finder.begin(*setting, offset.shift.norm() + kFarthestOut);
+  constexpr double kMaxTrace = 0.5, kMinTraceStep = 0.0005;  // [m]
+  finder.begin(*setting, offset.shift.norm() + kMaxTrace);
   const Matrix3 palm = setting->tracked.palm.orientation.toRotationMatrix();
-  double nearest = kFarthestOut;
+  double nearest = kMaxTrace;
   const Vector3 from = offset.shift;
   Vector3 out = from;
   for (int direction = 0; direction < 6; ++direction) {
-    const Vector3 way = (direction < 3 ? 1.0 : -1.0) * palm.col(direction % 3);
+    const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * palm.col(direction % 3);
     for (double gone = 0.0; gone < nearest;) {
-      offset.shift = from + gone * way;
+      offset.shift = from + gone * axis;
       chain.place(offset, *placed);
       clearances.clear();
-      const double least = finder.find(*placed, *setting, kAhead, clearances);
-      if (least > -kTolerated) {
+      const double least = finder.find(*placed, *setting, kLookAhead, clearances);
+      if (least > -kMaxDepth) {
         nearest = gone;
         out = offset.shift;
       }
-      gone += std::max(-least, kShortestStep);
+      gone += std::max(-least, kMinTraceStep);
     }
   }
   offset.shift = out;

@@ -6,12 +6,12 @@
 namespace mrhi {
 namespace {
 
-/// Mass of half the effect [kg]: 0.1 kg has 2 % of it, 20 kg have 80 %.
+/// Mass with half of the largest effect [kg]: 0.1 kg has 2 % of it, 20 kg have 80 %.
 constexpr double kHalfMass = 5.0;
-/// Rate at which the lag returns [1/s]: a movement of a second shows it, and it is gone a second later.
+/// Rate at which the lag decays [1/s]: a movement of a second shows it, and it has decayed a second later.
 constexpr double kReturnRate = 4.0;
-/// Longer frames than this have no mean acceleration that says anything [s].
-constexpr double kLongestFrame = 0.25;
+/// Longest frame whose mean acceleration is meaningful [s].
+constexpr double kMaxFrame = 0.25;
 
 void shift(const Vector3& by, Hand& hand) {
   hand.palm.position += by;
@@ -61,7 +61,7 @@ double control_display_ratio(double largest, double mass) {
 void advance_mass_lag(double largest, const MovedMass& moved, Nanoseconds stamp, MassLag& lag) {
   const double seconds = lag.stamp == 0 ? 0.0 : to_seconds(stamp - lag.stamp);
   lag.stamp = stamp;
-  if (seconds <= 0.0 || seconds > kLongestFrame) {
+  if (seconds <= 0.0 || seconds > kMaxFrame) {
     lag.displacement.setZero(), lag.velocity.setZero();
     return;
   }

@@ -16,7 +16,8 @@ struct JointLimits {
   FingerOffset lower, upper;
 };
 
-/// Of the thumb: its carpometacarpal joint against a rest pose, then metacarpophalangeal and interphalangeal.
+/// Limits of a finger. Thumb: the carpometacarpal joint relative to a rest pose, then metacarpophalangeal and
+/// interphalangeal.
 JointLimits joint_limits(int finger);
 
 /// Rest pose of the thumb's metacarpal in the palm of a right hand (x to the fingers, z out of the back):
@@ -35,29 +36,29 @@ const ThumbRest& thumb_rest();
 class FingerChain {
  public:
   FingerChain() = default;
-  /// As placed with no offset of its own. Where the palm lags, `lags_behind` is the hand as it was tracked.
+  /// Places the finger without an offset of its own. If the palm lags, `lags_behind` is the tracked hand.
   FingerChain(const Hand& tracked, int finger, const Vector3& shift, const Hand* lags_behind = nullptr);
 
   /// Places the finger's phalanges, its joints turned by `offset` and all shifted by `shift`.
   void place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed);
-  /// The offset that lets the finger point as it does in `shown`, which `chain` placed, as far as its limits
-  /// allow. Of a finger that nothing ties to the palm: none.
+  /// The offset with which the finger points as in `shown`, which `chain` placed, within its limits. Zero for
+  /// a finger that is not connected to the palm.
   FingerOffset like(const Hand& shown, const FingerChain& chain) const;
   /// The same without regard to limits.
   FingerOffset pointing(const Hand& shown, const FingerChain& chain) const;
-  /// By how much n.x grows with each component of the offset, x a point of bone 1 to 3 as last placed.
+  /// Derivative of n.x by the offset, with x a point of bone 1 to 3 as last placed.
   FingerOffset gradient(int bone, const Vector3& x, const Vector3& n) const;
-  /// No joint of the finger moves farther than this for a change of the offset [m].
-  double way(const FingerOffset& change) const;
+  /// Upper bound of the joints' displacements for a change of the offset [m].
+  double displacement(const FingerOffset& change) const;
 
-  /// How far each joint may turn while the tip moves about as far as `way` [m].
-  FingerOffset swing(double way) const;
+  /// Turn of each joint that moves the tip by about `distance` [m].
+  FingerOffset swing(double distance) const;
 
-  /// Offsets that leave every joint in its limits or, if it was tracked beyond one, let it go no farther. 0
-  /// is among them unless the palm lags.
+  /// Bounds of the offset: they keep every joint in its limits, widened to its tracked angle. They contain 0
+  /// unless the palm lags.
   const FingerOffset& lower() const { return lower_; }
   const FingerOffset& upper() const { return upper_; }
-  /// How readily each component gives way.
+  /// Compliance of each component.
   FingerOffset compliance() const;
 
  private:
@@ -77,11 +78,11 @@ class FingerChain {
   FingerOffset angles_;                          // of the joints as tracked [rad]
 };
 
-/// How readily the whole hand gives way, beside its joints (FingerChain::compliance).
+/// Compliance of the whole hand, relative to that of its joints (FingerChain::compliance).
 constexpr double kShiftCompliance = 0.3;
 
-/// A tracked hand as a palm, which can be shifted, and five fingers on it. A finger's chain is made once it
-/// is asked for: most of them touch nothing.
+/// A tracked hand as a palm, which can be shifted, and five fingers on it. The chain of a finger is created
+/// on first use: most fingers touch nothing.
 class HandChain {
  public:
   /// Keeps a reference.
@@ -122,61 +123,61 @@ struct Clearance {
   double pressure = 0.0;  ///< Lagrange multiplier, >= 0
 };
 
-/// How far joints may go from where they were in the frame before: a fingertip no farther than `swing` [m].
+/// Bound of the joints' change since the previous frame: a fingertip moves by at most `swing` [m].
 struct OffsetBounds {
   const HandOffset& before;
   double swing;
 };
 
-/// The offset nearest to `reference`, measured by how readily things give way, that keeps all gaps at 0 or
-/// more and all joints in their limits:
+/// The offset nearest to `reference`, weighted by inverse compliances, that keeps all gaps non-negative and
+/// all joints in their limits:
 ///   minimise 1/2 (q - q0)' W (q - q0)  subject to  gap + J (q - qk) >= 0,  lower <= q <= upper,
-/// linearised where the hand is placed now (qk, in `offset`). Dual coordinate ascent (Hildreth 1957), with
-/// the limits by clamping. Pressures are where it starts and are left as found. A joint goes at most a
-/// quarter of a radian from where it is. Returns the least gap then, linearised [m].
+/// linearised where the hand is placed now (qk, in `offset`). Dual coordinate ascent (Hildreth 1957), limits
+/// by clamping, warm start with the clearances' pressures. A joint turns by at most a quarter of a radian.
+/// Returns the smallest linearised gap [m].
 double solve_offset(const HandOffset& reference, const OffsetBounds& bounds, HandChain& chain,
                     std::vector<Clearance>& clearances, HandOffset& offset);
 
-/// Finds where a hand that is to be shown is near bodies, or in them, and on which side of them it stands.
+/// Finds where a hand to be shown is near or inside bodies, and on which side of them it is.
 class ClearanceFinder {
  public:
-  /// Less deep than this the nearest way out is the way in [m].
+  /// Up to this depth the nearest surface is the one that the hand has entered by [m].
   static constexpr double kShallow = 0.002;
 
   /// Keeps references.
   ClearanceFinder(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  /// Which hand it is, in which scene; `contacts` know the faces that its phalanges entered by.
+  /// The hand and its surroundings. `contacts` have the faces that its phalanges entered by.
   struct Setting {
     const Hand& tracked;
     int slot;
     const std::vector<BodyState>& bodies;
     const std::vector<Contact>& contacts;
-    const Hand* shown_before;   ///< of the frame before, if the hand was there
-    double moved;               ///< what hand and bodies have moved since [m]
+    const Hand* shown_before;   ///< in the previous frame, if the hand was there
+    double moved;               ///< bound of the relative displacement since then [m]
     Interaction* interactions;  ///< of the hand, one per body: which of them it is shown in
   };
-  /// Takes the bodies within `margin` of the tracked hand [m], but for those that it is shown in; false if
+  /// Collects the bodies within `margin` of the tracked hand [m], except those that it is shown in. False if
   /// there are none.
   bool begin(const Setting& setting, double margin);
 
-  /// Of the bodies that the hand is shown in, some are near it.
+  /// True if a body that the hand is shown in is near it.
   bool shown_in_any() const { return !shown_in_.empty(); }
-  /// Ends this with those that the hand, as shown before, is clear of.
+  /// Clears `shown_in` of the bodies that the hand, as shown before, is clear of.
   void end_shown_in(const Hand& shown, Interaction* interactions) const;
 
-  /// Of any point of the bodies near the hand [m/s].
+  /// Largest speed of any point of the bodies near the hand [m/s].
   double fastest_body(const std::vector<BodyState>& bodies) const;
 
-  /// Of a point of a body [m/s].
+  /// Velocity of a point of a body [m/s].
   Vector3 velocity(int body, const Vector3& point, const std::vector<BodyState>& bodies) const;
 
-  /// Looks at the hand as placed: adds what is nearer than `margin` to `clearances`, and what is there
-  /// already is measured anew. Returns the least gap [m], at most `margin`.
+  /// Adds surfaces within `margin` of the placed hand to `clearances`, and updates the gaps of all. Returns
+  /// the smallest gap [m], at most `margin`.
   double find(const Hand& placed, const Setting& setting, double margin,
               std::vector<Clearance>& clearances) const;
 
-  /// A body that never moves.
+  /// True if the body never moves.
   bool fixed(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].fixed; }
 
   /// True if no capsule of the hand is in any of the bodies.
@@ -203,21 +204,22 @@ class ClearanceFinder {
   std::vector<Near> shown_in_;
 };
 
-class Pace;  ///< how far the joints may go in a frame
+class Pace;  ///< limits the joints' displacement in a frame
 
-constexpr double kClear = 2e-5;      ///< gaps of more than -this are clear [m]
-constexpr double kTolerated = 1e-4;  ///< a gap of less than -this is too deep once all is done [m]
-constexpr double kDeepest = 1.8e-4;  ///< what is promised is 0.2 mm: where only that keeps pace [m]
-constexpr double kAhead = 0.0015;    ///< surfaces nearer than this are kept off before they are met [m]
+constexpr double kClearDepth = 2e-5;  ///< up to this depth a capsule counts as clear [m]
+constexpr double kMaxDepth = 1e-4;    ///< largest depth of a solution [m]
+constexpr double kMaxPaceDepth =
+    1.8e-4;  ///< the same if only that limits the pace; below the promised 0.2 mm [m]
+constexpr double kLookAhead = 0.0015;  ///< surfaces within this distance are avoided before they are met [m]
 
-/// What a hand was shown like. Placing it anew gives the same bits: it is kept to be quick.
+/// A hand as it was shown. Placing it again gives the same bits: this is a cache.
 struct Shown {
   bool known = false;
   Hand tracked, hand;
   HandOffset offset;
 };
 
-/// What one hand's frame is made with, and what is kept between frames.
+/// Data of one hand's frame, and caches between frames.
 struct HandRenderer::Impl {
   Impl(const Scene& scene, const ContactFinder& contact_finder) : finder(scene, contact_finder) {
     clearances.reserve(256);
@@ -234,20 +236,20 @@ struct HandRenderer::Impl {
   void keep_pace(const HandOffset& reference);
   void keep_out(const HandOffset& reference, double swing);
   double settle(const HandOffset& reference, double swing, const Pace* pace = nullptr,
-                double tolerated = kTolerated);
+                double tolerated = kMaxDepth);
   void begin_anew(const HandOffset& reference);
-  double pushed_way() const;
+  double push_distance() const;
   HandOffset staying(const PalmLag& lag);
   Quaternion frame_staying(const Quaternion& whole) const;
   PalmLag lag_staying();
-  double held_by_limits(const PalmLag& lag);
+  double limit_displacement(const PalmLag& lag);
   void linearise();
   void shift_out();
   void lead_out();
-  double way(const HandOffset& from, const HandOffset& to);
+  double displacement(const HandOffset& from, const HandOffset& to);
   bool left_behind();
 
-  // Of the frame. `offset` is what is looked for, `placed` the hand with it.
+  // Of the frame. `offset` is the unknown, `placed` the hand with it.
   ClearanceFinder::Setting* setting = nullptr;
   const HandTrack* track = nullptr;
   Nanoseconds stamp = 0;
@@ -257,7 +259,7 @@ struct HandRenderer::Impl {
 
   ClearanceFinder finder;
   HandChain chain;
-  HandChain chain_before;         // set to the frame before once it is asked for
+  HandChain chain_before;         // of the previous frame, set on first use
   bool chain_before_set = false;  // for this hand and frame
   std::vector<Clearance> clearances;
   Hand before;               // as it was shown at the frame before
@@ -265,13 +267,13 @@ struct HandRenderer::Impl {
   HandOffset offset_before;  // and its offset
   std::array<Shown, kMaxHands> kept;
   bool pushed = false;  // bodies are in the way
-  double leap = 0.0;    // of a joint beyond what hand and bodies have moved, if there is no other way [m]
-  double tracked_way = 0.0;  // of the farthest joint since then [m]
-  double elapsed = 0.0;      // since then [s]
+  double leap = 0.0;    // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
+  double tracked_displacement = 0.0;  // of the farthest joint since then [m]
+  double elapsed = 0.0;               // since then [s]
 };
 
-/// HandOffset::lag on its way back to none, from where it was at the frame before to `stamp`: it decays, and
-/// no joint goes farther in one frame than a person would see as a jump.
+/// HandOffset::lag at `stamp`, after it has decayed since the previous frame. No joint moves in a frame by
+/// more than a person would see as a jump.
 PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp);
 
 }  // namespace mrhi

@@ -13,7 +13,8 @@
 namespace mrhi {
 namespace {
 
-constexpr double kFacets = 60.0;  // of the triangles' normals, about as much as the bones'
+/// Weight of the triangles' normals, about that of the bones'.
+constexpr double kFacetWeight = 60.0;
 
 /// Columns that map an influence's place on its bone to world.
 struct Carrier {
@@ -25,7 +26,7 @@ Carrier carrier(const SkinBone& bone) {
   return {bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
 }
 
-/// One after the other.
+/// Reads the three skins in their order in the file.
 std::array<Skin, 3> read_skins() {
   const char* at = shipped_skins().data();
   const auto read = [&at](void* to, std::size_t bytes) {
@@ -121,10 +122,9 @@ class Poser {
     return mirrored(rest_[static_cast<std::size_t>(index)].axes, hand_.side);
   }
 
-  /// From the parent as it is now, by the turn that the rest hand has between the two, then by the least
-  /// rotation that brings x onto the bone: no twist about the bone, which the tracker does not tell. The bend
-  /// has half of that rotation. Folded back by 180 degrees the least rotation is not unique; no joint goes so
-  /// far.
+  /// Turns the bone with its parent as in the rest hand, then by the smallest rotation that brings x onto the
+  /// bone: trackers do not report a twist about it. The bend has half of that rotation. At 180 degrees the
+  /// smallest rotation would not be unique; no joint bends that far.
   void turn(int index, int parent, int bend) {
     const auto i = static_cast<std::size_t>(index);
     const Capsule& capsule = hand_.capsules[i];
@@ -143,14 +143,15 @@ class Poser {
   SkinRig rig_;
 };
 
-// A touch is seen around its middle as far as this, in radii of what presses.
-constexpr double kSpot = 2.0, kSpotCore = 1.1;
-constexpr double kLightTouch = 0.8;  // how red it is without force
-constexpr double kFirm = 6.0;        // and with this force it is as red as it gets [N]
-constexpr float kOcclusion = 0.7f, kDarkest = 0.4f;
+/// Radii of the red spot of a contact and of its core, in radii of the phalanx.
+constexpr double kSpotRadius = 2.0, kSpotCoreRadius = 1.1;
+/// Redness without force, and the force of full redness [N].
+constexpr double kMinRedness = 0.8, kFullRednessForce = 6.0;
+/// Factor on the occluded light, and the smallest fraction of ambient light that arrives.
+constexpr float kOcclusion = 0.7f, kMinAmbient = 0.4f;
 
-/// A sphere for each phalanx, as large as the phalanx is seen from its side, in arrays that vector
-/// instructions like; the last one is nothing.
+/// Number of occluding spheres: one for each phalanx, as large as it appears from the side, padded to a
+/// multiple of the vector width.
 constexpr int kSpheres = 16;
 using Floats = Eigen::Array<float, kSpheres, 1>;
 
@@ -177,7 +178,7 @@ struct Occluders {
     }
   }
 
-  /// Share of the light from all around that is left; `counts` is 0 for the spheres that do not count. A
+  /// Fraction of ambient light that arrives; `counts` is 0 for spheres that do not occlude this place. A
   /// sphere of radius R at the distance d takes (n.d / |d|) (R / |d|)^2 of the light that comes evenly from
   /// the half space of n, while it is above the horizon; several are summed, as if none covered another. 1e-6
   /// m^2 keeps one about the place itself from dividing by 0.
@@ -185,7 +186,7 @@ struct Occluders {
     const Floats dx = x - p.x(), dy = y - p.y(), dz = z - p.z();
     const Floats d = dx * dx + dy * dy + dz * dz + 1e-6f;
     const Floats facing = (dx * n.x() + dy * n.y() + dz * n.z()).max(0.0f);
-    return std::max(kDarkest, 1.0f - kOcclusion * (counts * squared * facing / (d * d.sqrt())).sum());
+    return std::max(kMinAmbient, 1.0f - kOcclusion * (counts * squared * facing / (d * d.sqrt())).sum());
   }
 };
 
@@ -213,8 +214,10 @@ std::array<Floats, kCapsules> make_counts() {
   return counts;
 }
 
-constexpr double kYieldingForce = 2.0;  // force with which 63 % of the deepest compression is reached [N]
-constexpr double kAround = 1.3;         // radii of the phalanx about the contact, in which skin is flattened
+/// Force at which 63 % of the deepest compression is reached [N].
+constexpr double kCompressionForce = 2.0;
+/// Radius around the contact in which skin is flattened, in radii of the phalanx.
+constexpr double kFlattenedRadius = 1.3;
 
 /// Height h over the plane becomes 0 up to the depth d, h from 3 d on, and 3/2 (h - d) between.
 double flattened(double height, double depth) {
@@ -222,7 +225,8 @@ double flattened(double height, double depth) {
   return std::max(0.0, 1.5 * (height - depth));
 }
 
-constexpr double kLidDepth = 0.01;  // from the rim to the lid's middle [m]
+/// Distance from the rim to the lid's centre [m].
+constexpr double kLidDepth = 0.01;
 
 }  // namespace
 
@@ -236,7 +240,7 @@ std::string_view shipped_skins() {
 void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& hand,
                 const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
   const double per_area =
-      (hand.side == Side::left ? -kFacets : kFacets) / (hand.palm_width * hand.palm_width);
+      (hand.side == Side::left ? -kFacetWeight : kFacetWeight) / (hand.palm_width * hand.palm_width);
   for (const auto& triangle : triangles) {
     const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
                c = static_cast<std::size_t>(triangle[2]);
@@ -304,7 +308,7 @@ SkinRig pose_rig(const Hand& hand) {
   return Poser(hand).pose();
 }
 
-/// How much of the touching colour a vertex takes: of the touches of its own finger, or the palm's.
+/// Fraction of the touching colour at a vertex, from the contacts of its own finger or of the palm.
 float SkinPaint::redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
                          const std::vector<int>& touched) const {
   const int own = skin_.model().looks[vertex].capsule;
@@ -314,8 +318,9 @@ float SkinPaint::redness(std::size_t vertex, const Vector3& place, const Rendere
     const auto i = static_cast<std::size_t>(c);
     const double radius = rendered.hand.capsules[i].radius;
     const double away = (place - rendered.pressed[i].point).norm();
-    const double firm = kLightTouch + (1.0 - kLightTouch) * std::min(1.0, rendered.pressed[i].force / kFirm);
-    red = std::max(red, firm * smooth_step(kSpot * radius, kSpotCore * radius, away));
+    const double firm =
+        kMinRedness + (1.0 - kMinRedness) * std::min(1.0, rendered.pressed[i].force / kFullRednessForce);
+    red = std::max(red, firm * smooth_step(kSpotRadius * radius, kSpotCoreRadius * radius, away));
   }
   return static_cast<float>(red);
 }
@@ -346,8 +351,8 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
   for (const Contact& contact : contacts) {
     if (!contact.touching() || hand_id(contact, state) != hand) continue;
     const double force = std::abs(contact.normal.dot(contact.force));
-    const double depth = kDeepestPress * (1.0 - std::exp(-force / kYieldingForce));
-    const double around = kAround * contact.radius;
+    const double depth = kDeepestPress * (1.0 - std::exp(-force / kCompressionForce));
+    const double around = kFlattenedRadius * contact.radius;
     for (std::size_t v = 0; v < skin.size(); ++v) {
       if (!same_part(contact.key.capsule, skin.model().looks[v].capsule)) continue;
       const Vector3 out = surface.vertices[v] - contact.point;
@@ -358,8 +363,8 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
   }
 }
 
-/// The rim is one loop of edges. From its middle: the loop is jagged, and a fan from one of its own corners
-/// would stand out between its teeth.
+/// The rim is one loop of edges. The lid is a fan from its centre: the loop is jagged, and a fan from one of
+/// its corners would stand out between the teeth.
 SkinWrist::SkinWrist(const Skin& skin) : skin_(skin) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& t : skin.triangles()) {
@@ -379,8 +384,8 @@ SkinWrist::SkinWrist(const Skin& skin) : skin_(skin) {
   }
 }
 
-/// Within the wrist: level with the rim, flat stretches of skin would be above the lid. In the light that its
-/// side of the hand is in: the end of a wrist looks round.
+/// The lid lies inside the wrist: level with the rim, flat skin would be above it. It is lit like its side of
+/// the hand, so that the end of the wrist looks round.
 void SkinWrist::add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const {
   Vector3 rim = Vector3::Zero(), faded = Vector3::Zero();
   Rgb colour = Rgb::Zero(), light = Rgb::Zero();

@@ -22,8 +22,8 @@ inline Eigen::Vector3f main_light() {
   return {0.3505f, -0.4506f, 0.8211f};
 }
 
-/// What a white surface with this normal (world, unit) sends back: one light from above, one faint from
-/// below, light from all around, of which the share `around` arrives. Fixed in world, so that what is still
+/// Light reflected by a white surface with this normal (world, unit): one light from above, a faint one from
+/// below, and ambient light, of which the fraction `around` arrives. Fixed in world, so that a still surface
 /// keeps its colours while the view turns. A channel may exceed 1.
 ///
 ///     main:      (n.l + wrap) / (1 + wrap), >= 0 (wrapped diffuse light: red goes farther round than blue)
@@ -75,7 +75,7 @@ struct SkinModel {
   }
 };
 
-/// Of a model, for each vector: its size (uint32) and its elements as they are in memory, little-endian.
+/// Bytes of the models: for each vector its size (uint32) and its elements as in memory, little-endian.
 std::string_view shipped_skins();
 
 /// A smooth closed skin over a hand's bones: triangles that are made for the rest hand (modelling/). Each
@@ -83,7 +83,7 @@ std::string_view shipped_skins();
 class Skin {
  public:
   explicit Skin(SkinModel model) : model_(std::move(model)) {}
-  /// What all share: for who bends it where it is drawn, for who sends its triangles, and for a ghost.
+  /// Shared skins: for local rendering, for publishing triangles, and for a ghost.
   static const Skin& detailed();
   static const Skin& human();
   static const Skin& outline();
@@ -183,8 +183,8 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
 constexpr double kDeepestPress = 0.0018;  ///< [m]
 
 /// A skin's triangles by how they are drawn: opaque up to a rim, and fading from there to nothing along the
-/// wrist. A lid about one more vertex, skin.size(), closes the opaque part: who looks through the wrist sees
-/// no inside. Immutable.
+/// wrist. A lid about one more vertex, skin.size(), closes the opaque part, so that the inside is not visible
+/// through the wrist. Immutable.
 class SkinWrist {
  public:
   explicit SkinWrist(const Skin& skin);  ///< keeps a reference
@@ -192,7 +192,7 @@ class SkinWrist {
   using Triangle = std::array<std::uint32_t, 3>;
   const std::vector<Triangle>& opaque() const { return opaque_; }  ///< the lid included
   const std::vector<Triangle>& fading() const { return fading_; }
-  /// How much of a vertex is seen: 1 everywhere but at the wrist.
+  /// Opacity of a vertex: 1 everywhere except at the wrist.
   float opacity(std::size_t vertex) const {
     return vertex < skin_.size() ? 1.0f - skin_.model().looks[vertex].wrist : 1.0f;
   }

@@ -106,7 +106,7 @@ void require(const char* option, const std::string& value) {
   if (value.empty()) throw UsageError(std::string(option) + " is missing; --help shows the usage");
 }
 
-/// A bag may tell its scene, and has a place for what comes of it.
+/// Checks combinations. A bag needs no --scene if it has a log, and has a default output folder.
 void check(ReplayArguments& arguments) {
   require("--input", arguments.input);
   const bool bag = ends_with(arguments.input, ".bag");
@@ -122,7 +122,7 @@ void check(ReplayArguments& arguments) {
     arguments.output = arguments.input.substr(0, arguments.input.size() - 4) + "_replay";
 }
 
-/// Without where the results go, and what is made of them.
+/// The arguments without the output folder and what is made of the results.
 std::vector<std::string> repeatable(const std::vector<std::string>& words) {
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {

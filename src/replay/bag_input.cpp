@@ -90,7 +90,7 @@ std::set<std::string> known_types() {
   return types;
 }
 
-/// What other trackers' hands are on belongs together.
+/// Topics of other trackers' hands, which are read together.
 std::set<std::string> known_point_topics() {
   std::set<std::string> topics;
   for (const std::string& topic : TrackerReader::topics())
@@ -154,8 +154,8 @@ class NoTransform : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where trackers stand in world: everywhere the same, if that was given; else as a bag's /tf_static and /tf
-/// say, as far as that had come when the hands came. The Leap's own frame has a default mount.
+/// Poses of trackers in world: the given one, or by a bag's /tf_static and /tf as received before the hands.
+/// The Leap's own frame has a default mount.
 class DeviceFrames {
  public:
   DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
@@ -167,7 +167,7 @@ class DeviceFrames {
       each_in(message, [&](const auto& transform) { transforms_.set_fixed(transform); });
   }
 
-  /// Of hands that were recorded at `arrival`. Throws NoTransform.
+  /// Pose of the tracker of hands that were recorded at `arrival`. Throws NoTransform.
   Pose pose(const std::string& frame_id, Nanoseconds stamp, const ros::Time& arrival) {
     if (given_) return *given_;
     for (; next_ != moving_.end() && next_->getTime() <= arrival; ++next_)
@@ -243,7 +243,7 @@ class BagInput : public FrameSource {
     });
   }
 
-  /// The topic's name by which a live node would tell the side.
+  /// The topic's name from which a live node would derive the side.
   std::string stands_for(const std::string& recorded) const {
     for (const std::string& name : {recorded, recorded.substr(1)}) {
       if (const auto found = options_.topics.find(name); found != options_.topics.end()) return found->second;
@@ -339,8 +339,7 @@ LogEntry entry_of(const SimulationInput& message) {
   return entry;
 }
 
-/// By run and sequence: where recorded time goes back, as a bag that loops makes it, the bag's order is
-/// another.
+/// Entries by run and sequence. The bag's own order differs if recorded time goes back, as in a looping bag.
 class BagLog : public LogSource {
  public:
   BagLog(const std::string& file, const std::string& topic)

@@ -21,7 +21,7 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Nothing at the end. Throws std::exception with one line if the recording cannot be read any further.
   virtual std::optional<SourceFrame> next() = 0;
-  /// Of what is recorded, so far and in all: a frame each, or the hands of a frame in messages of their own.
+  /// Number of messages read so far, and in all. The hands of a frame may be in separate messages.
   virtual std::size_t position() const = 0;
   virtual std::size_t size() const = 0;
 };

@@ -50,7 +50,7 @@ void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& 
   bag.write(topic, stamp, message, connection);
 }
 
-/// What a change of the scene can change of a body: its name and both frictions.
+/// Properties of a body that a change of the scene can change: its name and both frictions.
 using Look = std::tuple<std::string, double, double>;
 
 class MarkerBag : public Pictures {

@@ -24,7 +24,7 @@ namespace {
 /// A temporary folder that is removed with its contents at the end.
 class ScratchFolder {
  public:
-  /// `name`: of the program, for who finds the folder. Throws std::runtime_error if it cannot be made.
+  /// `name`: of the program, as a prefix. Throws std::runtime_error if the folder cannot be made.
   explicit ScratchFolder(const std::string& name)
       : path_((std::filesystem::temp_directory_path() / (name + "_XXXXXX")).string()) {
     if (mkdtemp(&path_[0]) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
@@ -50,7 +50,7 @@ std::string scene_file(const ReplayArguments& arguments) {
   }
 }
 
-/// What is given by hand, over what was recorded.
+/// Arguments of the command line that override what was recorded.
 class Overrides {
  public:
   explicit Overrides(const ReplayArguments& arguments) : arguments_(arguments) {}
@@ -154,7 +154,7 @@ class LogRun {
     run_.check_end();
   }
 
-  /// Also of a run that ended early.
+  /// Also called for a run that ended early.
   void end(const std::string& error) {
     if (!simulation_) return;
     run_.end(simulation(), error);
@@ -171,7 +171,7 @@ class LogRun {
 
   void take(const LogEntry& entry) {
     if (entry.kind == LogEntry::Kind::begin) return begin(entry);
-    if (!simulation_) return;  // of who was there before it began
+    if (!simulation_) return;  // before the recording's first beginning
     if (entry.run != live_run_) {
       broken_ = true;  // until it begins
       return;
@@ -205,7 +205,7 @@ class LogRun {
         std::make_unique<LiveSimulation>(scene_of(world, configuration, scratch_.path()), configuration);
     if (!overrides_.other_scene()) take_state(entry);
     overrides_.place(simulation());
-    tell_begin(world);
+    note_begin(world);
     compare(entry);
   }
 
@@ -218,7 +218,7 @@ class LogRun {
     }
   }
 
-  void tell_begin(const World& world) {
+  void note_begin(const World& world) {
     run_.begin(simulation(), world.scene);
     if (!hashes_)
       hashes_ = std::make_unique<CsvFile>(arguments_.output + "/hashes.csv", table_of("hashes.csv").header());
@@ -281,7 +281,7 @@ class LogRun {
   std::unique_ptr<LiveSimulation> simulation_;
   std::unique_ptr<CsvFile> hashes_;
   std::uint64_t live_run_ = 0, sequence_ = 0, lost_before_ = 0;
-  bool broken_ = false;  ///< entries are missing, so that nothing is as it was
+  bool broken_ = false;  ///< entries are missing, so that states cannot be compared
 };
 
 Configuration configured(const ReplayArguments& arguments) {
@@ -321,7 +321,7 @@ void leave_out(const std::vector<std::string>& hands, ReplayRun& run) {
   run.summary.hands_left_out += hands.size();
 }
 
-/// What the recorder's clock says of the stamps to come, as the node's does of those of live frames.
+/// Predicts the next stamp by the recorder's clock, as the node does for live frames.
 struct RecordersClock {
   Nanoseconds last_stamp = 0;
   std::optional<Nanoseconds> arrival;  // of the frame with the last stamp
@@ -345,7 +345,8 @@ ReplayInput open_input(const ReplayArguments& arguments) {
   return open_bag(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
 }
 
-/// The log of the live simulation; it is not read if other hands are asked for than the simulation took.
+/// The log of the live simulation. It is not read if the arguments ask for other hands than the simulation
+/// took.
 OpenLog open_log_of(const ReplayArguments& arguments) {
   OpenLog log;
   log.why_not = "it has hands alone";

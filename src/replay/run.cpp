@@ -20,7 +20,7 @@ Vector3 gravity_of(const Simulation& simulation) {
   return simulation.configuration().gravity.value_or(simulation.scene().gravity);
 }
 
-/// False if there is no step left in the frame.
+/// Runs and times a step. False if no step is left in the frame.
 bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   const auto begin = std::chrono::steady_clock::now();
   if (!simulation.step()) return false;
@@ -30,7 +30,7 @@ bool timed_step(Simulation& simulation, ReplaySummary& summary) {
   return true;
 }
 
-/// The outermost folder on the way to this one that is not there; empty: all are.
+/// The outermost missing folder of a path; empty if all exist.
 std::string first_missing(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::path missing;
@@ -64,13 +64,13 @@ Json json_of(const LiveRun& live) {
                  {"overridden", live.overridden}};
 }
 
-/// To which relative paths in the arguments are; empty if it is gone.
+/// Folder of relative paths in the arguments; empty if it has been removed.
 std::string working_folder() {
   std::error_code error;
   return std::filesystem::current_path(error).string();
 }
 
-/// By a queue on the way to the live simulation; and by stamps, which this run has judged itself.
+/// Frames lost by the live simulation's queue, and rejected by this run for their stamps.
 Json lost(const ReplaySummary& summary) {
   const auto count = [&](const char* reason) {
     const auto found = summary.rejected.find(reason);

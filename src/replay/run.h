@@ -16,20 +16,20 @@
 #include "tables.h"
 
 namespace mrhi {
-/// How a replay stands to the live run that it does again.
+/// Comparison of a replay with the live run that it repeats.
 struct LiveRun {
   std::string version;                  ///< of the package that ran
-  std::uint64_t entries = 0;            ///< of the log that have been done again
+  std::uint64_t entries = 0;            ///< of the log that were repeated
   std::uint64_t missing = 0;            ///< entries that the recording has lost
   std::uint64_t compared = 0;           ///< entries after which the state was compared with the live one's
   std::uint64_t same = 0;               ///< of these, with the same hash
-  std::optional<double> parts_at;       ///< where it was first another one [s]
+  std::optional<double> parts_at;       ///< time of the first difference [s]
   std::uint64_t lost_by_queue = 0;      ///< frames that did not reach the live simulation
   std::vector<std::string> changes;     ///< that were made while it ran, with their time
-  std::vector<std::string> overridden;  ///< by hand, so that this is another run
+  std::vector<std::string> overridden;  ///< by the command line, so that this is another run
 };
 
-/// What summary.json says of a replay.
+/// Content of summary.json.
 struct ReplaySummary {
   std::string scene, input, topic, contact_model, version;
   std::vector<std::string> arguments;             ///< that make the same run again
@@ -48,12 +48,12 @@ struct ReplaySummary {
   std::map<std::string, std::uint64_t> events;
   std::vector<std::string> held_at_end;
   std::uint64_t state_hash = 0;
-  std::optional<LiveRun> live;         ///< where the recording tells
-  std::vector<std::string> not_known;  ///< what the outcome hangs on that the recording does not tell
+  std::optional<LiveRun> live;         ///< if the recording has a log
+  std::vector<std::string> not_known;  ///< what affects the result and is not in the recording
   std::string error;                   ///< why it ended early; empty if it did not
 };
 
-/// As JSON. All but step_time_us is the same for the same input.
+/// The summary as JSON. Everything except step_time_us is the same for the same input.
 std::string to_json(const ReplaySummary& summary);
 
 /// A progress bar on stderr if that is a terminal; lines written through it stay readable.
@@ -72,14 +72,14 @@ class ProgressBar {
   int percent_ = -1;
 };
 
-/// What replays of frames and of logs share: they take frames, write results and count. The summary is
-/// complete at any time, so that it can be written if the recording cannot be read any further.
+/// Base of replays of frames and of logs: takes frames, writes results and counts. The summary is complete at
+/// any time, so that it can be written if reading fails.
 class ReplayRun {
  public:
   ReplayRun(const ReplayArguments& arguments, const std::string& topic);
 
-  /// The simulation starts, or starts again: makes the folder's tables, and sets what the summary says of
-  /// scene and parameters. Throws std::runtime_error naming what cannot be written.
+  /// Begins a run, or begins again: creates the folder's tables, and sets scene and parameters of the
+  /// summary. Throws std::runtime_error naming what cannot be written.
   void begin(const Simulation& simulation, const std::string& scene);
   /// The scene has changed.
   void follow(const Scene& scene) { writer_->follow(scene); }
@@ -91,7 +91,7 @@ class ReplayRun {
   void result(const Simulation& simulation);
   /// Counts a rejected frame or change; the first of each kind is printed.
   void reject(const std::string& reason, const std::string& detail);
-  /// Counts a fault of the input that was put right; the first of each kind is printed.
+  /// Counts a corrected fault of the input; the first of each kind is printed.
   void correct(const std::string& kind, const std::string& detail);
   /// Throws std::runtime_error if no frame was taken, or if the disk does not take the tables.
   void check_end();

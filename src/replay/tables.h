@@ -54,7 +54,7 @@ struct Json {
   }
 };
 
-/// What a column of a table holds.
+/// A column of a table.
 struct Column {
   std::string name, unit, meaning;
 };
@@ -93,7 +93,7 @@ class ResultWriter {
   void flush();
 
  private:
-  /// Made when it is first asked for.
+  /// Created on first use.
   CsvFile& table(const std::string& file);
   void write_bodies(double time);
   void write_objects(double time, const FrameResult& result, const SimulationState& state);

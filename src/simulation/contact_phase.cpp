@@ -15,10 +15,10 @@ const char* phase_name(ContactPhase phase) {
 }
 
 FrictionUse friction_use(const Contact& contact, const Material& material) {
-  const double push = -contact.force.dot(contact.normal);
+  const double normal = -contact.force.dot(contact.normal);
   const bool sticks = contact.friction == Friction::sticking;
   const double friction = sticks ? material.static_friction : material.dynamic_friction;
-  return {push, (contact.force + push * contact.normal).norm(), friction * std::max(push, 0.0)};
+  return {normal, (contact.force + normal * contact.normal).norm(), friction * std::max(normal, 0.0)};
 }
 
 std::optional<Vector3> assist_force(std::size_t body, const FrameResult& result) {

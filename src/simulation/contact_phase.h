@@ -6,16 +6,16 @@
 
 namespace mrhi {
 
-/// What a contact does, as recordings and messages number it.
+/// State of a contact, as numbered in recordings and messages.
 enum class ContactPhase : std::uint8_t { impulse = 0, sticking = 1, slipping = 2 };
 ContactPhase phase(const Contact& contact);
 const char* phase_name(ContactPhase phase);
 
-/// What of friction a contact needs, and what there is [N].
+/// Friction force of a contact and its limit [N].
 struct FrictionUse {
-  double normal;      ///< the push
-  double tangential;  ///< of the force along the surface
-  double limit;       ///< of that: Coulomb's coefficient times the push
+  double normal;      ///< normal force
+  double tangential;  ///< norm of the tangential force
+  double limit;       ///< largest tangential force: Coulomb's coefficient times the normal force
 };
 FrictionUse friction_use(const Contact& contact, const Material& material);
 

@@ -28,8 +28,8 @@ bool before(const Contact& contact, const ContactKey& key) {
   return contact.key < key;
 }
 
-/// The mean force is the momentum that was transferred over the frame's time. A contact that has ended is
-/// told where it was, and does not touch.
+/// The mean force is the transferred momentum over the frame's time. A contact that has ended is reported at
+/// its last place, without depth.
 void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts) {
   const std::size_t touching = contacts.size();
   const double rate = transfer.seconds > 0.0 ? 1.0 / transfer.seconds : 0.0;
@@ -50,8 +50,7 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
   }
 }
 
-/// The hand's grip on the object that the body belongs to, a linkage as a whole, where it supports or has
-/// released it.
+/// The hand's active or released grip on the object that the body belongs to: the body or its linkage.
 const Grip* grip_on(const FrameEnd& end, std::size_t slot, int body) {
   const auto object = [&](int part) { return floating_root(end.scene, part).value_or(part); };
   for (const Grip& grip : end.state.grips)
@@ -84,7 +83,7 @@ void update_interactions(const FrameEnd& end, FrameResult& result) {
       if (grip == nullptr || (grip->active && grip->body != b))
         seen = seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
                           state.bodies[b].pose, result.contacts, interaction.level);
-      // An object that is supported is grasped, and of a linkage the parts that the hand touches.
+      // A supported object is grasped; of a linkage, the links that the hand touches.
       if (grip != nullptr && grip->active && seen == InteractionLevel::contact)
         seen = InteractionLevel::grasp;
       if (grasp_of(end.scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
@@ -111,7 +110,7 @@ void report_frame(const FrameEnd& end, FrameResult& result) {
 
 namespace {
 
-/// The hand of the slot as it lags behind what it accelerates, in `lagging`; the track itself without lag.
+/// The track of the slot displaced by its mass lag, stored in `lagging`; the track itself without lag.
 const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, const FrameResult& result,
                                std::unique_ptr<HandTrack>& lagging) {
   MassLag& lag = rendering.state.mass_lags[slot];

@@ -17,11 +17,11 @@ struct FrameTransfer {
   double seconds = 0.0;               ///< time of the steps
 
   void clear() { contacts.clear(), assists.clear(), seconds = 0.0; }
-  /// Adds a step of `step` seconds.
+  /// Adds the transfer of a step of `step` seconds.
   void add(const SimulationState& after, double step);
 };
 
-/// What a frame's result is made from, once bodies and hands are at the frame's stamp.
+/// Input of a frame's report, once bodies and hands are at the frame's stamp.
 struct FrameEnd {
   const Scene& scene;
   std::vector<HandMotion>& hands;  ///< those that can touch
@@ -38,7 +38,7 @@ struct FrameEnd {
 /// tracked hands.
 void report_frame(const FrameEnd& end, FrameResult& result);
 
-/// The hands as they are shown, from the contacts of the report; their offsets in the state are updated.
+/// Input of the rendered hands, after the report.
 struct Rendering {
   const Scene& scene;
   HandRenderer& renderer;
@@ -49,7 +49,7 @@ struct Rendering {
 };
 void render_hands(const Rendering& rendering, FrameResult& result);
 
-/// Ends what a hand does with every body, before the hand is lost.
+/// Ends all interactions of a hand that is about to be lost.
 void end_interactions(std::size_t slot, Nanoseconds now, SimulationState& state, std::vector<Event>& events);
 
 }  // namespace mrhi

@@ -8,9 +8,10 @@
 namespace mrhi {
 namespace {
 
-constexpr double kHoverBegins = 0.03;  // [m]
-/// Norm of the loads' vector sum over the sum of their norms: at most this for a grasp to begin, and to last.
-constexpr double kBalanced = 0.6, kStillBalanced = 0.75;
+/// Distance at which hovering begins [m].
+constexpr double kHoverBegins = 0.03;
+/// Largest ratio of the loads' vector sum to the sum of their norms with which a grasp begins, and lasts.
+constexpr double kMaxImbalance = 0.6, kMaxLastingImbalance = 0.75;
 
 /// Normal loads of contacts, by their depths and the strength of the fingers. A finger that has gone through
 /// the object applies no more force than one that complies at its surface.
@@ -40,28 +41,28 @@ Load load_of(const Scene& scene, const std::vector<Contact>& contacts, Counts&& 
   return load;
 }
 
-bool is_balanced(const Load& load, double balanced) {
-  return load.capsules >= 2 && load.sum.norm() <= balanced * load.total;
+bool is_balanced(const Load& load, double max_imbalance) {
+  return load.capsules >= 2 && load.sum.norm() <= max_imbalance * load.total;
 }
 
 /// True if the hands on a body grasp it together, and those without this one do not: each side of a box that
 /// two hands lift.
 bool grasps_with_others(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                        double balanced) {
+                        double max_imbalance) {
   const auto of_all = [body](const ContactKey& key) { return key.body == body; };
   const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
-  return is_balanced(load_of(scene, contacts, of_all), balanced) &&
-         !is_balanced(load_of(scene, contacts, of_others), balanced);
+  return is_balanced(load_of(scene, contacts, of_all), max_imbalance) &&
+         !is_balanced(load_of(scene, contacts, of_others), max_imbalance);
 }
 
-/// Tongs are grasped by both their arms, each of which is pressed from one side.
+/// True if the loads on all links balance: both arms of tongs are grasped, each loaded from one side.
 bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                  double balanced) {
+                  double max_imbalance) {
   const std::optional<int> root = floating_root(scene, body);
   const auto of_linkage = [&](const ContactKey& key) {
     return key.hand == slot && floating_root(scene, key.body) == root;
   };
-  return root && is_balanced(load_of(scene, contacts, of_linkage), balanced);
+  return root && is_balanced(load_of(scene, contacts, of_linkage), max_imbalance);
 }
 
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
@@ -86,11 +87,11 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
                             InteractionLevel before) {
   const auto of_hand = [&](const ContactKey& key) { return key.hand == slot && key.body == body; };
   const Load load = load_of(scene, contacts, of_hand);
-  const double balanced = before == InteractionLevel::grasp ? kStillBalanced : kBalanced;
-  if (is_balanced(load, balanced)) return InteractionLevel::grasp;
-  if (load.capsules >= 1 && grasps_with_others(scene, slot, body, contacts, balanced))
+  const double max_imbalance = before == InteractionLevel::grasp ? kMaxLastingImbalance : kMaxImbalance;
+  if (is_balanced(load, max_imbalance)) return InteractionLevel::grasp;
+  if (load.capsules >= 1 && grasps_with_others(scene, slot, body, contacts, max_imbalance))
     return InteractionLevel::grasp;
-  if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, balanced))
+  if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, max_imbalance))
     return InteractionLevel::grasp;
   if (load.capsules >= 1 || load.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;

@@ -5,13 +5,13 @@
 
 namespace mrhi {
 
-/// A hand that hovers over a body does so until it is farther away than this [m].
+/// Distance at which hovering over a body ends [m].
 constexpr double kHoverEnds = 0.045;
 
-/// What the contacts of now, and the distance between them where nothing touches, say of a hand and a body.
-/// A grasp is two or more parts of the hand that press the body from sides that largely balance; of bodies
-/// that float, joined to each other, all together. What there is `before` lasts longer than it takes to
-/// begin: hovering farther away, a grasp less balanced.
+/// Interaction level of a hand and a body from their present contacts, or from their distance without
+/// contacts. A grasp needs two or more parts of the hand whose loads on the body largely balance; a floating
+/// linkage counts as one body. With hysteresis: a level of `before` may last with a larger distance or less
+/// balance.
 InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
                             const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
                             InteractionLevel before);

@@ -3,9 +3,9 @@
 namespace mrhi {
 namespace {
 
-constexpr Nanoseconds kGraspBegins = 50'000'000;
-constexpr Nanoseconds kGraspEnds = 60'000'000;
-constexpr Nanoseconds kContactEnds = 30'000'000;
+/// Times for which a level must be seen before the change is reported [ns].
+constexpr Nanoseconds kGraspRiseDelay = 50'000'000, kGraspFallDelay = 60'000'000;
+constexpr Nanoseconds kContactFallDelay = 30'000'000;
 
 InteractionLevel next(InteractionLevel level) {
   return static_cast<InteractionLevel>(static_cast<int>(level) + 1);
@@ -25,12 +25,12 @@ EventKind end_of(InteractionLevel level) {
 }
 
 Nanoseconds rise_delay(InteractionLevel level) {
-  return level == InteractionLevel::grasp ? kGraspBegins : 0;
+  return level == InteractionLevel::grasp ? kGraspRiseDelay : 0;
 }
 
 Nanoseconds fall_delay(InteractionLevel level) {
-  if (level == InteractionLevel::grasp) return kGraspEnds;
-  return level == InteractionLevel::contact ? kContactEnds : 0;
+  if (level == InteractionLevel::grasp) return kGraspFallDelay;
+  return level == InteractionLevel::contact ? kContactFallDelay : 0;
 }
 
 void fall(Event event, Interaction& interaction, std::vector<Event>& events) {

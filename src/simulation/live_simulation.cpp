@@ -32,7 +32,7 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
   return checked;
 }
 
-/// Of the first `old` bodies those that may touch this one where they are now, and this one.
+/// This body, and those of the first `old` bodies that may touch it where they are now.
 Scene near_to(const Simulation& simulation, std::size_t old, const Body& last) {
   const std::vector<Body>& bodies = simulation.scene().bodies;
   Scene near;
@@ -48,7 +48,7 @@ Scene near_to(const Simulation& simulation, std::size_t old, const Body& last) {
   return near;
 }
 
-/// What is asked for a body that comes to the first `old` ones.
+/// Throws std::invalid_argument if the body overlaps one of the first `old` bodies.
 void check_free_place(const Simulation& simulation, std::size_t old, const Body& body) {
   const Scene near = near_to(simulation, old, body);
   if (near.bodies.size() == 1) return;
@@ -89,7 +89,7 @@ void check_no_joint(const Scene& scene, int body) {
   }
 }
 
-const std::string kGrasp = "grasp/";  // begins the name of what is set of one object
+const std::string kGrasp = "grasp/";  // prefix of parameters of single objects
 
 /// Throws ParameterError.
 std::size_t graspable_body(const std::string& name, const std::string& object, const Scene& scene) {

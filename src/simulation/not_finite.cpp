@@ -10,7 +10,7 @@ namespace {
 bool finite(const Vector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
-/// By the sum of its numbers: opposite infinities leave no number either.
+/// Tests the sum of its numbers: opposite infinities give NaN.
 bool finite(const Hand& hand) {
   Vector3 sum = hand.palm.position + hand.wrist;
   double radii = hand.palm.orientation.coeffs().sum();
@@ -31,7 +31,7 @@ std::string name_of(const Hand& hand) {
 
 }  // namespace
 
-/// By the sum of its numbers: opposite infinities leave no number either.
+/// Tests the sum of its numbers: opposite infinities give NaN.
 bool is_finite(const BodyState& state) {
   return std::isfinite(state.pose.position.sum() + state.pose.orientation.coeffs().sum() +
                        state.linear_momentum.sum() + state.angular_momentum.sum());
@@ -50,7 +50,7 @@ void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {
   }
 }
 
-/// What is shown of a hand that is sound is the hand itself if the drawn one is not.
+/// Shows the tracked hand if the rendered one is not finite.
 void Simulation::Impl::show_hands_that_are_finite() {
   for (std::size_t i = 0; i < result.rendered.size(); ++i) {
     if (finite(result.rendered[i].hand)) continue;

@@ -8,16 +8,16 @@
 namespace mrhi {
 namespace {
 
-/// What hands' forces may move an operator's hands off the path that was foreseen, before neighbours are
-/// listed anew [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
+/// Largest departure of an operator's hands from their predicted path, at which neighbours are listed again
+/// [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
 constexpr double kMaxDeparture = 0.002;
-/// That departure in a short frame is at most this times the frame's squared duration: far more than a
-/// person's strength gives 80 kg [m/s^2].
+/// Limit of that departure over a short frame's squared duration: far more than a person's strength gives 80
+/// kg [m/s^2].
 constexpr double kMaxDepartureRate = 20.0;
-/// Of a hand from its operator's centre of mass, where that departure is bounded [m].
+/// Largest distance of a hand from its operator's centre of mass in that bound [m].
 constexpr double kMaxReach = 1.5;
-/// How fast a tether pulls in what it is too long by: what a swing stretches it by in a step, but not what
-/// began too far away [m/s].
+/// Largest speed at which a tether retracts its excess length [m/s]: enough for what a swing stretches it by
+/// in a step.
 constexpr double kMaxRetraction = 0.1;
 
 Hand placed(const Pose& frame, const Hand& hand) {
@@ -111,8 +111,8 @@ void Operators::foresee(double seconds) {
   }
 }
 
-/// No point of a hand departs from the motion that was foreseen by more than the integral of |v - v0| + R |w
-/// - w0|, R its distance from the centre of mass.
+/// The departure of a hand's point from its prediction is at most the integral of |v - v0| + R |w - w0|, with
+/// R its distance from the centre of mass.
 bool Operators::begin_step(double left, const SimulationState& state) {
   bool on_course = true;
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
@@ -137,7 +137,7 @@ bool Operators::begin_step(double left, const SimulationState& state) {
 }
 
 //     n' K n,     K = 1/M - [r]x I^-1 [r]x     of the operator at the contact
-// A hand that is as strong as it takes moves its operator in an impact: to the object it weighs as much.
+// In an impact a hand moves its operator: the object meets the operator's effective mass.
 void Operators::begin_contacts(SimulationState& state) {
   touched_.clear();
   touches_fixture_ = false;
@@ -252,9 +252,9 @@ void Operators::touch_fixtures(ContactStep& step, int body) {
   step.changes.mark_solved(body);
 }
 
-// The ends part by u = d'(v + w x r) along the line d. An impulse j = (u - (l - x) / h) / d'K d, if above 0,
-// has them l from each other at the step's end. It only takes energy, but for the turn of the line within a
-// step.
+// The ends separate at u = d'(v + w x r) along the line d. An impulse j = (u - (l - x) / h) / d'K d, if
+// positive, leaves them l apart at the step's end. It only removes energy, except for the turn of the line
+// within a step.
 void Operators::pull(ContactStep& step, const Tether& tether) const {
   const auto index = static_cast<std::size_t>(tether.body);
   const Body& body = scene_.bodies[index];

@@ -10,8 +10,8 @@
 
 namespace mrhi {
 
-/// The operators: places their hands in world, and gives them the opposite of all that their hands give to
-/// objects and fixtures. What lasts of an operator is a body of the state; all else here is of one frame.
+/// The operators: places their hands in world, and applies the reactions of all forces that their hands apply
+/// to objects and fixtures. The state has a body for each operator; everything else here lasts one frame.
 class Operators {
  public:
   /// Keeps references.
@@ -24,14 +24,15 @@ class Operators {
   /// Every step, `left` [s] before the frame's end: the operators' motion as it starts. False if hands may
   /// leave the places that carried() foresaw; foresee() is then due.
   bool begin_step(double left, const SimulationState& state);
-  /// Where carried hands may come in the next seconds of the frame, as the operators move now.
+  /// Predicts where carried hands may be in the next seconds of the frame, from the operators' present
+  /// motion.
   void foresee(double seconds);
-  /// Of a hand, for Neighbours; null for a hand that is tracked in world.
+  /// Predicted frame of a hand, for Neighbours; null for a hand that is tracked in world.
   const CarriedFrame* carried(std::size_t slot) const {
     return none() ? nullptr : &carried_[static_cast<std::size_t>(owners_[slot])];
   }
 
-  /// What carries the hand in a slot; null for a hand that is tracked in world.
+  /// Motion of the operator of the hand in a slot; null for a hand that is tracked in world.
   const CarrierMotion* carrier(std::size_t slot) const;
   /// The bodies of hands' operators, by slot; null without operators.
   const std::array<int, kMaxHands>* bodies_of_hands() const { return none() ? nullptr : &bodies_of_hands_; }
@@ -44,10 +45,10 @@ class Operators {
     return none() ? state.hands[slot] : in_world_[slot];
   }
 
-  /// Before the response: by how much the operators give way to impacts of their hands.
+  /// Computes the operators' compliance to impacts of their hands. Call before the response.
   void begin_contacts(SimulationState& state);
-  /// After the response: gives the operators the opposite of what their hands did to objects, lets their
-  /// hands hold and push fixtures, and keeps restraints and tethers.
+  /// Applies the reactions of objects to the operators, lets their hands hold and push fixtures, and enforces
+  /// restraints and tethers. Call after the response.
   void respond(ContactStep& step, const std::vector<char>& restrained);
 
  private:
@@ -72,11 +73,11 @@ class Operators {
   std::vector<Matrix3> inverse_inertia_;  // by operator, world axes, at the step's start
   bool touches_fixture_ = false;          // some contact is with a fixture
 
-  /// How far the motion of an operator in a frame is from what was foreseen.
+  /// Departure of an operator's motion in a frame from its prediction.
   struct Course {
     Twist foreseen;
     double departed = 0.0, left = 0.0;  // [m], [s]
-    double allowed = 0.0;               // departure before neighbours are listed anew [m]
+    double allowed = 0.0;               // departure at which neighbours are listed again [m]
   };
   std::vector<CarrierMotion> carriers_;  // by operator
   std::vector<Pose> start_;              // of their frames at the frame's start

@@ -28,41 +28,30 @@ Places places_in(const Scene& before, const Scene& after) {
   return places;
 }
 
-void move(const Places& places, std::vector<Contact>& contacts) {
-  std::vector<Contact> kept;
-  kept.reserve(contacts.capacity());
-  for (Contact& contact : contacts) {
-    const std::optional<int> body = places[contact.key.body];
-    if (!body) continue;
-    contact.key.body = static_cast<std::uint16_t>(*body);
-    kept.push_back(contact);
-  }
-  contacts.swap(kept);
+/// Renumbers the body; false if it is no longer there.
+bool renumber(const Places& places, std::uint16_t& body) {
+  const std::optional<int> place = places[body];
+  if (place) body = static_cast<std::uint16_t>(*place);
+  return place.has_value();
 }
 
-void move(const Places& places, std::vector<BodyContact>& contacts) {
-  std::vector<BodyContact> kept;
-  kept.reserve(contacts.capacity());
-  for (BodyContact& contact : contacts) {
-    const std::optional<int> a = places[contact.key.a], b = places[contact.key.b];
-    if (!a || !b) continue;
-    contact.key.a = static_cast<std::uint16_t>(*a);
-    contact.key.b = static_cast<std::uint16_t>(*b);
-    kept.push_back(contact);
-  }
-  contacts.swap(kept);
+bool renumber(const Places& places, Contact& contact) {
+  return renumber(places, contact.key.body);
 }
 
-void move(const Places& places, std::vector<Grip>& grips) {
-  std::vector<Grip> kept;
-  kept.reserve(grips.capacity());
-  for (Grip& grip : grips) {
-    const std::optional<int> body = places[grip.body];
-    if (!body) continue;
-    grip.body = static_cast<std::uint16_t>(*body);
-    kept.push_back(grip);
-  }
-  grips.swap(kept);
+bool renumber(const Places& places, BodyContact& contact) {
+  return renumber(places, contact.key.a) && renumber(places, contact.key.b);
+}
+
+bool renumber(const Places& places, Grip& grip) {
+  return renumber(places, grip.body);
+}
+
+/// Renumbers the bodies of all items, and drops those of bodies that are no longer there.
+template <typename Item>
+void move(const Places& places, std::vector<Item>& items) {
+  const auto is_gone = [&](Item& item) { return !renumber(places, item); };
+  items.erase(std::remove_if(items.begin(), items.end(), is_gone), items.end());
 }
 
 std::vector<Interaction> moved(const Places& places, std::size_t bodies_after, const SimulationState& state) {
@@ -77,7 +66,7 @@ std::vector<Interaction> moved(const Places& places, std::size_t bodies_after, c
   return interactions;
 }
 
-/// By their names.
+/// Copies the states of joints that both scenes have by name.
 void carry_joints(const SimulationState& state, const Scene& before, const Scene& after,
                   SimulationState& next) {
   next.joints.clear();
@@ -87,7 +76,7 @@ void carry_joints(const SimulationState& state, const Scene& before, const Scene
   }
 }
 
-/// By the operators' names.
+/// Copies the restraints of operators that both scenes have by name.
 void carry_restraints(const SimulationState& state, const Scene& before, const Scene& after,
                       SimulationState& next) {
   next.restrained.assign(after.operators.size(), 0);

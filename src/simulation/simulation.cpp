@@ -15,8 +15,8 @@
 namespace mrhi {
 namespace {
 
-/// In frames of at most this, what nothing comes near flies in one step (flying_alone.h), and where nothing
-/// comes near anything the frame is one. Joints take the steps that they are given.
+/// Longest frame in which isolated bodies fly in one step (isolated_bodies.h), and which is a single step if
+/// nothing comes near anything [ns]. Scenes with joints always use the configured step.
 constexpr Nanoseconds kQuietFrame = 20'000'000;
 
 Scene completed(Scene scene) {
@@ -25,7 +25,7 @@ Scene completed(Scene scene) {
   return scene;
 }
 
-/// Edges grip under `implicit` alone: other models do not look at what is stored there. The paper has one god
+/// Edges grip only in the model `implicit`: others do not use what is stored there. The paper has one god
 /// object for each phalanx, on the nearest face.
 ContactConfiguration refinements(const Configuration& configuration) {
   ContactConfiguration result = configuration.contact;
@@ -37,12 +37,12 @@ ContactConfiguration refinements(const Configuration& configuration) {
   return result;
 }
 
-/// What is set by name is within closer limits (parameters.h); this is for what is set in code.
+/// Limits for steps set in code. Parameters set by name have closer limits (parameters.h).
 Nanoseconds checked_step(double step) {
-  constexpr double kShortest = 1e-6, kLongest = 1.0;
-  if (step >= kShortest && step <= kLongest) return static_cast<Nanoseconds>(std::llround(step * 1e9));
+  constexpr double kMinStep = 1e-6, kMaxStep = 1.0;  // [s]
+  if (step >= kMinStep && step <= kMaxStep) return static_cast<Nanoseconds>(std::llround(step * 1e9));
   throw std::invalid_argument("step " + text::number(step) + " s is not allowed; allowed: " +
-                              text::number(kShortest) + " to " + text::number(kLongest));
+                              text::number(kMinStep) + " to " + text::number(kMaxStep));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
       operators(scene, refinements(configuration)),
-      alone(scene),
+      isolated(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, operators, configuration),
       renderer(scene, finder) {
@@ -223,33 +223,15 @@ void Simulation::go_on_from(const Simulation& other) {
 }
 
 const char* to_string(Stage stage) {
-  switch (stage) {
-    case Stage::neighbours:
-      return "neighbours";
-    case Stage::hand_contacts:
-      return "hand contacts";
-    case Stage::body_contacts:
-      return "body contacts";
-    case Stage::response:
-      return "response";
-    case Stage::flight:
-      break;
-  }
-  return "flight";
+  static const char* const names[kStages] = {"neighbours", "hand contacts", "body contacts", "response",
+                                             "flight"};
+  return names[static_cast<std::size_t>(stage)];
 }
 
 const char* to_string(Rejection rejection) {
-  switch (rejection) {
-    case Rejection::stamp_not_increasing:
-      return "stamp not increasing";
-    case Rejection::stamp_ahead:
-      return "stamp far ahead";
-    case Rejection::no_stamp:
-      return "stamp out of range";
-    case Rejection::none:
-      break;
-  }
-  return "none";
+  static const char* const names[] = {"none", "stamp not increasing", "stamp far ahead",
+                                      "stamp out of range"};
+  return names[static_cast<std::size_t>(rejection)];
 }
 
 }  // namespace mrhi

@@ -7,11 +7,10 @@
 namespace mrhi {
 namespace {
 
-/// A step may be this much longer than asked for, so that a frame of one step does not become two by
-/// rounding.
-constexpr Nanoseconds kStepSlack = 1000;
-/// A longer silence is not simulated: bodies wait for the next frame.
-constexpr Nanoseconds kLongestSilence = 60'000'000'000;
+/// Tolerance of a step's length, so that rounding does not split a frame of one step [ns].
+constexpr Nanoseconds kStepTolerance = 1000;
+/// Longest gap between frames that is simulated; bodies wait in a longer one [ns].
+constexpr Nanoseconds kMaxGap = 60'000'000'000;
 
 }  // namespace
 
@@ -47,14 +46,14 @@ void Simulation::Impl::plan(Nanoseconds from, Nanoseconds to) {
 }
 
 int Simulation::Impl::steps_needed(Nanoseconds frame) {
-  alone.nobody();
+  isolated.clear();
   if (frame <= 0) return 0;
   if (frame <= quiet_frame) {
     neighbours.begin_step(state.bodies, to_seconds(frame));
-    if (alone.begin_frame(neighbours, to_seconds(frame), state)) return 1;
-    if (!may_fly_alone()) alone.nobody();
+    if (isolated.begin_frame(neighbours, to_seconds(frame), state)) return 1;
+    if (!may_isolate()) isolated.clear();
   }
-  return std::max(static_cast<int>((frame - kStepSlack + step_length - 1) / step_length), 1);
+  return std::max(static_cast<int>((frame - kStepTolerance + step_length - 1) / step_length), 1);
 }
 
 void Simulation::Impl::begin_hands(double seconds) {
@@ -75,17 +74,17 @@ void Simulation::Impl::list_near_hands() {
   neighbours.begin_frame(state.hands, state.bodies, carried);
 }
 
-/// No frames: hands keep still for hold_time and are lost then; bodies go on, by whole steps from the last
-/// frame.
+/// Advances without frames: hands stand still for hold_time and are then lost; bodies advance by whole steps
+/// from the last frame.
 void Simulation::Impl::pass_without_frames(Nanoseconds until) {
-  if (until - state.time > kLongestSilence) state.time = until;
+  if (until - state.time > kMaxGap) state.time = until;
   for (HandTrack& track : state.hands) {
     track.held = track.active;
     track.previous = track.current;
     track.path = HandPath();
     track.appeared = track.emerged = false;
   }
-  alone.nobody();
+  isolated.clear();
   while (state.time + step_length <= until) {
     lose_hands(state.time);
     begin_hands(0.0);

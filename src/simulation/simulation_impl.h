@@ -11,9 +11,9 @@
 #include "../collision/scene_geometry.h"
 #include "../rendering/hand_renderer.h"
 #include "../response/contact_step.h"
-#include "flying_alone.h"
 #include "frame_report.h"
 #include "grasp_assist.h"
+#include "isolated_bodies.h"
 #include "mr_hand_interaction/simulation.h"
 #include "operators.h"
 #include "sleeping.h"
@@ -39,7 +39,7 @@ struct Simulation::Impl {
   void report(Nanoseconds stamp);
   void render();
 
-  // What is not finite never leaves (not_finite.cpp); what it was of is named in the result.
+  // Values that are not finite are removed (not_finite.cpp), and their owners named in the result.
   void lose_hands_that_are_not_finite(Nanoseconds now);
   void leave_out_contacts_that_are_not_finite();
   void show_hands_that_are_finite();
@@ -48,7 +48,7 @@ struct Simulation::Impl {
   double driven(double step) const;
   void advance_step(double fraction, double step);
   void keep_in_bounds();
-  bool may_fly_alone() const { return operators.none() && scene.tethers.empty(); }
+  bool may_isolate() const { return operators.none() && scene.tethers.empty(); }
 
   const Scene scene;
   const Configuration configuration;
@@ -61,16 +61,16 @@ struct Simulation::Impl {
   ContactFinder finder;
   BodyContactFinder body_finder;
   Operators operators;
-  FlyingAlone alone;
+  IsolatedBodies isolated;
   Sleeping sleeping;
   GraspAssist assist;
   HandRenderer renderer;
 
   SimulationState state;
   FrameResult result;
-  bool reported = false;  // the result but for the rendered hands
+  bool reported = false;  // the result is complete except for the rendered hands
 
-  // The way from the last frame to this one.
+  // Time from the previous frame to this one.
   Nanoseconds frame_from = 0, frame_to = 0;
   int steps = 0, steps_done = 0;
   double frame_seconds() const { return to_seconds(frame_to - frame_from); }

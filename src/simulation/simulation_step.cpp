@@ -7,27 +7,27 @@
 
 namespace mrhi {
 
-/// By how much hands may change a body's velocity within the step, at most [m/s]: to their own, and by the
-/// springs that hold it, should they let go.
+/// Limit of the change of a body's velocity by hands within the step [m/s]: to the hand's velocity, and by
+/// the springs that hold it if they release it.
 double Simulation::Impl::driven(double step) const {
-  double most = 0.0;
-  if (neighbours.pairs().empty()) return most;  // nothing to send against another
-  const auto let_go = [&](std::size_t body, const Vector3& force) {
+  double limit = 0.0;
+  if (neighbours.pairs().empty()) return limit;  // no body can hit another
+  const auto release_velocity = [&](std::size_t body, const Vector3& force) {
     return step * force.norm() / scene.bodies[body].mass;
   };
   for (const Contact& contact : state.contacts) {
     if (scene.bodies[contact.key.body].fixed) continue;
-    most = std::max(most, contact.hand_velocity.norm() + let_go(contact.key.body, contact.force));
+    limit = std::max(limit, contact.hand_velocity.norm() + release_velocity(contact.key.body, contact.force));
   }
   for (const Grip& grip : state.grips) {
     if (!grip.active) continue;
     for (const Vector3& velocity : grip.velocity)
-      most = std::max(most, velocity.norm() + let_go(grip.body, grip.force));
+      limit = std::max(limit, velocity.norm() + release_velocity(grip.body, grip.force));
   }
-  return most;
+  return limit;
 }
 
-/// One step, `fraction` of the way into the frame.
+/// Runs one step that begins at `fraction` of the frame.
 void Simulation::Impl::advance_step(double fraction, double step) {
   const double until = frame_seconds() > 0.0 ? std::min(1.0, fraction + step / frame_seconds()) : fraction;
   if (!operators.none()) {
@@ -39,7 +39,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   }
   for (HandMotion& hand : hands) hand.move_to(fraction, until);
   neighbours.begin_step(state.bodies, step);
-  alone.join(neighbours, fraction * frame_seconds(), step, gravity, state);
+  isolated.join(neighbours, fraction * frame_seconds(), step, gravity, state);
   sleeping.wake(neighbours, step, state);
   end_stage(Stage::neighbours);
   finder.find(hands, neighbours, state.bodies, step, state.contacts);
@@ -53,15 +53,15 @@ void Simulation::Impl::advance_step(double fraction, double step) {
                            state.bodies, changes, state.grips};
   contact_step.operators = operators.bodies_of_hands();
   model->respond(contact_step);
-  if (!may_fly_alone()) operators.respond(contact_step, state.restrained);
+  if (!may_isolate()) operators.respond(contact_step, state.restrained);
   end_stage(Stage::response);
   transfer.add(state, step);
   const bool last = steps_done + 1 >= steps;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].appeared = false;
-    if (state.asleep[b] || (alone[b] && !last)) continue;
+    if (state.asleep[b] || (isolated[b] && !last)) continue;
     free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity,
-                alone[b] ? frame_seconds() : step, state.bodies[b]);
+                isolated[b] ? frame_seconds() : step, state.bodies[b]);
   }
   changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
   sleeping.settle(neighbours, step, state);
@@ -76,7 +76,7 @@ void Simulation::Impl::keep_in_bounds() {
     if (sound && (p.array() >= scene.bounds.min.array()).all() &&
         (p.array() <= scene.bounds.max.array()).all())
       continue;
-    const Body& body = scene.bodies[b];  // not looked at before: in scenes of many it is far away in memory
+    const Body& body = scene.bodies[b];  // read late: in large scenes it is not in the cache
     if (body.fixed) continue;
     if (!sound) result.not_finite.push_back("object '" + body.name + "'");
     put_back(b, scene, state);

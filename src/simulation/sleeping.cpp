@@ -5,11 +5,11 @@
 namespace mrhi {
 namespace {
 
-/// A body none of whose points is faster than this is still [m/s]: 5 um until it is tired. Heaps of a dozen,
-/// whose contacts are relaxed but so far, keep on at 2 to 4 um/s.
-constexpr double kStill = 1e-5;
-/// What has been still for so long is tired [s].
-constexpr double kTired = 0.5;
+/// Largest speed of any point of a still body [m/s]: 5 um until it is tired. Heaps of a dozen bodies, whose
+/// contacts are not fully relaxed, creep at 2 to 4 um/s.
+constexpr double kMaxStillSpeed = 1e-5;
+/// Time after which a still body is tired [s].
+constexpr double kTiredTime = 0.5;
 
 /// Moves the contacts of bodies that are asleep, or that are not, from one list to the other.
 void move_contacts(const std::vector<char>& asleep, bool sleepers, std::vector<BodyContact>& from,
@@ -68,8 +68,8 @@ void Sleeping::settle(const Neighbours& neighbours, double step, SimulationState
 bool Sleeping::still(std::size_t body, const BodyState& state) const {
   const Body& b = scene_.bodies[body];
   if (b.fixed) return true;
-  const double spin = b.inverse_inertia.trace() * state.angular_momentum.norm();  // no less than the true one
-  return state.linear_momentum.norm() / b.mass + b.bounding_radius * spin < kStill;
+  const double spin = b.inverse_inertia.trace() * state.angular_momentum.norm();  // upper bound
+  return state.linear_momentum.norm() / b.mass + b.bounding_radius * spin < kMaxStillSpeed;
 }
 
 /// True if any contact has lasted long enough for its bodies to be tired.
@@ -79,18 +79,18 @@ bool Sleeping::count_rest(double step, SimulationState& state) const {
     const bool rests = contact.depth > 0.0 && still(contact.key.a, state.bodies[contact.key.a]) &&
                        still(contact.key.b, state.bodies[contact.key.b]);
     contact.still = rests ? contact.still + step : 0.0;
-    any = any || contact.still >= kTired;
+    any = any || contact.still >= kTiredTime;
   }
   return any;
 }
 
-/// A body is tired if a contact has pressed it for long enough, all the while with both bodies still, and all
-/// that it may meet are tired too. Its other contacts may come and go: in a heap that rests some are on the
-/// verge of touching.
+/// A body is tired if one of its contacts has been loaded for long enough with both bodies still, and all
+/// bodies that it may meet are tired too. Its other contacts may come and go: in a heap at rest some are on
+/// the verge of touching.
 void Sleeping::find_tired(const Neighbours& neighbours, double step, const SimulationState& state) {
   tired_.assign(state.bodies.size(), 0);
   for (const BodyContact& contact : state.body_contacts) {
-    if (contact.depth <= 0.0 || contact.still < kTired) continue;
+    if (contact.depth <= 0.0 || contact.still < kTiredTime) continue;
     for (const std::uint16_t body : {contact.key.a, contact.key.b}) tired_[body] = !scene_.bodies[body].fixed;
   }
   for (std::size_t b = 0; b < tired_.size(); ++b) {

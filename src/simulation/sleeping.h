@@ -7,16 +7,16 @@
 
 namespace mrhi {
 
-/// Bodies that lie still on others sleep: they cost nothing until a hand, or a body that moves, may come
-/// near. What touches nothing never sleeps, however slowly it drifts.
+/// Sleep of bodies at rest on others: they cost nothing until a hand or a moving body may come near. A body
+/// without contacts never sleeps, however slowly it drifts.
 class Sleeping {
  public:
   /// Keeps a reference.
   Sleeping(const Scene& scene, bool allowed) : scene_(scene), allowed_(allowed) {}
 
-  /// Before contacts are sought: wakes those that something may come near to within `step` seconds.
+  /// Wakes bodies that something may come near within `step` seconds. Call before contacts are found.
   void wake(const Neighbours& neighbours, double step, SimulationState& state) const;
-  /// After the response: sends to sleep those that have been still for long enough.
+  /// Puts bodies to sleep that have been still for long enough. Call after the response.
   void settle(const Neighbours& neighbours, double step, SimulationState& state);
 
  private:

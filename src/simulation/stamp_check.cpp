@@ -6,12 +6,12 @@ namespace mrhi {
 namespace {
 
 constexpr int kRestartFrames = 3, kGapFrames = 2;
-/// Frames of a slow stream may be this many times as far apart as the last two were.
-constexpr Nanoseconds kIntervals = 4;
+/// Longest gap of a slow stream, in intervals of its last two frames.
+constexpr Nanoseconds kMaxIntervals = 4;
 
-/// Stamps may be of both signs: so much of what is between two of them is as good as all.
-Nanoseconds some_of(Nanoseconds interval) {
-  return kIntervals * std::min(interval, StampCheck::kLatest / kIntervals);
+/// Longest gap after an interval, limited so that it does not overflow.
+Nanoseconds max_gap(Nanoseconds interval) {
+  return kMaxIntervals * std::min(interval, StampCheck::kLatest / kMaxIntervals);
 }
 
 }  // namespace
@@ -23,10 +23,10 @@ StampVerdict StampCheck::check(Nanoseconds stamp, Nanoseconds reached,
   const Nanoseconds before = stray;
   if (stamp > reached) {
     const Nanoseconds usual = interval > 0 ? kAhead : kBack;
-    const bool seen_to_go_by = expected && stamp - kAhead <= *expected;
-    if (seen_to_go_by || stamp - last <= std::max(usual, some_of(interval)))
+    const bool expected_by_clock = expected && stamp - kAhead <= *expected;
+    if (expected_by_clock || stamp - last <= std::max(usual, max_gap(interval)))
       return take(stamp, stamp - last, StampVerdict::follows);
-    if (note_stray(stamp, std::max(kBack, some_of(stray - last))) < kGapFrames) return StampVerdict::ahead;
+    if (note_stray(stamp, std::max(kBack, max_gap(stray - last))) < kGapFrames) return StampVerdict::ahead;
     return take(stamp, stamp - before, StampVerdict::follows);
   }
   if (reached - stamp <= kBack) return StampVerdict::late;

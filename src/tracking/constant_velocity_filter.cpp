@@ -9,28 +9,29 @@
 
 namespace mrhi {
 
-// The third difference of a joint's path is what no parabola explains. Where a hand moves, one is like the
-// next; where samples tremble, each by itself, one is the other way round than the next. So the product of
-// two that follow each other is positive for motion and negative for noise, and of noise it is known how
-// much.
+// The third difference of a joint's path is zero for a parabola. Successive third differences are alike for
+// motion and have opposite signs for independent noise. Their product is therefore positive for motion and
+// negative for noise, for which its mean is known.
 
 namespace {
 
-constexpr std::size_t kPoints = 4;  // of a third difference
+constexpr std::size_t kPoints = 4;  // samples of a third difference
 using Weights = std::array<double, kPoints>;
 
-constexpr double kLeastOverlap = 0.3;  // of two differences, for a sample to tell; 0.75 if evenly spaced
-// Of white noise: the middle one of many joints' products is 1/1.28 of their mean. 12 of 16 variances that
-// follow each other are above a quarter, and the fifth from below is 0.825 of their mean.
-constexpr double kMiddleProduct = 2.34, kFifth = 0.825;
-constexpr int kFewestVariances = 5;
+/// Smallest overlap of two differences that makes a sample usable; 0.75 at even intervals.
+constexpr double kMinOverlap = 0.3;
+/// For white noise: the median of many joints' products is 1/1.28 of their mean, over 3 axes. The lower
+/// quartile of 16 successive variances is 0.825 of their mean.
+constexpr double kMedianProduct = 2.34, kLowerQuartile = 0.825;
+/// Smallest number of variances from which noise is estimated.
+constexpr int kMinVariances = 5;
 
-/// Of third differences in which samples at uneven intervals count as one would at even ones: divided, and of
-/// unit length. The first is the newest sample's.
+/// Weights of a third difference of samples at uneven intervals, normalised to unit length. The first weight
+/// is the newest sample's.
 ///
 ///     w_i = 1 / prod_{j != i} (t_i - t_j),   sum w_i x(t_i) = 0 for every parabola x
-/// is Newton's divided difference. At even intervals that is (1, -3, 3, -1) / sqrt(20). Of unit length, so
-/// that white noise has the variance sigma^2 in it whatever the intervals are.
+/// is Newton's divided difference. At even intervals that is (1, -3, 3, -1) / sqrt(20). Unit length gives
+/// white noise the variance sigma^2 in it for all intervals.
 Weights third_difference(const SampleHistory& history, std::size_t newest) {
   std::array<double, kPoints> times{};
   for (std::size_t i = 1; i < kPoints; ++i) times[i] = times[i - 1] - history.elapsed[newest + i - 1];
@@ -46,7 +47,7 @@ Weights third_difference(const SampleHistory& history, std::size_t newest) {
   return weights;
 }
 
-/// At the bone's end: joints that are starts are other bones' ends, but for the roots.
+/// Third difference at the bone's end. Ends are all joints except the roots.
 Vector3 difference_of(const SampleHistory& history, std::size_t newest, std::size_t capsule,
                       const Weights& weights) {
   Vector3 sum = Vector3::Zero();
@@ -60,10 +61,10 @@ bool is_in_all(const SampleHistory& history, std::size_t capsule) {
                      [capsule](const Hand& hand) { return hand.capsules[capsule].radius > 0.0; });
 }
 
-/// The middle one of the joints' products of the last two differences, as noise has it: above 0. Nothing
-/// without joints. Over three axes the mean of d_now.d_before is -3 overlap sigma^2; the sign is turned. The
-/// middle one, as a joint that leaps would rule a mean.
-std::optional<double> middle_product(const SampleHistory& history, const Weights& now,
+/// Median over the joints of the negative product of the last two differences, positive for noise. Nothing
+/// without joints. Over three axes the mean of d_now.d_before is -3 overlap sigma^2. A median, because a
+/// single leaping joint would dominate a mean.
+std::optional<double> median_product(const SampleHistory& history, const Weights& now,
                                      const Weights& before) {
   std::array<double, kPhalanges> products{};
   std::ptrdiff_t count = 0;
@@ -78,16 +79,15 @@ std::optional<double> middle_product(const SampleHistory& history, const Weights
   return *middle;
 }
 
-/// The same for noise of variance 1 on an axis. The two share three samples: -sum w_now(i) w_before(i), 15 /
-/// 20 at even intervals.
+/// Expected negative product for noise of variance 1 on an axis. The differences share three samples:
+/// -sum w_now(i) w_before(i), 15 / 20 at even intervals.
 double overlap(const Weights& now, const Weights& before) {
   double sum = 0.0;
   for (std::size_t i = 1; i < kPoints; ++i) sum -= now[i] * before[i - 1];
   return sum;
 }
 
-/// Negative products, which motion makes, count as no noise: were they left out, only what looks like noise
-/// would count.
+/// Adds a variance. Motion counts as zero noise: leaving it out would bias the estimate.
 void add(double variance, SeenNoise& noise) {
   noise.size = std::min(noise.size + 1, kNoiseWindow);
   std::copy_backward(noise.variances.begin(), noise.variances.begin() + noise.size - 1,
@@ -95,18 +95,19 @@ void add(double variance, SeenNoise& noise) {
   noise.variances[0] = variance;
 }
 
-/// A jerk or a jump is large in a few samples, noise in all: a quarter must be below what counts.
+/// Lower quartile of the variances: a jerk is large in a few samples, noise in all.
 double low_variance(const SeenNoise& noise) {
-  if (noise.size < kFewestVariances) return 0.0;
+  if (noise.size < kMinVariances) return 0.0;
   std::array<double, kNoiseWindow> sorted = noise.variances;
   const auto low = sorted.begin() + noise.size / 4;
   std::nth_element(sorted.begin(), low, sorted.begin() + noise.size);
-  return *low / kFifth;
+  return *low / kLowerQuartile;
 }
 
-constexpr double kFirstSpeed = 0.5;  // rms of a hand that has just appeared [m/s]
+/// Rms speed of a hand that has just appeared [m/s].
+constexpr double kFirstSpeed = 0.5;
 
-/// How much of the difference between sample and prediction goes into position, and into velocity [1/s].
+/// Gains of the innovation on position, and on velocity [1/s].
 struct Gain {
   double position, velocity;
 };
@@ -119,8 +120,8 @@ struct Gain {
 ///     F = [[1, T], [0, 1]],   Q = a^2 [[T^4 / 4, T^3 / 2], [T^3 / 2, T^2]],   P <- F P F^T + Q
 ///     K = (P_xx, P_xv) / (P_xx + r^2),   P <- (1 - K H) P,   H = (1, 0).
 /// All axes and points share P, as they share a and r, so that three numbers are enough for a hand.
-/// Multiplied by one factor a and r give the same gains in the end: only their ratio counts. A hand that
-/// appears is where its sample says, within r, at a speed of kFirstSpeed or so.
+/// Only the ratio of a to r determines the gains in the end. A hand that appears is within r of its sample,
+/// at an rms speed of kFirstSpeed.
 Gain update(double acceleration, double noise, double elapsed, MotionVariance& variance) {
   if (variance.speed == 0.0) variance = {noise * noise, 0.0, kFirstSpeed * kFirstSpeed};
   const double q = acceleration * acceleration * elapsed * elapsed;
@@ -134,9 +135,8 @@ Gain update(double acceleration, double noise, double elapsed, MotionVariance& v
   return gain;
 }
 
-/// rms speed of the hand without what noise beyond the usual feigns: three axes of the estimate's own error.
-/// The rms of an estimate is that of the truth and of its error together: E|v|^2 = v^2 + 3 P_vv. What the
-/// usual noise r0 adds stays in; of the rest the share is 1 - r0^2 / r^2.
+/// Rms speed of the hand, corrected for noise beyond the usual: E|v|^2 = v^2 + 3 P_vv for the estimate over
+/// three axes. The part due to the usual noise r0 is kept; the rest is the fraction 1 - r0^2 / r^2.
 double true_speed(const FilterMemory& memory, double noise) {
   const double speed = rms_speed(memory.velocity, memory.filtered);
   if (noise <= kUsualNoise) return speed;
@@ -145,8 +145,8 @@ double true_speed(const FilterMemory& memory, double noise) {
 }
 
 /// The same filter for a rotation: predicted = exp(T w) q, innovation = log(q_sample predicted^-1), which is
-/// small, so that turns about it add like vectors; all in world, from the left. AngleAxis takes the shorter
-/// way round, whichever sign the quaternions have.
+/// small, so that rotations add like vectors; all in world, from the left. rotation_vector() takes the
+/// shorter arc for either sign of the quaternions.
 void follow_turn(const Gain& gain, double elapsed, const Quaternion& before, Quaternion& orientation,
                  Vector3& turn) {
   const Quaternion predicted = rotation_by(elapsed * turn) * before;
@@ -167,7 +167,7 @@ void observe_noise(FilterMemory& memory) {
   variance = {factor * variance.position, factor * variance.mixed, factor * variance.speed};
 }
 
-/// Prediction x + T v, innovation z - prediction; a point that comes or goes begins at rest where it is seen.
+/// Prediction x + T v, innovation z - prediction; a point that appears begins at rest where it is seen.
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (!filter.noise) observe_noise(memory);
   const double noise = filter.noise.value_or(filter_noise(memory.noise));
@@ -192,29 +192,29 @@ Hand constant_velocity(double elapsed, const FilterConfiguration& filter, Filter
 
 }  // namespace
 
-/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Where intervals differ much the two
-/// differences hardly overlap, and the division would make noise of rounding: such a sample is passed over.
+/// sigma^2 = product / (2.34 overlap), with 2.34 = 3 axes / 1.28. Skips samples at very uneven intervals,
+/// whose differences hardly overlap: the division would amplify rounding.
 void observe_noise(const SampleHistory& history, SeenNoise& noise) {
   if (history.size < kNoiseSamples) return;
   const Weights now = third_difference(history, 0), before = third_difference(history, 1);
   const double expected = overlap(now, before);
-  if (expected < kLeastOverlap) return;
-  const std::optional<double> product = middle_product(history, now, before);
+  if (expected < kMinOverlap) return;
+  const std::optional<double> product = median_product(history, now, before);
   if (!product) return;
-  add(std::max(0.0, *product) / (kMiddleProduct * expected), noise);
+  add(std::max(0.0, *product) / (kMedianProduct * expected), noise);
   noise.variance = low_variance(noise);
 }
 
-// Up to 1 mm the usual setting holds what is grasped, and a fast hand's jerks look like as much. More weight
-// on what is beyond delays a hand that closes by more than its trembling disturbs a grasp.
+// Up to 1 mm a grasp holds with the usual setting, and jerks of a fast hand look like such noise. A larger
+// weight on the excess would delay a closing hand by more than noise disturbs a grasp.
 double filter_noise(const SeenNoise& seen) {
-  constexpr double kIgnored = 0.001;  // [m]
-  const double beyond = std::max(0.0, seen.variance - kIgnored * kIgnored);
+  constexpr double kIgnoredNoise = 0.001;  // [m]
+  const double beyond = std::max(0.0, seen.variance - kIgnoredNoise * kIgnoredNoise);
   return std::sqrt(kUsualNoise * kUsualNoise + beyond);
 }
 
-/// Every point goes on as it went, but for accelerations unknown: a Kalman filter of position and velocity,
-/// one gain for the whole hand. The acceleration expected grows with the hand's speed.
+/// Kalman filter of position and velocity with unknown accelerations and one gain for the whole hand. The
+/// expected acceleration grows with the hand's speed.
 extern const HandFilter constant_velocity_filter{
     "constant_velocity", 3,
     []() -> std::vector<FilterSetting> {

@@ -60,7 +60,7 @@ double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// What is known of the tracker's noise stays: it is not the hand's.
+/// Keeps the noise estimate, which is the tracker's.
 void FilterMemory::restart(const Hand& sample) {
   history.size = 0;
   history.push(sample, 0.0, 1);

@@ -11,8 +11,8 @@
 
 namespace mrhi {
 
-/// A number that a filter is set by: the parameter filter/NAME. One that may be absent stands for what the
-/// filter finds itself, by `word` and what that means.
+/// A setting of a filter: the parameter filter/NAME. If it is optional, `word` stands for a value that the
+/// filter estimates itself, and `meaning` explains it.
 struct FilterSetting {
   using Value = std::variant<int FilterConfiguration::*, double FilterConfiguration::*,
                              std::optional<double> FilterConfiguration::*>;
@@ -25,17 +25,17 @@ struct FilterSetting {
   const char* meaning = "";
 };
 
-/// All that there is of a filter. The file src/tracking/NAME_filter.cpp defines NAME_filter; the build finds
-/// it, and all else asks hand_filters().
+/// The entry of a filter. The file src/tracking/NAME_filter.cpp defines NAME_filter; the build adds it to
+/// hand_filters().
 struct HandFilter {
   const char* name;
-  int place;  ///< in lists, and in recorded states: a new one comes last
+  int place;  ///< in lists and in recorded states: a new filter comes last
   std::vector<FilterSetting> (*settings)();
-  /// Of the newest samples, how many pass() looks at; 1 at least.
+  /// Number of newest samples that pass() uses, at least 1.
   int (*samples_needed)(const FilterConfiguration& filter);
-  /// The filtered hand. The newest sample, taken `elapsed` seconds after the one before, is in front of the
-  /// memory's history; the rest of the memory is as the frame before left it, but for `filtered`, which the
-  /// caller keeps.
+  /// Returns the filtered hand. The newest sample, taken `elapsed` seconds after the previous one, is at the
+  /// front of the memory's history. The rest of the memory is as the previous frame left it; the caller
+  /// updates `filtered`.
   Hand (*pass)(double elapsed, const FilterConfiguration& filter, FilterMemory& memory);
 };
 
@@ -48,7 +48,7 @@ const HandFilter& hand_filter(FilterKind kind);
 /// The settings of all filters, filter by filter.
 const std::vector<FilterSetting>& filter_settings();
 
-/// The filter that a configuration asks for: Eq. 1 as printed under seed/literal, whatever its filter's type.
+/// The filter of a configuration: Eq. 1 as printed under seed/literal, else the filter's type.
 FilterConfiguration filter_of(const Configuration& configuration);
 
 /// The filtered hand for `sample`, taken `elapsed` seconds (above 0) after the one before. A memory that is
@@ -62,12 +62,11 @@ Hand filtered(const Hand& sample, double elapsed, const FilterConfiguration& fil
 /// Two third differences of four samples each, one sample apart.
 constexpr int kNoiseSamples = 5;  ///< of the history, from which observe_noise learns
 
-/// Learns from the newest samples how much they tremble; nothing while there are fewer than kNoiseSamples.
+/// Updates the noise estimate from the newest samples. Does nothing with fewer than kNoiseSamples.
 void observe_noise(const SampleHistory& history, SeenNoise& noise);
 
-/// What a filter is to take for the rms of a sample on an axis [m]: a good tracker's, and beyond that what
-/// has been seen.
-///     sigma^2 = kUsualNoise^2 + 4 max(0, s^2 - (1 mm)^2),   s^2 the variance that has been seen
+/// Rms noise of a sample on an axis that a filter assumes [m]: a good tracker's, plus the observed excess.
+///     sigma^2 = kUsualNoise^2 + max(0, s^2 - (1 mm)^2),   s^2 the observed variance
 double filter_noise(const SeenNoise& seen);
 
 /// Assigns the frame's hands to tracks (by id; a new id on the same side, near a hand that is held, continues
@@ -79,7 +78,7 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
 /// Throws std::invalid_argument for a filter that is not known.
 void check_filter(FilterKind kind);
 
-/// From `now` on the hands are filtered otherwise: continuous in position and velocity, within 0.2 s.
+/// Changes the filter at `now`. Positions and velocities stay continuous; the change takes 0.2 s.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);
 
 /// Ends every track that was last seen more than hold_time before `now`, with hand_lost.

@@ -12,9 +12,12 @@
 namespace mrhi {
 namespace {
 
-constexpr double kLongestRatio = 4.0;  // of a bone to the adult's, in proportion to the hand's size
-constexpr double kLongestBone = 0.3;   // where the size is not known [m]
-constexpr double kMaxMisfit = 1.4;  // of a bone, ln(kLongestRatio): a stray joint tells nothing of the order
+/// Largest ratio of a bone to the adult's, relative to the hand's size.
+constexpr double kMaxBoneRatio = 4.0;
+/// Longest bone of a hand of unknown size [m].
+constexpr double kMaxBoneLength = 0.3;
+/// Largest misfit of a bone, ln(kMaxBoneRatio): a stray joint says nothing about the order.
+constexpr double kMaxMisfit = 1.4;
 
 using Joint = std::optional<Vector3>;
 
@@ -24,7 +27,7 @@ struct Link {
   double adult;          ///< [m]
 };
 
-/// Bones, and the ways from the wrist to the knuckles. The thumb has no metacarpal.
+/// Bones, and the distances from the wrist to the knuckles. The thumb has no metacarpal.
 std::vector<Link> make_links() {
   std::vector<Link> links;
   for (std::size_t f = 0; f < kFingers; ++f) {
@@ -44,7 +47,7 @@ struct Measured {
   double length;  ///< [m]
 };
 
-/// Without those of no length, as of a metacarpal that a tracker fills with another joint.
+/// Links with known ends, without those of zero length: a tracker may repeat a joint for a metacarpal.
 std::vector<Measured> measured(const HandJoints& hand) {
   std::vector<Measured> found;
   for (const Link& link : kLinks) {
@@ -79,13 +82,13 @@ std::size_t known_joints(const HandJoints& hand) {
   return known;
 }
 
-/// The end of most links that are too long, of several the one that is farthest from the middle of the hand.
+/// The joint at the end of most overlong links; of several, the one farthest from the hand's median point.
 std::optional<std::size_t> worst_joint(const HandJoints& hand) {
   const auto fit = proportions(hand);
   std::array<int, kHandJoints> faults{};
   int most = 0;
   for (const Measured& bone : measured(hand)) {
-    const double longest = fit ? kLongestRatio * fit->size * bone.link->adult : kLongestBone;
+    const double longest = fit ? kMaxBoneRatio * fit->size * bone.link->adult : kMaxBoneLength;
     if (!(bone.length > longest)) continue;
     for (const std::size_t end : {bone.link->from, bone.link->to}) most = std::max(most, ++faults[end]);
   }
@@ -100,8 +103,8 @@ std::optional<std::size_t> worst_joint(const HandJoints& hand) {
   return worst;
 }
 
-/// A point at which joints of two fingers are cannot be of a hand. Metacarpals' bases may be: trackers that
-/// have none fill them with the wrist.
+/// True if joints of two fingers are at this point. Bases of metacarpals do not count: trackers without them
+/// repeat the wrist.
 bool is_shared(const HandJoints& hand, const Vector3& point) {
   int fingers = 0;
   for (const auto& joints : hand.joints)
@@ -198,7 +201,7 @@ std::optional<Proportions> proportions(const HandJoints& hand) {
   std::vector<double> ratios;
   for (const Measured& bone : measured(hand))
     if (std::isfinite(bone.length)) ratios.push_back(std::log(bone.length / bone.link->adult));
-  if (ratios.size() < kBonesToJudge) return std::nullopt;
+  if (ratios.size() < kMinKnownBones) return std::nullopt;
   const double common = median(ratios);
   double misfit = 0.0;
   for (const double ratio : ratios) misfit += std::min(std::abs(ratio - common), kMaxMisfit);
@@ -299,11 +302,11 @@ const JointOrder& OrderRecognition::order_of(std::size_t size, const Vector3* po
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (orders[i].size != size) continue;
     const auto found = misfit(hand_in_order(orders[i], points, nullptr, Side::right));
-    if (found) misfits_[i] = misfits_[i] ? *misfits_[i] + kNewShare * (*found - *misfits_[i]) : *found;
+    if (found) misfits_[i] = misfits_[i] ? *misfits_[i] + kNewWeight * (*found - *misfits_[i]) : *found;
     if (misfits_[i] && (best == orders.size() || *misfits_[i] < *misfits_[best])) best = i;
   }
   if (best == orders.size()) return *chosen_;
-  if (*misfits_[best] > kNoHand)
+  if (*misfits_[best] > kMaxMisfit)
     throw std::invalid_argument(
         std::to_string(size) + " joints, but their bones are a hand's in no known order; allowed: " +
         names_of(size) + "; order:=NAME (replay: --hand-order NAME) takes them all the same");

@@ -73,7 +73,8 @@ std::optional<PalmFit> fit_palm(const HandJoints& hand) {
   return fit;
 }
 
-constexpr double kShortestBone = 1e-6;  // [m]; the thumb's metacarpal has length zero in Leap's skeleton
+/// Shortest bone with a direction [m]; the thumb's metacarpal has length zero in Leap's skeleton.
+constexpr double kMinBoneLength = 1e-6;
 
 /// Rounded to float32. Volatile, because GCC 12 at -O2 drops the conversion there and back where it
 /// vectorises it.
@@ -86,8 +87,7 @@ double fraction(float value) {
   return static_cast<double>(std::min(std::max(value, 0.0f), 1.0f));
 }
 
-/// A tracker's width is a diameter and a float; what is put in for it is rounded as if the tracker had given
-/// it.
+/// A tracker's width is a diameter in single precision; a default is rounded likewise.
 double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger, std::size_t bone) {
   const auto& own = joints.bone_width[finger][bone];
   const auto& width = own ? own : joints.finger_width[finger];
@@ -111,7 +111,7 @@ void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t fing
   for (std::size_t bone = 0; bone < kBonesPerFinger; ++bone) {
     const auto& start = completed[bone];
     const auto& end = completed[bone + 1];
-    if (!start || !end || (*end - *start).norm() < kShortestBone) continue;
+    if (!start || !end || (*end - *start).norm() < kMinBoneLength) continue;
     hand.capsules[finger * kBonesPerFinger + bone] = {device_in_world * *start, device_in_world * *end,
                                                       bone_radius(joints, fit, finger, bone)};
   }
@@ -122,13 +122,11 @@ Vector3 wrist_of(const HandJoints& joints, const PalmFit& fit) {
   return {as_float(wrist.x()), as_float(wrist.y()), as_float(wrist.z())};
 }
 
-constexpr double kLongestBone = 0.3;     // [m]
-constexpr double kFarthestJoint = 10.0;  // from the tracker [m]
-constexpr double kFarthestHand =
-    980.0;                           // in world, on each axis [m]; HandFrame.msg has room for its joints too
-constexpr float kWidestPalm = 0.3f;  // [m]
-constexpr float kWidestFinger = 0.1f;  // [m]
-constexpr float kWidestBone = 0.19f;   // [m]
+constexpr double kMaxBoneLength = 0.3;        // [m]
+constexpr double kMaxTrackerDistance = 10.0;  // of a joint [m]
+/// Largest coordinate of a hand in world [m]: below HandFrame.msg's limit, with a margin for its joints.
+constexpr double kMaxCoordinate = 980.0;
+constexpr float kMaxPalmWidth = 0.3f, kMaxFingerWidth = 0.1f, kMaxBoneWidth = 0.19f;  // [m]
 
 const char* const kFingerNames[kFingers] = {"thumb", "index", "middle", "ring", "little"};
 const char* const kJointNames[5] = {"metacarpal base", "metacarpal end", "proximal end", "intermediate end",
@@ -147,12 +145,12 @@ std::string joined(Name name) {
 std::string point_defect(Name name, const std::optional<Vector3>& point) {
   if (!point) return "";
   if (!point->allFinite()) return joined(name) + " is not finite";
-  if (point->norm() > kFarthestJoint)
+  if (point->norm() > kMaxTrackerDistance)
     return joined(name) + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
   return "";
 }
 
-/// Not a number fails both comparisons, and is a defect.
+/// NaN fails both comparisons, and is a defect.
 std::string width_defect(Name name, const std::optional<float>& width, float widest) {
   if (!width || (*width > 0.0f && *width <= widest)) return "";
   return joined(name) + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
@@ -167,14 +165,14 @@ std::string finger_defect(const HandJoints& hand, std::size_t finger) {
   }
   for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
     const std::string wide =
-        width_defect({name, kBoneNames[b], "width"}, hand.bone_width[finger][b], kWidestBone);
+        width_defect({name, kBoneNames[b], "width"}, hand.bone_width[finger][b], kMaxBoneWidth);
     if (!wide.empty()) return wide;
     if (!joints[b] || !joints[b + 1]) continue;
     const double length = (*joints[b + 1] - *joints[b]).norm();
-    if (length > kLongestBone)
+    if (length > kMaxBoneLength)
       return joined({name, kBoneNames[b]}) + " is " + std::to_string(length) + " m long; at most 0.3 m";
   }
-  return width_defect({name, "width"}, hand.finger_width[finger], kWidestFinger);
+  return width_defect({name, "width"}, hand.finger_width[finger], kMaxFingerWidth);
 }
 
 struct Unit {
@@ -184,7 +182,7 @@ struct Unit {
 constexpr Unit kUnits[] = {
     {"millimetres", 0.001}, {"centimetres", 0.01}, {"inches", 0.0254}, {"decimetres", 0.1}, {"feet", 0.3048}};
 
-/// The unit in which a hand would be so many times as large as an adult's.
+/// The unit that explains a hand `size` times as large as an adult's.
 const Unit& likely_unit(double size) {
   const auto error = [size](const Unit& unit) { return std::abs(std::log(size * unit.metres)); };
   return *std::min_element(std::begin(kUnits), std::end(kUnits),
@@ -225,7 +223,7 @@ std::string defect(const HandJoints& hand, std::optional<PalmFit>& fit) {
   if (std::string found = size_defect(hand); !found.empty()) return found;
   for (const std::string& found :
        {point_defect({"palm centre"}, hand.palm_centre), point_defect({"wrist"}, hand.wrist),
-        width_defect({"palm width"}, hand.palm_width, kWidestPalm)})
+        width_defect({"palm width"}, hand.palm_width, kMaxPalmWidth)})
     if (!found.empty()) return found;
   for (std::size_t f = 0; f < kFingers; ++f) {
     const std::string found = finger_defect(hand, f);
@@ -294,9 +292,9 @@ std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& d
     if (found.empty()) {
       frame.hands.push_back(completed(hand, *fit, device_in_world));
       const Vector3& palm = frame.hands.back().palm.position;
-      if (palm.allFinite() && palm.cwiseAbs().maxCoeff() < kFarthestHand) continue;
+      if (palm.allFinite() && palm.cwiseAbs().maxCoeff() < kMaxCoordinate) continue;
       frame.hands.pop_back();
-      found = "palm is farther than " + text::number(kFarthestHand) + " m";
+      found = "palm is farther than " + text::number(kMaxCoordinate) + " m";
     }
     defects.push_back("hand " + std::to_string(hand.id) + ": " + found);
   }

@@ -15,26 +15,23 @@
 namespace mrhi {
 namespace {
 
-/// Receipts of two frames may be late by so much, one against the other. What comes all at once is no
-/// witness.
-constexpr Nanoseconds kJitter = 20'000'000;
+/// Largest difference between the delays of two receipts [ns]. Frames received all at once prove nothing.
+constexpr Nanoseconds kMaxJitter = 20'000'000;
 
-bool goes_evenly(Nanoseconds by_stamp, Nanoseconds by_receipt) {
-  return by_stamp > 0 && 4 * by_receipt > by_stamp && by_receipt - by_stamp < kJitter + by_stamp;
+bool is_even(Nanoseconds by_stamp, Nanoseconds by_receipt) {
+  return by_stamp > 0 && 4 * by_receipt > by_stamp && by_receipt - by_stamp < kMaxJitter + by_stamp;
 }
 
-/// Of a slow stream, frames may be so many times as far apart as the last two were.
-constexpr Nanoseconds kIntervals = 4;
-
-/// Clocks drift by less than 1 s in so many.
-constexpr Nanoseconds kDrift = 1000;
-
-/// Corrections of two streams are of one step if they differ by no more: as late as receipts may be.
-constexpr Nanoseconds kSameStep = 100'000'000;
+/// Longest gap of a slow stream, in intervals of its last two frames.
+constexpr Nanoseconds kMaxIntervals = 4;
+/// Inverse of the largest drift between clocks: 1 s in this many seconds.
+constexpr Nanoseconds kInverseDrift = 1000;
+/// Largest difference between two streams' corrections for one step: the largest delay of a receipt [ns].
+constexpr Nanoseconds kSameStepTolerance = 100'000'000;
 
 }  // namespace
 
-/// Receipts that go back are those of a recording that begins anew: so does all here.
+/// Receipts that go back belong to a recording that starts again: the state is reset.
 StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt) {
   if (!receipt || std::abs(stamp) > StampCheck::kLatest || std::abs(*receipt) > StampCheck::kLatest)
     return {stamp + correction_};
@@ -44,12 +41,12 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
   const Nanoseconds since = frame.stamp - last_->stamp;
   const Nanoseconds passed = std::max<Nanoseconds>(0, frame.receipt - last_->receipt);
   const Nanoseconds longest =
-      std::max({StampCheck::kAhead, kIntervals * interval_, passed + StampCheck::kAhead});
+      std::max({StampCheck::kAhead, kMaxIntervals * interval_, passed + StampCheck::kAhead});
   const bool waited_less = frame.lead() <= lead_ + StampCheck::kAhead;
   if (since > 0 && (since <= longest || waited_less)) return accept(frame);
   const std::optional<Frame> before = off_;
   off_ = frame;
-  if (!before || !goes_evenly(frame.stamp - before->stamp, frame.receipt - before->receipt))
+  if (!before || !is_even(frame.stamp - before->stamp, frame.receipt - before->receipt))
     return {stamp + correction_};
   Verdict verdict{stamp};
   if (accepted_ == 1) {
@@ -64,7 +61,7 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
 
 StampSteps::Verdict StampSteps::accept(const Frame& frame, bool anew) {
   const Nanoseconds passed = last_ ? std::max<Nanoseconds>(0, frame.receipt - last_->receipt) : 0;
-  lead_ = last_ && !anew ? std::max(lead_ - passed / kDrift, frame.lead()) : frame.lead();
+  lead_ = last_ && !anew ? std::max(lead_ - passed / kInverseDrift, frame.lead()) : frame.lead();
   interval_ = last_ && !off_ ? std::min(frame.stamp - last_->stamp, StampCheck::kBack) : 0;
   last_ = frame;
   off_.reset();
@@ -72,8 +69,8 @@ StampSteps::Verdict StampSteps::accept(const Frame& frame, bool anew) {
   return {frame.stamp + correction_};
 }
 
-/// All of them, as those that are in both have. x' = to + R (x - from) with the rotation R between the joints
-/// that are in both (least squares, without their scale). Without one what was known is forgotten.
+/// Moves the remembered joints with the hand: x' = to + R (x - from), R the least-squares rotation between
+/// the joints that are in both frames. Forgets them if there is none.
 void JointGaps::Memory::move_on(const Points& now) {
   std::array<Vector3, kJoints> from, to;
   std::size_t size = 0;
@@ -89,8 +86,8 @@ void JointGaps::Memory::move_on(const Points& now) {
   }
 }
 
-/// A joint is put in from its last place, moved on frame by frame, up to kLongest after it was seen itself:
-/// what has been put in counts as known for the next frame, but not as seen.
+/// Fills a missing joint from its last place, moved frame by frame, until kLongest after it was last seen. A
+/// filled joint counts as known in the next frame, but not as seen.
 void JointGaps::Memory::take(HandJoints& hand, Nanoseconds at) {
   for (std::size_t i = 0; i < kJoints; ++i)
     if (joint(hand, i) && !joint(hand, i)->allFinite()) return;  // it will be refused
@@ -141,20 +138,20 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
   return result;
 }
 
-/// The hands of a tracker stay together: a step that another stream has had is the same. Returns what is to
-/// be added to this frame's stamp.
+/// Hands of one tracker share their clock steps: adopts the correction that another stream has found for this
+/// step. Returns the change of this frame's stamp.
 Nanoseconds JointsInput::share_correction(Stream& stream) {
   const Nanoseconds found = stream.steps.correction();
   for (const auto& [name, other] : streams_) {
     const Nanoseconds known = other.steps.correction();
-    if (&other == &stream || known == 0 || std::abs(known - found) > kSameStep) continue;
+    if (&other == &stream || known == 0 || std::abs(known - found) > kSameStepTolerance) continue;
     stream.steps.share(known);
     return known - found;
   }
   return 0;
 }
 
-/// A hand whose joints are all placeholders is none; it is reported when it becomes one.
+/// Removes hands whose joints are all placeholders, and reports when that begins.
 void JointsInput::correct(Stream& stream, JointsFrame& joints, SourceFrame& result) const {
   std::vector<HandJoints> hands;
   for (HandJoints& hand : joints.hands) {
@@ -196,12 +193,16 @@ SourceFrame JointsInput::completed(const JointsFrame& joints, const Device& devi
 
 namespace {
 
-constexpr Nanoseconds kLongestWait = 100'000'000;
-constexpr std::size_t kMaxWaiting =
-    64;                             // frames of the leader; of a stream that is twice as fast, 32 of another
-constexpr double kChange = 0.2;     // in which a stream takes over from another [s]
-constexpr double kSameHand = 0.15;  // farther apart, two streams see different things [m]
-constexpr double kLeastConfidence = 0.01;  // so that hands without any are fused, too
+/// Longest interval of a stream that continues, and longest wait for another stream [ns].
+constexpr Nanoseconds kMaxWait = 100'000'000;
+/// Largest number of frames that wait: of a stream twice as fast as another, for 32 frames of that.
+constexpr std::size_t kMaxWaiting = 64;
+/// Time in which one stream takes over from another [s].
+constexpr double kTransition = 0.2;
+/// Largest distance between two streams' views of one hand [m].
+constexpr double kSameHandDistance = 0.15;
+/// Smallest confidence used as a weight, so that hands without confidence are fused too.
+constexpr double kMinConfidence = 0.01;
 
 std::size_t index(Side side) {
   return static_cast<std::size_t>(side);
@@ -226,7 +227,7 @@ HandMerger::HandMerger(std::size_t streams, Mode mode) : mode_(mode), streams_(s
 
 bool HandMerger::Stream::goes_on(Nanoseconds now) const {
   if (frames.empty()) return false;
-  const Nanoseconds longest = interval > 0 ? std::min(2 * interval, kLongestWait) : kLongestWait;
+  const Nanoseconds longest = interval > 0 ? std::min(2 * interval, kMaxWait) : kMaxWait;
   return now - frames.back().stamp <= longest;
 }
 
@@ -235,7 +236,7 @@ std::vector<Hand> HandMerger::Stream::at(Nanoseconds stamp) const {
                                   [stamp](const HandFrame& frame) { return frame.stamp >= stamp; });
   if (after == frames.end()) return {};
   if (after->stamp == stamp) return after->hands;
-  if (after == frames.begin() || after->stamp - (after - 1)->stamp > kLongestWait) return {};
+  if (after == frames.begin() || after->stamp - (after - 1)->stamp > kMaxWait) return {};
   const HandFrame& before = *(after - 1);
   const double fraction = to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp);
   std::vector<Hand> hands;
@@ -277,7 +278,7 @@ void HandMerger::take_complete(std::vector<HandFrame>& complete) {
   }
 }
 
-/// The other streams have come as far, or have ended.
+/// True if the other streams have reached this stamp, or have ended.
 bool HandMerger::is_complete(const HandFrame& leading) const {
   return std::all_of(streams_.begin(), streams_.end(), [&](const Stream& stream) {
     return stream.frames.empty() || stream.frames.back().stamp >= leading.stamp || !stream.goes_on(newest_);
@@ -308,13 +309,13 @@ HandFrame HandMerger::merged(const HandFrame& leading) {
   return frame;
 }
 
-/// The mean of the streams' hands by weights that follow their confidence within kChange. Where the streams
-/// that see the hand become others, the trackers' errors of calibration would make it jump: it goes on from
-/// where it was, with the motion of a stream that stays, and the difference fades (minimum jerk).
+/// Weighted mean of the streams' hands; weights follow the confidence within kTransition. When other streams
+/// begin to see the hand, calibration errors would make it jump: it continues from its last pose with the
+/// motion of a stream that stays, and the difference fades (minimum jerk).
 std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
                                      const std::vector<std::optional<Hand>>& seen) {
-  const double passed = side.output ? to_seconds(stamp - side.stamp) : kChange;
-  const bool goes_on = side.output && passed > 0.0 && passed <= kChange;
+  const double passed = side.output ? to_seconds(stamp - side.stamp) : kTransition;
+  const bool goes_on = side.output && passed > 0.0 && passed <= kTransition;
   std::optional<std::size_t> surest;
   for (std::size_t s = 0; s < seen.size(); ++s)
     if (seen[s] && (!surest || seen[s]->confidence > seen[*surest]->confidence)) surest = s;
@@ -327,11 +328,12 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
   bool changed = false;
   std::optional<std::size_t> staying;
   for (std::size_t s = 0; s < seen.size(); ++s) {
-    const bool agrees = seen[s] && (seen[s]->palm.position - seen[*surest]->palm.position).norm() < kSameHand;
-    const double confidence = agrees ? std::max(seen[s]->confidence, kLeastConfidence) : 0.0;
+    const bool agrees =
+        seen[s] && (seen[s]->palm.position - seen[*surest]->palm.position).norm() < kSameHandDistance;
+    const double confidence = agrees ? std::max(seen[s]->confidence, kMinConfidence) : 0.0;
     changed = changed || agrees != (side.weights[s] > 0.0);
     if (agrees && side.weights[s] > 0.0 && side.seen[s]) staying = s;
-    const double share = goes_on && side.weights[s] > 0.0 ? std::min(passed / kChange, 1.0) : 1.0;
+    const double share = goes_on && side.weights[s] > 0.0 ? std::min(passed / kTransition, 1.0) : 1.0;
     side.weights[s] = agrees ? side.weights[s] + share * (confidence - side.weights[s]) : 0.0;
     if (!agrees) continue;
     total += side.weights[s];
@@ -351,7 +353,7 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
           hand_point(*side.output, p) + hand_point(now, p) - hand_point(before, p) - hand_point(hand, p);
     }
   }
-  const double left = 1.0 - minimum_jerk(std::min(to_seconds(stamp - side.jumped) / kChange, 1.0));
+  const double left = 1.0 - minimum_jerk(std::min(to_seconds(stamp - side.jumped) / kTransition, 1.0));
   for (std::size_t p = 0; p < kHandPoints; ++p)
     if (has_point(hand, p)) hand_point(hand, p) += left * side.jump.points[p];
   side.seen = seen;
@@ -362,7 +364,8 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
 
 namespace {
 
-constexpr Nanoseconds kLongest = 100'000'000;
+/// Longest interval of a stream that continues [ns].
+constexpr Nanoseconds kMaxInterval = 100'000'000;
 
 HandFrame joined(HandFrame first, const HandFrame& second) {
   first.stamp = std::max(first.stamp, second.stamp);
@@ -372,29 +375,29 @@ HandFrame joined(HandFrame first, const HandFrame& second) {
 
 }  // namespace
 
-/// An interval that is longer, or goes back, is a break: the next frame tells a new one.
+/// A longer or negative interval interrupts the stream: the next frame defines a new one.
 void HandPairs::Stream::note(Nanoseconds stamp) {
   const Nanoseconds since = stamp - last;
-  interval = since > 0 && since <= kLongest ? since : 0;
+  interval = since > 0 && since <= kMaxInterval ? since : 0;
   last = stamp;
 }
 
 bool HandPairs::Stream::goes_on(Nanoseconds stamp) const {
-  return interval > 0 && std::abs(stamp - last) <= std::min(2 * interval, kLongest);
+  return interval > 0 && std::abs(stamp - last) <= std::min(2 * interval, kMaxInterval);
 }
 
-/// With the faster stream's interval T, |difference| <= T / 2: no frame of that stream is nearer, so that it
-/// is the right one; doubled on the left, as stamps are whole.
+/// With the faster stream's interval T, |difference| <= T / 2: no other frame of that stream is nearer. Both
+/// sides are doubled, as stamps are integers.
 bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
   if (!waiting_ || waiting_side_ == side) return false;
-  Nanoseconds interval = kLongest;
+  Nanoseconds interval = kMaxInterval;
   for (const Stream& stream : streams_)
     if (stream.interval > 0) interval = std::min(interval, stream.interval);
   return 2 * std::abs(stamp - waiting_->stamp) <= interval;
 }
 
-/// A frame waits for one of the other side only while that goes on. What waited and found no partner is
-/// dropped, not shown late: time does not go back.
+/// A frame waits for one of the other side only while that stream continues. A frame that finds no partner is
+/// dropped, as stamps must not decrease.
 std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
   streams_[index(side)].note(frame.stamp);
   if (is_partner(side, frame.stamp)) {

@@ -29,10 +29,10 @@ struct Proportions {
                   ///< wrong order
 };
 
-/// By the lengths of all bones and the distances from the wrist to the knuckles that are known. Nothing if
-/// these are fewer than kBonesToJudge.
+/// Proportions from all known bones and distances from the wrist to the knuckles. Nothing for fewer than
+/// kMinKnownBones of these.
 std::optional<Proportions> proportions(const HandJoints& hand);
-constexpr std::size_t kBonesToJudge = 8;
+constexpr std::size_t kMinKnownBones = 8;
 
 /// Drops joints that are at a placeholder: the origin, and any point at which joints of two fingers are
 /// exactly. A tracker writes them for what it does not see. Keeps the wrist at the origin if
@@ -44,7 +44,7 @@ std::size_t drop_stray_joints(HandJoints& hand);
 
 bool has_joints(const HandJoints& hand);
 
-/// All lengths by a factor: a tracker's unit in metres.
+/// Multiplies all lengths by a factor: metres per unit of the tracker.
 void scale(HandJoints& hand, double factor);
 
 /// An order in which trackers list the joints of a hand.
@@ -58,7 +58,7 @@ struct JointOrder {
   static constexpr std::size_t kNotListed = static_cast<std::size_t>(-1);
 };
 
-/// All known orders. Of several of one size the usual one is first.
+/// All known orders. The usual one of each size comes first.
 const std::vector<JointOrder>& joint_orders();
 /// Throws std::invalid_argument that lists the known names.
 const JointOrder& joint_order(const std::string& name);
@@ -77,19 +77,19 @@ class OrderRecognition {
   const JointOrder& order_of(std::size_t size, const Vector3* points, bool& changed);
 
  private:
-  static constexpr double kMargin = 0.08;   // of Proportions::misfit
-  static constexpr double kNoHand = 0.45;   // misfit in the best order
-  static constexpr double kNewShare = 0.2;  // of a hand in the running means
+  static constexpr double kMargin = 0.08;     // of Proportions::misfit
+  static constexpr double kMaxMisfit = 0.45;  // of a hand in the best order
+  static constexpr double kNewWeight = 0.2;   // of a hand in the running means
 
   std::size_t size_ = 0;
   const JointOrder* chosen_ = nullptr;
   std::vector<std::optional<double>> misfits_;  // running means, as joint_orders() counts
 };
 
-/// Takes the steps of a tracker's clock out of its stamps, with the time of receipt as witness. Two frames in
-/// a row that are off by the same time, while their receipts go on evenly, prove a step: the second one then
-/// continues the stream where its receipt says. The first one keeps its stamp; StampCheck leaves it out. A
-/// frame that is no further ahead of its receipt than others were has only waited less than they did.
+/// Removes steps of a tracker's clock from its stamps, by the times of receipt. Two successive frames that
+/// are off by the same time, with evenly spaced receipts, prove a step: the second one then continues the
+/// stream according to its receipt. The first one keeps its stamp; StampCheck rejects it. A frame that is no
+/// further ahead of its receipt than earlier frames were only had a shorter delay.
 class StampSteps {
  public:
   struct Verdict {
@@ -134,7 +134,7 @@ struct SourceFrame {
   std::vector<std::pair<std::string, std::string>> corrected;
 };
 
-/// What one message of a tracker says.
+/// The content of one message of a tracker.
 struct TrackerFrame {
   std::string stream;                  ///< who sent it, and where to: those of one stream have one clock
   JointsFrame joints;                  ///< in the tracker's own frame and unit; stamp 0: not set
@@ -143,9 +143,9 @@ struct TrackerFrame {
   bool one_of_a_side = true;           ///< it never has two hands of one side
 };
 
-/// The one way from trackers' frames to hands in world, for live nodes, bags and recordings: units, stamps,
-/// placeholders, stray joints, gaps, and hands that belong together. Depends on what it is given alone, so
-/// that a replay does as the live node.
+/// Converts trackers' frames to hands in world, for live nodes, bags and recordings: units, stamps,
+/// placeholders, stray joints, gaps, and pairs of hands. Depends only on its input, so that a replay repeats
+/// the live node.
 class JointsInput {
  public:
   static constexpr const char* kJointsLeftOut = "joints left out";
@@ -163,7 +163,7 @@ class JointsInput {
   explicit JointsInput(double scale = 1.0) : scale_(scale) {}
 
   SourceFrame take(TrackerFrame input, const Device& device);
-  /// What still waits, at the end of a recording.
+  /// The frame that still waits at the end of a recording.
   std::optional<HandFrame> rest() { return pairs_.rest(); }
 
  private:

@@ -10,29 +10,33 @@
 
 namespace mrhi {
 
-// With s(u) the share of the way at the share u of the duration T, the hand is at s (way + speed u T) beyond
-// where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + way/T^2 max|s''|.
-Nanoseconds rejoin_duration(double way, double away) {
-  // What an object endures that is held half as firmly again as its weight needs.
-  constexpr double kAcceleration = 5.0;               // [m/s^2]
-  constexpr double kShortest = 0.05, kLongest = 0.4;  // [s]
-  constexpr double kOfSpeed = 4.63, kOfWay = 5.78;    // the two maxima of minimum jerk
+// With the minimum-jerk fraction s(u) at the fraction u of the duration T, the hand is at s (distance + speed
+// u T) from where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + distance/T^2 max|s''|.
+Nanoseconds rejoin_duration(double distance, double away) {
+  // Largest acceleration [m/s^2]: an object held with 1.5 times the force that its weight needs withstands
+  // it.
+  constexpr double kMaxAcceleration = 5.0;
+  constexpr double kMinDuration = 0.05, kMaxDuration = 0.4;  // [s]
+  // The maxima of |u s'' + 2 s'| and |s''|.
+  constexpr double kSpeedFactor = 4.63, kDistanceFactor = 5.78;
   // With s = 10 u^3 - 15 u^4 + 6 u^5: max |120 u^2 - 300 u^3 + 180 u^4| at u = 0.386, and max |s''| = 10 /
-  // sqrt(3) at u = (3 - sqrt(3)) / 6. Then a T^2 = b T + kOfWay way, of which T is the positive root.
-  const double b = kOfSpeed * way / away;
-  const double duration = (b + std::sqrt(b * b + 4.0 * kAcceleration * kOfWay * way)) / (2.0 * kAcceleration);
-  return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kShortest, kLongest));
+  // sqrt(3) at u = (3 - sqrt(3)) / 6. Then a T^2 = b T + kDistanceFactor distance, of which T is the positive
+  // root.
+  const double b = kSpeedFactor * distance / away;
+  const double duration =
+      (b + std::sqrt(b * b + 4.0 * kMaxAcceleration * kDistanceFactor * distance)) / (2.0 * kMaxAcceleration);
+  return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kMinDuration, kMaxDuration));
 }
 
 ///     x = from + s(u) (tracked - from),   u = (t - begin) / duration,   s' = s'' = 0 at both ends
-/// It begins at rest, as the held hand was, and ends with the tracked hand's velocity. The duration is fixed
-/// at the start, for a hand that goes on as fast.
+/// The motion begins at rest, as the held hand was, and ends with the tracked hand's velocity. The duration
+/// is fixed at the start, for a hand that keeps its speed.
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp) {
   const double u = std::min(1.0, to_seconds(stamp - rejoin.begin) / to_seconds(rejoin.duration));
   return blend(rejoin.from, tracked, minimum_jerk(u));
 }
 
-/// Squares are compared, and one root is taken: the same bits, as a root keeps the order.
+/// Compares squares and takes one root, which gives the same bits because a root is monotonic.
 double farthest_joint(const Hand& from, const Hand& to) {
   double distance_squared = 0.0;
   for (std::size_t c = 0; c < kCapsules; ++c) {
@@ -44,9 +48,8 @@ double farthest_joint(const Hand& from, const Hand& to) {
   return std::sqrt(distance_squared);
 }
 
-/// Quaternions by the shorter arc at one rate (slerp: Shoemake 1985), points on lines. At 1 it is `to` to the
-/// last bit: a hand that has caught up owes nothing to where it was. A capsule that only one of them has is
-/// as in `to`.
+/// Interpolates quaternions along the shorter arc (slerp: Shoemake 1985) and points along lines. At fraction
+/// 1 the result is `to`, bit for bit. A capsule that only one of them has is as in `to`.
 Hand blend(const Hand& from, const Hand& to, double fraction) {
   if (fraction >= 1.0) return to;
   Hand hand = to;
@@ -70,20 +73,18 @@ PathWeights PathWeights::between(double from, double to, double seconds) {
 
 namespace {
 
-/// Past a stop from one frame to the next a path swings on by this distance at most [m].
+/// Largest distance by which a path overshoots a stop from one frame to the next [m].
 constexpr double kMaxOvershoot = 1e-4;
 /// Energy of white noise in the extrapolated part of the velocity over that in its last term: 21 to 70 / 16
 /// variances of a sample, at even intervals.
 constexpr double kNoiseRatio = 21.0 / (70.0 / 16.0);
-/// Both energies are means over the last frames, of which each has this weight.
-constexpr double kRenewed = 1.0 / 16.0;
-
-/// The extrapolated part grows from frame to frame by this factor at most, and begins with this over the
-/// frame's time: an acceleration that appears from nothing is a stop or a start, which does not go on [m].
-constexpr double kGrowth = 4.0, kOnset = 4.0 * kMaxOvershoot;
-
-/// And by this fraction of the extrapolated velocity's displacement: what goes on accelerating bends as much.
-constexpr double kOfTheBend = 0.125;
+/// Weight of the newest frame in the running means of both energies.
+constexpr double kNewWeight = 1.0 / 16.0;
+/// Largest growth of the extrapolated part from frame to frame, and its largest first displacement in a frame
+/// [m]: a sudden acceleration is a stop or a start, which does not continue.
+constexpr double kMaxGrowth = 4.0, kMaxOnset = 4.0 * kMaxOvershoot;
+/// Additional overshoot, as a fraction of the displacement by the extrapolated velocity.
+constexpr double kBendFraction = 0.125;
 
 /// All numbers of a HandVelocity side by side: its points and, last, its turn.
 constexpr std::size_t kNumbers = 3 * (kHandPoints + 1);
@@ -129,7 +130,7 @@ void extend_path(double elapsed, HandTrack& track) {
   if (!same_points(track.previous, track.current)) path = HandPath();
   HandVelocity chord = mean_velocity(track.previous, track.current, elapsed);
 
-  // What the polynomial's velocity has beyond the chord's, and the last term of it.
+  // The polynomial's velocity relative to the chord's, and its last term.
   const double two = elapsed + path.intervals[0], three = two + path.intervals[1],
                four = three + path.intervals[2];
   const double over_two = 1.0 / two, over_three = 1.0 / three, of_last = elapsed * two * three / four;
@@ -148,16 +149,16 @@ void extend_path(double elapsed, HandTrack& track) {
   }
   path.intervals = {elapsed, path.intervals[0], path.intervals[1]};
   if (path.order > 2) {
-    path.noise += kRenewed * (energy_of_points(last) - path.noise);
-    path.energy += kRenewed * (energy_of_points(beyond) - path.energy);
+    path.noise += kNewWeight * (energy_of_points(last) - path.noise);
+    path.energy += kNewWeight * (energy_of_points(beyond) - path.energy);
   }
   double kept = path.energy > 0.0 ? std::max(0.0, 1.0 - kNoiseRatio * path.noise / path.energy) : 0.0;
-  const double limit = kGrowth * path.extrapolated + kOnset / elapsed, fastest = longest_point(beyond);
+  const double limit = kMaxGrowth * path.extrapolated + kMaxOnset / elapsed, fastest = longest_point(beyond);
   if (kept * fastest > limit) kept = limit / fastest;
   path.extrapolated = kept * fastest;
 
-  // The path arrived with another velocity than a smooth one would start with: of the difference so much is
-  // kept that the detour, 4/27 of T times it, stays small.
+  // The path arrived with a velocity that differs from the start of a smooth one. The fraction of the
+  // difference that is kept limits the detour, 4/27 of T times it.
   double* __restrict start = numbers(path.start_bend);
   double* __restrict arrived = numbers(path.velocity);
   const double goes_on = path.order > 0 ? 1.0 : 0.0;
@@ -167,7 +168,7 @@ void extend_path(double elapsed, HandTrack& track) {
     arrived[i] = mean[i] + extrapolated[i];
   }
   const double detour = 4.0 / 27.0 * elapsed * longest_point(path.start_bend);
-  const double allowed = kMaxOvershoot + kOfTheBend * elapsed * path.extrapolated;
+  const double allowed = kMaxOvershoot + kBendFraction * elapsed * path.extrapolated;
   const double part = detour > allowed ? allowed / detour : 1.0;
   for (std::size_t i = 0; i < kNumbers; ++i) {
     start[i] = elapsed * (part * start[i] - extrapolated[i]);
@@ -182,11 +183,11 @@ void extend_path(double elapsed, HandTrack& track) {
 
 namespace {
 
-/// A hand with a new id continues a held one if it is no farther from it than this [m].
+/// Largest distance at which a hand with a new id continues a held one [m].
 constexpr double kSameHandDistance = 0.3;
 
-/// One filter takes over from another within this time [s].
-constexpr double kFilterChange = 0.2;
+/// Time in which one filter takes over from another [s].
+constexpr double kFilterTransition = 0.2;
 
 using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
 
@@ -205,7 +206,7 @@ void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, 
   }
 }
 
-/// A free slot that knows what noise hands of this side have.
+/// True for a free slot with a noise estimate of hands of this side.
 bool was_last_here(const HandTrack& track, const Hand& hand) {
   return !track.active && track.filter.noise.size > 0 && track.current.side == hand.side;
 }
@@ -214,9 +215,9 @@ bool knows_nothing(const HandTrack& track, const Hand&) {
   return !track.active && track.filter.noise.size == 0;
 }
 
-/// The surest first, each for all slots, before the next: id and side, id alone (a tracker that took a left
-/// for a right hand), a new id near a hand that is held; then free slots, those that know the noise of this
-/// side first. In the order of slots and of the frame: equal frames give equal tracks.
+/// Applies criteria in order of certainty, each to all slots: id and side; id alone (a tracker that confuses
+/// left and right); a new id near a held hand; then free slots, those with the noise of this side first.
+/// Slots and hands are tried in order, so that equal frames give equal tracks.
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
@@ -244,7 +245,7 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
   return assignment;
 }
 
-/// Before and now are one pose, so that it has no velocity: what it overlaps is not struck by its coming.
+/// Previous and current pose are the same, so that the hand has no velocity and causes no impact.
 void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;
@@ -268,7 +269,7 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
   if (!track.filter_change) return now;
   FilterChange& change = *track.filter_change;
   const Hand before = filtered(hand, elapsed, change.from, change.memory);
-  const double u = to_seconds(stamp - change.begin) / kFilterChange;
+  const double u = to_seconds(stamp - change.begin) / kFilterTransition;
   if (u >= 1.0) {
     track.filter_change.reset();
     return now;
@@ -304,9 +305,9 @@ Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapse
   return hand;
 }
 
-/// The jump is told by raw samples: what is filtered lags behind, and the difference would look like a leap.
-/// A hand that was held begins its filter anew, as its samples of before say nothing about now, and catches
-/// up from the pose that was shown.
+/// Jumps are detected in raw samples: filtered poses lag, and the lag would look like a jump. A held hand
+/// restarts its filter, because its old samples say nothing about the present, and catches up from the pose
+/// that was shown.
 void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
   if (farthest_joint(track.filter.history.samples[0], hand) > configuration.tracking.max_speed * away) {
@@ -332,7 +333,7 @@ void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configurat
   extend_path(away, track);
 }
 
-/// Its last two poses are one: the hand stands still.
+/// Stops the hand: its last two poses are the same.
 void hold(HandTrack& track) {
   track.held = true;
   track.emerged = track.appeared;
@@ -368,8 +369,8 @@ void check_filter(FilterKind kind) {
   hand_filter(kind);
 }
 
-/// The new filter starts from the last pose shown, at rest and knowing nothing of its own error; the old one
-/// runs on beside it with all that it knew.
+/// The new filter starts at rest from the last pose, with an unknown error. The old filter continues beside
+/// it with its memory.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands) {
   for (HandTrack& track : hands) {
     if (!track.active || track.filter.empty()) continue;
@@ -379,7 +380,7 @@ void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector
   }
 }
 
-/// What is known of the tracker's noise stays in the slot, for the next hand of its side.
+/// The noise estimate stays in the slot, for the next hand of its side.
 void lose_unseen_hands(Nanoseconds now, double hold_time, std::vector<HandTrack>& hands,
                        std::vector<Event>& events) {
   for (HandTrack& track : hands) {

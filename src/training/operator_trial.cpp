@@ -19,7 +19,8 @@
 namespace mrhi {
 namespace {
 
-/// What the YAML beside a URDF has under these keys, as YAML; empty: nothing. The scene has been loaded.
+/// Values of these keys in the YAML beside a URDF, as YAML; empty if there are none. The scene has been
+/// loaded.
 std::string beside(const std::string& urdf_file, const std::vector<std::string>& keys) {
   const auto file = std::filesystem::path(urdf_file).replace_extension(".yaml");
   if (!std::filesystem::exists(file)) return "";
@@ -95,7 +96,7 @@ bool is_place(const Goal& goal) {
   return goal.kind == GoalKind::place || goal.kind == GoalKind::insert;
 }
 
-/// Nothing: to be let go, which the motion that took it does.
+/// The practised motion of a goal. Nothing for a release, which is part of the motion that took the object.
 std::optional<PractisedGoal> practised(const Goal& goal) {
   switch (goal.kind) {
     case GoalKind::catch_it:

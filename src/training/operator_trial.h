@@ -15,7 +15,7 @@
 
 namespace mrhi {
 
-/// What a trial has of an object.
+/// An object as a trial uses it.
 struct ObjectModel {
   ObjectRequest request;  ///< that puts it where it starts; `whole` for a device
   Scene scene;            ///< of it alone, there
@@ -37,7 +37,7 @@ ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>&
 Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
                         const SceneOptions& options);
 
-/// What simulated operators work with: the system, and the tracker before it.
+/// Setup of simulated operators: the system, and its tracker.
 struct OperatorStage {
   Configuration configuration;
   std::vector<std::string> scene_folders;
@@ -51,12 +51,12 @@ struct OperatorStage {
 /// reach of the arm. Throws SceneError.
 Scene operator_scene(const Task& task, const TaskObject& object, const OperatorStage& stage);
 
-/// What there is to see of an object and of the task's goals from `goal` on. Into a hole it is wanted first
-/// outside of it on its axis, then inside.
+/// Sight of an object and of the task's goals from `goal` on. The place of a goal `insert` is first outside
+/// the hole on its axis, then inside.
 Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held);
 
-/// Who can do the task with the object, a SimulatedOperator or a PractisedPerson. Throws
-/// std::invalid_argument that names the goal, or the object, and what is allowed.
+/// Creates a SimulatedOperator or a PractisedPerson that can do the task with the object. Throws
+/// std::invalid_argument that names the goal or the object, and what is allowed.
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
                                     std::uint64_t seed);
 

@@ -17,7 +17,7 @@
 namespace mrhi {
 namespace {
 
-/// Fisher and Yates, the same with every standard library.
+/// Fisher-Yates shuffle with the same result for every standard library.
 void shuffle(std::vector<std::size_t>& items, std::mt19937_64& random) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random() % i]);
 }
@@ -49,19 +49,20 @@ SessionHeader complete_header(SessionHeader header, const Task& task, std::uint6
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestMesh = std::size_t{256} << 20;  // of a mesh
-constexpr std::size_t kShown = 60, kBefore = 30;              // of a line that differs
+constexpr std::size_t kMaxMeshBytes = std::size_t{256} << 20;
+/// Characters shown of a line that differs, and of those before the difference.
+constexpr std::size_t kMaxShown = 60, kMaxBefore = 30;
 const char* const kSums = "SHA256SUMS";
 const char* const kAllowed = "; allowed: the same, or another folder";
 
 std::string bytes_of(const std::string& file) {
-  std::optional<std::string> text = file_text(file, kLargestMesh + 1);
-  if (!text || text->size() > kLargestMesh)
+  std::optional<std::string> text = file_text(file, kMaxMeshBytes + 1);
+  if (!text || text->size() > kMaxMeshBytes)
     throw SceneError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
   return *std::move(text);
 }
 
-/// As `sha256sum` prints it.
+/// SHA-256 in hexadecimal, as `sha256sum` prints it.
 std::string sha256(const std::string& bytes) {
   std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
   SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest.data());
@@ -92,7 +93,7 @@ std::string sums_of(const SessionSetup& setup) {
   return list_of(sums);
 }
 
-/// Files of two scenes may have the same name.
+/// A name that no other file has: files of two scenes may have the same name.
 std::string free_name(const SessionSetup& setup, const std::string& object, const std::string& ending) {
   const std::string name = "scenes/" + object + ending;
   return setup.files.count(name) == 0 ? name : "scenes/fixture_" + object + ending;
@@ -106,10 +107,10 @@ void write_whole(const fs::path& file, const std::string& text) {
     throw SessionError(file.string() + ": cannot be written; allowed: a folder to write to with space left");
 }
 
-/// From shortly before where it differs.
+/// The line from shortly before the difference.
 std::string shown(const std::string& line, std::size_t differs) {
-  const std::size_t from = differs > kBefore ? differs - kBefore : 0;
-  return (from > 0 ? "'..." : "'") + text::one_line(line.substr(from), kShown) + "'";
+  const std::size_t from = differs > kMaxBefore ? differs - kMaxBefore : 0;
+  return (from > 0 ? "'..." : "'") + text::one_line(line.substr(from), kMaxShown) + "'";
 }
 
 std::size_t first_difference(const std::string& a, const std::string& b) {
@@ -119,7 +120,7 @@ std::size_t first_difference(const std::string& a, const std::string& b) {
       a.begin());
 }
 
-/// `there` and `here` differ.
+/// Throws SessionError that shows the first difference between `there` and `here`.
 [[noreturn]] void refuse(const std::string& file, const std::string& there, const std::string& here) {
   std::istringstream a(there), b(here);
   std::string of_a, of_b;
@@ -138,7 +139,7 @@ std::size_t first_difference(const std::string& a, const std::string& b) {
                      shown(of_a, differs) + ", this one has " + shown(of_b, differs) + kAllowed);
 }
 
-/// What people read comes before the sums, which differ wherever anything does.
+/// Names in the order of comparison: readable files come before the checksums.
 std::vector<std::string> in_order(const SessionSetup& setup) {
   std::vector<std::string> names{"parameters.yaml", "task.yaml", "software.yaml"};
   for (const auto& [name, text] : setup.files) {
@@ -170,11 +171,11 @@ std::vector<std::size_t> latin_square_order(std::size_t n, std::uint64_t partici
 }
 
 std::uint64_t participant_place(const std::string& participant) {
-  constexpr std::size_t kMostDigits = 9;
+  constexpr std::size_t kMaxDigits = 9;
   const std::size_t last_letter = participant.find_last_not_of("0123456789");
   const std::string digits =
       last_letter == std::string::npos ? participant : participant.substr(last_letter + 1);
-  if (digits.empty() || digits.size() > kMostDigits)
+  if (digits.empty() || digits.size() > kMaxDigits)
     throw SessionError("participant '" + text::one_line(participant, 60) +
                        "' has no number for the order of objects; allowed: a name "
                        "that ends with one, such as P07, or a number of its own");
@@ -345,7 +346,7 @@ SessionSetup session_setup(const std::string& task_file, const Task& task, Confi
     setup.files[free_name(setup, name, ".urdf")] = bytes_of(urdf);
     const fs::path yaml = fs::path(urdf).replace_extension(".yaml");
     if (fs::exists(yaml)) setup.files[free_name(setup, name, ".yaml")] = bytes_of(yaml.string());
-    // By the names of the files: where a package lies may change.
+    // By file names, because the path of a package may change.
     for (const SceneFile& mesh : load_scene(urdf, options).mesh_files)
       meshes[fs::path(mesh.path).filename().string()] = sha256(bytes_of(mesh.path));
   };
@@ -382,7 +383,7 @@ void check_same_setup(const std::string& folder, const SessionSetup& setup) {
                        "parameters and software (setup)" + kAllowed);
   for (const std::string& name : in_order(setup)) {
     const auto here = setup.files.find(name);
-    const std::string there = file_text(kept + name, kLargestMesh).value_or("");
+    const std::string there = file_text(kept + name, kMaxMeshBytes).value_or("");
     const std::string wanted = here == setup.files.end() ? "" : here->second;
     if (there != wanted) refuse(kept + name, there, wanted);
   }

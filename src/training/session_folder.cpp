@@ -33,7 +33,7 @@ const char* const kTrialColumns =
 const char* const kEventColumns = "time,trial,stage,event,object,detail,stamp,utc";
 const char* const kHandColumns = "time,hand_id,side,finger,bone,rendered,sx,sy,sz,ex,ey,ez,radius,touching";
 
-/// A line of a table, of numbers with six decimals.
+/// A line of a table; numbers have six decimals.
 template <class... Values>
 std::string line_of(const Values&... values) {
   std::ostringstream stream;
@@ -45,24 +45,24 @@ std::string line_of(const Values&... values) {
   return stream.str();
 }
 
-constexpr std::size_t kLargestTable = std::size_t{256} << 20;  // of a table
+constexpr std::size_t kMaxTableBytes = std::size_t{256} << 20;
 
 bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
 }
 
-/// What is in a table, in whole lines, and whether one that was cut off comes after them.
+/// Whole lines of a table; `cut`: an incomplete line follows them.
 struct Contents {
   std::string lines;
   bool cut = false;
 };
 
-/// Nothing is touched. Throws for what has other columns.
+/// Reads a table without changing it. Throws SessionError for other columns.
 Contents contents_of(const std::string& file, const std::string& columns) {
   if (!is_there(file)) return {};
-  const std::optional<std::string> text = file_text(file, kLargestTable + 1);
-  if (!text || text->size() > kLargestTable)
+  const std::optional<std::string> text = file_text(file, kMaxTableBytes + 1);
+  if (!text || text->size() > kMaxTableBytes)
     throw SessionError(file + ": cannot be read; allowed: a readable file of at most 256 MB");
   const std::size_t whole = text->rfind('\n') + 1;  // 0 where there is none
   const std::string first = text->substr(0, text->find('\n'));
@@ -71,7 +71,7 @@ Contents contents_of(const std::string& file, const std::string& columns) {
   return {text->substr(0, whole), whole < text->size()};
 }
 
-/// All but the header's.
+/// Rows without the header.
 std::vector<std::vector<std::string>> rows_in(const std::string& file, const std::string& columns,
                                               const std::string& text) {
   std::vector<std::vector<std::string>> rows;
@@ -88,7 +88,7 @@ std::vector<std::vector<std::string>> rows_in(const std::string& file, const std
   return rows;
 }
 
-/// In seconds, with all nine decimals: a double has too few digits for those since 1970.
+/// Seconds with nine decimals: a double has too few digits for nanoseconds since 1970.
 std::string stamp_text(Nanoseconds stamp) {
   constexpr Nanoseconds kSecond = 1'000'000'000;
   std::string decimals = std::to_string(stamp % kSecond);
@@ -101,12 +101,12 @@ void write_now(std::ofstream& out, const std::string& text, const std::string& f
   if (!out) throw SessionError(file + ": cannot be written; allowed: a folder to write to with space left");
 }
 
-/// 0 for what is none, or more than are ever counted.
+/// Returns 0 if the text is not a count or is implausibly large.
 int whole_number(const std::string& field) {
-  constexpr int kMost = 1'000'000'000;
+  constexpr int kMax = 1'000'000'000;
   std::istringstream in(field);
   int value = 0;
-  return in >> value && value > 0 && value <= kMost ? value : 0;
+  return in >> value && value > 0 && value <= kMax ? value : 0;
 }
 
 TrialResult result_named(const std::string& name) {
@@ -121,7 +121,7 @@ constexpr int kVersion = 1;
 
 using Field = std::pair<const char*, std::string>;
 
-/// What makes a session the one that it is, beside its gravity.
+/// Fields that identify a session, besides its gravity.
 std::vector<Field> identity(const SessionHeader& header) {
   return {{"participant", header.participant},
           {"group", header.group},
@@ -153,7 +153,7 @@ void check_word(const char* key, const std::string& value) {
                        "' is not allowed; allowed: a name of " + kNameIs);
 }
 
-/// Throws SessionError for what must not be in session.yaml.
+/// Throws SessionError for a value that is not allowed in session.yaml.
 void check_header(const SessionHeader& header) {
   check_word("participant", header.participant);
   check_word("condition", header.condition);
@@ -193,7 +193,8 @@ void check_same_session(const std::string& file, const SessionHeader& header) {
     if (!there.IsMap())
       throw SessionError(file + ": is not a list of keys with values; allowed: a session's header");
     for (const auto& [key, here] : identity(header)) {
-      const bool first = std::string(key) == "session" && !there[key];  // before there were several
+      const bool first = std::string(key) == "session" &&
+                         !there[key];  // of recordings before a participant could have several
       const std::string said = first ? "1" : field_text(there[key]);
       if (said != here) refuse(file, key, "'" + said + "'", "'" + here + "'");
     }
@@ -205,7 +206,7 @@ void check_same_session(const std::string& file, const SessionHeader& header) {
 
 const char* const kLockFile = "/session.lock";
 
-/// For who finds the folder locked; nothing hangs on it.
+/// Writes who holds the lock, for messages only.
 void write_holder(int file) {
   char host[256] = "";
   gethostname(host, sizeof host - 1);
@@ -220,8 +221,7 @@ std::string holder(const std::string& file) {
 
 }  // namespace
 
-/// Keeps a folder to one program at a time, as long as it lives; however a program ends, its lock ends with
-/// it.
+/// Locks a folder for one program at a time. The lock ends with the program, however it ends.
 class FolderLock {
  public:
   /// Throws SessionError that names the process and machine that has it, or says that it cannot be written.
@@ -261,7 +261,7 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
   fs::create_directories(folder, error);
   if (error) throw SessionError(folder + ": cannot be made: " + error.message());
   lock_ = std::make_unique<FolderLock>(folder);
-  check(header, setup);  // again, as it is now nobody else's
+  check(header, setup);  // again, now that it is locked
   open_header(header, setup);
 
   const std::string trials = open_table(kTrials, kTrialColumns, trials_);
@@ -312,7 +312,7 @@ void SessionFolder::open_header(const SessionHeader& header, const SessionSetup&
   if (error) throw SessionError(file.string() + ": cannot be written: " + error.message());
 }
 
-/// To be written on; what is in it, in whole lines. Throws if it has other columns.
+/// Opens a table to append to, and returns its whole lines. Throws SessionError for other columns.
 std::string SessionFolder::open_table(const char* name, const char* columns, Table& table) {
   table.file = (fs::path(path_) / name).string();
   const Contents there = contents_of(table.file, columns);
@@ -331,7 +331,7 @@ std::string SessionFolder::open_table(const char* name, const char* columns, Tab
   return there.lines;
 }
 
-/// The kernel writes to a file that was removed, or moved away, as to any other.
+/// Detects a removed or replaced file, to which the kernel would still write.
 void SessionFolder::Table::check_there() const {
   if (!out.is_open()) return;
   struct stat now {};

@@ -167,7 +167,7 @@ const std::map<std::string, std::function<void(const Element&, Goal&)>>& goal_ke
   return keys;
 }
 
-/// How a goal is written.
+/// YAML form of a goal.
 struct GoalForm {
   GoalKind kind;
   TrainingStage stage;

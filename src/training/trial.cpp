@@ -8,25 +8,26 @@
 namespace mrhi {
 namespace {
 
-constexpr Nanoseconds kTouchOver = 100'000'000;  // without contact this long
-constexpr Nanoseconds kDropped = 100'000'000;    // not held this long
+/// Time without contact that ends a touch, and time not held that is a drop [ns].
+constexpr Nanoseconds kTouchEndTime = 100'000'000;
+constexpr Nanoseconds kDropTime = 100'000'000;
 
 Nanoseconds nanoseconds(double seconds) {
   return static_cast<Nanoseconds>(std::llround(1e9 * seconds));
 }
 
-/// Angle between the orientation and the goal's, of its axis alone if it has one [rad].
+/// Angle between the orientation and the goal's, or between their axes if the goal has one [rad].
 double misalignment(const Goal& goal, const Quaternion& orientation) {
   if (!goal.axis) return orientation.angularDistance(goal.orientation);
   const double cosine = (orientation * *goal.axis).dot(goal.orientation * *goal.axis);
   return std::acos(std::min(1.0, std::abs(cosine)));
 }
 
-bool lies_as_asked(const Goal& goal, const Quaternion& orientation) {
+bool has_orientation(const Goal& goal, const Quaternion& orientation) {
   return !goal.angle_tolerance || misalignment(goal, orientation) <= *goal.angle_tolerance;
 }
 
-/// The body that a goal `rest` is about; nothing: there is no operator.
+/// The body of a goal `rest`; nothing if it needs an operator and there is none.
 std::optional<OperatorMotion> resting_body(const Goal& goal, const Observation& seen) {
   return goal.of_operator ? seen.person : OperatorMotion{seen.pose, seen.twist};
 }
@@ -34,7 +35,7 @@ std::optional<OperatorMotion> resting_body(const Goal& goal, const Observation& 
 bool is_at_rest(const Goal& goal, const Observation& seen) {
   const std::optional<OperatorMotion> body = resting_body(goal, seen);
   return body && (body->pose.position - goal.position).norm() <= goal.tolerance &&
-         lies_as_asked(goal, body->pose.orientation) && body->twist.linear.norm() <= goal.max_speed &&
+         has_orientation(goal, body->pose.orientation) && body->twist.linear.norm() <= goal.max_speed &&
          body->twist.angular.norm() <= goal.max_spin;
 }
 
@@ -42,19 +43,19 @@ bool in_box(const Goal& goal, const Vector3& position) {
   return ((position - goal.position).array().abs() <= 0.5 * goal.size.array()).all();
 }
 
-/// Whether the goal asks for a hand that holds the object.
-bool asks_to_hold(GoalKind kind) {
+/// True if the goal requires a hand that holds the object.
+bool requires_grasp(GoalKind kind) {
   return kind == GoalKind::pick || kind == GoalKind::place || kind == GoalKind::insert ||
          kind == GoalKind::catch_it;
 }
 
-/// Whether it asks for a touch without a grasp.
-bool asks_to_touch(GoalKind kind) {
+/// True if the goal requires a touch without a grasp.
+bool requires_touch(GoalKind kind) {
   return kind == GoalKind::nudge_into || kind == GoalKind::strike;
 }
 
-/// Whether the goal's condition holds now; `start`: where the object was as the trial began. For kinds with a
-/// condition that lasts: pick, place, insert, catch_it, nudge_into, joint, rest.
+/// True if the goal's condition holds now. `start` is the object's position as the trial began. For kinds
+/// with a lasting condition: pick, place, insert, catch_it, nudge_into, joint, rest.
 bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
   const Vector3& position = seen.pose.position;
   switch (goal.kind) {
@@ -63,7 +64,7 @@ bool is_met(const Goal& goal, const Observation& seen, const Vector3& start) {
     case GoalKind::place:
     case GoalKind::insert:
       return seen.held && (position - goal.position).norm() <= goal.tolerance &&
-             lies_as_asked(goal, seen.pose.orientation);
+             has_orientation(goal, seen.pose.orientation);
     case GoalKind::catch_it:
       return seen.held;
     case GoalKind::nudge_into:
@@ -143,17 +144,17 @@ void Trial::measure(const Observation& seen, Nanoseconds passed) {
 /// A grasp that breaks off and is there again at once has lost nothing.
 void Trial::note_grasp(const Observation& seen) {
   const bool held_before = last_ && last_->held;
-  if (!asks_to_hold(current_goal().kind)) loose_.reset();
+  if (!requires_grasp(current_goal().kind)) loose_.reset();
   if (seen.held) {
     if (!held_before && !loose_) {
       add(TrialEventKind::grasped);
-      measures_.attempts += !asks_to_touch(current_goal().kind);
+      measures_.attempts += !requires_touch(current_goal().kind);
     }
     loose_.reset();
-  } else if (held_before && asks_to_hold(current_goal().kind)) {
+  } else if (held_before && requires_grasp(current_goal().kind)) {
     loose_ = elapsed_;
   }
-  if (!loose_ || (elapsed_ - *loose_ < kDropped && !seen.put_back)) return;
+  if (!loose_ || (elapsed_ - *loose_ < kDropTime && !seen.put_back)) return;
   loose_.reset();
   add(TrialEventKind::dropped);
   note_drop();
@@ -161,7 +162,7 @@ void Trial::note_grasp(const Observation& seen) {
 
 void Trial::note_touch(const Observation& seen, Nanoseconds passed) {
   untouched_ = seen.touched ? 0 : untouched_ + passed;
-  if (seen.touched && !touching_ && asks_to_touch(current_goal().kind)) {
+  if (seen.touched && !touching_ && requires_touch(current_goal().kind)) {
     add(TrialEventKind::touched);
     ++measures_.attempts;
   }
@@ -180,7 +181,7 @@ void Trial::hold(const Observation& seen, Nanoseconds passed) {
   inside_ = met;
   const bool achieved = met && timer_ >= nanoseconds(goal.hold);
   if (goal.kind == GoalKind::rest) note_rest(seen, achieved);
-  if (untouched_ >= kTouchOver) touching_ = false;
+  if (untouched_ >= kTouchEndTime) touching_ = false;
   if (achieved) {
     achieve();
   } else if (too_late()) {
@@ -197,7 +198,7 @@ bool Trial::too_late() const {
 }
 
 void Trial::strike(const Observation& seen) {
-  if (!touching_ || untouched_ < kTouchOver) return;
+  if (!touching_ || untouched_ < kTouchEndTime) return;
   touching_ = false;
   const double speed = seen.twist.linear.norm();
   if (speed >= current_goal().min_speed && speed <= current_goal().max_speed) {
@@ -216,7 +217,7 @@ void Trial::note_drop() {
 void Trial::release(const Observation& seen) {
   if (seen.held) {
     if (let_go_) stage_elapsed_[static_cast<std::size_t>(stage())] += elapsed_ - let_go_->elapsed;
-    let_go_.reset();  // taken again: it was not let go after all
+    let_go_.reset();  // taken again: it was not released
     return;
   }
   const Nanoseconds drift_time = nanoseconds(current_goal().drift_time);

@@ -30,7 +30,7 @@ Scene scene_of_two(const Body& first, const Body& second) {
   return scene;
 }
 
-TEST(FlyingAlone, beside_a_hand_that_is_busy_a_body_ends_where_it_would_by_itself_to_the_bit) {
+TEST(IsolatedBodies, beside_a_hand_that_is_busy_a_body_ends_where_it_would_by_itself_to_the_bit) {
   const Hand near = testing::finger({-0.03, 0, 0.032}, {0.03, 0, 0.032}, 0.001);
   Simulation busy(scene_of_two(testing::ball_body(0.03, 0.1), tumbling({1, 0, 0})), testing::unfiltered());
   Simulation by_itself(testing::scene_of(tumbling({1, 0, 0})), testing::unfiltered());
@@ -64,7 +64,7 @@ SimulationState struck(double frame) {
   return simulation.state();
 }
 
-TEST(FlyingAlone, what_is_struck_towards_a_body_within_the_frame_meets_it_where_it_is_by_then) {
+TEST(IsolatedBodies, what_is_struck_towards_a_body_within_the_frame_meets_it_where_it_is_by_then) {
   const SimulationState once = struck(0.02), often = struck(0.001);
   EXPECT_GT(often.bodies[1].linear_momentum.x(), 0.1) << "the second was hit";
   for (std::size_t b = 0; b < 2; ++b) {
