@@ -40,11 +40,11 @@ const link = new Link({
     drawing.changed = false;
     if (!turned) home();
   },
-  ping: ([, trip, offset]) => {
+  ping: ([, trip, offset, overtaken]) => {
     if (trip === null) return;
     const ahead = offset - performance.timeOrigin / 1000; // of this device's clock: a page's time begins with the page
     const clock = offset === null ? '' : `, ROS's clock ${ahead < 0 ? '' : '+'}${ahead.toFixed(3)} s`;
-    const left = link.unsent ? `, left out to stay in time: ${link.unsent} of the hands' frames` : '';
+    const late = link.unsent + overtaken, left = late ? `, left out to stay in time: ${late} of the hands' frames` : '';
     element('link').textContent = `round trip ${trip.toFixed(1)} ms${clock}${left}`;
   },
   person: (number) => { ridden = number - 1; say(people > 1 ? `your hands are person ${number}'s` : ''); if (placing.scene) placing.report(performance.now()); },
