@@ -362,7 +362,9 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
 
 namespace {
 
-constexpr Nanoseconds kLongest = 100'000'000;
+/// Between two frames of a stream. A busy machine may take no more than a few frames a second, and would
+/// refuse the second hand of each for having the stamp of the first.
+constexpr Nanoseconds kLongest = 300'000'000;
 
 HandFrame joined(HandFrame first, const HandFrame& second) {
   first.stamp = std::max(first.stamp, second.stamp);
