@@ -47,7 +47,7 @@ def parse(arguments):
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--rate", type=float, default=10.0)
     parser.add_argument("--size", default="960x600")
-    parser.add_argument("--quality", type=float, default=50.0)
+    parser.add_argument("--quality", type=float, default=75.0)
     parser.add_argument("--print-screen", action="store_true", help="the size of the screen that is needed, and no more")
     options = parser.parse_args(arguments)
     for scene in options.scenes:

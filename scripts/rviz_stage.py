@@ -25,7 +25,7 @@ MARKERS = ("markers", "training/markers")
 POSES = {"scene": SceneDescription, "rendered_hands": HandFrame, "tracked_hands": HandFrame, "objects": ObjectStateArray,
          "contacts": ContactArray}  # in the order in which they are shown
 STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
-DRAWN = 20.0  # s; by then a picture has
+DRAWN = 60.0  # s; by then a picture has, also on a busy machine
 BETWEEN = 0.1  # s, of two grabs that are to be the same
 TRIES = 10  # grabs of a scene until it is shown once more from its beginning
 TICKS = ((0, 255, 0), (255, 0, 255))  # of the corner that tells one picture from the next

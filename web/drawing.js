@@ -133,9 +133,10 @@ function clear(group) {
   }
 }
 
-// One mesh of capsules that move: for each corner on which half of the unit capsule it is, and in which direction.
+// One mesh of capsules that move, and of slabs between them: for each corner on which half of the unit capsule it is, and in
+// which direction.
 class Capsules extends THREE.Mesh {
-  constructor(count) {
+  constructor(count, slabs) {
     const around = 10, rows = 8, corners = [], indices = [];
     for (let row = 0; row < rows; ++row) {
       const far = row >= rows / 2, up = Math.PI * ((far ? row - 1 : row) / (rows - 2) - 0.5);
@@ -144,10 +145,13 @@ class Capsules extends THREE.Mesh {
         corners.push([far, Math.cos(up) * Math.cos(turn), Math.cos(up) * Math.sin(turn), Math.sin(up)]);
       }
     }
+    for (let k = 0; k < slabs; ++k) {
+      for (const corner of [0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6]) indices.push(8 * k + corner); // four above, four below
+    }
     for (let k = 0; k < count; ++k) {
       for (let row = 0; row + 1 < rows; ++row) {
         for (let i = 0; i < around; ++i) {
-          const a = k * corners.length + row * around + i, b = a - i + (i + 1) % around;
+          const a = 8 * slabs + k * corners.length + row * around + i, b = a - i + (i + 1) % around;
           indices.push(a, b, b + around, a, b + around, a + around);
         }
       }
@@ -155,13 +159,30 @@ class Capsules extends THREE.Mesh {
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(indices);
     for (const name of ['position', 'normal', 'color'])
-      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * count * corners.length), 3));
+      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * (8 * slabs + count * corners.length)), 3));
     super(geometry, material([1, 1, 1, 1], {vertexColors: THREE.VertexColors}));
-    Object.assign(this, {corners, count, used: 0, frustumCulled: false});
+    Object.assign(this, {corners, count, slabs, used: 0, usedSlabs: 0, frustumCulled: false});
   }
 
   begin() {
-    this.used = 0;
+    this.used = this.usedSlabs = 0;
+    this.geometry.attributes.position.array.fill(0, 0, 24 * this.slabs); // a slab that is not used has no size
+  }
+
+  // The skin above and below, from one capsule to the next.
+  addSlab(a, b, color) {
+    const {position, normal, color: paint} = this.geometry.attributes;
+    const along = a.end.clone().sub(a.start).add(b.end).sub(b.start), out = b.start.clone().sub(a.start).add(b.end).sub(a.end);
+    out.crossVectors(along, out).normalize();
+    let at = 8 * this.usedSlabs++;
+    for (const side of [1, -1]) {
+      for (const [point, {radius}] of [[a.start, a], [a.end, a], [b.end, b], [b.start, b]]) {
+        const corner = point.clone().addScaledVector(out, side * radius);
+        position.setXYZ(at, corner.x, corner.y, corner.z);
+        normal.setXYZ(at, side * out.x, side * out.y, side * out.z);
+        paint.setXYZ(at++, color.r, color.g, color.b);
+      }
+    }
   }
 
   add(start, end, radius, color) {
@@ -173,7 +194,7 @@ class Capsules extends THREE.Mesh {
     if (x.lengthSq() < 0.1) x.set(0, 1, 0).cross(z);
     x.normalize();
     const y = z.clone().cross(x), out = new THREE.Vector3();
-    let at = this.used++ * this.corners.length;
+    let at = 8 * this.slabs + this.used++ * this.corners.length;
     for (const [far, a, b, c] of this.corners) {
       out.set(0, 0, 0).addScaledVector(x, a).addScaledVector(y, b).addScaledVector(z, c);
       normal.setXYZ(at, out.x, out.y, out.z);
@@ -184,16 +205,18 @@ class Capsules extends THREE.Mesh {
   }
 
   end() {
-    this.geometry.setDrawRange(0, this.geometry.index.count / this.count * this.used);
+    const ofSlabs = 12 * this.slabs;
+    this.geometry.setDrawRange(0, ofSlabs + (this.geometry.index.count - ofSlabs) / this.count * this.used);
     for (const attribute of Object.values(this.geometry.attributes)) attribute.needsUpdate = true;
     this.visible = this.used > 0;
   }
 }
 
 const THUMB = 1; // its metacarpal, which a Leap calls its proximal phalanx
-const CAPSULES_OF_A_HAND = 40, HANDS = 4, CONTACTS = 30;
+const CAPSULES_OF_A_HAND = 30, SLABS_OF_A_HAND = 4, HANDS = 4, CONTACTS = 30;
+const WEB = 0.6; // of the index finger's metacarpal, along which the thumb's skin joins it
 
-// Phalanges as they are, and what lies between the metacarpals of neighbouring fingers.
+// Phalanges as they are, and the palm between the metacarpals of neighbouring fingers, round at its ends.
 function addHand(capsules, [, , , , phalanges]) {
   const metacarpals = [];
   for (const [which, ...rest] of phalanges) {
@@ -202,12 +225,11 @@ function addHand(capsules, [, , , , phalanges]) {
     capsules.add(start, end, radius, rest[7] ? TOUCHING : SKIN);
   }
   for (let finger = 0; finger + 1 < metacarpals.length; ++finger) {
-    const a = metacarpals[finger], b = metacarpals[finger + 1];
-    if (!a || !b) continue;
-    for (const part of finger === 0 ? [0.2, 0.4, 0.6, 0.8] : [0.33, 0.67]) { // the thumb's is farther away
-      const end = a.end.clone().lerp(b.end, part);
-      capsules.add(a.start.clone().lerp(b.start, part), end, 0.5 * (a.radius + b.radius), SKIN);
-    }
+    const a = metacarpals[finger], next = metacarpals[finger + 1];
+    if (!a || !next) continue;
+    const b = finger > 0 ? next : {...next, end: next.start.clone().lerp(next.end, WEB)};
+    capsules.addSlab(a, b, SKIN);
+    for (const end of ['start', 'end']) capsules.add(a[end], b[end], Math.min(a.radius, b.radius), SKIN);
   }
 }
 
@@ -227,7 +249,8 @@ class ContactMark extends THREE.Group {
     this.add(this.dot, this.ring, this.shaft, this.head, this.newtons);
   }
 
-  show([x, y, z, nx, ny, nz, fx, fy, fz, phase]) {
+  // numbered: whether the force has its newtons beside it.
+  show([x, y, z, nx, ny, nz, fx, fy, fz, phase], numbered) {
     const point = length([x, y, z]), normal = new THREE.Vector3(nx, ny, nz).multiplyScalar(DIRECTION);
     const force = new THREE.Vector3(fx, fy, fz).multiplyScalar(FORCE), newtons = force.length();
     const ahead = new THREE.Vector3(0, 0, 1);
@@ -237,7 +260,8 @@ class ContactMark extends THREE.Group {
     this.ring.material.color.setHex(PHASES[phase] === undefined ? STRUCK : PHASES[phase]);
     const arrow = LONGEST * newtons / (newtons + HALF);
     const seen = arrow >= SHORTEST;
-    for (const part of [this.shaft, this.head, this.newtons]) part.visible = seen;
+    for (const part of [this.shaft, this.head]) part.visible = seen;
+    this.newtons.visible = seen && numbered;
     if (!seen) return;
     const direction = force.divideScalar(newtons), tip = point.clone().addScaledVector(direction, -0.02);
     const head = Math.min(0.014, 0.5 * arrow);
@@ -306,7 +330,7 @@ export class Drawing {
     this.world = new THREE.Group(); // place it: everything is in it
     this.objects = new THREE.Group();
     this.training = new THREE.Group();
-    this.hands = Array.from({length: HANDS}, () => new Capsules(CAPSULES_OF_A_HAND));
+    this.hands = Array.from({length: HANDS}, () => new Capsules(CAPSULES_OF_A_HAND, SLABS_OF_A_HAND));
     this.contacts = Array.from({length: CONTACTS}, () => new ContactMark());
     this.label = new Label(0.014); // for a headset, which sees no page
     this.world.add(this.objects, this.training, ...this.hands, ...this.contacts, this.label);
@@ -372,9 +396,10 @@ export class Drawing {
       capsules.end();
     });
     this.touching = contacts.length > 0;
+    const forces = contacts.map(([, , , , , , x, y, z]) => Math.hypot(x, y, z)), largest = Math.max(...forces);
     this.contacts.forEach((mark, i) => {
       mark.visible = i < contacts.length;
-      if (mark.visible) mark.show(contacts[i]);
+      if (mark.visible) mark.show(contacts[i], forces[i] > 0.5 * largest); // smaller ones would stand in each other's way
     });
     for (const entry of objects) this.move(entry);
     for (const carrier of this.carriers) carrier.read(performance.now());

@@ -22,7 +22,7 @@ orbit.addEventListener('start', () => { turned = true; });
 drawing.world.matrixAutoUpdate = false;
 grid.position.y = 0.1; // where rviz has it
 eye.matrixAutoUpdate = false;
-let hold = '', session = null, space = null, claimed = false, turned = false;
+let hold = '', people = 1, session = null, space = null, claimed = false, turned = false;
 let ridden = 0, rides = false, darkens = false; // the operator whom the view goes with, if it does
 
 function say(text) {
@@ -30,6 +30,7 @@ function say(text) {
 }
 
 const link = new Link({
+  welcome: (content) => { people = content.people; },
   connected: () => { claimed = false; drawing.poses.clear(); },
   scene: (content) => drawing.scene(content),
   training: (content) => drawing.trainingMarks(content),
@@ -39,13 +40,14 @@ const link = new Link({
     drawing.changed = false;
     if (!turned) home();
   },
-  ping: ([, trip, offset]) => {
+  ping: ([, trip, offset, overtaken]) => {
     if (trip === null) return;
-    const clock = offset === null ? '' : `, clock ${offset > 0 ? '+' : ''}${offset.toFixed(3)} s`;
-    const left = link.unsent ? `, ${link.unsent} frames of hands left out` : '';
+    const ahead = offset - performance.timeOrigin / 1000; // of this device's clock: a page's time begins with the page
+    const clock = offset === null ? '' : `, ROS's clock ${ahead < 0 ? '' : '+'}${ahead.toFixed(3)} s`;
+    const late = link.unsent + overtaken, left = late ? `, left out to stay in time: ${late} of the hands' frames` : '';
     element('link').textContent = `round trip ${trip.toFixed(1)} ms${clock}${left}`;
   },
-  person: (number) => { ridden = number - 1; say(`your hands are person ${number}'s`); if (placing.scene) placing.report(performance.now()); },
+  person: (number) => { ridden = number - 1; say(people > 1 ? `your hands are person ${number}'s` : ''); if (placing.scene) placing.report(performance.now()); },
   refused: (line) => say(line),
 }, say);
 const hands = new Hands();

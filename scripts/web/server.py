@@ -131,7 +131,7 @@ class Viewer:
         self.socket, self.transport = socket, transport
         self.clock, self.pings = DeviceClock(), {}
         self.person, self.hands = None, None  # a place among those with hands; the newest hands, not published yet
-        self.last_stamp = 0.0
+        self.last_stamp, self.left_out = 0.0, 0  # frames of hands that newer ones have overtaken
         self.texts, self.sent = collections.deque(), {}
         self.news = asyncio.Event()
 
@@ -260,6 +260,8 @@ class Door:
         hands = messages.read_hands(data)
         if viewer.hands is None:
             asyncio.get_running_loop().call_soon(self._publish_hands, viewer)
+        else:
+            viewer.left_out += 1
         viewer.hands = hands
 
     def _publish_hands(self, viewer):
@@ -317,7 +319,7 @@ class Door:
             trip, offset = viewer.clock.round_trip, viewer.clock.offset
             viewer.pings[number] = self._port.now()
             viewer.tell(ping=[number, None if trip is None else round(1e3 * trip, 2),
-                              None if offset is None else round(offset, 4)])
+                              None if offset is None else round(offset, 4), viewer.left_out])
 
     async def _send(self, viewer):
         """Texts all and in order; of frames always the newest, for who is ready for it."""

@@ -364,8 +364,9 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
 
 namespace {
 
-/// Longest interval of a stream that continues [ns].
-constexpr Nanoseconds kMaxInterval = 100'000'000;
+/// Longest interval of a stream that continues [ns]. A busy machine may take only a few frames a second, and
+/// would refuse the second hand of each frame for having the stamp of the first.
+constexpr Nanoseconds kMaxInterval = 300'000'000;
 
 HandFrame joined(HandFrame first, const HandFrame& second) {
   first.stamp = std::max(first.stamp, second.stamp);

@@ -43,7 +43,8 @@ void expect_pairs(const std::vector<HandFrame>& frames, double period, double en
 }
 
 TEST(HandPairs, HandsOfTheSameTimeAreOneFrame) {
-  expect_pairs(paired(16.7, 16.7, 0.0, 1000.0), 16.7, 1000.0);
+  for (const double period : {16.7, 110.0, 250.0})
+    expect_pairs(paired(period, period, 0.0, 60.0 * period), period, 60.0 * period);
 }
 
 TEST(HandPairs, ALagBetweenTheStreamsDoesNotMatter) {
@@ -91,11 +92,11 @@ TEST(HandPairs, WhatWaitsAtTheEndIsTheRest) {
 }
 
 // Waiting for the other hand would cost more than is seen of it.
-TEST(HandPairs, FramesMoreThanATenthOfASecondApartWaitForNoPartner) {
+TEST(HandPairs, FramesMoreThanThreeTenthsOfASecondApartWaitForNoPartner) {
   HandPairs pairs;
   for (int i = 0; i < 10; ++i) {
-    EXPECT_TRUE(pairs.take(Side::left, frame(Side::left, i * 200 * kMs))) << i;
-    EXPECT_TRUE(pairs.take(Side::right, frame(Side::right, i * 200 * kMs + 60 * kMs))) << i;
+    EXPECT_TRUE(pairs.take(Side::left, frame(Side::left, i * 400 * kMs))) << i;
+    EXPECT_TRUE(pairs.take(Side::right, frame(Side::right, i * 400 * kMs + 60 * kMs))) << i;
   }
 }
 

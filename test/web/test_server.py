@@ -273,6 +273,8 @@ class DoorTest(unittest.TestCase):
                 await asyncio.sleep(0.2)
                 self.assertLess(len(door.port.taken), 5)
                 self.assertEqual(door.port.taken[-1][4][0], 19 / 8192.0)
+                left_out = 20 - len(door.port.taken)
+                await answer_until(headset, lambda kind, content: kind == 'ping' and content[3] == left_out)
         self.run_with(visit)
 
     def test_each_person_has_a_place_and_the_hands_go_when_they_leave(self):
