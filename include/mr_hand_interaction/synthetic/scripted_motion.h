@@ -49,9 +49,9 @@ std::vector<std::string> motion_names();
 /// Throws std::invalid_argument that lists the names.
 ScriptedMotion make_motion(const std::string& name);
 
-/// Grasps the only free body of a scene where it starts, on the narrowest side that thumb and fingers close
-/// on, and carries it. Throws std::invalid_argument for a scene of several, and a body that no hand closes
-/// on.
+/// Grasps the only free body of a scene where it starts, by a narrow part such as a side, a wall or a handle,
+/// and carries it: the first grasp that holds it in simulation. Takes up to some seconds. Throws
+/// std::invalid_argument for a scene of several free bodies, and for a body that no grasp holds.
 ScriptedMotion grasp_object(const Scene& scene);
 
 /// Pose of a desktop device in world unless a user says otherwise: at the origin, y up becomes z up.
