@@ -158,8 +158,7 @@ std::vector<Place> find_places(const Surface& surface, double& narrowest) {
         narrowest = std::min(narrowest, width);
         if (width > kMaxWidth) continue;
         const Vector3 centre = at + 0.5 * (begin + end) * axis;
-        const double lever =
-            (centre - centre.dot(axis) * axis).norm();  // of the weight, about the fingertips
+        const double lever = (centre - centre.dot(axis) * axis).norm();  // of the weight
         all.push_back({centre, axis, width, width + kLeverCost * lever + extra});
       }
   };
