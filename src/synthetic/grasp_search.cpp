@@ -437,8 +437,7 @@ Grasp find_grasp(const Body& body, const std::function<bool(const Grasp&)>& hold
   const Vector3 up = body.start.orientation.conjugate() * Vector3::UnitZ();
   const std::vector<Option> options = find_options(surface, places, up, obstacle);
   if (const auto grasp = find_grasp(surface, places, options, obstacle, holds)) return *grasp;
-  throw std::invalid_argument(object + ": the scripted hand holds it in none of " +
-                              std::to_string(places.size()) + " places" + allowed);
+  throw std::invalid_argument(object + ": no grasp of the scripted hand holds it" + allowed);
 }
 
 std::size_t only_free_body(const Scene& scene) {
