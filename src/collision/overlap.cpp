@@ -110,13 +110,16 @@ double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vec
 
 namespace {
 
-/// For each body the first of those that joints connect it with.
+/// For each body the first body of its mechanism, or Joint::kWorld for fixtures and all that joints connect
+/// with them.
 std::vector<int> mechanisms(const Scene& scene) {
   std::vector<int> first(scene.bodies.size());
   std::iota(first.begin(), first.end(), 0);
+  for (std::size_t b = 0; b < first.size(); ++b)
+    if (scene.bodies[b].fixed) first[b] = Joint::kWorld;
   for (const Joint& joint : scene.joints) {
-    if (joint.parent == Joint::kWorld) continue;
-    const int one = first[static_cast<std::size_t>(joint.parent)],
+    const int one = joint.parent == Joint::kWorld ? joint.parent
+                                                  : first[static_cast<std::size_t>(joint.parent)],
               other = first[static_cast<std::size_t>(joint.child)];
     std::replace(first.begin(), first.end(), std::max(one, other), std::min(one, other));
   }

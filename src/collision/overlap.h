@@ -22,8 +22,9 @@ double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vec
 /// few of them; empty: none does. Fixtures may overlap each other, and so may bodies of one mechanism.
 std::string overlaps_at_start(const Scene& scene);
 
-/// Bodies of one mechanism, which joints connect with others between, that overlap by more than kOverlap
-/// where they start. They do not touch each other. The greater index comes first.
+/// Pairs of bodies of one mechanism that no joint connects directly and that overlap by more than kOverlap
+/// where they start. They do not touch each other. A mechanism is what joints connect; all fixtures, and what
+/// joints connect with them, are one. The greater index comes first.
 std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene);
 
 }  // namespace mrhi

@@ -32,7 +32,7 @@ a recording instead and needs no ROS master.
 
   ~motion   grasp_cube (default) grasp_ball catch_ball pinch_long lift_flat nudge tap slap press_button flip_switch
             turn_valve pull_lever open_drawer open_door open_hatch squeeze_tongs; grasp_object grasps the only free
-            object of ~scene across its narrowest side
+            object of ~scene by a narrow part
   ~scene    for grasp_object: a shipped scene or a URDF file
   ~side     left or right; default right
   ~rate     frames per second; default 115

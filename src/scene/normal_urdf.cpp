@@ -28,14 +28,8 @@ std::string in_quotes(const std::string& name) {
   return "'" + text::one_line(name, 60) + "'";
 }
 
-/// Commas between numbers are blanks.
-std::string numbers(const XMLElement* element, const char* name) {
-  std::string value = attribute(element, name);
-  std::replace(value.begin(), value.end(), ',', ' ');
-  return value;
-}
-
-std::vector<std::string> words_of(const std::string& text) {
+std::vector<std::string> words_of(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
@@ -47,13 +41,13 @@ std::string trimmed(std::string text) {
   return text.erase(0, text.find_first_not_of(" \t\r\n"));
 }
 
-/// As URDF gives a value, or as SDF does.
+/// A value as URDF writes it (attribute) or as SDF does (text).
 std::string value_of(const XMLElement* element) {
   const char* text = element == nullptr ? nullptr : element->GetText();
   return trimmed(attribute(element, "value", text == nullptr ? "" : text));
 }
 
-/// The first element of this name within another one, however deep; nullptr: none.
+/// The first descendant of this name; nullptr: none.
 const XMLElement* find_within(const XMLElement& element, const char* name) {
   for (const XMLElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     const XMLElement* found = std::string(e->Name()) == name ? e : find_within(*e, name);
@@ -62,34 +56,32 @@ const XMLElement* find_within(const XMLElement& element, const char* name) {
   return nullptr;
 }
 
-template <class See>
-void each(const XMLElement& parent, const char* name, const See& see) {
+template <class Visit>
+void each(const XMLElement& parent, const char* name, const Visit& visit) {
   for (const XMLElement* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name))
-    see(*e);
+    visit(*e);
 }
 
-bool is(const XMLNode* node, const char* name) {
-  return node != nullptr && node->ToElement() != nullptr && std::string(node->Value()) == name;
-}
-
-bool says_hull(const XMLNode& node) {
+bool is_hull_comment(const XMLNode& node) {
   return node.ToComment() != nullptr && text::one_line(node.Value()) == "hull";
 }
 
-/// Finds what xacro should have replaced.
+/// Finds what xacro would have replaced. Properties that are left over change nothing.
 class XacroSearch : public tinyxml2::XMLVisitor {
  public:
   bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
-    found = found || std::string(element.Name()).compare(0, 6, "xacro:") == 0;
+    const std::string name = element.Name();
+    found = found || (name.compare(0, 6, "xacro:") == 0 && name != "xacro:property");
     for (; attribute != nullptr && !found; attribute = attribute->Next())
       for (const char* mark : {"${", "$("})
         found = found || std::string(attribute->Value()).find(mark) != std::string::npos;
-    return !found;
+    return !found && name != "xacro:property";
   }
   bool found = false;
 };
 
-void require_urdf(const XMLElement* root, const tinyxml2::XMLDocument& document) {
+void require_urdf(const tinyxml2::XMLDocument& document) {
+  const XMLElement* root = document.RootElement();
   const std::string name = root == nullptr ? "" : root->Name();
   if (name == "sdf")
     throw std::runtime_error("is SDF; allowed: URDF, as the program that made it or 'sdf2urdf' writes it");
@@ -104,7 +96,7 @@ void require_urdf(const XMLElement* root, const tinyxml2::XMLDocument& document)
         "is xacro; allowed: the URDF that 'rosrun xacro xacro FILE -o OTHER.urdf' makes of it");
 }
 
-/// Names that links and joints may have.
+/// Valid names of the links or joints of a URDF: each keeps its name, or gets a similar one.
 class Names {
  public:
   explicit Names(const XMLElement& robot, const char* kind, Warnings& warnings) {
@@ -116,16 +108,16 @@ class Names {
       const std::string name = attribute(&element, "name");
       if (name.empty() || made_.count(name) > 0) return;
       const std::string type = attribute(&element, "type"), made = add(name);
-      if (type == "fixed" || type == "floating") return;  // joints that nobody names
+      if (type == "fixed" || type == "floating") return;  // these joints do not appear in the scene
       warnings.add(std::string(kind) + "s have other names, as topics and frames need " + kNameIs,
                    in_quotes(name) + " is '" + made + "'");
     });
   }
 
   std::string add(const std::string& name) {
-    constexpr std::size_t kLongest = 60;  // with a number behind it still a name
+    constexpr std::size_t kMaxLength = 60;  // leaves room for a number
     std::string base;
-    for (const char c : name.substr(0, kLongest)) base += is_name("a" + std::string(1, c)) ? c : '_';
+    for (const char c : name.substr(0, kMaxLength)) base += is_name("a" + std::string(1, c)) ? c : '_';
     if (base.empty() || base.front() == '-') base = "_" + base;
     std::string made = base;
     for (int i = 2; !taken_.insert(made).second; ++i) made = base + "_" + std::to_string(i);
@@ -142,6 +134,7 @@ class Names {
   std::set<std::string> taken_;
 };
 
+/// Writes a URDF again, element by element, in the form that urdfdom reads.
 class Normaliser {
  public:
   Normaliser(const XMLElement& robot, Warnings& warnings)
@@ -154,12 +147,11 @@ class Normaliser {
   NormalUrdf make() {
     check_tree();
     read_friction();
-    find_colors(robot_);
+    find_materials(robot_);
     open("robot", {{"name", "scene"}});
     each(robot_, "link", [&](const XMLElement& link) { write_link(link); });
-    add_world();
+    write_world();
     each(robot_, "joint", [&](const XMLElement& joint) { write_joint(joint); });
-    hang_root_on_world();
     out_.CloseElement();
     result_.xml = out_.CStr();
     return std::move(result_);
@@ -170,49 +162,44 @@ class Normaliser {
     out_.OpenElement(name);
     for (const auto& [key, value] : attributes) out_.PushAttribute(key, value.c_str());
   }
-  void tag(const char* name, const Attributes& attributes) {
+  void write(const char* name, const Attributes& attributes) {
     open(name, attributes);
     out_.CloseElement();
   }
 
-  std::string parent_of(const XMLElement& joint) const {
-    return links_.of(attribute(joint.FirstChildElement("parent"), "link"));
-  }
-  std::string child_of(const XMLElement& joint) const {
-    return links_.of(attribute(joint.FirstChildElement("child"), "link"));
+  /// Name of a joint's "parent" or "child"; empty: the joint has none.
+  std::string link_of(const XMLElement& joint, const char* end) const {
+    return links_.of(attribute(joint.FirstChildElement(end), "link"));
   }
 
-  /// Links of urdfdom's that hang on each other in a loop are never freed. What is left once all that hangs
-  /// on nothing is taken away, again and again, is in a loop or hangs on one.
-  void check_tree() {
-    std::multimap<std::string, std::string> children;
-    std::map<std::string, int> held;  // by how many joints
+  /// Refuses loops and second parents: urdfdom never frees the links of a loop.
+  void check_tree() const {
+    std::map<std::string, std::string> parents;
     each(robot_, "joint", [&](const XMLElement& joint) {
-      const std::string parent = parent_of(joint), child = child_of(joint);
-      if (parent.empty() || child.empty()) return;
-      children.emplace(parent, child);
-      held.emplace(parent, 0), ++held[child];
+      const std::string parent = link_of(joint, "parent"), child = link_of(joint, "child");
+      if (parent.empty() || child.empty() || parents.emplace(child, parent).second) return;
+      throw std::runtime_error("joint " + in_quotes(attribute(&joint, "name")) +
+                               " is a second parent of link " + in_quotes(child) +
+                               "; allowed: one joint to each link");
     });
-    std::vector<std::string> free;
-    for (const auto& [link, joints] : held)
-      if (joints == 0) free.push_back(link);
-    while (!free.empty()) {
-      const auto [first, last] = children.equal_range(free.back());
-      free.pop_back();
-      for (auto it = first; it != last; ++it)
-        if (--held[it->second] == 0) free.push_back(it->second);
+    std::set<std::string> checked;
+    for (const auto& entry : parents) {
+      std::set<std::string> path;
+      for (auto link = parents.find(entry.first); link != parents.end() && checked.count(link->first) == 0;
+           link = parents.find(link->second))
+        if (!path.insert(link->first).second)
+          throw std::runtime_error("bad URDF: link " + in_quotes(link->first) +
+                                   " is in a loop of joints; allowed: a tree of links");
+      checked.merge(path);
     }
-    for (const auto& [link, joints] : held)
-      if (joints > 0)
-        throw std::runtime_error("bad URDF: link '" + link +
-                                 "' is in a loop of joints, or hangs on one; allowed: a tree of links");
   }
 
-  /// Of Gazebo's <gazebo reference="link">, and in a link of PyBullet's <contact> and Drake's properties.
+  /// From <gazebo reference="LINK">, PyBullet's <contact> and Drake's proximity properties; the last one
+  /// wins.
   void read_friction() {
-    const auto read = [&](const XMLElement& of, const char* name, const char* link) {
-      if (const auto value = text::to_number(value_of(find_within(of, name))))
-        result_.friction[links_.of(attribute(&of, link))] = *value;
+    const auto read = [&](const XMLElement& element, const char* name, const char* link) {
+      if (const auto value = text::to_number(value_of(find_within(element, name))))
+        result_.friction[links_.of(attribute(&element, link))] = *value;
     };
     each(robot_, "gazebo", [&](const XMLElement& gazebo) {
       for (const char* name : {"mu", "mu1"}) read(gazebo, name, "reference");
@@ -222,74 +209,76 @@ class Normaliser {
     });
   }
 
-  /// A material that has a name means the same wherever it is written.
-  void find_colors(const XMLElement& in) {
-    each(in, "material", [&](const XMLElement& material) {
-      const XMLElement* color = material.FirstChildElement("color");
-      if (color == nullptr && material.FirstChildElement("texture") == nullptr) return;
-      materials_.emplace(attribute(&material, "name"), &material);
-    });
-    each(in, "link", [&](const XMLElement& link) {
-      each(link, "visual", [&](const XMLElement& visual) { find_colors(visual); });
-    });
+  static bool is_defined(const XMLElement& material) {
+    return material.FirstChildElement("color") != nullptr || material.FirstChildElement("texture") != nullptr;
   }
 
-  /// The world that joints name need not be a link of the file.
-  void add_world() {
-    bool named = false, is_link = false;
-    each(robot_, "joint", [&](const XMLElement& joint) { named = named || parent_of(joint) == "world"; });
-    each(robot_, "link", [&](const XMLElement& link) {
-      is_link = is_link || attribute(&link, "name") == std::string("world");
+  /// A named material may be defined in any place of the file.
+  void find_materials(const XMLElement& element) {
+    each(element, "material", [&](const XMLElement& material) {
+      if (is_defined(material)) materials_.emplace(attribute(&material, "name"), &material);
     });
-    if (named && !is_link) tag("link", {{"name", "world"}});
-    has_world_ = named && !is_link;
+    each(element, "link", [&](const XMLElement& link) {
+      each(link, "visual", [&](const XMLElement& visual) { find_materials(visual); });
+    });
   }
 
   void write_link(const XMLElement& link) {
-    const std::string name = attribute(&link, "name");
-    result_.links.push_back(links_.of(name));
-    open("link", {{"name", links_.of(name)}});
-    write_inertial(link, name);
-    each(link, "visual", [&](const XMLElement& visual) {
-      open("visual", {});
-      write_origin(visual, "link " + in_quotes(name) + " visual");
-      write_geometry(visual);
-      write_material(visual, name);
-      out_.CloseElement();
-    });
-    each(link, "collision", [&](const XMLElement& collision) {
-      open("collision", {});
-      write_origin(collision, "link " + in_quotes(name) + " collision");
-      write_geometry(collision);
-      out_.CloseElement();
-    });
+    const std::string name = links_.of(attribute(&link, "name")),
+                      where = "link " + in_quotes(attribute(&link, "name"));
+    result_.links.push_back(name);
+    open("link", {{"name", name}});
+    write_inertial(link, where + " inertial");
+    for (const std::string kind : {"visual", "collision"})
+      each(link, kind.c_str(), [&](const XMLElement& element) {
+        open(kind.c_str(), {});
+        write_origin(element, where + " " + kind);
+        write_geometry(element, where + " " + kind);
+        if (const XMLElement* material = element.FirstChildElement("material"))
+          if (kind == "visual") write_material(*material, where);
+        out_.CloseElement();
+      });
     out_.CloseElement();
   }
 
-  /// An inertia of zeros, which urdfdom takes, stands for that of the shapes.
-  void write_inertial(const XMLElement& link, const std::string& name) {
+  /// An inertia of zeros means that of the shapes; urdfdom requires the element.
+  void write_inertial(const XMLElement& link, const std::string& where) {
     const XMLElement* inertial = link.FirstChildElement("inertial");
     const XMLElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
     if (mass == nullptr) return;
     open("inertial", {});
-    write_origin(*inertial, "link " + in_quotes(name) + " inertial");
-    const std::string given = value_of(mass);
-    tag("mass", {{"value", given.empty() ? "0" : given}});
+    write_origin(*inertial, where);
+    const std::string value = value_of(mass);
+    write("mass", {{"value", value.empty() ? "0" : value}});
     const XMLElement* inertia = inertial->FirstChildElement("inertia");
     Attributes moments;
     for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"})
       moments.emplace_back(moment, attribute(inertia, moment, "0"));
-    tag("inertia", moments);
+    write("inertia", moments);
     out_.CloseElement();
   }
 
-  void write_origin(const XMLElement& of, const std::string& where) {
-    const XMLElement* origin = of.FirstChildElement("origin");
+  /// The three numbers of an attribute, as urdfdom separates them; fewer if there are fewer.
+  std::string vector(const XMLElement* element, const char* name, const std::string& where) {
+    std::vector<std::string> words = words_of(attribute(element, name));
+    if (words.size() > 3) {
+      warnings_.add("vectors of more than three numbers: the first three are taken",
+                    where + " " + name + " " + in_quotes(attribute(element, name)));
+      words.resize(3);
+    }
+    std::string joined;
+    for (const std::string& word : words) joined += (joined.empty() ? "" : " ") + word;
+    return joined;
+  }
+
+  void write_origin(const XMLElement& element, const std::string& where) {
+    const XMLElement* origin = element.FirstChildElement("origin");
     if (origin == nullptr) return;
-    Attributes given;
+    Attributes attributes;
     for (const char* part : {"xyz", "rpy"})
-      if (const std::string value = numbers(origin, part); !value.empty()) given.emplace_back(part, value);
-    for (const std::string& word : words_of(numbers(origin, "rpy"))) {
+      if (const std::string value = vector(origin, part, where); !value.empty())
+        attributes.emplace_back(part, value);
+    for (const std::string& word : words_of(attribute(origin, "rpy"))) {
       constexpr double kTurn = 6.2832;
       const double angle = std::abs(text::to_number(word).value_or(0.0));
       if (!(angle <= joint_ranges::kCoordinate.max))
@@ -300,97 +289,94 @@ class Normaliser {
         warnings_.add("angles of more than a turn, which URDF takes in radians",
                       where + " rpy " + in_quotes(attribute(origin, "rpy")));
     }
-    tag("origin", given);
+    write("origin", attributes);
   }
 
-  /// What is known of shapes goes past urdfdom as meshes.
-  void write_geometry(const XMLElement& of) {
-    const XMLElement* geometry = of.FirstChildElement("geometry");
+  /// Shapes that urdfdom does not know pass it as the file name of a mesh.
+  void write_geometry(const XMLElement& element, const std::string& where) {
+    const XMLElement* geometry = element.FirstChildElement("geometry");
     const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     if (shape == nullptr) return;
+    const std::string kind = shape->Name();
+    const ShapeKind* known = find_shape_kind(kind);
+    const bool hull = kind == "mesh" && is_followed_by_hull(*geometry, *shape);
+    for (const XMLNode* node = geometry->FirstChild(); node != nullptr && !hull; node = node->NextSibling())
+      if (is_hull_comment(*node)) throw std::runtime_error("bad URDF: <!-- hull --> stands behind no mesh");
     open("geometry", {});
-    if (is(shape, "mesh")) {
-      write_mesh(*shape, is_followed_by_hull(*geometry, *shape));
-    } else if (is(shape, "box")) {
-      tag("box", {{"size", numbers(shape, "size")}});
-      require_no_hull(*geometry);
-    } else if (find_shape_kind(shape->Name()) == nullptr || is(shape, "sphere") || is(shape, "cylinder")) {
+    if (kind == "mesh") {
+      write_mesh(*shape, hull, where);
+    } else if (kind == "box") {
+      write("box", {{"size", vector(shape, "size", where)}});
+    } else if (known == nullptr || kind == "sphere" || kind == "cylinder") {
       shape->Accept(&out_);
-      require_no_hull(*geometry);
     } else {
-      std::string name = ":shape:" + std::string(shape->Name());
-      for (const std::string& size : find_shape_kind(shape->Name())->sizes) {
+      std::string name = ":shape:" + kind;
+      for (const std::string& size : known->sizes) {
         const std::string value = attribute(shape, size.c_str(), "?");
         name += " " + (words_of(value).size() == 1 ? value : "?");
       }
-      tag("mesh", {{"filename", name}});
+      write("mesh", {{"filename", name}});
     }
     out_.CloseElement();
   }
 
-  static void require_no_hull(const XMLElement& geometry) {
-    for (const XMLNode* node = geometry.FirstChild(); node != nullptr; node = node->NextSibling())
-      if (says_hull(*node)) throw std::runtime_error("bad URDF: <!-- hull --> stands behind no mesh");
-  }
-
-  /// <mesh/><!-- hull -->, in the geometry or right behind it.
+  /// <mesh/><!-- hull -->, in the geometry or directly behind it.
   static bool is_followed_by_hull(const XMLElement& geometry, const XMLElement& mesh) {
-    for (const XMLNode* node : {mesh.NextSibling(), mesh.FirstChild(), geometry.NextSibling()})
-      if (node != nullptr && says_hull(*node)) return true;
-    require_no_hull(geometry);
-    return false;
+    const auto candidates = {mesh.NextSibling(), mesh.FirstChild(), geometry.NextSibling()};
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [](const XMLNode* node) { return node != nullptr && is_hull_comment(*node); });
   }
 
-  void write_mesh(const XMLElement& mesh, bool hull) {
-    Attributes given{{"filename", (hull ? kHullPrefix : "") + trimmed(attribute(&mesh, "filename"))}};
-    std::string scale = numbers(&mesh, "scale");
+  void write_mesh(const XMLElement& mesh, bool hull, const std::string& where) {
+    Attributes attributes{{"filename", (hull ? kHullPrefix : "") + trimmed(attribute(&mesh, "filename"))}};
+    std::string scale = vector(&mesh, "scale", where);
     if (words_of(scale).size() == 1) {
       warnings_.add("a scale of one number is that of all axes", in_quotes(scale));
       scale += " " + scale + " " + scale;
     }
-    if (!scale.empty()) given.emplace_back("scale", scale);
-    tag("mesh", given);
+    if (!scale.empty()) attributes.emplace_back("scale", scale);
+    write("mesh", attributes);
   }
 
   /// Each visual has a material of its own, so that none is defined twice.
-  void write_material(const XMLElement& visual, const std::string& link) {
-    const XMLElement* material = visual.FirstChildElement("material");
-    if (material == nullptr) return;
-    const std::string name = attribute(material, "name");
-    if (material->FirstChildElement("color") == nullptr &&
-        material->FirstChildElement("texture") == nullptr) {
-      if (name.empty()) return;
-      const auto found = materials_.find(name);
-      if (found == materials_.end())
-        return warnings_.add("materials without a color in this file are drawn grey",
-                             in_quotes(name) + " of link " + in_quotes(link));
-      material = found->second;
+  void write_material(const XMLElement& given, const std::string& where) {
+    const std::string name = attribute(&given, "name");
+    const auto named = materials_.find(name);
+    if (!is_defined(given) && named == materials_.end()) {
+      if (!name.empty())
+        warnings_.add("materials without a color in this file are drawn grey",
+                      in_quotes(name) + " of " + where);
+      return;
     }
-    open("material", {{"name", "material_" + std::to_string(++written_)}});
-    if (const XMLElement* color = material->FirstChildElement("color"))
-      tag("color", {{"rgba", rgba(numbers(color, "rgba"), link)}});
-    if (const XMLElement* texture = material->FirstChildElement("texture")) texture->Accept(&out_);
+    const XMLElement& material = is_defined(given) ? given : *named->second;
+    open("material", {{"name", "material_" + std::to_string(++materials_written_)}});
+    if (const XMLElement* color = material.FirstChildElement("color"))
+      write("color", {{"rgba", rgba(attribute(color, "rgba"), where)}});
+    if (const XMLElement* texture = material.FirstChildElement("texture")) texture->Accept(&out_);
     out_.CloseElement();
   }
 
-  /// Whole numbers of 0 to 255 are divided by that. Rounding beyond 1 is cut off.
-  std::string rgba(const std::string& given, const std::string& link) {
+  /// Divides whole numbers of 0 to 255 by 255, and cuts off what rounding has above 1. Other text stays as it
+  /// is, and is refused later.
+  std::string rgba(const std::string& given, const std::string& where) {
     constexpr double kRounding = 1e-3;
     std::vector<double> parts;
-    for (const std::string& word : words_of(given)) parts.push_back(text::to_number(word).value_or(-1.0));
+    std::string numbers;
+    for (const std::string& word : words_of(given)) {
+      parts.push_back(text::to_number(word).value_or(-1.0));
+      numbers += (numbers.empty() ? "" : " ") + word;
+    }
     const auto is_byte = [](double part) { return part >= 0.0 && part <= 255.0 && part == std::floor(part); };
-    const auto is_rounded = [](double part) { return part >= 0.0 && part <= 1.0 + kRounding; };
-    const bool rounded = std::all_of(parts.begin(), parts.end(), is_rounded), has_opacity = parts.size() == 4;
-    const bool bytes = !rounded && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
-                       (!has_opacity || is_byte(parts[3]) || is_rounded(parts[3]));
-    if (!rounded && !bytes) return given;
-    if (bytes)
-      warnings_.add("colors of 0 to 255 are divided by 255",
-                    in_quotes(given) + " of link " + in_quotes(link));
+    const auto is_ratio = [](double part) { return part >= 0.0 && part <= 1.0 + kRounding; };
+    const bool has_opacity = parts.size() == 4, ratios = std::all_of(parts.begin(), parts.end(), is_ratio);
+    const bool bytes = !ratios && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
+                       (!has_opacity || is_byte(parts[3]) || is_ratio(parts[3]));
+    if (!ratios && !bytes) return numbers;
+    if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", in_quotes(given) + " of " + where);
     std::string scaled;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const bool is_share = !bytes || (i == 3 && parts[3] <= 1.0);
-      scaled += (i == 0 ? "" : " ") + text::exact(std::min(1.0, is_share ? parts[i] : parts[i] / 255.0));
+      const double full = bytes && (i < 3 || parts[i] > 1.0) ? 255.0 : 1.0;
+      scaled += (i == 0 ? "" : " ") + text::exact(std::min(1.0, parts[i] / full));
     }
     return scaled;
   }
@@ -398,86 +384,90 @@ class Normaliser {
   void write_joint(const XMLElement& joint) {
     const std::string name = attribute(&joint, "name"), what = in_quotes(name);
     std::string type = attribute(&joint, "type");
-    Attributes limit;
-    if (type == "revolute" || type == "prismatic") read_limit(joint, what, type, limit);
+    const Attributes limit =
+        type == "revolute" || type == "prismatic" ? read_limit(joint, what, type) : Attributes();
     open("joint", {{"name", joints_.of(name)}, {"type", type}});
     for (const char* end : {"parent", "child"})
-      if (const XMLElement* element = joint.FirstChildElement(end))
-        tag(end, {{"link", links_.of(attribute(element, "link"))}});
+      if (joint.FirstChildElement(end) != nullptr) write(end, {{"link", link_of(joint, end)}});
     write_origin(joint, "joint " + what);
-    if (const std::string axis = numbers(joint.FirstChildElement("axis"), "xyz"); !axis.empty())
-      tag("axis", {{"xyz", axis}});
-    if (!limit.empty()) tag("limit", limit);
+    const std::string axis = vector(joint.FirstChildElement("axis"), "xyz", "joint " + what + " axis");
+    if (!axis.empty()) write("axis", {{"xyz", axis}});
+    if (!limit.empty()) write("limit", limit);
     if (const XMLElement* dynamics = joint.FirstChildElement("dynamics"))
-      tag("dynamics", {{"damping", attribute(dynamics, "damping", "0")},
-                       {"friction", attribute(dynamics, "friction", "0")}});
+      write("dynamics", {{"damping", attribute(dynamics, "damping", "0")},
+                         {"friction", attribute(dynamics, "friction", "0")}});
     if (joint.FirstChildElement("mimic") != nullptr)
       warnings_.add("joints move freely, as <mimic> is not followed", what);
     out_.CloseElement();
   }
 
-  /// Effort and velocity, which urdfdom wants and nothing here uses, are 0. No joint moves further than
-  /// kCoordinate.
-  void read_limit(const XMLElement& joint, const std::string& what, std::string& type, Attributes& limit) {
+  /// Limits within kCoordinate, and the joint's type that fits them. Effort and velocity are 0: urdfdom
+  /// requires them, and nothing uses them.
+  Attributes read_limit(const XMLElement& joint, const std::string& what, std::string& type) {
     const XMLElement* given = joint.FirstChildElement("limit");
-    std::string lower = attribute(given, "lower"), upper = attribute(given, "upper");
-    const bool none = lower.empty() && upper.empty();
-    if (lower.empty()) lower = "0";
-    if (upper.empty()) upper = "0";
-    const auto held = [](std::string& text) {
-      std::optional<double> number = mrhi::text::to_number(text);
-      if (number && !joint_ranges::kCoordinate.contains(*number) && !std::isnan(*number)) {
-        number = *number > 0.0 ? joint_ranges::kCoordinate.max : joint_ranges::kCoordinate.min;
-        text = mrhi::text::exact(*number);
-      }
-      return number;
+    std::string lower = attribute(given, "lower", "0"), upper = attribute(given, "upper", "0");
+    const auto number = [](const std::string& text) {  // nan if it is no number, which urdfdom refuses
+      const double value = mrhi::text::to_number(text).value_or(NAN);
+      return std::min(std::max(value, joint_ranges::kCoordinate.min), joint_ranges::kCoordinate.max);
     };
-    const std::optional<double> least = held(lower), most = held(upper);
-    const bool crossed = least && most && *least > *most;
-    if (none || crossed) {
+    double low = number(lower), high = number(upper);
+    const bool none = attribute(given, "lower").empty() && attribute(given, "upper").empty();
+    if (none || low > high) {
       warnings_.add("joints move without limits",
                     what + (none ? ", which has none" : ", lower " + lower + " above upper " + upper));
       if (type == "revolute") type = "continuous";
-      lower = text::exact(joint_ranges::kCoordinate.min), upper = text::exact(joint_ranges::kCoordinate.max);
-    } else if (least && most && *least == *most) {
+      low = joint_ranges::kCoordinate.min, high = joint_ranges::kCoordinate.max;
+    } else if (low == high) {
       warnings_.add("joints with equal limits are fixed", what);
-      if (*least == 0.0) type = "fixed";
-      upper = text::exact(*least + 1e-6 * std::max(1.0, std::abs(*least)));
+      if (low == 0.0) {
+        type = "fixed";
+        return {};
+      }
+      high += 1e-6 * std::max(1.0, std::abs(low));
     }
-    if (type != "fixed") limit = {{"lower", lower}, {"upper", upper}, {"effort", "0"}, {"velocity", "0"}};
+    if (!std::isnan(low)) lower = text::exact(low);
+    if (!std::isnan(high)) upper = text::exact(high);
+    return {{"lower", lower}, {"upper", upper}, {"effort", "0"}, {"velocity", "0"}};
   }
 
-  /// A root that has a shape or a mass is a body, and so are links that all hang fixed on an empty root of
-  /// another name than "world"; "world" is a fixture.
-  void hang_root_on_world() {
-    std::set<std::string> children;
-    each(robot_, "joint", [&](const XMLElement& joint) { children.insert(child_of(joint)); });
-    const XMLElement* root = nullptr;
-    int roots = 0;
-    bool all_fixed = true;
-    each(robot_, "joint",
-         [&](const XMLElement& joint) { all_fixed = all_fixed && attribute(&joint, "type") == "fixed"; });
-    each(robot_, "link", [&](const XMLElement& link) {
-      if (children.count(links_.of(attribute(&link, "name"))) == 0) root = &link, ++roots;
-    });
-    if (roots != 1 || has_world_) return;  // urdfdom says if it is no tree
-    const XMLElement* inertial = root->FirstChildElement("inertial");
+  static bool is_empty(const XMLElement& link) {
+    const XMLElement* inertial = link.FirstChildElement("inertial");
     const XMLElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
-    const bool has_mass = text::to_number(attribute(mass, "value")).value_or(0.0) > 0.0;
-    const std::string child = links_.of(attribute(root, "name"));
-    if (root->FirstChildElement("visual") == nullptr && root->FirstChildElement("collision") == nullptr &&
-        !has_mass) {
-      if (child == "world" || children.empty() || !all_fixed) return;
+    return link.FirstChildElement("visual") == nullptr && link.FirstChildElement("collision") == nullptr &&
+           !(text::to_number(attribute(mass, "value")).value_or(0.0) > 0.0);
+  }
+
+  /// Adds the world that joints name, if it is no link of the file; otherwise a world above a root that is a
+  /// body. A root with a shape or a mass is a free body, and so are links that are all fixed on an empty
+  /// root. The name "world" makes them fixtures.
+  void write_world() {
+    std::set<std::string> parents, children;
+    bool all_fixed = true;
+    each(robot_, "joint", [&](const XMLElement& joint) {
+      parents.insert(link_of(joint, "parent"));
+      children.insert(link_of(joint, "child"));
+      all_fixed = all_fixed && attribute(&joint, "type") == "fixed";
+    });
+    std::vector<const XMLElement*> roots;
+    bool has_world = false;
+    each(robot_, "link", [&](const XMLElement& link) {
+      has_world = has_world || attribute(&link, "name") == "world";
+      if (children.count(links_.of(attribute(&link, "name"))) == 0) roots.push_back(&link);
+    });
+    if (parents.count("world") > 0 && !has_world) return write("link", {{"name", "world"}});
+    if (roots.size() != 1) return;  // urdfdom refuses it
+    const std::string root = links_.of(attribute(roots[0], "name"));
+    if (is_empty(*roots[0])) {
+      if (root == "world" || children.empty() || !all_fixed) return;
       warnings_.add(
           "links on fixed joints are one free body; a root that is named 'world' makes them fixtures",
-          in_quotes(attribute(root, "name")));
+          in_quotes(attribute(roots[0], "name")));
     }
     const std::string world = links_.add("world ");
-    tag("link", {{"name", world}});
-    open("joint",
-         {{"name", joints_.add("world_to_root")}, {"type", child == "world" ? "fixed" : "floating"}});
-    tag("parent", {{"link", world}});
-    tag("child", {{"link", child}});
+    write("link", {{"name", world}});
+    open("joint", {{"name", joints_.add("world_to_root")}, {"type", root == "world" ? "fixed" : "floating"}});
+    write("parent", {{"link", world}});
+    write("child", {{"link", root}});
     out_.CloseElement();
   }
 
@@ -485,9 +475,8 @@ class Normaliser {
   Warnings& warnings_;
   Names links_, joints_;
   tinyxml2::XMLPrinter out_;
-  std::map<std::string, const XMLElement*> materials_;
-  int written_ = 0;         // materials
-  bool has_world_ = false;  // that the file has not
+  std::map<std::string, const XMLElement*> materials_;  // that have a colour or texture, by name
+  int materials_written_ = 0;
   NormalUrdf result_;
 };
 
@@ -499,7 +488,7 @@ NormalUrdf normal_urdf(const std::string& xml, Warnings& warnings) {
     throw std::runtime_error("bad URDF: no XML: " + text::one_line(document.ErrorStr(), 120) +
                              "; allowed: a robot of links (" + shape_kind_names() +
                              ", mesh) joined to one root link");
-  require_urdf(document.RootElement(), document);
+  require_urdf(document);
   return Normaliser(*document.RootElement(), warnings).make();
 }
 

@@ -127,9 +127,6 @@ class Tree {
       throw SceneError(what +
                        "is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
                        "that it is on), revolute, continuous, prismatic");
-    if (model_.getLink(joint.child_link_name)->parent_joint.get() != &joint)
-      throw SceneError(what + "is a second parent of link '" + joint.child_link_name +
-                       "'; allowed: one joint to each link");
   }
 
   const std::string& file_;
@@ -204,7 +201,8 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
 }  // namespace
 
 UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
-  const std::string xml = is_utf8(given) ? given : from_utf16(given).value_or(from_latin1(given));
+  std::string xml = is_utf8(given) ? given : from_utf16(given).value_or(from_latin1(given));
+  xml.erase(xml.find_last_not_of('\0') + 1);  // C programs write the end of their text
   if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   UrdfDocument document;
   try {

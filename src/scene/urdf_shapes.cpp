@@ -108,16 +108,23 @@ std::string decoded(const std::string& uri) {
   return text;
 }
 
-/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or one that has the
-/// name.
+/// Whether the folder's package.xml has that name.
+bool is_package(const fs::path& folder, const std::string& name) {
+  constexpr std::size_t kMaxBytes = 100000;
+  const std::string text = file_text((folder / "package.xml").string(), kMaxBytes).value_or("");
+  return text.find("<name>" + name + "</name>") != std::string::npos;
+}
+
+/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or in one that has the
+/// name or whose package.xml has it.
 std::string find_above(const fs::path& folder, const std::string& in_package) {
   const std::string name = in_package.substr(0, in_package.find('/'));
   std::error_code error;
   fs::path above = fs::absolute(folder, error).lexically_normal();
   for (int level = 0; level < 32 && !error; ++level, above = above.parent_path()) {
     if (is_file(above / in_package)) return (above / in_package).string();
-    if (above.filename() == name && is_file(above.parent_path() / in_package))
-      return (above.parent_path() / in_package).string();
+    const fs::path in_above = above / in_package.substr(std::min(name.size() + 1, in_package.size()));
+    if ((above.filename() == name || is_package(above, name)) && is_file(in_above)) return in_above.string();
     if (above == above.root_path()) break;
   }
   return "";
@@ -247,8 +254,8 @@ std::optional<Shape> ShapeReader::make(const std::string& name, const std::vecto
                                        const std::string& element) {
   const Range& range = body_limits::kSize;
   const ShapeKind& kind = *find_shape_kind(name);
-  if (std::all_of(size.begin(), size.end(), [](double s) { return s == 0.0; })) {
-    warnings_.add("shapes of size 0 are left out", element);
+  if (std::all_of(size.begin(), size.end(), [&](double s) { return s >= 0.0 && s < range.min; })) {
+    warnings_.add("shapes smaller than " + text::number(range.min) + " m are left out", element);
     return std::nullopt;
   }
   for (const double s : size) {
@@ -268,9 +275,8 @@ std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::s
   try {
     if (name.file.empty())
       throw std::runtime_error(begins_with(name.uri, "package://")
-                                   ? "not found: no such package, nor a folder of its name above the URDF "
-                                     "that has the file; allowed: "
-                                     "a package on the ROS path, or such a folder"
+                                   ? "not found; allowed: a file of a package that is on the ROS path, or "
+                                     "that is a folder above the URDF"
                                    : "not found in '" + folder_ +
                                          "'; allowed: package://, file://, or a path from the URDF's folder");
     const TriangleMesh& triangles = triangles_of(name);

@@ -79,7 +79,8 @@ struct Reach {
 /// Inverse kinematics of a finger: angles within the limits that bring the end of the last bone to `target`
 /// (right hand's frame), as close to `preferred` as possible. Damped least squares with the preference in the
 /// null space (Nakamura & Hanafusa 1986).
-Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred);
+Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred,
+            int iterations = 200);
 
 /// Planned contact of a fingertip: a point of the object's surface and the outward normal there.
 struct FingertipContact {
@@ -121,11 +122,12 @@ struct GraspPostures {
 /// them.
 Grasp shipped_grasp(const std::string& object);
 
-/// Grasp of any object: across its narrowest width through the centre of mass, in the body's frame. Throws
-/// std::invalid_argument with the object and what is allowed.
-Grasp narrowest_grasp(const Body& body);
+/// Grasp of any object, in the body's frame: between two opposite surfaces that thumb and fingers reach,
+/// narrow and near the centre of mass. Throws std::invalid_argument that names the object and what is
+/// allowed.
+Grasp find_grasp(const Body& body);
 
-/// Grasp of a body: the shipped one of its name, else narrowest_grasp(), and throws as that does.
+/// Grasp of a body: the shipped one of its name, else find_grasp(), and throws as that does.
 Grasp grasp_of(const Body& body);
 
 /// Reaches for an object at rest with its centre at `object`, closes, carries and releases it. `scene` is the

@@ -140,6 +140,19 @@ TEST(JointScene, links_of_a_mechanism_that_overlap_load_with_a_warning_and_do_no
   test::expect_words(error(test::robot(arm + other)), {"'other' is 0.05 m in 'upper'", "at most 0.001 m"});
 }
 
+// A drawer touches the side of its cabinet, and another cabinet's; a box that is loose may not.
+TEST(JointScene, what_is_joined_to_fixtures_may_overlap_them_and_does_not_touch_them) {
+  const std::string cabinet =
+      test::link("back", kPart) + test::link("side", kPart) + test::link("drawer", kPart) +
+      joint("f", "fixed", "world", "back") + joint("g", "fixed", "world", "side", "", R"(xyz="0.12 0 0")") +
+      joint("p", "prismatic", "back", "drawer", R"(<limit lower="0" upper="0.2"/>)", R"(xyz="0.08 0 0")");
+  const Scene scene = load(test::robot(cabinet));
+  test::expect_words(scene.warnings.at(0), {"do not touch each other", "'side' and 'drawer'"});
+  const std::string loose =
+      test::link("box", kPart) + joint("o", "floating", "world", "box", "", R"(xyz="0.16 0 0")");
+  test::expect_words(error(test::robot(cabinet + loose)), {"'box' is", "in 'side'"});
+}
+
 TEST(JointScene, refuses_a_chain_of_more_than_32_in_a_file_and_in_what_is_spawned) {
   const auto chain = [](int links) {
     std::string content;

@@ -129,7 +129,8 @@ TEST(HostileUrdf, that_is_no_utf8_is_read_as_latin1_and_control_characters_are_r
     test::expect_words(urdf_error("<robot name=\"" + std::string(bytes) + "\">"), {"bad URDF"});
   }
   test::expect_words(urdf_error(good + "\x01"), {"is no text", "UTF-8"});
-  test::expect_words(urdf_error(good + std::string(1, '\0')), {"is no text", "UTF-8"});
+  test::expect_words(urdf_error(std::string(1, '\0') + good), {"is no text", "UTF-8"});
+  EXPECT_EQ(urdf_error(good + std::string(1, '\0')), "") << "as a C program ends its text";
 }
 
 // Libraries look each attribute up among those before it: 200 000 of them took a minute.

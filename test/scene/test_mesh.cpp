@@ -231,7 +231,7 @@ TEST_F(MeshScene, IsReadFromAnStlWithBytesTooManyOrInCapitals) {
   EXPECT_NEAR(kVolume, test::volume(*load("filename=\"wedge.stl\"").triangles), 1e-6 * kVolume);
 }
 
-TEST_F(MeshScene, IsFoundInAFolderAboveThatHasThePackagesName) {
+TEST_F(MeshScene, IsFoundInAFolderAboveThatIsThePackage) {
   const std::string inner = folder_.path() + "/cups/urdf";
   std::filesystem::create_directories(inner);
   folder_.write("cups/wedge.obj", std::string(kVertices) + kOutward);
@@ -243,6 +243,11 @@ TEST_F(MeshScene, IsFoundInAFolderAboveThatHasThePackagesName) {
   ASSERT_EQ(1u, scene.mesh_files.size());
   EXPECT_EQ("package://cups/wedge.obj", scene.mesh_files[0].name);
   EXPECT_EQ(folder_.path() + "/cups/wedge.obj", scene.mesh_files[0].path);
+  std::filesystem::rename(folder_.path() + "/cups", folder_.path() + "/cups-main");
+  const std::string unpacked = folder_.path() + "/cups-main/urdf/cup.urdf";
+  test::expect_words(test::scene_error(unpacked), {"package://cups/wedge.obj", "not found", "ROS path"});
+  folder_.write("cups-main/package.xml", "<package><name>cups</name></package>");
+  EXPECT_EQ(1u, load_scene(unpacked, {}).mesh_files.size());
 }
 
 // One shape of two parts: one tree to search, and the same volume.

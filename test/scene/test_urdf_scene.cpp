@@ -154,11 +154,36 @@ TEST(UrdfScene, RefusesAWrongMass) {
   test::expect_words(error(thing(inertial("nan", {1, 1, 1}) + kBox)), {"nan"});
 }
 
-TEST(UrdfScene, RefusesAnInertiaThatNoRigidBodyHas) {
-  test::expect_words(error(thing(inertial("1", {1, 1, -1}) + kBox)), {"'thing'", "inertia", "[-1, 1, 1]"});
-  test::expect_words(error(thing(inertial("1", {1, 1, 3}) + kBox)),
-                     {"'thing'", "inertia", "[1, 1, 3]", "sum"});
-  EXPECT_EQ("", error(thing(inertial("1", {1, 1, 2.01}) + kBox))) << "a thin plate, rounded";
+// The largest principal moment is at most the sum of the others, and none is 0 or less.
+TEST(UrdfScene, AnInertiaThatNoRigidBodyHasIsReplacedByThatOfTheShapes) {
+  const Matrix3 expected =
+      load(thing(R"(<inertial><mass value="1"/></inertial>)" + std::string(kBox))).bodies.at(0).inertia;
+  for (const Vector3& moments : {Vector3(1, 1, -1), Vector3(1, 1, 3), Vector3(0, 1, 1)}) {
+    const Scene scene = load(thing(inertial("1", moments) + kBox));
+    EXPECT_LT((scene.bodies.at(0).inertia - expected).norm(), 1e-12 * expected.norm());
+    test::expect_words(scene.warnings.at(0), {"inertias that no rigid body has", "shapes", "'thing'"});
+  }
+  EXPECT_EQ(2.01, load(thing(inertial("1", {1, 1, 2.01}) + kBox)).bodies.at(0).inertia(2, 2))
+      << "a thin plate, rounded";
+}
+
+TEST(UrdfScene, VectorsOfMoreThanThreeNumbersAreReadByTheFirstThree) {
+  const Scene scene = load(thing(std::string(kInertial) +
+                                     R"(<collision><origin xyz="0.1 0.2 0.3 1"/>
+                                        <geometry><box size="1 2 3 4"/></geometry></collision>)",
+                                 R"(xyz="0 0 0.5" rpy="0 0 0 0")"));
+  EXPECT_TRUE(
+      std::get<Box>(scene.bodies.at(0).shapes.at(0).shape).half_extents.isApprox(Vector3(0.5, 1, 1.5)));
+  test::expect_words(scene.warnings.at(0), {"the first three", "link 'thing' collision xyz '0.1 0.2 0.3 1'",
+                                            "size '1 2 3 4'", "rpy"});
+}
+
+// Drake marks places of contact with balls of 0.1 um.
+TEST(UrdfScene, ShapesTooSmallToTouchAreLeftOut) {
+  const Scene scene = load(thing(std::string(kInertial) + kBox +
+                                 R"(<collision><geometry><sphere radius="1e-7"/></geometry></collision>)"));
+  EXPECT_EQ(1u, scene.bodies.at(0).shapes.size());
+  test::expect_words(scene.warnings.at(0), {"smaller than 1e-05 m", "'thing' collision 2"});
 }
 
 TEST(UrdfScene, RefusesAFreeBodyWithoutCollisionUnlessItHasAVisual) {
@@ -413,6 +438,9 @@ TEST(UrdfScene, NamesOtherFormatsThatAreNoUrdf) {
   test::expect_words(error(thing(std::string(kInertial) +
                                  R"(<collision><geometry><box size="${w} 1 1"/></geometry></collision>)")),
                      {"is xacro", "rosrun xacro"});
+  EXPECT_EQ("", error(thing(std::string(kInertial) + kBox +
+                            R"(<xacro:property name="w"><origin xyz="${w} 0 0"/></xacro:property>)")))
+      << "nothing uses it";
   test::expect_words(error("<mujoco/>"), {"'robot'", "'mujoco'"});
 }
 
