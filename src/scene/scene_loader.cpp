@@ -27,6 +27,8 @@ namespace {
 
 constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the shape
 
+/// A rigid body's principal moments obey a + b >= c. Files round them: a thin plate just meets it.
+constexpr double kTriangleSlack = 0.01;
 /// A body whose moments are this many times what its mass can have within its shapes has another unit.
 constexpr double kImplausible = 3.0;
 /// Objects that hands meet are no longer than this [m].
@@ -44,14 +46,6 @@ struct Weight {
 
 Matrix3 symmetric(const Matrix3& matrix) {
   return 0.5 * (matrix + matrix.transpose());
-}
-
-/// Whether a rigid body can have it: principal moments above 0 with a + b >= c. Files round them: a thin
-/// plate just meets this.
-bool is_physical(const Matrix3& inertia) {
-  constexpr double kRounding = 0.01, kMinRatio = 1e-12;
-  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia).eigenvalues();
-  return moments[0] > kMinRatio * moments[2] && moments[0] + moments[1] >= (1.0 - kRounding) * moments[2];
 }
 
 /// Parallel axes: I = sum of I_i + m_i (d^2 1 - d d^T), with d from the common centre to the part's.
@@ -161,7 +155,7 @@ class BodyReader {
     body.shapes = moved(std::move(body.shapes), body.link_in_body);
   }
 
-  Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) const {
+  static Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) {
     const urdf::Inertial& given = *part.link->inertial;
     const Pose origin = part.pose * to_pose(given.origin);
     const Matrix3 to_link = origin.orientation.toRotationMatrix();
@@ -169,11 +163,7 @@ class BodyReader {
     inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
         given.izz;
     Weight weight{given.mass, origin.position, symmetric(to_link * inertia * to_link.transpose())};
-    const bool none = weight.inertia.isZero(0.0);
-    if (!none && weight.inertia.allFinite() && !is_physical(weight.inertia))
-      document_.warnings.add("inertias that no rigid body has are replaced by those of the shapes",
-                             "'" + part.link->name + "'");
-    if (none || !is_physical(weight.inertia))
+    if (weight.inertia.isZero(0.0))
       weight.inertia =
           shapes.empty() ? inertia_of({{kUnseen, Pose{}}}, given.mass)
                          : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}), given.mass);
@@ -223,6 +213,12 @@ class BodyReader {
     }
     if (body.fixed) return;
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia).eigenvalues();
+    if (moments[0] + moments[1] < (1 - kTriangleSlack) * moments[2])
+      throw SceneError(
+          source_ + ": body '" + body.name + "': no rigid body has the principal moments of inertia " +
+          text::vector(moments) +
+          " kg m^2; allowed: the largest at most the sum of the others, or no <inertia> for that "
+          "of the shapes");
     const double most = body.mass * body.bounding_radius * body.bounding_radius;
     if (!body.shapes.empty() && moments[2] > kImplausible * most)
       document_.warnings.add(

@@ -97,9 +97,11 @@ class InteractionDisplay : public rviz::Display {
  protected:
   void onInitialize() override {
     scene_ = std::make_unique<MarkerScene>(
-        context_, scene_node_, [this](const std::string& body, const Ogre::SceneNode* node) {
+        context_, scene_node_,
+        [this](const std::string& body, const Ogre::SceneNode* node) {
           return rviz::SelectionHandlerPtr(new ObjectSelection(context_, body, node, *this));
-        });
+        },
+        [this](const std::string& uri) { return mesh_of_file(uri); });
   }
 
   void onEnable() override { subscribe(); }
@@ -110,6 +112,16 @@ class InteractionDisplay : public rviz::Display {
   }
 
  private:
+  const Mesh* mesh_of_file(const std::string& uri) const {
+    for (const Body& body : view_.scene().bodies) {
+      for (const PlacedShape& placed : body.shapes) {
+        const Mesh* const mesh = std::get_if<Mesh>(&placed.shape);
+        if (mesh != nullptr && mesh->uri == uri && mesh->triangles) return mesh;
+      }
+    }
+    return nullptr;
+  }
+
   /// Properties of an object in rviz's Selection panel.
   class ObjectSelection : public rviz::SelectionHandler {
    public:

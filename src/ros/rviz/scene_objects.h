@@ -18,6 +18,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -39,6 +40,10 @@ using visualization_msgs::MarkerArray;
 template <typename Vector>
 Ogre::Vector3 to_ogre(const Vector& v) {
   return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
+inline Ogre::Vector3 to_ogre(const Vector3& v) {
+  return Ogre::Vector3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
 }
 
 inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
@@ -76,8 +81,11 @@ class MarkerScene {
   /// `selection` makes the handler of a body's shapes, which are below the node.
   using SelectionFactory =
       std::function<rviz::SelectionHandlerPtr(const std::string& body, const Ogre::SceneNode* node)>;
-  MarkerScene(rviz::DisplayContext* context, Ogre::SceneNode* parent, SelectionFactory selection)
-      : context_(context), parent_(parent), selection_(std::move(selection)) {}
+  /// `meshes` returns the scene's mesh of a file, or null.
+  using MeshOfFile = std::function<const Mesh*(const std::string& uri)>;
+  MarkerScene(rviz::DisplayContext* context, Ogre::SceneNode* parent, SelectionFactory selection,
+              MeshOfFile meshes)
+      : context_(context), parent_(parent), selection_(std::move(selection)), meshes_(std::move(meshes)) {}
 
   ~MarkerScene() {
     clear();
@@ -149,9 +157,33 @@ class MarkerScene {
     status_->setColor(Ogre::ColourValue(c.r, c.g, c.b, c.a));
   }
 
+  /// Makes what rviz cannot load, such as a text STL or a file of another machine, from the scene's
+  /// triangles. rviz finds it by the file's name. Returns false if the scene has no such triangles.
+  bool make_mesh(const std::string& uri) const {
+    const Mesh* const mesh = meshes_(uri);
+    if (mesh == nullptr || mesh->triangles->triangles.empty()) return false;
+    Ogre::ManualObject object(uri);
+    object.begin("BaseWhiteNoLighting", Ogre::RenderOperation::OT_TRIANGLE_LIST);
+    for (const auto& triangle : mesh->triangles->triangles) {
+      std::array<Vector3, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i)
+        corners[i] =
+            mesh->triangles->vertices[static_cast<std::size_t>(triangle[i])].cwiseQuotient(mesh->scale);
+      const Vector3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+      for (const Vector3& corner : corners) {
+        object.position(to_ogre(corner));
+        object.normal(to_ogre(normal));
+      }
+    }
+    object.end();
+    object.convertToMesh(uri, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME);
+    return true;
+  }
+
   void add(const Marker& marker) {
     if (marker.ns == kStatus) return draw_status(marker);
-    if (marker.type == Marker::MESH_RESOURCE && !rviz::loadMeshFromResource(marker.mesh_resource))
+    if (marker.type == Marker::MESH_RESOURCE && !rviz::loadMeshFromResource(marker.mesh_resource) &&
+        !make_mesh(marker.mesh_resource))
       missing_.insert(marker.mesh_resource);
     std::unique_ptr<Item>& item = items_[{marker.ns, marker.id}];
     if (!item || item->type != marker.type)
@@ -167,6 +199,7 @@ class MarkerScene {
   rviz::DisplayContext* context_;
   Ogre::SceneNode* parent_;
   SelectionFactory selection_;
+  MeshOfFile meshes_;
   std::map<std::string, Ogre::SceneNode*> layers_;
   std::map<std::pair<std::string, int>, std::unique_ptr<Item>> items_;
   std::unique_ptr<rviz::MovableText> status_;
