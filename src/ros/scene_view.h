@@ -31,6 +31,16 @@ inline Shape shape_of(const mr_hand_interaction::SceneShape& message) {
   auto mesh = std::make_shared<TriangleMesh>();
   for (const auto& point : message.vertices)
     mesh->vertices.push_back(Eigen::Vector3f(point.x, point.y, point.z).cast<double>());
+  const auto vertices = static_cast<std::uint32_t>(mesh->vertices.size());
+  for (std::size_t i = 0; i + 2 < message.triangles.size(); i += 3) {
+    const std::uint32_t *const corner = &message.triangles[i], last = *std::max_element(corner, corner + 3);
+    if (last >= vertices)
+      throw std::invalid_argument("mesh '" + message.mesh + "' with vertex " + std::to_string(last) +
+                                  " in a triangle is not allowed; allowed: 0 to " + std::to_string(vertices) +
+                                  ", exclusive");
+    mesh->triangles.push_back(
+        {static_cast<int>(corner[0]), static_cast<int>(corner[1]), static_cast<int>(corner[2])});
+  }
   return Mesh{std::move(mesh), message.mesh, from_message(message.scale)};
 }
 
@@ -51,7 +61,12 @@ inline Body body_of(const mr_hand_interaction::SceneBody& message) {
   }
   for (const auto& shape : message.visuals) {
     const auto& c = shape.color;
-    body.visuals.push_back({shape_of(shape), from_message(shape.pose), {{c.r, c.g, c.b, c.a}}, c.a > 0.0f});
+    Visual visual;
+    visual.shape = shape_of(shape);
+    visual.pose = from_message(shape.pose);
+    visual.has_color = c.a > 0.0f || !std::holds_alternative<Mesh>(visual.shape);
+    if (visual.has_color) visual.rgba = {{c.r, c.g, c.b, c.a}};
+    body.visuals.push_back(std::move(visual));
   }
   return body;
 }

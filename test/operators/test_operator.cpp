@@ -1,4 +1,5 @@
 #include "operators_at_work.h"
+#include "support/fixtures.h"
 
 namespace mrhi {
 namespace {
@@ -128,7 +129,7 @@ TEST(Operator, takes_it_again_when_it_is_wanted_somewhere_once_it_is_done) {
 }
 
 TEST(Operator, refuses_an_object_that_no_hand_closes_on_and_names_it) {
-  Body body = testing::shipped_body("crate");
+  Body body = testing::box_body(Vector3::Constant(0.3), 1.0);
   body.name = "teapot";
   try {
     SimulatedOperator person(OperatorSkill{}, body, 1);

@@ -22,8 +22,9 @@ struct Shown {
       : scene(testing::scene_of(testing::box_body({0.05, 0.05, 0.05}, 0.1))), markers(scene, configuration) {
     scene.bodies.push_back(testing::ball_body(0.03, 0.1));
     scene.bodies.back().fixed = true;
-    scene.bodies.back().visuals.push_back(
-        {Mesh{nullptr, "package://some/mesh.stl", Vector3::Ones()}, {}, {}});
+    Visual visual;
+    visual.shape = Mesh{nullptr, "package://some/mesh.stl", Vector3::Ones()};
+    scene.bodies.back().visuals.push_back(visual);
     for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
     state.hands.resize(kMaxHands);
   }

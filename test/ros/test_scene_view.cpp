@@ -122,15 +122,39 @@ TEST(SceneView, a_mesh_crosses_with_its_triangles_as_a_viewer_elsewhere_has_no_f
   EXPECT_GT(meshes, 0);
 }
 
+// A URDF without <visual> and colour, with an STL: rviz drew it with alpha 0.
+TEST(SceneView, a_mesh_without_a_colour_is_as_opaque_as_in_the_node) {
+  Scene scene = load_scene(find_scene_file("rack", scene_folders()), {});
+  int meshes = 0;
+  for (Body& body : scene.bodies)
+    for (Visual& visual : body.visuals) visual.has_color = false, visual.rgba = Visual().rgba;
+  SceneView view;
+  view.take(scene_message(scene, {}, {}));
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (std::size_t i = 0; i < scene.bodies[b].visuals.size(); ++i) {
+      const Mesh* const mesh = std::get_if<Mesh>(&view.scene().bodies[b].visuals[i].shape);
+      if (!mesh) continue;
+      ++meshes;
+      EXPECT_EQ(view.scene().bodies[b].visuals[i].rgba, Visual().rgba);
+      EXPECT_FALSE(view.scene().bodies[b].visuals[i].has_color);
+      EXPECT_EQ(mesh->triangles->triangles,
+                std::get<Mesh>(scene.bodies[b].visuals[i].shape).triangles->triangles);
+    }
+  }
+  EXPECT_GT(meshes, 0);
+}
+
 TEST(SceneView, refuses_shapes_that_are_none_and_keeps_what_it_had) {
   Shown shown;
   auto message = scene_message(shown.scene, shown.configuration, {});
   SceneView view;
   view.take(message);
-  for (const int wrong : {0, 1}) {
+  for (const int wrong : {0, 1, 2}) {
     auto bad = message;
-    if (wrong == 0) bad.bodies[0].shapes[0].type = 9;
-    if (wrong == 1) bad.bodies[0].shapes[0].size.pop_back();
+    auto& shape = bad.bodies[0].shapes[0];
+    if (wrong == 0) shape.type = 9;
+    if (wrong == 1) shape.size.pop_back();
+    if (wrong == 2) shape.type = shape.MESH, shape.size.clear(), shape.triangles = {0, 1, 2};
     EXPECT_THROW(view.take(bad), std::invalid_argument);
     EXPECT_EQ(view.scene().bodies.size(), message.bodies.size());
   }

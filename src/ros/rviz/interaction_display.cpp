@@ -113,11 +113,15 @@ class InteractionDisplay : public rviz::Display {
 
  private:
   const Mesh* mesh_of_file(const std::string& uri) const {
+    const auto mesh_of = [&](const Shape& shape) {
+      const Mesh* const mesh = std::get_if<Mesh>(&shape);
+      return mesh != nullptr && mesh->uri == uri && mesh->triangles ? mesh : nullptr;
+    };
     for (const Body& body : view_.scene().bodies) {
-      for (const PlacedShape& placed : body.shapes) {
-        const Mesh* const mesh = std::get_if<Mesh>(&placed.shape);
-        if (mesh != nullptr && mesh->uri == uri && mesh->triangles) return mesh;
-      }
+      for (const Visual& visual : body.visuals)
+        if (const Mesh* const mesh = mesh_of(visual.shape)) return mesh;
+      for (const PlacedShape& placed : body.shapes)
+        if (const Mesh* const mesh = mesh_of(placed.shape)) return mesh;
     }
     return nullptr;
   }
