@@ -39,9 +39,10 @@ class InputStatistics {
     ++refusals.count;
     refusals.last = detail;
     const ros::SteadyTime now = ros::SteadyTime::now();
-    const double since = refusals.logged.isZero() ? kLongestSilence : (now - refusals.logged).toSec();
-    if (since < refusals.silence) return;
-    const bool go_on = since < 2.0 * refusals.silence;
+    const ros::WallDuration since =
+        refusals.logged.isZero() ? ros::WallDuration(kLongestSilence) : now - refusals.logged;
+    if (since.toSec() < refusals.silence) return;
+    const bool go_on = since.toSec() < 2.0 * refusals.silence;
     refusals.silence = go_on ? std::min(2.0 * refusals.silence, kLongestSilence) : kShortestSilence;
     refusals.logged = now;
     ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
