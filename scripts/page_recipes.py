@@ -123,7 +123,7 @@ def _grasps(rows):
     rows = [row for row in rows if float(row['dropped']) == 0]
     columns = list(dict.fromkeys((row['where'], row['frames_per_s']) for row in rows))
     cells = {(row['correlation'], row['noise_mm'], row['where'], row['frames_per_s']): row for row in rows}
-    lines = [['%g mm%s' % (float(noise), ', correlated' if float(correlation) else '')] + [
+    lines = [['%g mm%s' % (float(noise), ', correlation %g' % float(correlation) if float(correlation) else '')] + [
         '%(held_estimated)s (%(held_fixed)s)' % cells[(correlation, noise, *column)] for column in columns]
              for correlation in dict.fromkeys(row['correlation'] for row in rows)
              for noise in dict.fromkeys(row['noise_mm'] for row in rows)]
