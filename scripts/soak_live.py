@@ -51,7 +51,7 @@ def soak(scenario):
     return 0 if is_flat else 1
 
 
-@functools.lru_cache()  # whoever asks a node is one of its open files for a while
+@functools.lru_cache()  # each query of a node opens one of its files for a while
 def process_of(node):
     return "/proc/%d/" % ServerProxy(rosgraph.Master("/soak").lookupNode(node)).getPid("/soak")[2]
 

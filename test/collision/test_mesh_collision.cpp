@@ -5,6 +5,7 @@
 #include "collision/mesh_collision.h"
 #include "mesh_shapes.h"
 #include "random_capsules.h"
+#include "same_features.h"
 #include "support/tessellated.h"
 
 namespace mrhi {
@@ -215,16 +216,6 @@ std::vector<TriangleMesh> meshes() {
     if (v.z() > 0.01) v.z() = 0.02 - v.z();
   return {dented, testing::tessellated_ring(0.017, 0.008, 40), angle_mesh(),
           testing::tessellated_ball(0.025, 60)};
-}
-
-void expect_same(const std::optional<ClosestFeatures>& a, const std::optional<ClosestFeatures>& b) {
-  ASSERT_EQ(a.has_value(), b.has_value());
-  if (!a) return;
-  EXPECT_EQ(a->distance, b->distance);
-  EXPECT_EQ(a->normal, b->normal);
-  EXPECT_EQ(a->point, b->point);
-  EXPECT_EQ(a->axis_parameter, b->axis_parameter);
-  EXPECT_EQ(a->face, b->face);
 }
 
 Capsule moved(const Capsule& capsule, double by, Random& random) {

@@ -5,6 +5,7 @@
 #include "collision/mesh_surface.h"
 #include "collision/mesh_tree.h"
 #include "random_capsules.h"
+#include "same_features.h"
 #include "support/tessellated.h"
 
 namespace mrhi {
@@ -64,17 +65,6 @@ TEST(FlatFaces, triangles_of_no_area_belong_to_those_beside_them) {
   EXPECT_TRUE(flat.closed);
 }
 
-/// Bit for bit.
-void expect_equal(const std::optional<ClosestFeatures>& a, const std::optional<ClosestFeatures>& b) {
-  ASSERT_EQ(bool(a), bool(b));
-  if (!a) return;
-  EXPECT_EQ(a->distance, b->distance);
-  EXPECT_EQ(a->normal, b->normal);
-  EXPECT_EQ(a->point, b->point);
-  EXPECT_EQ(a->axis_parameter, b->axis_parameter);
-  EXPECT_EQ(a->face, b->face);
-}
-
 TEST(Tessellation, order_of_triangles_and_vertices_changes_no_bit) {
   for (const TriangleMesh& mesh : {tessellated_box(kHalf, 9), tessellated_can(0.033, 0.06, 40, 10, 5),
                                    tessellated_ball(0.03, 20), tessellated_ring(0.04, 0.015, 20)}) {
@@ -83,7 +73,7 @@ TEST(Tessellation, order_of_triangles_and_vertices_changes_no_bit) {
     for (int i = 0; i < 3000 && !HasFailure(); ++i) {
       const Capsule capsule = capsule_about(random.in_box({0.06, 0.06, 0.06}),
                                             random.between(0.0, 0.04) * random.direction(), 0.008);
-      expect_equal(one.closest(capsule, 0.02), other.closest(capsule, 0.02));
+      expect_same(one.closest(capsule, 0.02), other.closest(capsule, 0.02));
     }
   }
 }
@@ -97,14 +87,14 @@ TEST(Tessellation, what_was_asked_before_changes_no_bit) {
       const MeshCollider fresh(mesh);
       Capsule capsule = capsule_about(random.in_box({0.06, 0.06, 0.06}),
                                       random.between(0.0, 0.04) * random.direction(), 0.008);
-      expect_equal(used.closest(capsule, 0.02), fresh.closest(capsule, 0.02));
+      expect_same(used.closest(capsule, 0.02), fresh.closest(capsule, 0.02));
       for (int k = 0; k < 30; ++k) {  // creeps along, with what it was near to in mind
         const Vector3 creep = 1e-5 * random.direction();
         capsule.start += creep, capsule.end += 1.1 * creep;
         used.closest(capsule, 0.02);
       }
       const MeshCollider fresh_there(mesh);
-      expect_equal(used.closest(capsule, 0.02), fresh_there.closest(capsule, 0.02));
+      expect_same(used.closest(capsule, 0.02), fresh_there.closest(capsule, 0.02));
     }
   }
 }

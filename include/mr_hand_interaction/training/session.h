@@ -169,7 +169,7 @@ class Session {
   void pause(bool paused, Nanoseconds now);
   /// Skips the running trial, or the next one.
   void skip(Nanoseconds now);
-  /// Aborts the running trial, which is then the next one. If none is running, repeats the previous one.
+  /// Aborts the running trial and makes it the next one. If none is running, repeats the previous one.
   void repeat(Nanoseconds now);
   /// Logs that a parameter of the running system now differs from `setup`, or equals it again.
   void note_parameter(const std::string& name, const std::string& value, bool as_begun, Nanoseconds now);
