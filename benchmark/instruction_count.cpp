@@ -3,8 +3,10 @@
 #include <cstring>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "crowds/scenes.h"
+#include "mr_hand_interaction/live_simulation.h"
 #include "support/grips.h"
 #include "support/pinch_scene.h"
 #include "support/tessellated.h"
@@ -23,6 +25,10 @@ extern "C" {
   while (simulation.step()) ++steps;
   simulation.end();
   return steps;
+}
+
+[[gnu::noinline]] void counted_addition(mrhi::LiveSimulation& live, const mrhi::Body& body) {
+  live.add(body);
 }
 }  // extern "C"
 
@@ -190,8 +196,30 @@ int play(const Plan& plan) {
   return steps;
 }
 
+constexpr const char* kAddition = "addition_to_1000";
+constexpr int kThere = 1000;  // bodies
+
+/// Adds the last of a thousand bodies while the simulation runs: work that grows in proportion to the scene
+/// shows.
+int add_to_a_thousand() {
+  Body ball = testing::ball_body(0.02, 0.05);
+  LiveSimulation live(pinch(), testing::implicit_configuration());
+  const auto place = [&ball](int i) {
+    ball.name = "ball_" + std::to_string(i);
+    ball.start.position = Vector3(-1.0 + 0.1 * (i % 10), -1.0 + 0.1 * (i / 10 % 10), 0.2 + 0.1 * (i / 100));
+  };
+  for (int i = 0; i < kThere; ++i) {
+    place(i);
+    live.add(ball);
+  }
+  place(kThere);
+  counted_addition(live, ball);
+  return 1;
+}
+
 int list() {
   for (const Plan& plan : kPlans) std::cout << plan.name << '\n';
+  std::cout << kAddition << '\n';
   return 0;
 }
 
@@ -219,6 +247,10 @@ int main(int argc, char** argv) {
   for (const Plan& plan : kPlans) {
     if (std::strcmp(name, plan.name) != 0) continue;
     std::cout << play(plan) << '\n';
+    return 0;
+  }
+  if (std::strcmp(name, kAddition) == 0) {
+    std::cout << add_to_a_thousand() << '\n';
     return 0;
   }
   std::cerr << "usage: instruction_count --list | --compiler | SCENE\n";

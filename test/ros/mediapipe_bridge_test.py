@@ -29,11 +29,13 @@ class MediapipeBridgeTest(unittest.TestCase):
         cls.folder = tempfile.mkdtemp()
         cls.path = os.environ.get("PYTHONPATH", "")
         recording(cls.folder, 30)
+        cls.recording = os.path.join(cls.folder, "grasp_cube_right_30.csv")
+        cls.seen = os.path.join(cls.folder, "seen.csv")
         cls.model = os.path.join(cls.folder, "hand_landmarker.task")
         with open(cls.model, "w", encoding="utf-8") as file:
             file.write("no model")
         os.environ.update(PYTHONPATH=os.path.join(HERE, "stand_in") + os.pathsep + cls.path, CAMERA=CAMERA,
-                          MEDIAPIPE_STAND_IN=os.path.join(cls.folder, "grasp_cube_right_30.csv"))
+                          MEDIAPIPE_STAND_IN=cls.seen)
 
     @classmethod
     def tearDownClass(cls):
@@ -48,6 +50,8 @@ class MediapipeBridgeTest(unittest.TestCase):
         def grasps():
             return [event.kind for event in list(events) if event.kind in kinds]
         with Launch("webcam.launch", "model:=" + self.model, "mount:=" + MOUNT, "rviz:=false"):
+            wait_until(lambda: all(subscriber.get_num_connections() for subscriber in subscribers), "both nodes")
+            os.rename(self.recording, self.seen)
             wait_until(lambda: len(grasps()) >= 2, "a grasp and its end")
         self.assertEqual(grasps(), list(kinds))
         hands = [hand for frame in frames for hand in frame.hands]

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/parameters.h"
@@ -228,35 +228,6 @@ TEST(Faults, a_recording_that_loops_a_hundred_times_is_the_same_each_time) {
       ASSERT_EQ(hash(simulation.state()), second) << loop;
     }
   }
-}
-
-/// Seconds that it takes to add a ball at a place of its own on a grid: the least of a few.
-double time_to_add(LiveSimulation& live, int first) {
-  double least = 1e9;
-  for (int i = first; i < first + 10; ++i) {
-    Body ball = testing::ball_body(0.02, 0.05);
-    ball.name = "ball_" + std::to_string(i);
-    ball.start.position = Vector3(-1.0 + 0.1 * (i % 10), -1.0 + 0.1 * (i / 10 % 10), 0.2 + 0.1 * (i / 100));
-    const auto begin = std::chrono::steady_clock::now();
-    live.add(ball);
-    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  }
-  return least;
-}
-
-TEST(Faults, a_thousand_objects_that_are_added_cost_each_no_more_than_in_proportion_to_what_is_there) {
-  LiveSimulation live(cube(), unfiltered(ContactModelKind::implicit));
-  double at_hundred = 0.0, at_thousand = 0.0;
-  for (int i = 0; i < 1000; i += 10) {
-    const double time = time_to_add(live, i);
-    if (i == 100) at_hundred = time;
-    at_thousand = time;
-    ASSERT_EQ(live.simulation().advance({at(0.001 * i), {pushing(0.0)}}), Rejection::none);
-  }
-  EXPECT_EQ(live.simulation().scene().bodies.size(), 1001u);
-  EXPECT_LT(at_thousand, 20.0 * at_hundred) << "proportion would be 9.3";
-  RecordProperty("microseconds_at_100", static_cast<int>(1e6 * at_hundred));
-  RecordProperty("microseconds_at_1000", static_cast<int>(1e6 * at_thousand));
 }
 
 }  // namespace

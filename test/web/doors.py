@@ -13,6 +13,7 @@ sys.path.insert(0, os.path.join(PACKAGE, 'scripts'))
 from web import picture, server  # noqa: E402
 
 TOKEN = 'secret'
+LONGEST = 600.0  # [s], far beyond what is needed, however busy the machine is
 
 
 def three_folder(folder):
@@ -88,7 +89,7 @@ def hands(device, value=0.0625):
     return struct.pack('<d200f50B', 1e3 * device, *(200 * [value]), *(50 * [2]))
 
 
-async def answer_until(socket, done, longest=60.0):
+async def answer_until(socket, done, longest=LONGEST):
     """Answers pings until done(kind, content)."""
     end = time.monotonic() + longest
     while time.monotonic() < end:

@@ -16,13 +16,12 @@ THREE = '/usr/share/javascript/three'
 if not os.path.exists(THREE):
     MISSING = MISSING or 'three.js is not installed (Debian: libjs-three)'
 try:
-    from doors import RunningDoor
+    from doors import LONGEST, RunningDoor
 except ImportError:
     MISSING = MISSING or 'aiohttp is not installed (Debian: python3-aiohttp)'
 if MISSING:
     raise unittest.SkipTest(MISSING)
 
-LONGEST = 120.0  # [s], far beyond what is needed
 HOLD = 1.5  # [s] for which two hands pinch: they take the scene after 1 s
 CUBE = (0.902, 0.624, 0.0)
 

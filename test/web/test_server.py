@@ -19,7 +19,7 @@ try:
     import aiohttp
 except ImportError:
     raise unittest.SkipTest('aiohttp is not installed (Debian: python3-aiohttp)')
-from doors import TOKEN, RunningDoor, answer_until, hands, put_hands_in  # noqa: E402
+from doors import LONGEST, TOKEN, RunningDoor, answer_until, hands, put_hands_in  # noqa: E402
 from web import certificate, messages, picture, server  # noqa: E402
 
 FRAME = 1.0 / 60  # [s]
@@ -46,7 +46,7 @@ def rendered_hands(count):
     return types.SimpleNamespace(hands=count * [hand])
 
 
-def wait_until(holds, what, longest=60.0):
+def wait_until(holds, what, longest=LONGEST):
     end = time.monotonic() + longest
     while not holds():
         if time.monotonic() > end:
@@ -64,7 +64,7 @@ class DoorTest(unittest.TestCase):
         """visit(door, session), a coroutine; the door's log stays in self.lines."""
         async def run(door):
             async with aiohttp.ClientSession() as session:
-                return await asyncio.wait_for(visit(door, session), 120)
+                return await asyncio.wait_for(visit(door, session), LONGEST)
         with RunningDoor(self.folder, **options) as door:
             self.lines = door.port.lines
             return asyncio.run(run(door))
@@ -105,7 +105,7 @@ class DoorTest(unittest.TestCase):
                         try:
                             await getattr(sender, send)(large if send == 'send_str' else large.encode())
                             while not sender.closed:
-                                await sender.receive(timeout=60)
+                                await sender.receive(timeout=LONGEST)
                         except OSError:
                             pass  # it was ended while most of it had not been sent
                 await answer_until(looker, lambda kind, content: kind == 'ping')
@@ -128,7 +128,7 @@ class DoorTest(unittest.TestCase):
                     return len(refused)
                 try:
                     for _ in range(1000):
-                        crowd.append(socket.create_connection(('127.0.0.1', door.number), timeout=60))
+                        crowd.append(socket.create_connection(('127.0.0.1', door.number), timeout=LONGEST))
                         crowd[-1].setblocking(False)
                         await asyncio.sleep(0)
                     await answer_until(looker, lambda kind, content: kind == 'ping')
@@ -181,7 +181,7 @@ class DoorTest(unittest.TestCase):
                 async with door.connect(session) as sender:
                     await sender.send_str(message)
                     while True:
-                        reply = await sender.receive(timeout=60)
+                        reply = await sender.receive(timeout=LONGEST)
                         if reply.type == aiohttp.WSMsgType.CLOSE:
                             break
                     self.assertEqual(reply.data, 1008)
@@ -307,7 +307,7 @@ class DoorTest(unittest.TestCase):
                 settling, server.SETTLING = server.SETTLING, 2.0  # a busy machine has time for some frames
                 self.addCleanup(setattr, server, 'SETTLING', settling)
                 await headset.send_json({'place': [1, 0, 0, 0, 0, 0, 1]})
-                end = time.monotonic() + 60.0
+                end = time.monotonic() + LONGEST
                 while not door.port.taken or door.port.taken[-1][3] != 'headset_1_2':
                     self.assertLess(time.monotonic(), end, 'the new frame')
                     await headset.send_bytes(hands(time.monotonic()))

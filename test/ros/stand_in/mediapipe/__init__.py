@@ -1,6 +1,6 @@
-"""A stand-in for MediaPipe's hand landmarker with the names that its tasks API documents. In the picture it finds the next
-row of the recording $MEDIAPIPE_STAND_IN (CSV, 30 Hz, in the Leap's frame), as a camera sees it that stands at $CAMERA, in that
-frame, and looks along its -y: from above, x right, z down."""
+"""A stand-in for MediaPipe's hand landmarker with the names that its tasks API documents. Once the file $MEDIAPIPE_STAND_IN
+exists (CSV, 30 Hz, in the Leap's frame), it finds the next row in each picture, as a camera sees it that stands at $CAMERA, in
+that frame, and looks along its -y: from above, x right, z down."""
 import csv
 import enum
 import math
@@ -44,9 +44,7 @@ def camera_joints(row):
 class HandLandmarker:
     def __init__(self, options):
         assert options.running_mode is RunningMode.VIDEO
-        with open(os.environ["MEDIAPIPE_STAND_IN"], encoding="utf-8") as lines:
-            self._rows = list(csv.DictReader(lines))
-        self._last = -1
+        self._rows, self._last = None, -1
 
     @classmethod
     def create_from_options(cls, options):
@@ -62,6 +60,9 @@ class HandLandmarker:
         if timestamp_ms <= self._last:
             raise ValueError("Input timestamp must be monotonically increasing.")
         self._last = timestamp_ms
+        if self._rows is None and os.path.isfile(os.environ["MEDIAPIPE_STAND_IN"]):
+            with open(os.environ["MEDIAPIPE_STAND_IN"], encoding="utf-8") as lines:
+                self._rows = list(csv.DictReader(lines))
         row = self._rows.pop(0) if self._rows else None
         if row is None or not row["palm_x"]:
             return Fields(hand_landmarks=[], hand_world_landmarks=[], handedness=[])
