@@ -10,9 +10,9 @@ namespace {
 constexpr double kPadDepth = 0.003;
 /// A hand that is deeper in a fixture is rendered elsewhere, and grasps nothing where it is tracked [m].
 constexpr double kBuriedDepth = 0.015;
-/// Compliance of a light touch beyond its depth: more than any finger moves in a step, so that it applies no
-/// force within the step either [m].
-constexpr double kLightCompliance = 1.0;
+/// Compliance, beyond its depth, of a hand inside a body that it must not grasp: more than any finger moves
+/// in a step, so that it applies no force within the step either [m].
+constexpr double kNoForceCompliance = 1.0;
 /// Rate at which a finger that has stopped without an opposing contact regains its force [m/s].
 constexpr double kRecoverySpeed = 0.03;
 /// Distance of a body from its place in the hand at which the grip becomes active [m].
@@ -132,7 +132,12 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   closing_.clear();
   if (!objects_.any_graspable()) return state.grips.clear();
-  const auto is_over = [&](Grip& grip) { return ends(state, grip); };
+  const auto is_over = [&](Grip& grip) {
+    const bool was_released = grip.released;
+    if (ends(state, grip)) return true;
+    if (grip.released && !was_released) relax_contacts(grip, state);
+    return false;
+  };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
@@ -197,8 +202,8 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
   return true;
 }
 
-/// True if the grip is over. A hand that releases a body that it supported is still inside it: it applies no
-/// force until it has left the body, or closes on it again.
+/// True if the grip is over. A hand that releases a body that it supported is still inside it: it touches it
+/// lightly until it has left the body, or closes on it again.
 bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   if (grip.lost) return track.active && !resumes(state, grip);
@@ -216,6 +221,17 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   grip.released = grip.active && objects_.object_of(grip.body).size() == 1;
   grip.active = false;
   return !grip.released;
+}
+
+/// Ends the forces of the grip's contacts.
+void GraspAssist::relax_contacts(const Grip& grip, SimulationState& state) const {
+  for (Contact& contact : state.contacts) {
+    const bool of_grip =
+        is_base(grip.by_palm, contact.key.capsule) ||
+        (!is_base(true, contact.key.capsule) && grip.takes_part(finger_of(contact.key.capsule)));
+    if (of_grip && objects_.is_in(grip, contact.key.hand, contact.key.body))
+      contact.compliance = std::max(contact.depth, 0.0);
+  }
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
@@ -343,24 +359,33 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   }
 }
 
-/// Sets the contact's compliance. A closing finger touches without force until another part of the hand
-/// opposes it. A finger that has stopped before that regains its force slowly.
+/// Sets the contact's compliance. A finger that closes on a body touches it lightly until another part of the
+/// hand opposes it, and so does a hand that has released it: the finger's own motion adds no force. It
+/// resists the body's motion, so it still carries what it carried, and what falls onto it. A finger that has
+/// stopped without an opposing contact regains its force slowly.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
   const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
     return grip.released && objects_.is_in(grip, contact.key.hand, contact.key.body);
   });
-  if (!released && contact.compliance <= 0.0 && (closing_.empty() || contact.depth > 0.0)) return;
+  if (!released && contact.compliance <= 0.0 && closing_.empty()) return;
   const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
     return pair.hand == contact.key.hand && objects_.same_object(pair.body, contact.key.body);
   });
   const bool opposed = closes && objects_.is_opposed(contact, state.contacts);
-  if (released || (closes && !opposed)) {
-    contact.struck = true;
-    contact.compliance = std::max(contact.depth, 0.0) + kLightCompliance;
-  } else {
-    const double kept = std::min(contact.compliance, contact.depth) - kRecoverySpeed * step;
-    contact.compliance = opposed ? 0.0 : std::max(kept, 0.0);
+  const double kept = std::min(contact.compliance, std::max(contact.depth, 0.0));
+  if (!released && (!closes || opposed)) {
+    contact.compliance = opposed ? 0.0 : std::max(kept - kRecoverySpeed * step, 0.0);
+    return;
   }
+  contact.struck = true;
+  if (objects_.mode_of(contact.key.body) == GraspMode::never) {
+    contact.compliance = std::max(contact.depth, 0.0) + kNoForceCompliance;
+    return;
+  }
+  Vector3 velocity = contact.hand_velocity;
+  if (const CarrierMotion* carrier = operators_.carrier(contact.key.hand))
+    velocity -= carrier->velocity(contact.hand_point);
+  contact.compliance = kept + step * std::max(0.0, -contact.normal.dot(velocity));
 }
 
 /// Sets position and velocity of the springs' ends on the hand.
@@ -419,12 +444,25 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
   return largest;
 }
 
+/// True if another hand has the object between both of its contact groups.
+bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& grip) const {
+  return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& other) {
+    return other.hand != grip.hand && !other.released && !other.lost &&
+           objects_.same_object(other.body, grip.body) &&
+           objects_.touching_sides(other, state.contacts).both();
+  });
+}
+
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!objects_.any_graspable()) return;
   take_held_objects(fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = objects_.touching_sides(grip, state.contacts).both();
+    if (!touching && is_held_elsewhere(state, grip)) {
+      grip.active = false;
+      continue;
+    }
     const bool lost = touching ? objects_.slips(grip, state.contacts) ||
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;

@@ -11,8 +11,8 @@ namespace mrhi {
 
 /// Grasp assist, for hands that feel nothing and close through things. Two parts:
 ///
-/// Compliance: a finger that closes on a body touches it without force until another part of the hand touches
-/// an opposite face. The first finger then does not knock the body away.
+/// Compliance: a finger that closes on a body adds no force by its own motion until another part of the hand
+/// touches an opposite face. The first finger then does not knock the body away.
 ///
 /// Support: a hand that has a body between two opposing sides, deeper than a fingertip pad, takes it (Grip).
 /// Contacts act as ever. The grip becomes active only if the body slips, or its contacts no longer oppose
@@ -46,6 +46,8 @@ class GraspAssist {
   bool ends(const SimulationState& state, Grip& grip) const;
   bool resumes(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
+  void relax_contacts(const Grip& grip, SimulationState& state) const;
+  bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
   void take_held_objects(double fraction, SimulationState& state) const;

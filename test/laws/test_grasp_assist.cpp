@@ -161,6 +161,96 @@ TEST(GraspAssist, an_object_says_itself_whether_it_is_assisted) {
 }
 
 // Of the 10 cm by which the hand carries others it makes only what fingers gave it as they closed.
+/// Adds three fingertips under a horizontal face at height `z`, 12 mm and more from its middle, in the first
+/// tenth of a second 2 mm lower: a hand that appears in a body does not touch it.
+void carry_from_below(Hand& hand, double t, double z) {
+  if (t < 0.1) z -= 0.002;
+  const double x[] = {0.012, -0.012, 0.0}, y[] = {-0.008, -0.008, 0.014};
+  for (const int finger : {2, 3, 4})
+    testing::add_fingertip(hand, capsule_index(finger, 3), Vector3(x[finger - 2], y[finger - 2], z),
+                           -Vector3::UnitZ(), 1.0, Vector3::UnitY());
+}
+
+/// The same cube at 1 g.
+Scene heavy_cube(double friction) {
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.3);
+  cube.material.static_friction = cube.material.dynamic_friction = friction;
+  Scene scene = testing::scene_of(cube);
+  scene.gravity = Vector3(0, 0, -9.81);
+  return scene;
+}
+
+// The thumb comes down from above as the fingers come up by 2 cm, so they close on the cube. They lift it a
+// little before they are seen to close.
+TEST(GraspAssist, closing_fingers_carry_what_lies_on_them_and_do_not_lift_it) {
+  constexpr double kUp = 0.02, kClosed = 0.45;
+  Simulation simulation(heavy_cube(0.8), Configuration());
+  bool closes = false;
+  const auto hand_at = [](double t) {
+    Hand hand = testing::empty_hand();
+    const double closed = std::min(std::max(0.0, t - 0.25) / 0.2, 1.0);
+    testing::add_fingertip(hand, capsule_index(0, 3), Vector3(0, 0, kHalf + 0.06 - 0.03 * closed),
+                           Vector3::UnitZ());
+    carry_from_below(hand, t, -kHalf + kUp * closed);
+    return hand;
+  };
+  testing::play(simulation, 0.0, kClosed, 120.0, hand_at, [&](const Simulation& s) {
+    for (const Contact& contact : s.state().contacts) closes = closes || contact.compliance > 0.0;
+  });
+  EXPECT_TRUE(closes);
+  EXPECT_NEAR(simulation.state().bodies[0].pose.position.z(), 0.0, 0.005);
+}
+
+// Thumb and index hold the cube too slippery to carry it: it sinks by 5 mm onto three other fingers. They
+// keep it as thumb and index let go.
+TEST(GraspAssist, a_hand_that_releases_still_carries_what_lies_on_its_other_fingers) {
+  constexpr double kDown = 0.005;
+  Simulation simulation(heavy_cube(0.02), Configuration());
+  bool supported = false, released = false;
+  const auto hand_at = [](double t) {
+    const double opened = 0.4 * testing::smooth(t - 0.9, 0.3);
+    Hand hand = reaching(std::min(t / 0.2, 1.0) - opened, 0.012, 0.0);
+    carry_from_below(hand, t, -kHalf - kDown * testing::smooth(t - 0.3, 0.2));
+    return hand;
+  };
+  testing::play(simulation, 0.0, 1.5, 120.0, hand_at, [&](const Simulation& s) {
+    for (const Grip& grip : s.state().grips) {
+      supported = supported || grip.active;
+      released = released || grip.released;
+    }
+  });
+  EXPECT_TRUE(supported);
+  EXPECT_TRUE(released);
+  EXPECT_NEAR(simulation.state().bodies[0].pose.position.z(), -kDown, 0.0015);
+}
+
+// Both hands hold a bar. The first one, with one finger more, pulls it off the second one's index.
+TEST(GraspAssist, a_hand_without_one_of_its_sides_does_not_pull_at_what_the_other_hand_holds) {
+  constexpr double kDeep = 0.006, kPulled = 0.03, kAside = 0.015;
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3(2.0 * kHalf, 0.1, 0.1), 0.3)),
+                        Configuration());
+  const auto hands_at = [=](double t) {
+    const double closed = std::min(t / 0.2, 1.0), in = kFingersAway - closed * (kFingersAway - kHalf + kDeep);
+    Hand first = reaching(closed, kDeep, 0.0);
+    testing::add_fingertip(first, capsule_index(2, 3), Vector3(in, 0, -kAside), Vector3::UnitX(), 1.2);
+    Pose pulled;
+    pulled.position.x() = -kPulled * testing::smooth(t - 0.6, 0.2);
+    Hand second = reaching(closed, kDeep, 0.0, Vector3(0, 0.02, 0));
+    second.id = 2;
+    second.side = Side::left;
+    return std::vector<Hand>{testing::moved(first, pulled), second};
+  };
+  std::array<int, 2> supported{};
+  for (int i = 0; i <= 160; ++i) {
+    const double t = i / 120.0;
+    ASSERT_EQ(simulation.advance({testing::at(t), hands_at(t)}), Rejection::none);
+    for (const GraspSupport& support : simulation.result().assists)
+      if (t > 0.85) ++supported[support.hand];
+  }
+  EXPECT_GT(supported[0], 0);
+  EXPECT_EQ(supported[1], 0);
+}
+
 TEST(GraspAssist, what_is_never_grasped_is_pushed_and_not_carried) {
   for (const bool parameter : {true, false}) {
     const ModeOutcome never = outcome_of(GraspMode::never, parameter);
