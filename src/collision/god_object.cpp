@@ -166,6 +166,11 @@ void begin_contact(const TouchingPair& pair, int point, const ContactMemory* mem
   contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged || pair.moving.appeared;
 }
 
+/// A hand or a body that appears beside the other, without overlap, touches it from then on.
+void keep_if_apart(const ContactMemory* nearest, Contact& contact) {
+  if (nearest == nullptr && contact.depth <= 0.0) contact.ignored = false;
+}
+
 /// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a
 /// phalanx that lies flat and for one that stands on its tip. With d_a, d_b > 0 shares are d_a / (d_a + d_b)
 /// and the rest, so that the push is gamma (d_a^2 + d_b^2) / (d_a + d_b): gamma d for d_a = d_b = d,
@@ -195,6 +200,7 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
     begin_contact(pair, point, nearest, nullptr, now[0]);
     if (!plane.entry) now[0].at_edge = span.at_edge && pair.refinements.edge_grip;
     place(press, plane.entry ? press.deepest_end() : features.axis_parameter, nearest, now[0]);
+    keep_if_apart(nearest, now[0]);
     return 1;
   }
   for (const int point : {0, 1}) {
@@ -202,6 +208,7 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
     begin_contact(pair, point, from, nearest, now[point]);
     now[point].at_edge = false;
     place(press, point == 0 ? span.s0 : span.s1, from, now[point]);
+    keep_if_apart(nearest, now[point]);
   }
   share_load(now[0], now[1]);
   return 2;

@@ -166,5 +166,16 @@ TEST(Appearing, a_hand_that_jumps_onto_an_object_leaves_it_in_peace) {
   EXPECT_LE(object_twist(simulation).linear.norm(), 1e-12);
 }
 
+// It appears a tenth of a millimetre from the cube's face, within the distance at which contacts are found.
+TEST(Appearing, a_hand_that_appears_beside_an_object_pushes_it) {
+  constexpr double kGap = 0.0001, kSpeed = 0.2;
+  Simulation simulation(scene_of(cube()), unfiltered());
+  play(simulation, 0.0, 0.2, 120.0, [](double t) {
+    const double x = kHalf + kRadius + kGap - kSpeed * t;
+    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius);
+  });
+  EXPECT_LT(simulation.state().bodies[0].pose.position.x(), -0.5 * kSpeed * 0.2);
+}
+
 }  // namespace
 }  // namespace mrhi
