@@ -44,8 +44,9 @@ AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestF
 /// Distance from `point` along the unit vector `direction` to where this line leaves the shape, < 0 if that
 /// lies behind the point [m]. Shape's frame. Nothing if the line misses the shape, or for a mesh. A line is
 /// inside a convex shape for one interval in..out of t, x = point + t direction: this is the out.
-inline std::optional<double> way_out(const Shape& shape, const Vector3& point, const Vector3& direction) {
-  return std::visit([&](const auto& asked) { return asked.way_out(point, direction); }, shape);
+inline std::optional<double> exit_distance(const Shape& shape, const Vector3& point,
+                                           const Vector3& direction) {
+  return std::visit([&](const auto& asked) { return asked.exit_distance(point, direction); }, shape);
 }
 
 }  // namespace mrhi

@@ -47,8 +47,8 @@ struct PairMemory {
 ///     depth(s) = n.(q - a(s)) + r = n.(c - p),   c the god object, p = a(s) - r n,
 /// linear in s. It is measured in the body's frame, where the plane stands still, but velocities are those in
 /// world.
-struct Press {
-  Press(const TouchingPair& of, const ContactPlane& on)
+struct Indentation {
+  Indentation(const TouchingPair& of, const ContactPlane& on)
       : pair(of),
         plane(on),
         along(of.in_body.end - of.in_body.start),
@@ -82,19 +82,19 @@ struct Press {
 /// Zilles & Salisbury 1995: the point of the active plane nearest to the finger's point, which is its
 /// projection x + n n.(q - x). A single plane is active, that of the entry face; where faces meet, the
 /// nearest features choose.
-Vector3 god_object(const Press& press, double s, const Contact* pressed) {
+Vector3 god_object(const Indentation& indentation, double s, const Contact* pressed) {
   const Vector3 point = pressed != nullptr
-                            ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * press.along)
-                            : Vector3(press.pair.in_body.start + s * press.along);
-  return point + press.plane.normal.dot(press.plane.point - point) * press.plane.normal;
+                            ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * indentation.along)
+                            : Vector3(indentation.pair.in_body.start + s * indentation.along);
+  return point + indentation.plane.normal.dot(indentation.plane.point - point) * indentation.plane.normal;
 }
 
 /// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
-/// holds as if it had been pushed back to the surface the way it came, which is remembered in the palm. Over
+/// holds as if it had been pushed back to the surface along its path, which is remembered in the palm. Over
 /// an edge the nearest point stays while the skin rolls past it: there it is the axis that has moved, about
-/// the edge, from the way it came.
+/// the edge, along its path.
 ///
-/// With w the way back (palm * touched_from) and d the depth: p + d w, held against p + d n, is off by
+/// With w the direction back (palm * touched_from) and d the depth: p + d w, held against p + d n, is off by
 /// d (w - (n.w) n) along the surface. At an edge the axis's point is r - d off it, along n now, along w as it
 /// came: it has gone (r - d)(n - w), of which across n is left (d - r)(w - (n.w) n).
 Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
@@ -111,7 +111,7 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
   if (held != nullptr) {
     contact.lever = lever(palm, held->at_edge, contact);
     if (held->at_edge == contact.at_edge) return;
-    // The stretch stored on a face continues at the edge, and the other way round.
+    // The stretch stored on a face continues at the edge, and vice versa.
     contact.point -= contact.lever;
     contact.god_object = pair.moving.to_local(contact.point);
     contact.lever.setZero();
@@ -123,31 +123,31 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
 ///
 /// The patch is Hertz's, a^2 = r d for a ball of radius r pressed in by d (Johnson 1985), whose depth counts
 /// up to r.
-void place(const Press& press, double s, const Contact* memory, Contact& contact) {
-  const ContactConfiguration& refinements = press.pair.refinements;
-  contact.depth = press.depth(s);
+void place(const Indentation& indentation, double s, const Contact* memory, Contact& contact) {
+  const ContactConfiguration& refinements = indentation.pair.refinements;
+  contact.depth = indentation.depth(s);
   const bool pressed = refinements.anchors && memory != nullptr && memory->depth > 0.0 && contact.depth > 0.0;
-  contact.god_object = god_object(press, s, pressed ? memory : nullptr);
-  contact.entry_normal = press.plane.normal;
+  contact.god_object = god_object(indentation, s, pressed ? memory : nullptr);
+  contact.entry_normal = indentation.plane.normal;
   contact.axis_parameter = s;
   if (!pressed) {
     contact.friction = Friction::sticking;
     contact.twist = 0.0;
   }
-  const Capsule& capsule = press.pair.in_world;
-  contact.point = press.pair.moving.to_world(contact.god_object);
-  contact.normal = press.normal;
-  contact.hand_point = capsule.start + s * press.motion.axis - capsule.radius * press.normal;
-  contact.hand_velocity = press.start_velocity + s * press.motion.spread;
-  contact.hand_spin = press.spin;
-  contact.axis = press.motion.axis;
+  const Capsule& capsule = indentation.pair.in_world;
+  contact.point = indentation.pair.moving.to_world(contact.god_object);
+  contact.normal = indentation.normal;
+  contact.hand_point = capsule.start + s * indentation.motion.axis - capsule.radius * indentation.normal;
+  contact.hand_velocity = indentation.start_velocity + s * indentation.motion.spread;
+  contact.hand_spin = indentation.spin;
+  contact.axis = indentation.motion.axis;
   contact.radius = capsule.radius;
   contact.patch = std::sqrt(capsule.radius * std::clamp(contact.depth, 0.0, capsule.radius));
   contact.share = contact.grip = 1.0;
   contact.impulse.setZero();
   contact.time_of_impact = contact.torque = 0.0;
   const bool held = pressed && refinements.swing_back && contact.friction == Friction::sticking;
-  swing_back(press.pair, held ? memory : nullptr, contact);
+  swing_back(indentation.pair, held ? memory : nullptr, contact);
 }
 
 /// Contact `point` of the pair, continued from its memory or new. `nearest` is the state of the pair: a
@@ -192,14 +192,14 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
   const PairMemory memory(before, count, features.axis_parameter);
   const Contact* nearest = memory.nearest;
   const ContactPlane plane = contact_plane(pair, features, nearest);
-  const Press press(pair, plane);
-  const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 && press.reaches_surface(span.s0) &&
-                         press.reaches_surface(span.s1);
+  const Indentation indentation(pair, plane);
+  const bool lies_flat = pair.refinements.two_points && span.s1 > span.s0 &&
+                         indentation.reaches_surface(span.s0) && indentation.reaches_surface(span.s1);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
     begin_contact(pair, point, nearest, nullptr, now[0]);
     if (!plane.entry) now[0].at_edge = span.at_edge && pair.refinements.edge_grip;
-    place(press, plane.entry ? press.deepest_end() : features.axis_parameter, nearest, now[0]);
+    place(indentation, plane.entry ? indentation.deepest_end() : features.axis_parameter, nearest, now[0]);
     keep_if_apart(nearest, now[0]);
     return 1;
   }
@@ -207,7 +207,7 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
     const Contact* from = memory.of_point[point];
     begin_contact(pair, point, from, nearest, now[point]);
     now[point].at_edge = false;
-    place(press, point == 0 ? span.s0 : span.s1, from, now[point]);
+    place(indentation, point == 0 ? span.s0 : span.s1, from, now[point]);
     keep_if_apart(nearest, now[point]);
   }
   share_load(now[0], now[1]);

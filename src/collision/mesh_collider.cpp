@@ -79,7 +79,7 @@ class NearMemory {
       if (moved < least) least = moved, closest = i;
     }
     NearParts& entry = set.entries[closest];
-    if (least < entry.slack) return MeshNearest(shape.surface, segment, range, entry);
+    if (least < entry.margin) return MeshNearest(shape.surface, segment, range, entry);
     MeshNearest found = search();
     if (least < kMaxMotion) {
       entry = found.found() ? found.near_parts(shape.tree) : NearParts{};

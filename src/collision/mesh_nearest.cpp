@@ -69,12 +69,12 @@ void MeshNearest::search(const MeshTree& tree, double range) {
       tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });
 }
 
-/// All parts that may be the nearest one while the segment's ends have not moved by more than `slack`. A way
+/// All parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A way
 /// of s changes no distance by more than s: what was farther than the nearest by 2 s is then still not
 /// nearer. A face that is nearest at its border says nothing: it comes with the edges there.
 ///
-/// With d the nearest's distance and b that of the nearest part that is left out: after a way of s the
-/// nearest is no farther than d + s, and all left out no nearer than b - s, so that slack = (b - d) / 2.
+/// With d the nearest's distance and b that of the nearest part that is left out: after a displacement of s
+/// the nearest is no farther than d + s, and all left out no nearer than b - s, so that margin = (b - d) / 2.
 /// Faces beyond the first 28 and edges beyond the nearest 12 bring b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kMost - kEdgesKept;
@@ -129,7 +129,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   }
   if (near.count > NearParts::kMost) return {};
   near.start = segment_.start, near.end = segment_.end();
-  near.slack = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
+  near.margin = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
   return near;
 }
 
@@ -139,7 +139,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
 bool MeshNearest::is_below(const MeshTree::Node& node, double limit) const {
   const double along = facing_.dot(node.normal);
   const double slab = along > 0.0 ? along * node.top : -along * node.bottom;
-  const double below = least_ - limit - facing_.dot(node.centre) - slab;
+  const double below = min_height_ - limit - facing_.dot(node.centre) - slab;
   return below > 0.0 && below * below > (1.0 - along * along) * node.radius * node.radius;
 }
 
@@ -153,7 +153,7 @@ bool MeshNearest::is_too_far(int part, double limit) const {
     return std::min(start, end) > limit || std::max(start, end) < -limit;
   }
   const MeshSurface::Edge& edge = surface_.edges()[static_cast<std::size_t>(part - faces_)];
-  return least_ - facing_.dot(edge.start) - std::max(0.0, facing_.dot(edge.along)) > limit;
+  return min_height_ - facing_.dot(edge.start) - std::max(0.0, facing_.dot(edge.along)) > limit;
 }
 
 /// Ties go to the lesser number, whichever was measured first.
@@ -174,15 +174,15 @@ void MeshNearest::measure(int part, double range) {
 /// never leave anything out by it.
 void MeshNearest::face_nearest() {
   const double distance = nearest().distance;
-  facing_.setZero(), least_ = 0.0;
+  facing_.setZero(), min_height_ = 0.0;
   if (distance < 1e-6) return;
   facing_ = gap() / distance;
-  least_ = std::min(facing_.dot(segment_.start), facing_.dot(segment_.end()));
+  min_height_ = std::min(facing_.dot(segment_.start), facing_.dot(segment_.end()));
 }
 
 namespace {
 
-struct WayOut {
+struct Exit {
   double separation = -1e300;
   Vector3 normal = Vector3::UnitZ();
   Stretch stretch{0.5, 0.5};  // of the segment, that comes out last
@@ -194,19 +194,19 @@ struct WayOut {
 ///     separation = min over s of n.a(s) - height = n.start - height + min(rise, 0),
 /// and the end with the lesser n.a comes out last: the start if the segment rises, all of it if it is
 /// parallel.
-WayOut way_out(const Segment& segment, const MeshSurface& surface, int index) {
+Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index) {
   const MeshSurface::Face& face = surface.faces()[static_cast<std::size_t>(index)];
   const double rise = face.normal.dot(segment.along);
-  WayOut way;
-  way.face = index;
-  way.separation = face.normal.dot(segment.start) - face.height + std::min(rise, 0.0);
-  way.normal = face.normal;
-  way.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
-  const Stretch over = surface.over(face, segment, way.stretch.middle());
-  const Stretch through{std::max(over.s0, way.stretch.s0), std::min(over.s1, way.stretch.s1)};
-  way.through = through.s0 <= through.s1;
-  if (way.through) way.stretch = through;
-  return way;
+  Exit exit;
+  exit.face = index;
+  exit.separation = face.normal.dot(segment.start) - face.height + std::min(rise, 0.0);
+  exit.normal = face.normal;
+  exit.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
+  const Stretch over = surface.over(face, segment, exit.stretch.middle());
+  const Stretch through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
+  exit.through = through.s0 <= through.s1;
+  if (exit.through) exit.stretch = through;
+  return exit;
 }
 
 /// Across the segment and the edge, if that is a direction between those of the edge's faces. Seen along it,
@@ -235,9 +235,9 @@ std::optional<ClosestFeatures> leave_by_edge(const Segment& segment, const MeshS
   return ClosestFeatures{separation, normal, edge.start + t_held * edge.along, s_held};
 }
 
-class WayOutSearch {
+class ExitSearch {
  public:
-  WayOutSearch(const Segment& segment, const MeshSurface& surface, double known)
+  ExitSearch(const Segment& segment, const MeshSurface& surface, double known)
       : segment_(segment), surface_(surface), known_(known) {}
 
   bool found() const { return face_.face >= 0 || edge_index_ >= 0; }
@@ -246,7 +246,7 @@ class WayOutSearch {
   double cost(const MeshTree::Node& node) const {
     const double depth = node.depth(segment_);
     if (surface_.convex()) return depth;
-    return node.may_be_way_out(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
+    return node.may_be_exit(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
   }
   /// Less the best separation is the least depth so far; 1e-9 keeps ties, which the numbers decide.
   double limit() const { return -std::max({face_.separation, edge_.distance, known_}) + 1e-9; }
@@ -258,7 +258,7 @@ class WayOutSearch {
   /// Faces come before edges, and the first of those that are as deep.
   ClosestFeatures result(int fallback) {
     if (edge_.distance > face_.separation + kParallel) return edge_;
-    if (face_.face < 0) face_ = way_out(segment_, surface_, fallback);
+    if (face_.face < 0) face_ = exit_distance(segment_, surface_, fallback);
     const double s = face_.stretch.middle();
     return {face_.separation, face_.normal, segment_.at(s) - face_.separation * face_.normal, s, face_.face};
   }
@@ -267,7 +267,7 @@ class WayOutSearch {
   static constexpr double kNoWay = std::numeric_limits<double>::infinity();  // beyond any limit
 
   /// A convex solid has every plane as a bound, also from outside by rounding. Elsewhere a face that the
-  /// segment is above is no way out.
+  /// segment is above is no exit.
   bool allowed(double separation) const { return surface_.convex() || separation < kOnSurface; }
   void see_face(int index) {
     const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(index)];
@@ -276,23 +276,23 @@ class WayOutSearch {
     const bool better =
         separation > face_.separation || (separation == face_.separation && index < face_.face);
     if (!better || !allowed(separation)) return;
-    const WayOut way = way_out(segment_, surface_, index);
-    if (surface_.convex() || way.through) face_ = way;
+    const Exit exit = exit_distance(segment_, surface_, index);
+    if (surface_.convex() || exit.through) face_ = exit;
   }
   void see_edge(int index) {
     const MeshSurface::Edge& edge = surface_.edges()[static_cast<std::size_t>(index)];
     if (!edge.bulges) return;
-    const auto way = leave_by_edge(segment_, surface_, edge);
-    if (!way || !allowed(way->distance)) return;
+    const auto exit = leave_by_edge(segment_, surface_, edge);
+    if (!exit || !allowed(exit->distance)) return;
     const bool better =
-        way->distance > edge_.distance || (way->distance == edge_.distance && index < edge_index_);
-    if (better) edge_ = *way, edge_index_ = index;
+        exit->distance > edge_.distance || (exit->distance == edge_.distance && index < edge_index_);
+    if (better) edge_ = *exit, edge_index_ = index;
   }
 
   const Segment& segment_;
   const MeshSurface& surface_;
   const double known_;
-  WayOut face_;
+  Exit face_;
   ClosestFeatures edge_{-1e300, Vector3::UnitZ(), Vector3::Zero(), 0.5};
   int edge_index_ = -1;
 };
@@ -303,7 +303,7 @@ class WayOutSearch {
 /// the argument); the tree finds the least depth by best first.
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, const MeshTree& tree,
                            int fallback, const ClosestFeatures* known) {
-  WayOutSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);
+  ExitSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);
   tree.search([&](const MeshTree::Node& node) { return search.cost(node); }, [&] { return search.limit(); },
               [&](int part) { search.see(part); });
   if (known != nullptr && !search.found()) return *known;

@@ -6,13 +6,13 @@
 
 namespace mrhi {
 
-/// Parts that may be nearest to a segment whose ends are within `slack` of the given ones. All others are
+/// Parts that may be nearest to a segment whose ends are within `margin` of the given ones. All others are
 /// farther.
 struct NearParts {
   static constexpr std::size_t kMost = 40;
 
   Vector3 start = Vector3::Zero(), end = Vector3::Zero();
-  double slack = 0.0;  // [m]; 0: nothing is known
+  double margin = 0.0;  // [m]; 0: nothing is known
   std::array<int, kMost> parts;
   std::size_t count = 0;
 
@@ -38,7 +38,7 @@ class MeshNearest {
   /// The same where `near` holds for the segment: without a search.
   MeshNearest(const MeshSurface& surface, const Segment& segment, double range, const NearParts& near);
 
-  /// What was found, and how far that is so. Ends that move by up to the slack change no distance by more.
+  /// What was found, and how far that is so. Ends that move by up to the margin change no distance by more.
   NearParts near_parts(const MeshTree& tree) const;
 
   bool found() const { return nearest().distance <= range_; }
@@ -74,11 +74,11 @@ class MeshNearest {
   SurfaceNearest on_face_, on_edge_;
   int face_ = -1, edge_ = -1;
   Vector3 facing_ = Vector3::Zero();  // unit, from the nearest so far to the segment
-  double least_ = 0.0;                // that any of the segment reaches along it
+  double min_height_ = 0.0;           // that any of the segment reaches along it
 };
 
 /// The shortest translation that takes a segment, which cuts the surface or lies inside, out by a face or an
-/// edge along which the solid bulges; distance <= 0. Exact for a convex mesh. Elsewhere the way out has to
+/// edge along which the solid bulges; distance <= 0. Exact for a convex mesh. Elsewhere the exit has to
 /// lead through the face or edge itself; what the segment meets farther on is not looked at. Where there is
 /// none: out by the plane of the face `fallback`. A way that is `known` is the answer unless there is a
 /// shorter one.

@@ -59,7 +59,7 @@ double MeshTree::Node::depth(const Segment& segment) const {
 /// so that, times cos theta, |(c - x) across| cos theta <= n.(c - x) sin theta + r, as (sin theta, cos theta)
 /// is a unit vector and |c - p| <= r. At the greatest theta, and the greatest n.(c - x) of what may come out
 /// last, this is the widest.
-bool MeshTree::Node::may_be_way_out(const Segment& segment) const {
+bool MeshTree::Node::may_be_exit(const Segment& segment) const {
   if (cos_spread <= 0.1) return true;
   const double rise = normal.dot(segment.along), swing = sin_spread * segment.along.norm() + kParallel;
   // Of normals that all rise along the segment its start comes out last, of those that fall its end; else any

@@ -25,7 +25,7 @@ class MeshTree {
     double depth(const Segment& segment) const;
     /// False if no part is where a straight way along its normal leads from what of the segment comes out
     /// last.
-    bool may_be_way_out(const Segment& segment) const;
+    bool may_be_exit(const Segment& segment) const;
   };
 
   /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that

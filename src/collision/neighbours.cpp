@@ -55,12 +55,12 @@ constexpr double kMaxGap = 0.004;
 Neighbours::Neighbours(const Scene& scene)
     : scene_(scene),
       broad_phase_(scene.bodies.size()),
-      rooms_(scene.bodies.size()),
+      padded_(scene.bodies.size()),
       reaches_(kMaxHands),
       near_hand_(kMaxHands) {
   for (const Body& body : scene.bodies) boxes_.push_back(box_around(body));
   for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
-  for (Reach& reach : reaches_) reach.ways.reserve(kCapsules);
+  for (Reach& reach : reaches_) reach.paths.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
   untouching_ = overlaps_in_mechanisms(scene);
   for (const Joint& joint : scene.joints) untouching_.emplace_back(joint.parent, joint.child);
@@ -76,11 +76,11 @@ void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vec
   list_near_hands(bodies);
 }
 
-/// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place half-way at the part f of
-/// the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
+/// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place halfway at the fraction f
+/// of the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
 void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach) {
   reach.box.setEmpty();
-  reach.ways.clear();
+  reach.paths.clear();
   if (!hand.active) return;
   for (int c = 0; c < kCapsules; ++c) {
     const auto ci = static_cast<std::size_t>(c);
@@ -90,20 +90,20 @@ void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Rea
     Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
     const double longer_way =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
-    Way way{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
+    CapsulePath path{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
     if (carried != nullptr) {
       start = carried->rotation * start + carried->origin;
       end = carried->rotation * end + carried->origin;
-      way.start = start, way.along = end - start;
+      path.start = start, path.along = end - start;
       // Half of the displacement, and all of the turn, whose rotation is that of the start; of both ends.
       const double arm = std::sqrt(std::max((start - carried->centre).squaredNorm(),
                                             (end - carried->centre).squaredNorm())) +
-                         way.reach;
-      way.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
+                         path.reach;
+      path.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
     }
-    reach.box.extend(start.cwiseMin(end) - Vector3::Constant(way.reach));
-    reach.box.extend(start.cwiseMax(end) + Vector3::Constant(way.reach));
-    reach.ways.push_back(way);
+    reach.box.extend(start.cwiseMin(end) - Vector3::Constant(path.reach));
+    reach.box.extend(start.cwiseMax(end) + Vector3::Constant(path.reach));
+    reach.paths.push_back(path);
   }
 }
 
@@ -115,12 +115,12 @@ void Neighbours::begin_step(const std::vector<BodyState>& bodies, double step) {
 
 double Neighbours::reach_of(std::size_t body, const BodyState& state, double seconds) const {
   const Body& b = scene_.bodies[body];
-  const double way = b.fixed ? 0.0 : seconds * state.linear_momentum.norm() / b.mass;
-  return b.bounding_radius + way + kMaxGap;
+  const double travel = b.fixed ? 0.0 : seconds * state.linear_momentum.norm() / b.mass;
+  return b.bounding_radius + travel + kMaxGap;
 }
 
-/// The foot of the centre on the axis half-way, held in 0..1, is as near as it gets to it.
-bool Neighbours::Way::comes_near(const Vector3& centre, double radius) const {
+/// The foot of the centre on the axis halfway, clamped in 0..1, is as near as it gets to it.
+bool Neighbours::CapsulePath::comes_near(const Vector3& centre, double radius) const {
   const double length_squared = along.squaredNorm(), foot = along.dot(centre - start);
   const double s = foot <= 0.0 ? 0.0 : foot >= length_squared ? 1.0 : foot / length_squared;
   return (start + s * along - centre).squaredNorm() <= (reach + radius) * (reach + radius);
@@ -128,8 +128,8 @@ bool Neighbours::Way::comes_near(const Vector3& centre, double radius) const {
 
 /// By the planes of the box's faces. A gap in any of these three directions is one (separating axes): the
 /// greatest is a bound from below, loose beside edges and corners only.
-double Neighbours::Way::clearance(const Eigen::AlignedBox3d& box, const Pose& pose,
-                                  const Matrix3& rotation) const {
+double Neighbours::CapsulePath::clearance(const Eigen::AlignedBox3d& box, const Pose& pose,
+                                          const Matrix3& rotation) const {
   const Vector3 half_along = 0.5 * along;
   const Vector3 middle = rotation.transpose() * (start + half_along - pose.position) - box.center();
   const Vector3 half_length = (rotation.transpose() * half_along).cwiseAbs();
@@ -139,9 +139,9 @@ double Neighbours::Way::clearance(const Eigen::AlignedBox3d& box, const Pose& po
 bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double seconds) const {
   const Vector3& centre = state.pose.position;
   const double radius = reach_of(body, state, seconds);
-  const auto near = [&](const Way& way) { return way.comes_near(centre, radius); };
+  const auto near = [&](const CapsulePath& path) { return path.comes_near(centre, radius); };
   return std::any_of(reaches_.begin(), reaches_.end(), [&](const Reach& hand) {
-    return std::any_of(hand.ways.begin(), hand.ways.end(), near);
+    return std::any_of(hand.paths.begin(), hand.paths.end(), near);
   });
 }
 
@@ -151,26 +151,26 @@ bool Neighbours::may_meet(std::size_t a, std::size_t b, const std::vector<BodySt
   return apart <= reach_of(a, bodies[a], seconds) + reach_of(b, bodies[b], seconds);
 }
 
-/// A body leaves if |moved| + |v| step may exceed its slack, tested as 2 (moved^2 + (v step)^2) > slack^2
-/// without a root. A body that was just placed stays: its slack contains 2 v step, and the test needs sqrt(2)
-/// v step.
+/// A body leaves if |moved| + |v| step may exceed its padding, tested as 2 (moved^2 + (v step)^2) > padding^2
+/// without a root. A body that was just placed stays: its padding contains 2 v step, and the test needs
+/// sqrt(2) v step.
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {
   bool any = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = scene_.bodies[b];
     if (body.is_operator) continue;  // never placed, never found
-    Room& room = rooms_[b];
+    PaddedSphere& sphere = padded_[b];
     const double travel = body.fixed ? 0.0 : step / body.mass;
     const Vector3& position = bodies[b].pose.position;
     // Twice the sum of squares is no less than the square of the sum.
-    const double way = 2.0 * ((position - room.centre).squaredNorm() +
-                              travel * travel * bodies[b].linear_momentum.squaredNorm());
-    if (way <= room.slack_squared) continue;
+    const double moved_squared = 2.0 * ((position - sphere.centre).squaredNorm() +
+                                        travel * travel * bodies[b].linear_momentum.squaredNorm());
+    if (moved_squared <= sphere.padding_squared) continue;
     const double speed = body.fixed ? 0.0 : bodies[b].linear_momentum.norm() / body.mass;
-    const double slack =
+    const double padding =
         kMargin + kMarginFraction * body.bounding_radius + (kMarginTime + 2.0 * step) * speed;
-    room = {position, slack * slack, body.bounding_radius + slack + kMaxGap};
-    broad_phase_.update(static_cast<int>(b), position, room.radius);
+    sphere = {position, padding * padding, body.bounding_radius + padding + kMaxGap};
+    broad_phase_.update(static_cast<int>(b), position, sphere.radius);
     any = true;
   }
   return any;
@@ -180,15 +180,15 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
   for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
     const Reach& reach = reaches_[slot];
     near_hand_[slot].clear();
-    if (reach.ways.empty()) continue;
+    if (reach.paths.empty()) continue;
     for (const int body : broad_phase_.query(reach.box.min(), reach.box.max())) {
-      const Room& room = rooms_[static_cast<std::size_t>(body)];
+      const PaddedSphere& sphere = padded_[static_cast<std::size_t>(body)];
       const Pose& pose = bodies[static_cast<std::size_t>(body)].pose;
       const Matrix3 rotation = pose.orientation.toRotationMatrix();
       NearBody near{body, 0, pose, {}, {}};
-      for (const Way& way : reach.ways) {
-        if (!way.comes_near(room.centre, room.radius)) continue;
-        near.add(way.capsule, way.clearance(boxes_[static_cast<std::size_t>(body)], pose, rotation));
+      for (const CapsulePath& path : reach.paths) {
+        if (!path.comes_near(sphere.centre, sphere.radius)) continue;
+        near.add(path.capsule, path.clearance(boxes_[static_cast<std::size_t>(body)], pose, rotation));
       }
       if (near.count > 0) near_hand_[slot].push_back(near);
     }

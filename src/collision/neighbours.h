@@ -74,10 +74,10 @@ struct NearBody {
   const std::uint8_t* end() const { return capsules.data() + count; }
 };
 
-/// The frame in which a hand is tracked, half-way through a frame of input.
+/// The frame in which a hand is tracked, halfway through a frame of input.
 struct CarriedFrame {
   Matrix3 rotation;                ///< in world, at the start
-  Vector3 origin, centre;          ///< of the frame half-way, of the carrier's mass at the start [m]
+  Vector3 origin, centre;          ///< of the frame halfway, of the carrier's mass at the start [m]
   double speed = 0.0, spin = 0.0;  ///< of the carrier [m/s], [rad/s]
   double seconds = 0.0;            ///< of the frame of input
   double margin = 0.0;             ///< largest distance of what the carrier does from that [m]
@@ -114,13 +114,13 @@ class Neighbours {
   const std::vector<int>& paired() const { return paired_; }
 
  private:
-  struct Room {
+  struct PaddedSphere {
     Vector3 centre = Vector3::Zero();
-    double slack_squared = -1.0;  // of the way that the body may go from there [m^2]
-    double radius = 0.0;          // of the sphere that holds the body and the gap that is followed [m]
+    double padding_squared = -1.0;  // of the distance that the body may move from there [m^2]
+    double radius = 0.0;            // of the sphere that holds the body and the gap that is followed [m]
   };
-  /// A capsule's axis half-way through the frame, and how far from it the capsule reaches in the frame.
-  struct Way {
+  /// A capsule's axis halfway through the frame, and how far from it the capsule reaches in the frame.
+  struct CapsulePath {
     bool comes_near(const Vector3& centre, double radius) const;
     double clearance(const Eigen::AlignedBox3d& box, const Pose& pose, const Matrix3& rotation) const;
 
@@ -130,7 +130,7 @@ class Neighbours {
   };
   struct Reach {
     Eigen::AlignedBox3d box;  // of a hand in this frame; empty without a hand
-    std::vector<Way> ways;
+    std::vector<CapsulePath> paths;
   };
   static void measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach);
   /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
@@ -143,7 +143,7 @@ class Neighbours {
   const Scene& scene_;
   BroadPhase broad_phase_;
   std::vector<Eigen::AlignedBox3d> boxes_;
-  std::vector<Room> rooms_;
+  std::vector<PaddedSphere> padded_;
   std::vector<Reach> reaches_;
   std::vector<std::vector<NearBody>> near_hand_;
   std::vector<std::pair<int, int>> pairs_, untouching_;  // sorted

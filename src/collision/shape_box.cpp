@@ -61,7 +61,7 @@ ClosestFeatures over_face(const Capsule& capsule, const Vector3& half) {
 }
 
 /// A direction in which the axis can leave the box: `separation` < 0 is how far it has to go.
-struct BoxWayOut {
+struct BoxExit {
   double separation = -1e300;
   Vector3 normal;
   int dimension = 0;
@@ -76,9 +76,9 @@ struct BoxWayOut {
 /// It is the separating-axis test of a box and a segment (Ericson, Real-Time Collision Detection, 5.3.3), of
 /// which the greatest value is kept instead of a yes or no. Of an axis along e_i the cross product is zero,
 /// and a face is as good.
-BoxWayOut leaving(const Segment& axis, const Vector3& half) {
+BoxExit leaving(const Segment& axis, const Vector3& half) {
   const Vector3 middle = axis.middle(), reach = 0.5 * axis.along.cwiseAbs();
-  BoxWayOut best;
+  BoxExit best;
   for (int i = 0; i < 3; ++i) {
     const double separation = std::abs(middle[i]) - reach[i] - half[i];
     if (separation > best.separation) {
@@ -99,32 +99,32 @@ BoxWayOut leaving(const Segment& axis, const Vector3& half) {
 
 /// The end that is deeper, along the normal n, comes out last: the start where n.along > 0. Where the axis is
 /// level all of it comes out at once, and the middle of what is over the face stands for it.
-ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
-  const int i = way.dimension;
-  double s = way.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
+ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const BoxExit& exit) {
+  const int i = exit.dimension;
+  double s = exit.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
   if (axis.along[i] == 0.0) {
     Stretch over;
     for (const int j : {(i + 1) % 3, (i + 2) % 3}) over.clip_to_slab(axis.start[j], axis.along[j], half[j]);
     s = over.middle();
   }
   Vector3 point = axis.at(s).cwiseMax(-half).cwiseMin(half);
-  point[i] = way.normal[i] * half[i];
-  return {way.separation, way.normal, point, s};
+  point[i] = exit.normal[i] * half[i];
+  return {exit.separation, exit.normal, point, s};
 }
 
 /// The edge runs along e_i at the corner that n points to. Across e_i n is across the axis too, so that the
 /// axis, moved out by -separation n, passes the edge where it is nearest to it now: at the foot s =
 /// across.(edge - start) / across^2, with `across` the axis seen along e_i. Along e_i both are at one height.
-ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const BoxWayOut& way) {
-  const int i = way.dimension;
+ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const BoxExit& exit) {
+  const int i = exit.dimension;
   Vector3 edge;
-  for (int j = 0; j < 3; ++j) edge[j] = way.normal[j] < 0.0 ? -half[j] : half[j];
+  for (int j = 0; j < 3; ++j) edge[j] = exit.normal[j] < 0.0 ? -half[j] : half[j];
   Vector3 across = axis.along;
   across[i] = 0.0;
   double s = across.dot(edge - axis.start) / across.squaredNorm();
   s = std::max(0.0, std::min(s, 1.0));
   edge[i] = std::max(-half[i], std::min(axis.at(s)[i], half[i]));
-  return {way.separation, way.normal, edge, s};
+  return {exit.separation, exit.normal, edge, s};
 }
 
 }  // namespace
@@ -142,8 +142,8 @@ ClosestFeatures capsule_box(const Capsule& capsule, const Box& box) {
   const Vector3 gap = axis_point - point;
   const double distance = gap.norm();
   if (distance > kOnSurface) return {distance - capsule.radius, gap / distance, point, s};
-  const BoxWayOut way = leaving(axis, half);
-  ClosestFeatures features = way.by_face ? leave_by_face(axis, half, way) : leave_by_edge(axis, half, way);
+  const BoxExit exit = leaving(axis, half);
+  ClosestFeatures features = exit.by_face ? leave_by_face(axis, half, exit) : leave_by_edge(axis, half, exit);
   features.distance -= capsule.radius;
   return features;
 }
@@ -183,7 +183,7 @@ Vector3 Box::farthest(const Vector3& n) const {
   return (n.array() < 0.0).select(-half_extents, half_extents);
 }
 
-std::optional<double> Box::way_out(const Vector3& point, const Vector3& direction) const {
+std::optional<double> Box::exit_distance(const Vector3& point, const Vector3& direction) const {
   Chord chord;
   for (int i = 0; i < 3; ++i) chord.clip_to_slab(point[i], direction[i], half_extents[i]);
   return chord.out();

@@ -214,7 +214,7 @@ Vector3 Cylinder::farthest(const Vector3& n) const {
   return {scale * n.x(), scale * n.y(), n.z() < 0.0 ? -half_length : half_length};
 }
 
-std::optional<double> Cylinder::way_out(const Vector3& point, const Vector3& direction) const {
+std::optional<double> Cylinder::exit_distance(const Vector3& point, const Vector3& direction) const {
   Chord chord;
   chord.clip_to_slab(point.z(), direction.z(), half_length);
   chord.clip_to_ball(Eigen::Vector2d(point.head<2>()), Eigen::Vector2d(direction.head<2>()), radius);

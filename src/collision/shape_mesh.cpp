@@ -26,7 +26,7 @@ Vector3 Mesh::farthest(const Vector3& n) const {
                            [&](const Vector3& a, const Vector3& b) { return n.dot(a) < n.dot(b); });
 }
 
-std::optional<double> Mesh::way_out(const Vector3&, const Vector3&) const {
+std::optional<double> Mesh::exit_distance(const Vector3&, const Vector3&) const {
   return std::nullopt;
 }
 

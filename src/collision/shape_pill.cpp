@@ -41,7 +41,7 @@ Vector3 Pill::farthest(const Vector3& n) const {
 
 /// The last of its parts that the line leaves. The whole is convex, so that the line is in it without a
 /// break, and leaves it where it leaves the last of the three.
-std::optional<double> Pill::way_out(const Vector3& point, const Vector3& direction) const {
+std::optional<double> Pill::exit_distance(const Vector3& point, const Vector3& direction) const {
   std::optional<double> last;
   const auto add = [&](const Chord& chord) {
     if (chord.out() && (!last || *chord.out() > *last)) last = chord.out();

@@ -31,7 +31,7 @@ Vector3 Sphere::farthest(const Vector3& n) const {
   return radius * n.normalized();
 }
 
-std::optional<double> Sphere::way_out(const Vector3& point, const Vector3& direction) const {
+std::optional<double> Sphere::exit_distance(const Vector3& point, const Vector3& direction) const {
   Chord chord;
   chord.clip_to_ball(point, direction, radius);
   return chord.out();

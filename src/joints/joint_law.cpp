@@ -20,10 +20,10 @@ constexpr double kStopOverInertia = 1e4;
 /// k_d = force / (gap / 2), with gap the smallest between neighbours. The spring pulls towards one position,
 /// x_d. The force jumps from -force to force where the next detent takes over.
 double detent_stiffness(const Detents& detents) {
-  double least = detents.at.back() - detents.at.front();
+  double min_spacing = detents.at.back() - detents.at.front();
   for (std::size_t i = 1; i < detents.at.size(); ++i)
-    least = std::min(least, detents.at[i] - detents.at[i - 1]);
-  return detents.force / (0.5 * least);
+    min_spacing = std::min(min_spacing, detents.at[i] - detents.at[i - 1]);
+  return detents.force / (0.5 * min_spacing);
 }
 
 double place_of(const Detents& detents, std::size_t index) {
@@ -104,22 +104,23 @@ JointChange note_place(const Joint& joint, JointState& state) {
 //
 // s is the anchor's distance. The spring with a force limit is dry friction like a god object's: it sticks to
 // an anchor, where a law of sign(v) would creep or chatter at rest.
-double JointLaw::Hold::force(double way) const {
-  return std::clamp(wanted(way), -most, most);
+double JointLaw::Hold::force(double travel) const {
+  return std::clamp(elastic_force(travel), -max_force, max_force);
 }
-double JointLaw::Hold::slope(double way) const {
-  return std::abs(wanted(way)) < most ? stiffness : 0.0;
+double JointLaw::Hold::slope(double travel) const {
+  return std::abs(elastic_force(travel)) < max_force ? stiffness : 0.0;
 }
-// Potential of a spring that slips at `most`: a parabola, continued by a straight line (Huber's function).
-// E(q) = K q^2 / 2 up to most / K, and most (q - most / 2K) beyond; dE/d(h v) = -F.
-double JointLaw::Hold::energy(double way) const {
+// Potential of a spring that slips at `max_force`: a parabola, continued by a straight line (Huber's
+// function). E(q) = K q^2 / 2 up to F_max / K, and F_max (q - F_max / 2K) beyond; dE/d(h v) = -F.
+double JointLaw::Hold::energy(double travel) const {
   if (stiffness <= 0.0) return 0.0;
-  const double size = std::abs(wanted(way));
-  return (size < most ? 0.5 * size * size : most * (size - 0.5 * most)) / stiffness;
+  const double size = std::abs(elastic_force(travel));
+  return (size < max_force ? 0.5 * size * size : max_force * (size - 0.5 * max_force)) / stiffness;
 }
-// Distance of x+ beyond the limit: max(0, +-h v - room). K times this pushes the joint back, and never pulls.
-double JointLaw::Stop::over(double way) const {
-  return std::max(0.0, sign * way - room);
+// Distance of x+ beyond the limit: max(0, +-h v - clearance). K times this pushes the joint back, and never
+// pulls.
+double JointLaw::Stop::penetration(double travel) const {
+  return std::max(0.0, sign * travel - clearance);
 }
 
 // With x the position, v the velocity at the end of the step and x+ = x + h v:
@@ -152,57 +153,59 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
   if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
   // A violated limit is corrected as fast as in a regular step: correction within a much shorter one would
   // throw the joint.
-  const auto room = [part = std::min(1.0, step / usual)](double left) {
+  const auto corrected = [part = std::min(1.0, step / usual)](double left) {
     return left < 0.0 ? part * left : left;
   };
-  lower_ = {room(state.position - joint.lower), -1.0};
-  upper_ = {room(joint.upper - state.position), 1.0};
+  lower_ = {corrected(state.position - joint.lower), -1.0};
+  upper_ = {corrected(joint.upper - state.position), 1.0};
 }
 
 // If false, the flight advances the joint without forces. A limit counts within twice the step's motion.
 bool JointLaw::acts(double speed) const {
   constexpr double kNear = 1e-6;
-  const double near = 2.0 * step_ * speed + kNear;
+  const double threshold = 2.0 * step_ * speed + kNear;
   return linear_ > 0.0 || constant_ != 0.0 || friction_.stiffness > 0.0 || latch_.stiffness > 0.0 ||
-         lower_.room < near || upper_.room < near;
+         lower_.clearance < threshold || upper_.clearance < threshold;
 }
 
 double JointLaw::force(double velocity) const {
-  const double way = step_ * velocity;
-  return constant_ - linear_ * velocity + friction_.force(way) + latch_.force(way) +
-         stop_ * (lower_.over(way) - upper_.over(way));
+  const double travel = step_ * velocity;
+  return constant_ - linear_ * velocity + friction_.force(travel) + latch_.force(travel) +
+         stop_ * (lower_.penetration(travel) - upper_.penetration(travel));
 }
 
 // -dt/dv = b + h (k + k_d) + h K for each hold that does not slip.
 double JointLaw::slope(double velocity) const {
-  const double way = step_ * velocity;
-  const double stops = (lower_.over(way) > 0.0 ? stop_ : 0.0) + (upper_.over(way) > 0.0 ? stop_ : 0.0);
-  return linear_ + step_ * (friction_.slope(way) + latch_.slope(way) + stops);
+  const double travel = step_ * velocity;
+  const double stops =
+      (lower_.penetration(travel) > 0.0 ? stop_ : 0.0) + (upper_.penetration(travel) > 0.0 ? stop_ : 0.0);
+  return linear_ + step_ * (friction_.slope(travel) + latch_.slope(travel) + stops);
 }
 
 // e(v) = (b + h k) v^2 / 2 - k (rest - x) v + (E_friction + E_latch + K over^2 / 2) / h. The last is a
 // function of h v, so de/dv = -t.
 double JointLaw::energy(double velocity) const {
-  const double way = step_ * velocity, lower = lower_.over(way), upper = upper_.over(way);
+  const double travel = step_ * velocity, lower = lower_.penetration(travel),
+               upper = upper_.penetration(travel);
   const double held =
-      friction_.energy(way) + latch_.energy(way) + 0.5 * stop_ * (lower * lower + upper * upper);
+      friction_.energy(travel) + latch_.energy(travel) + 0.5 * stop_ * (lower * lower + upper * upper);
   return (0.5 * linear_ * velocity - constant_) * velocity + held / step_;
 }
 
 // Sums magnitudes: a spring and a stop may oppose each other, and errors are relative to both.
 double JointLaw::size(double velocity) const {
-  const double way = step_ * velocity;
-  return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(way)) +
-         std::abs(latch_.force(way)) + stop_ * (lower_.over(way) + upper_.over(way));
+  const double travel = step_ * velocity;
+  return std::abs(constant_ - linear_ * velocity) + std::abs(friction_.force(travel)) +
+         std::abs(latch_.force(travel)) + stop_ * (lower_.penetration(travel) + upper_.penetration(travel));
 }
 
 // effort = t(v) + limit impulse / h: mean of the joint's own forces over the step.
 void JointLaw::settle(double velocity, JointState& state) const {
-  const double way = step_ * velocity;
+  const double travel = step_ * velocity;
   state.effort = force(velocity) + limit_impulse_ / step_;
   // The anchor of dry friction follows where the force is at its limit.
   if (friction_.stiffness > 0.0)
-    state.anchor = state.position + way + friction_.force(way) / friction_.stiffness;
+    state.anchor = state.position + travel + friction_.force(travel) / friction_.stiffness;
 }
 
 }  // namespace mrhi

@@ -33,16 +33,16 @@ class JointLaw {
   /// A spring with the force limit `most`, whose end moves with the joint: stiffness * (stretch - step *
   /// velocity).
   struct Hold {
-    double stiffness = 0.0, stretch = 0.0, most = 0.0;
-    double wanted(double way) const { return stiffness * (stretch - way); }
-    double force(double way) const;
-    double slope(double way) const;
-    double energy(double way) const;
+    double stiffness = 0.0, stretch = 0.0, max_force = 0.0;
+    double elastic_force(double travel) const { return stiffness * (stretch - travel); }
+    double force(double travel) const;
+    double slope(double travel) const;
+    double energy(double travel) const;
   };
   /// A limit at the distance `room`.
   struct Stop {
-    double room = Joint::kUnlimited, sign = 1.0;
-    double over(double way) const;
+    double clearance = Joint::kUnlimited, sign = 1.0;
+    double penetration(double travel) const;
   };
 
   double constant_ = 0.0, linear_ = 0.0;  // force of springs and damping = constant - linear * velocity

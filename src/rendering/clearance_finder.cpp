@@ -103,10 +103,10 @@ class OffsetProblem {
   }
 
   double least_gap() {
-    double least = 0.0;
+    double min_gap = 0.0;
     for (const Clearance& clearance : clearances_)
-      least = std::min(least, gap_of(clearance, part_of(clearance)));
-    return least;
+      min_gap = std::min(min_gap, gap_of(clearance, part_of(clearance)));
+    return min_gap;
   }
 
   void result(const HandOffset& reference, HandOffset& offset) const {
@@ -258,7 +258,7 @@ void ClearanceFinder::each_near(const std::vector<Near>& bodies, const Hand& han
 /// would open again, and the passes would oscillate.
 double ClearanceFinder::find(const Hand& placed, const Setting& setting, double margin,
                              std::vector<Clearance>& clearances) const {
-  double least = margin;
+  double min_gap = margin;
   each_near(near_, placed, margin, [&](int c, const Capsule& capsule, const Near& near) {
     AxisSpan span{};
     const auto features = finder_.closest(capsule, near.body, near.shape, near.frame, margin, &span);
@@ -278,9 +278,9 @@ double ClearanceFinder::find(const Hand& placed, const Setting& setting, double 
   });
   for (Clearance& clearance : clearances) {
     clearance.gap = gap(placed.capsules[clearance.key.capsule], clearance);
-    least = std::min(least, clearance.gap);
+    min_gap = std::min(min_gap, clearance.gap);
   }
-  return least;
+  return min_gap;
 }
 
 bool ClearanceFinder::clear(const Hand& hand) const {

@@ -172,11 +172,11 @@ void HandRenderer::Impl::keep_outside(bool near) {
     chain.place(offset, *placed);
   }
   const HandOffset reference = offset;
-  const double least = near ? finder.find(*placed, *setting, kLookAhead, clearances) : 0.0;
-  pushed = least < -kClearDepth;
+  const double min_gap = near ? finder.find(*placed, *setting, kLookAhead, clearances) : 0.0;
+  pushed = min_gap < -kClearDepth;
   leap = 0.0;
   if (pushed || is_offset) look_back();
-  if (pushed) push_out(least);
+  if (pushed) push_out(min_gap);
   if (setting->shown_before != nullptr) keep_pace(reference);
 }
 

@@ -55,7 +55,7 @@ class Pace {
   /// subtracted from the height, as a clearance's gap subtracts it too: the gap is that of the axis. If a
   /// joint moves aside, the plane turns from pass to pass.
   double keep(const Hand& placed, std::vector<Clearance>& clearances) const {
-    double least = 0.0;
+    double min_gap = 0.0;
     for (std::size_t c = 0; c < kCapsules; ++c) {
       const Capsule &from = before_.capsules[c], &to = placed.capsules[c];
       if (from.radius <= 0.0 || to.radius <= 0.0) continue;
@@ -74,10 +74,10 @@ class Pace {
         known->normal = (start - now).normalized();
         known->height = known->normal.dot(start) - limit_ - to.radius;
         known->gap = gap;
-        least = std::min(least, gap);
+        min_gap = std::min(min_gap, gap);
       }
     }
-    return least;
+    return min_gap;
   }
 
   /// Removes the clearances of joints.
@@ -93,9 +93,9 @@ class Pace {
 
 /// Deeper than kShallow, gaps depend on the side on which the hand was shown before, which the first search
 /// of the frame did not know: they are computed again.
-void HandRenderer::Impl::push_out(double least) {
+void HandRenderer::Impl::push_out(double min_gap) {
   const HandOffset reference = offset;
-  if (least < -ClearanceFinder::kShallow) begin_anew(reference);
+  if (min_gap < -ClearanceFinder::kShallow) begin_anew(reference);
   keep_out(reference, kSwingFraction * setting->moved + kMinSwing);
 }
 
@@ -189,7 +189,7 @@ void HandRenderer::Impl::keep_out(const HandOffset& reference, double swing) {
 double HandRenderer::Impl::settle(const HandOffset& reference, double swing, const Pace* pace,
                                   double tolerated) {
   const int max_vain_passes = tolerated > kMaxDepth ? kMaxPasses : kMaxVainPasses;
-  double least = 0.0, best = std::numeric_limits<double>::lowest();
+  double min_gap = 0.0, best = std::numeric_limits<double>::lowest();
   int vain_passes = 0;
   for (int pass = 0; pass < kMaxPasses && vain_passes < max_vain_passes; ++pass) {
     linearise();
@@ -197,13 +197,13 @@ double HandRenderer::Impl::settle(const HandOffset& reference, double swing, con
     const double expected = solve_offset(reference, {*last, swing}, chain, clearances, offset);
     chain.place(offset, *placed);
     if (expected > -kClearDepth && displacement(from, offset) < kMinStep) return expected;
-    least = finder.find(*placed, *setting, kLookAhead, clearances);
-    if (pace != nullptr) least = std::min(least, pace->keep(*placed, clearances));
-    if (least > -kClearDepth) return least;
-    vain_passes = pace != nullptr && least < kImprovement * best ? vain_passes + 1 : 0;
-    best = std::max(best, least);
+    min_gap = finder.find(*placed, *setting, kLookAhead, clearances);
+    if (pace != nullptr) min_gap = std::min(min_gap, pace->keep(*placed, clearances));
+    if (min_gap > -kClearDepth) return min_gap;
+    vain_passes = pace != nullptr && min_gap < kImprovement * best ? vain_passes + 1 : 0;
+    best = std::max(best, min_gap);
   }
-  return least;
+  return min_gap;
 }
 
 void HandRenderer::Impl::begin_anew(const HandOffset& reference) {
@@ -245,7 +245,7 @@ void HandRenderer::Impl::shift_out() {
         std::min_element(clearances.begin(), clearances.end(),
                          [](const Clearance& a, const Clearance& b) { return a.gap < b.gap; });
     Vector3 shift = Vector3::Zero();
-    double least = std::numeric_limits<double>::max();
+    double min_gap = std::numeric_limits<double>::max();
     for (const Clearance& side : clearances) {
       if (side.key.body != deepest->key.body || side.key.shape != deepest->key.shape) continue;
       double reach = std::numeric_limits<double>::max();
@@ -254,8 +254,8 @@ void HandRenderer::Impl::shift_out() {
         const double lowest = std::min(side.normal.dot(capsule.start), side.normal.dot(capsule.end));
         reach = std::min(reach, lowest - capsule.radius - side.height);
       }
-      if (-reach >= least) continue;
-      least = -reach;
+      if (-reach >= min_gap) continue;
+      min_gap = -reach;
       shift = -reach * side.normal;
     }
     offset.shift += shift;
@@ -282,12 +282,12 @@ void HandRenderer::Impl::lead_out() {
       offset.shift = from + gone * axis;
       chain.place(offset, *placed);
       clearances.clear();
-      const double least = finder.find(*placed, *setting, kLookAhead, clearances);
-      if (least > -kMaxDepth) {
+      const double min_gap = finder.find(*placed, *setting, kLookAhead, clearances);
+      if (min_gap > -kMaxDepth) {
         nearest = gone;
         out = offset.shift;
       }
-      gone += std::max(-least, kMinTraceStep);
+      gone += std::max(-min_gap, kMinTraceStep);
     }
   }
   offset.shift = out;

@@ -232,7 +232,7 @@ struct HandRenderer::Impl {
   void place_before();
   FingerChain& finger_before(int index);
   // `reference` is the offset to stay near to; `swing` bounds a fingertip's turn in the frame [m].
-  void push_out(double least);
+  void push_out(double min_gap);
   void keep_pace(const HandOffset& reference);
   void keep_out(const HandOffset& reference, double swing);
   double settle(const HandOffset& reference, double swing, const Pace* pace = nullptr,

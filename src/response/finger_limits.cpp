@@ -33,14 +33,14 @@ struct MeetingFaces {
   bool supports(const Vector3& normal, const Vector3& drag, double friction) const {
     const Vector3 force = normal + drag;
     Vector3 rest = force;
-    double push = 0.0;
+    double load = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       const double out = std::max(0.0, normals[i].dot(force));
       if (out > kMaxFaceLoad * normals[i].dot(normal)) return false;
       rest -= out * normals[i];
-      push += out;
+      load += out;
     }
-    return rest.squaredNorm() <= friction * friction * push * push;
+    return rest.squaredNorm() <= friction * friction * load * load;
   }
 };
 

@@ -56,17 +56,17 @@ double energy_gained(const Vector3& approach, const Vector3& impulse, const Vect
 // and s the positive zero of G. All points have one weight, as they act on each other. The blend of two
 // solutions has an impact's momenta, and friction within Coulomb's disc, which is convex.
 void keep_from_gaining(std::vector<ImpactLaws>& points) {
-  double least = 0.0, exchanged = 0.0;
+  double min_gain = 0.0, exchanged = 0.0;
   for (const ImpactLaws& point : points) {
-    least += energy_gained(point.approach, point.plastic, point.after_plastic);
+    min_gain += energy_gained(point.approach, point.plastic, point.after_plastic);
     exchanged += point.plastic.norm() * point.approach.norm();
   }
-  if (least > kGainTolerance * exchanged) {
+  if (min_gain > kGainTolerance * exchanged) {
     for (ImpactLaws& point : points) {
       point.newtons = point.plastic, point.after_newtons = point.after_plastic;
       point.plastic.setZero(), point.after_plastic = point.approach;
     }
-    least = 0.0;
+    min_gain = 0.0;
   }
   // Impulses and velocities are linear in the weight, so the energy gained is quadratic.
   double linear = 0.0, square = 0.0;
@@ -77,13 +77,13 @@ void keep_from_gaining(std::vector<ImpactLaws>& points) {
   }
   // Its zero in the form without cancellation: (-b + root) / 2a, or the equal -2c / (b + root), whichever
   // adds numbers of one sign.
-  const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * least));
+  const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * min_gain));
   double share = 0.0;
   if (linear > 0.0)
-    share = -2.0 * least / (linear + root);
+    share = -2.0 * min_gain / (linear + root);
   else if (square > 0.0)
     share = (root - linear) / (2.0 * square);
-  share = least <= 0.0 ? std::clamp(share, 0.0, 1.0) : 0.0;
+  share = min_gain <= 0.0 ? std::clamp(share, 0.0, 1.0) : 0.0;
   for (ImpactLaws& point : points) point.newtons = point.plastic + share * (point.newtons - point.plastic);
 }
 

@@ -162,12 +162,12 @@ double ImpactPoint::relax() {
   double error = std::abs(change);
   if (friction > 0.0) {
     velocity += change * normal_response;
-    Vector3 wanted = friction_impulse + tangential_mass * (velocity - normal.dot(velocity) * normal);
-    const double most = friction * normal_impulse, length = wanted.norm();
-    if (length > most) wanted *= most / length;
-    error = std::max(error, (wanted - friction_impulse).norm());
-    impulse += wanted - friction_impulse;
-    friction_impulse = wanted;
+    Vector3 unlimited = friction_impulse + tangential_mass * (velocity - normal.dot(velocity) * normal);
+    const double limit = friction * normal_impulse, length = unlimited.norm();
+    if (length > limit) unlimited *= limit / length;
+    error = std::max(error, (unlimited - friction_impulse).norm());
+    impulse += unlimited - friction_impulse;
+    friction_impulse = unlimited;
   }
   a.apply(-impulse);
   b.apply(impulse);

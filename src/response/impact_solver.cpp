@@ -224,9 +224,9 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
     const auto index = static_cast<std::size_t>(problem_->joint_of(unknown));
     const Joint& joint = step.scene.joints[index];
     const double sign = velocity_[unknown] > 0.0 ? 1.0 : -1.0, position = joints[index].position;
-    const double room = sign > 0.0 ? joint.upper - position : position - joint.lower;
-    if (joint.restitution <= 0.0 || room <= 0.0) continue;
-    const ImpactPoint point = point_in_joints(Vector3::UnitX(), room);
+    const double travel = sign > 0.0 ? joint.upper - position : position - joint.lower;
+    if (joint.restitution <= 0.0 || travel <= 0.0) continue;
+    const ImpactPoint point = point_in_joints(Vector3::UnitX(), travel);
     coordinates_[points_.size()].jacobian(0, unknown) = sign;
     Material smooth;
     smooth.restitution = joint.restitution;

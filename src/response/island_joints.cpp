@@ -244,8 +244,8 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
                            std::vector<JointState>& joints) {
   settle_rows(step, island);
   // Forces are the warm start of the next step, unless their error is large.
-  const double far = kMaxWarmStartError * scale();
-  const bool lasts = agree || error_squared() <= far * far;
+  const double max_error = kMaxWarmStartError * scale();
+  const bool lasts = agree || error_squared() <= max_error * max_error;
   for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
     const auto row = static_cast<Eigen::Index>(i);
     if (unknowns_[i].joint == kNoJoint) {

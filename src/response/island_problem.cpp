@@ -257,7 +257,7 @@ bool IslandProblem::stays_open(SpringContact& row, const Triple& velocity, bool 
 void IslandProblem::evaluate(bool renew_limits) {
   if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
-  double push = 0.0;
+  double load = 0.0;
   for (SpringContact& row : rows_) {
     Triple velocity;
     double spin;
@@ -265,7 +265,7 @@ void IslandProblem::evaluate(bool renew_limits) {
     if (several() && stays_open(row, velocity, renew_limits)) continue;
     SpringResponse& response = row.response;
     row.spring.respond(velocity, spin, renew_limits, response);
-    push += response.push + row.spring.bond;
+    load += response.normal_force + row.spring.bond;
     Triple torque = response.torque * row.spring.normal;
     if (row.tilts) torque = torque + response.force.dot(row.spring.normal) * row.tilt;
     if (row.b != SpringContact::kNone) {
@@ -279,7 +279,7 @@ void IslandProblem::evaluate(bool renew_limits) {
       sum.torque = sum.torque - (row.arm_a.cross(response.force) + torque);
     }
   }
-  scale_ = step_ * push;
+  scale_ = step_ * load;
   change_ = velocity_ - free_;
   multiply_mass(change_, gradient_);
   Vector& impulse = in_joints_ ? body_impulse_ : gradient_;

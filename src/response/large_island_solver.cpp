@@ -129,7 +129,7 @@ void LargeIslandSolver::add_patch(const ContactStep& step, const Range& range) {
 ///
 /// A force needs d+ = d - e n.u > 0. e differs between the two signs of d (look_ahead in spring_contact.cpp).
 double LargeIslandSolver::missing_speed(const ContactStep& step, const Range& range) const {
-  double least = kMaxSpeed;
+  double min_speed = kMaxSpeed;
   for (std::size_t i = range.first; i < range.last; ++i) {
     const BodyContact& contact = step.body_contacts[i];
     const Motion& b = body(island_->place_of(contact.key.b)).motion;
@@ -138,21 +138,21 @@ double LargeIslandSolver::missing_speed(const ContactStep& step, const Range& ra
     const Vector3 velocity =
         a.velocity + a.spin.cross(contact.arm_a) - b.velocity - b.spin.cross(contact.arm_b);
     const double ahead = contact.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
-    least = std::min(least, contact.normal.dot(velocity) - contact.depth / ahead);
+    min_speed = std::min(min_speed, contact.normal.dot(velocity) - contact.depth / ahead);
   }
-  return least;
+  return min_speed;
 }
 
 /// Upper bound of the increase in closing speed since open contacts were checked [m/s]. A point at the arm r
 /// changes its velocity by |dv + dw x r| <= |dv| + |r| |dw|, and a pair of bodies by at most twice the
 /// largest of these. No open contact has a force while this is below the smallest missing speed found then.
 double LargeIslandSolver::max_speed_gain() const {
-  double most = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < checked_.size(); ++i) {
     const Motion change = bodies_[i].motion - checked_[i];
-    most = std::max(most, change.velocity.norm() + max_arm_ * change.spin.norm());
+    largest = std::max(largest, change.velocity.norm() + max_arm_ * change.spin.norm());
   }
-  return 2.0 * most;
+  return 2.0 * largest;
 }
 
 /// Adds open contacts that now have a force; returns true if there are any. They stay for the rest of the
@@ -164,12 +164,12 @@ bool LargeIslandSolver::admit_closing(const ContactStep& step) {
   min_missing_speed_ = kMaxSpeed;
   const std::size_t before = points_.size();
   const auto kept = std::remove_if(open_.begin(), open_.end(), [&](const Range& range) {
-    const double missing = missing_speed(step, range);
-    if (missing < 0.0) {
+    const double missing_speeds = missing_speed(step, range);
+    if (missing_speeds < 0.0) {
       add_patch(step, range);
       return true;
     }
-    min_missing_speed_ = std::min(min_missing_speed_, missing);
+    min_missing_speed_ = std::min(min_missing_speed_, missing_speeds);
     return false;
   });
   open_.erase(kept, open_.end());
@@ -301,9 +301,9 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
   double low = rate, high = rate + mobility * plain, at = high;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     double slope;
-    const double off = at - rate - response * rows_[i].spring.normal_force(at, slope);
-    (off > 0.0 ? high : low) = at;
-    const double next = at - off / (1.0 + response * slope);
+    const double residual = at - rate - response * rows_[i].spring.normal_force(at, slope);
+    (residual > 0.0 ? high : low) = at;
+    const double next = at - residual / (1.0 + response * slope);
     if (std::abs(next - at) <= 1e-9 * (high - rate)) break;
     at = next > low && next < high ? next : 0.5 * (low + high);
   }
@@ -328,18 +328,18 @@ double LargeIslandSolver::find_faded_impulse(std::size_t i, double rate, double 
   Point& point = points_[i];
   Impulses& impulses = point.impulses;
   const double rate = rate_of(point);
-  const double wanted = find_normal_impulse(i, rate - point.normal_mobility * impulses.normal);
-  const double limit = point.friction * wanted + point.bond;
+  const double unlimited = find_normal_impulse(i, rate - point.normal_mobility * impulses.normal);
+  const double limit = point.friction * unlimited + point.bond;
   const bool open =
       limit == 0.0 && impulses.normal == 0.0 && impulses.friction == Vector3::Zero() && impulses.twist == 0.0;
-  if (open && wanted == 0.0) return;
-  const double more = wanted - impulses.normal;
+  if (open && unlimited == 0.0) return;
+  const double more = unlimited - impulses.normal;
   const Vector3 velocity = relative_velocity(point);
   const Vector3 sliding = velocity - point.normal.dot(velocity) * point.normal;
   Vector3 friction = trial_friction(point, sliding + more * point.sliding_response);
   limit_friction(limit, friction);
   apply(point, more, friction - impulses.friction);
-  impulses.normal = wanted;
+  impulses.normal = unlimited;
   impulses.friction = friction;
   if (point.twists) relax_twist(i);
 }
@@ -355,16 +355,16 @@ bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
   Point* const points = &points_[patch.first];
   Body &a = body(points->a), &b = body(points->b);
   const double along = points->normal.dot(a.motion.velocity - b.motion.velocity);
-  Eigen::Vector4d missing = Eigen::Vector4d::Zero();
+  Eigen::Vector4d missing_speeds = Eigen::Vector4d::Zero();
   bool open = true;
   for (int i = 0; i < patch.count; ++i) {
     const Point& point = points[i];
     const double rate = along + point.lever_a.dot(a.motion.spin) - point.lever_b.dot(b.motion.spin);
-    missing[i] = point.depth / point.ahead - rate - point.compliance * point.impulses.normal;
-    open = open && missing[i] <= 0.0 && point.impulses.normal == 0.0;
+    missing_speeds[i] = point.depth / point.ahead - rate - point.compliance * point.impulses.normal;
+    open = open && missing_speeds[i] <= 0.0 && point.impulses.normal == 0.0;
   }
   if (open) return true;
-  Eigen::Vector4d more = patch.inverse * missing;
+  Eigen::Vector4d more = patch.inverse * missing_speeds;
   bool pulls = false;
   for (int i = 0; i < patch.count; ++i) pulls = pulls || points[i].impulses.normal + more[i] < 0.0;
   if (pulls) {
@@ -373,9 +373,9 @@ bool LargeIslandSolver::relax_normals_together(const Patch& patch) {
     for (int sweep = 0; sweep < kInnerSweeps; ++sweep) {
       for (int i = 0; i < patch.count; ++i) {
         const double change =
-            std::max(missing[i] / patch.system(i, i), -(points[i].impulses.normal + more[i]));
+            std::max(missing_speeds[i] / patch.system(i, i), -(points[i].impulses.normal + more[i]));
         more[i] += change;
-        missing -= change * patch.system.col(i);
+        missing_speeds -= change * patch.system.col(i);
       }
     }
   }
@@ -435,9 +435,9 @@ void LargeIslandSolver::relax_twist(std::size_t i) {
   const double stiffness = step_ * spring.twist_stiffness;
   const double limit = spring.patch_friction * point.impulses.normal;
   const double give = 1.0 / (1.0 + stiffness * spring.ahead * point.normal.dot(turned));
-  const double wanted =
+  const double unlimited =
       point.impulses.twist + give * (stiffness * (spring.twist + spring.ahead * spin) - point.impulses.twist);
-  const double kept = std::max(-limit, std::min(wanted, limit));
+  const double kept = std::max(-limit, std::min(unlimited, limit));
   b.motion.spin += (kept - point.impulses.twist) * turned;
   point.impulses.twist = kept;
 }
@@ -506,15 +506,15 @@ void LargeIslandSolver::solve(const ContactStep& step) {
   motion_directions_.assign(bodies_.size(), {Vector3::Zero(), Vector3::Zero()});
   // Largest change of a body's velocity since `then` [m/s].
   const auto max_change = [this](const std::vector<Motion>& then) {
-    double most = 0.0;
+    double largest = 0.0;
     for (std::size_t i = 0; i < free_.size(); ++i)
-      most = std::max(most, (bodies_[i].motion.velocity - then[i].velocity).squaredNorm());
-    return std::sqrt(most);
+      largest = std::max(largest, (bodies_[i].motion.velocity - then[i].velocity).squaredNorm());
+    return std::sqrt(largest);
   };
   const auto points = static_cast<int>(points_.size());
-  const int most = std::clamp(kRelaxationBudget / std::max(1, points), kMinSweeps, kMaxSweeps);
+  const int max_sweeps = std::clamp(kRelaxationBudget / std::max(1, points), kMinSweeps, kMaxSweeps);
   double last = 0.0;
-  for (int i = 1; i <= most || (i <= kMaxSweepsAtRest && is_nearly_at_rest(step)); ++i) {
+  for (int i = 1; i <= max_sweeps || (i <= kMaxSweepsAtRest && is_nearly_at_rest(step)); ++i) {
     if (i > 1) last = accelerate(last);
     sweep();
     const bool converged = max_change(motions_before_) <= kConverged * max_change(free_);
@@ -532,7 +532,7 @@ void LargeIslandSolver::fill_response(std::size_t i) {
   SpringContact& row = rows_[i];
   row.response = {};
   row.response.force = triple((point.impulses.friction - point.impulses.normal * point.normal) / step_);
-  row.response.push = point.impulses.normal / step_;
+  row.response.normal_force = point.impulses.normal / step_;
   row.response.torque = point.impulses.twist / step_;
   row.response.trial_squared = trial_friction(point, sliding).squaredNorm() / (step_ * step_);
   row.response.drawn = triple(vector(row.spring.stretch) + point.ahead * sliding);

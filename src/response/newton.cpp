@@ -55,8 +55,8 @@ bool IslandProblem::solve() {
 
 bool IslandProblem::error_below(double part) const {
   // The constant is for bodies on which nothing acts, where a relative error is undefined [N s].
-  const double most = part * scale_ + 1e-18;
-  return error_squared() <= most * most;
+  const double limit = part * scale_ + 1e-18;
+  return error_squared() <= limit * limit;
 }
 
 /// True if the error is below Effort::converged and invisible. Momenta at the end of the step follow from the

@@ -31,12 +31,12 @@ double normal_force(double stiffness, double depth, double normal_velocity, doub
 // every step.
 Tangential coulomb(const Vector3& spring_force, double normal_force, const Material& material,
                    Friction before) {
-  const double wanted = spring_force.norm();
+  const double elastic = spring_force.norm();
   const double sliding = material.dynamic_friction * normal_force;
-  const bool slips = before == Friction::sticking ? wanted > material.static_friction * normal_force
-                                                  : wanted > kRestickRatio * sliding;
+  const bool slips = before == Friction::sticking ? elastic > material.static_friction * normal_force
+                                                  : elastic > kRestickRatio * sliding;
   if (!slips) return {spring_force, Friction::sticking};
-  return {wanted > sliding ? Vector3(spring_force * (sliding / wanted)) : spring_force, Friction::slipping};
+  return {elastic > sliding ? Vector3(spring_force * (sliding / elastic)) : spring_force, Friction::slipping};
 }
 
 // Eq. 16, f = gamma (p - c), and its parts: along n gamma times the depth (Eq. 17), tangentially gamma times
@@ -54,20 +54,20 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
   if (!contact.touching() || stiffness <= 0.0) return contact.force;
   const Vector3& n = contact.normal;
   const Vector3 velocity = relative_velocity(contact, body, state);
-  const double push = normal_force(stiffness, contact.depth, n.dot(velocity), fade);
+  const double normal = normal_force(stiffness, contact.depth, n.dot(velocity), fade);
 
   const Vector3 reach = contact.hand_point - contact.point;
   const Vector3 stretch = reach - n.dot(reach) * n;
   // The dashpot acts within the cone too: friction limits the sum of spring and dashpot.
   const Vector3 drag = damping * contact.share * (velocity - n.dot(velocity) * n);
-  const Tangential tangential = coulomb(stiffness * stretch + drag, push, body.material, contact.friction);
+  const Tangential tangential = coulomb(stiffness * stretch + drag, normal, body.material, contact.friction);
   contact.friction = tangential.friction;
   if (tangential.friction == Friction::slipping) {
     // The god object moves to where the spring has just the limited force.
     contact.point += stretch - tangential.force / stiffness;
     contact.god_object = state.pose.to_local(contact.point);
   }
-  contact.force = tangential.force - push * n;
+  contact.force = tangential.force - normal * n;
   return contact.force;
 }
 

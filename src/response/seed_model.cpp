@@ -26,14 +26,14 @@ class LiteralSeedModel : public ContactModel {
   void respond(ContactStep& step) override;
 
  private:
-  void strike(ContactStep& step, Contact& contact);
+  void resolve_impact(ContactStep& step, Contact& contact);
 
   std::vector<BodyImpact> impact_;
 };
 
 /// Eqs. 8 to 15, point by point: J = j n, j = -(1 + e) u / n'Kn with K = 1/m "determined by the mass", and dv
 /// = J / m without a spin. Once per approach, at the first touch.
-void LiteralSeedModel::strike(ContactStep& step, Contact& contact) {
+void LiteralSeedModel::resolve_impact(ContactStep& step, Contact& contact) {
   contact.impulse.setZero();
   if (contact.ignored || contact.struck) return;
   const Body& body = step.scene.bodies[contact.key.body];
@@ -72,7 +72,7 @@ Vector3 literal_force(const Material& material, Contact& contact) {
 }
 
 void LiteralSeedModel::respond(ContactStep& step) {
-  for (Contact& contact : step.contacts) strike(step, contact);
+  for (Contact& contact : step.contacts) resolve_impact(step, contact);
   for (Contact& contact : step.contacts) {
     contact.struck = contact.struck || contact.depth > 0.0;
     const Body& body = step.scene.bodies[contact.key.body];

@@ -61,8 +61,8 @@ struct Skin {
       const double rim = std::sqrt(std::max(0.0, radius * radius - y * y));
       u = std::clamp((x - rim * slope) / run, -s, 1.0 - s);
     }
-    const double off = x - u * run;
-    const double cap = radius * radius - off * off - y * y;
+    const double from_middle = x - u * run;
+    const double cap = radius * radius - from_middle * from_middle - y * y;
     if (cap < 0.0) return std::nullopt;
     return radius + u * rise - std::sqrt(cap);
   }
@@ -86,7 +86,7 @@ class Surface {
   /// object. A mesh counts as flat around the contact point.
   double depth(const Vector3& point) const {
     if (std::holds_alternative<Mesh>(shape_)) return contact_.normal.dot(contact_.point - point);
-    return way_out(shape_, pose_.to_local(point), normal_).value_or(0.0);
+    return exit_distance(shape_, pose_.to_local(point), normal_).value_or(0.0);
   }
 
  private:
@@ -97,9 +97,9 @@ class Surface {
 };
 
 struct Pad {
-  Vector3 offset;   // from the contact point, along the surface
-  Vector3 surface;  // point of the object under the pad
-  double push;      // normal force [N]
+  Vector3 offset;       // from the contact point, along the surface
+  Vector3 surface;      // point of the object under the pad
+  double normal_force;  // normal force [N]
 };
 
 /// The pads of one contact point.
@@ -137,8 +137,8 @@ class PadGrid {
       stretch_ = kept;
     }
     // Beyond this twist the pads next to the centre slip too.
-    const double most = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
-    contact.twist = std::clamp(contact.twist + step_ * spin_, -most, most);
+    const double max_twist = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
+    contact.twist = std::clamp(contact.twist + step_ * spin_, -max_twist, max_twist);
     unturn_ = Eigen::AngleAxisd(-contact.twist, n_);
   }
 
@@ -155,9 +155,9 @@ class PadGrid {
       const Pad& pad = pads_[static_cast<std::size_t>(i)];
       const Vector3 sheared = stretch_ + pad.offset - unturn_ * pad.offset;
       Vector3 force = stiffness_ * sheared + damping_ * (slide_ + spin_ * n_.cross(pad.offset));
-      const double limit = friction_ * pad.push, wanted = force.norm();
-      if (wanted > limit) force *= limit / wanted;
-      force -= pad.push * n_;
+      const double limit = friction_ * pad.normal_force, size = force.norm();
+      if (size > limit) force *= limit / size;
+      force -= pad.normal_force * n_;
       if (!fixed) apply_impulse(step_ * force, pad.surface - sheared, state);
       sum += force;
     }
@@ -181,9 +181,9 @@ class PadGrid {
       const Vector3 point = contact.hand_point + offset + *sag * n_;
       const double depth = object.depth(point);
       if (depth <= 0.0) continue;
-      const double push = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
-      pads_[static_cast<std::size_t>(count_++)] = {offset, point + depth * n_, push};
-      hardest_ = std::max(hardest_, push);
+      const double normal_force = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
+      pads_[static_cast<std::size_t>(count_++)] = {offset, point + depth * n_, normal_force};
+      hardest_ = std::max(hardest_, normal_force);
     }
   }
 

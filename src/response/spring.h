@@ -10,7 +10,7 @@ namespace mrhi {
 /// Force and torque of a spring contact at a given relative velocity and spin of its ends.
 struct SpringResponse {
   Triple force;          ///< on 2 [N]
-  double push;           ///< normal force, >= 0 [N]
+  double normal_force;   ///< normal force, >= 0 [N]
   double trial_squared;  ///< square of the tangential force that would prevent slip [N^2]
   double torque;         ///< on 2 about n [N m]
   // -d force / d velocity of 2 is tangential_slope (1 - n n') + normal_slope n n' - slip d d' [N s/m]:
@@ -49,7 +49,7 @@ struct Spring {
 
   /// Normal force over stiffness as a function of depth, and its slope. The fingertip pad stiffens until it
   /// is compressed to `pad`; the finger complies beyond its strength.
-  [[gnu::always_inline]] inline void press(double deep, double& pressed, double& steepness) const;
+  [[gnu::always_inline]] inline void compress(double deep, double& pressed, double& steepness) const;
 
   /// Normal force at a rate of the gap [N], and its decrease with the rate [N s/m].
   [[gnu::always_inline]] inline double normal_force(double rate, double& slope) const;
@@ -87,7 +87,7 @@ constexpr double kYieldedStiffness = 0.02;
 //
 // The slope is zero only at d = 0, so two fingers that both comply still centre the object between them.
 // Without a pad 1 / 2D is 0, as infinity would give 0 times infinity. Without a strength limit Y is infinite.
-inline void Spring::press(double deep, double& pressed, double& steepness) const {
+inline void Spring::compress(double deep, double& pressed, double& steepness) const {
   const double soft = std::min(deep, pad);
   pressed = deep - soft + soft * soft * half_over_pad;
   steepness = pad <= deep ? 1.0 : 2.0 * deep * half_over_pad;
@@ -128,7 +128,7 @@ inline double Spring::normal_force(double rate, double& slope) const {
   const double parting = std::min(std::max(rate, 0.0) * fade, 1.0);
   const double kept = 1.0 - parting * parting;
   double pressed, steepness;
-  press(deep, pressed, steepness);
+  compress(deep, pressed, steepness);
   const double force = stiffness * pressed * kept;
   // Where N is 0 its slope is 0 too. Beyond the release speed r stays 1 and p is not 0, so the formula's fade
   // term alone would not vanish.
@@ -139,10 +139,10 @@ inline double Spring::normal_force(double rate, double& slope) const {
 
 inline void Spring::respond(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
   const double rate = u.dot(normal);
-  const double push = response.push = normal_force(rate, response.normal_slope);
+  const double load = response.normal_force = normal_force(rate, response.normal_slope);
   if (renew_limits) {
-    slip_limit = friction * push + bond;
-    twist_limit = patch_friction * push;
+    slip_limit = friction * load + bond;
+    twist_limit = patch_friction * load;
   }
 
   response.drawn = stretch + ahead * (u - rate * normal);
@@ -155,7 +155,7 @@ inline void Spring::respond(const Triple& u, double spin, bool renew_limits, Spr
   if (slips) secant = slip_limit / std::sqrt(std::max(response.drawn_squared, 1e-300));
   response.tangential_slope = slip_limit <= 0.0 ? 0.0 : secant * ahead;
   response.slip = slips ? response.tangential_slope : 0.0;
-  response.force = secant * response.drawn - push * normal;
+  response.force = secant * response.drawn - load * normal;
 
   // Torque and force have separate limits here. A real patch has a lower torque limit while it slides (the
   // limit surface; Howe & Cutkosky 1996).

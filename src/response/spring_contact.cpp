@@ -58,8 +58,8 @@ Vector3 slide(const SpringContact& solved, double dynamic_friction, double step)
   // stretch) of it, the extension by the force F at the rim in h. The rest is sliding.
   const double followed = step / spring.ahead;
   const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
-  const Vector3 tangential = vector(response.force + response.push * spring.normal);
-  const double rim = std::min(1.0, dynamic_friction * response.push / tangential.norm());
+  const Vector3 tangential = vector(response.force + response.normal_force * spring.normal);
+  const double rim = std::min(1.0, dynamic_friction * response.normal_force / tangential.norm());
   const Vector3 kept = stretch + followed * (rim * tangential / spring.stiffness - stretch);
   return stretch + followed * (drawn - stretch) - kept;
 }
@@ -115,7 +115,7 @@ void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& t
       (touch.friction == Friction::sticking ? 1.0 : kRestickRatio) * solved.spring.slip_limit;
   const bool sticks = solved.response.trial_squared <= limit * limit;
   touch.friction = sticks ? Friction::sticking : Friction::slipping;
-  if (sticks || solved.response.push <= 0.0) return;
+  if (sticks || solved.response.normal_force <= 0.0) return;
   follow(step, solved, touch);
 }
 
@@ -210,8 +210,9 @@ double yielding_energy(double stiffness, double stretch, double limit) {
 /// a quartic between its kinks: p is quadratic in the depth, which is linear in the rate, times 1 - r^2.
 template <typename Function>
 double integral(double from, double to, Function function) {
-  const double middle = 0.5 * (from + to), half = 0.5 * (to - from), off = std::sqrt(0.6) * half;
-  return half / 9.0 * (5.0 * function(middle - off) + 8.0 * function(middle) + 5.0 * function(middle + off));
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from), offset = std::sqrt(0.6) * half;
+  return half / 9.0 *
+         (5.0 * function(middle - offset) + 8.0 * function(middle) + 5.0 * function(middle + offset));
 }
 
 /// Depth at which the finger begins to comply: Spring::press() solved for p(d) = Y. d = Y + D / 2 beyond the

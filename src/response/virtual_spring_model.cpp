@@ -46,19 +46,19 @@ Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contac
   const double normal_velocity = n.dot(velocity);
   // The virtual phalanx rests on the surface: the coupling may push it on, but the surface cannot pull it
   // back.
-  const double push = std::max(0.0, stiffness * contact.depth - damping * normal_velocity);
+  const double load = std::max(0.0, stiffness * contact.depth - damping * normal_velocity);
 
   const Vector3 reach = contact.hand_point - contact.point;
   const Vector3 stretch = reach - n.dot(reach) * n;
   const Vector3 along = velocity - normal_velocity * n;
   const Tangential tangential =
-      coulomb(stiffness * stretch + damping * along, push, body.material, contact.friction);
+      coulomb(stiffness * stretch + damping * along, load, body.material, contact.friction);
   contact.friction = tangential.friction;
   if (tangential.friction == Friction::slipping) {
     contact.point += stretch - tangential.force / stiffness;
     contact.god_object = state.pose.to_local(contact.point);
   }
-  return tangential.force - push * n;
+  return tangential.force - load * n;
 }
 
 }  // namespace

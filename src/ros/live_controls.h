@@ -231,24 +231,24 @@ class Tuning {
       : actions_(std::move(actions)),
         place_by_mouse_(place_by_mouse),
         server_(mutex_, ros::NodeHandle(private_node, "tune")) {
-    Config least = current(), most = least;
-    slider_ends(least, most);
-    server_.setConfigMin(least);
-    server_.setConfigMax(most);
+    Config min = current(), max = min;
+    slider_ends(min, max);
+    server_.setConfigMin(min);
+    server_.setConfigMax(max);
     shown_ = current();
     server_.updateConfig(shown_);
-    server_.setCallback([this](Config& wanted, std::uint32_t) { take(wanted); });
-    teller_ = std::thread([this] { tell(); });
+    server_.setCallback([this](Config& requested, std::uint32_t) { take(requested); });
+    publisher_thread_ = std::thread([this] { publish_updates(); });
   }
 
   /// Ranges of the sliders of all numbers, from the parameters' table. Values beyond them are accepted within
   /// the parameter's limits.
-  static void slider_ends(Config& least, Config& most) {
-    dynamic_reconfigure::Config low = message_of(least), high = message_of(most);
+  static void slider_ends(Config& min, Config& max) {
+    dynamic_reconfigure::Config low = message_of(min), high = message_of(max);
     set_ends(low.ints, high.ints);
     set_ends(low.doubles, high.doubles);
-    least.__fromMessage__(low);
-    most.__fromMessage__(high);
+    min.__fromMessage__(low);
+    max.__fromMessage__(high);
   }
 
   ~Tuning() {
@@ -256,8 +256,8 @@ class Tuning {
       const std::lock_guard<std::mutex> lock(asking_);
       ends_ = true;
     }
-    asked_.notify_one();
-    teller_.join();
+    wake_.notify_one();
+    publisher_thread_.join();
   }
 
   /// Schedules publishing of the present values: each number is a call to the master, and frames do not wait
@@ -266,7 +266,7 @@ class Tuning {
     shown_ = current();
     const std::lock_guard<std::mutex> lock(asking_);
     to_tell_ = shown_;
-    asked_.notify_one();
+    wake_.notify_one();
   }
 
  private:
@@ -319,24 +319,24 @@ class Tuning {
   }
 
   template <class Field>
-  static void set_ends(std::vector<Field>& least, std::vector<Field>& most) {
-    for (std::size_t i = 0; i < least.size(); ++i) {
-      const ParameterLimits limits = parameter_limits(parameter_of(least[i].name)).value();
-      least[i].value = static_cast<decltype(least[i].value)>(limits.slider_min);
-      most[i].value = static_cast<decltype(most[i].value)>(limits.slider_max);
+  static void set_ends(std::vector<Field>& low, std::vector<Field>& high) {
+    for (std::size_t i = 0; i < low.size(); ++i) {
+      const ParameterLimits limits = parameter_limits(parameter_of(low[i].name)).value();
+      low[i].value = static_cast<decltype(low[i].value)>(limits.slider_min);
+      high[i].value = static_cast<decltype(high[i].value)>(limits.slider_max);
     }
   }
 
-  void take(Config& wanted) {
+  void take(Config& requested) {
     try {
-      const Values values = changes(wanted);
+      const Values values = changes(requested);
       if (!values.empty()) actions_.set(values);
-      if (wanted.place_by_mouse != place_by_mouse_) actions_.place_by_mouse(wanted.place_by_mouse);
-      place_by_mouse_ = wanted.place_by_mouse;
+      if (requested.place_by_mouse != place_by_mouse_) actions_.place_by_mouse(requested.place_by_mouse);
+      place_by_mouse_ = requested.place_by_mouse;
     } catch (const std::exception& error) {
       ROS_WARN("not changed: %s", error.what());
     }
-    wanted = shown_ = current();
+    requested = shown_ = current();
     const std::lock_guard<std::mutex> lock(asking_);
     to_tell_.reset();
   }
@@ -368,35 +368,36 @@ class Tuning {
     return config;
   }
 
-  Values changes(const Config& wanted) const {
+  Values changes(const Config& requested) const {
     Values values;
     const auto before = parameter_texts(shown_);
-    for (const auto& [name, text] : parameter_texts(wanted)) {
+    for (const auto& [name, text] : parameter_texts(requested)) {
       if (name != kStiffness && name != kNoise && text != before.at(name)) values.emplace_back(name, text);
     }
-    const Vector3 gravity(wanted.gravity_x, wanted.gravity_y, wanted.gravity_z);
+    const Vector3 gravity(requested.gravity_x, requested.gravity_y, requested.gravity_z);
     const bool pulls_elsewhere = gravity != Vector3(shown_.gravity_x, shown_.gravity_y, shown_.gravity_z);
     const std::vector<NumberOrWord> others{
         {"gravity", "scene",
          "[" + text::exact(gravity.x()) + ", " + text::exact(gravity.y()) + ", " + text::exact(gravity.z()) +
              "]",
-         pulls_elsewhere, wanted.gravity_of_scene, shown_.gravity_of_scene},
-        {kStiffness, "model", text::exact(wanted.material_stiffness),
-         wanted.material_stiffness != shown_.material_stiffness, wanted.stiffness_of_model,
+         pulls_elsewhere, requested.gravity_of_scene, shown_.gravity_of_scene},
+        {kStiffness, "model", text::exact(requested.material_stiffness),
+         requested.material_stiffness != shown_.material_stiffness, requested.stiffness_of_model,
          shown_.stiffness_of_model},
-        {kNoise, "estimated", text::exact(wanted.filter_noise), wanted.filter_noise != shown_.filter_noise,
-         wanted.filter_noise_estimated, shown_.filter_noise_estimated}};
+        {kNoise, "estimated", text::exact(requested.filter_noise),
+         requested.filter_noise != shown_.filter_noise, requested.filter_noise_estimated,
+         shown_.filter_noise_estimated}};
     for (const NumberOrWord& other : others) other.add_to(values);
     return values;
   }
 
   /// Locks the server's mutex first: its callback may have changed values that are newer than those to
   /// publish.
-  void tell() {
+  void publish_updates() {
     while (true) {
       {
         std::unique_lock<std::mutex> lock(asking_);
-        asked_.wait(lock, [this] { return to_tell_ || ends_; });
+        wake_.wait(lock, [this] { return to_tell_ || ends_; });
         if (ends_) return;
       }
       const boost::recursive_mutex::scoped_lock server(mutex_);
@@ -414,10 +415,10 @@ class Tuning {
   dynamic_reconfigure::Server<Config> server_;
 
   std::mutex asking_;
-  std::condition_variable asked_;
+  std::condition_variable wake_;
   std::optional<Config> to_tell_;
   bool ends_ = false;
-  std::thread teller_;
+  std::thread publisher_thread_;
 };
 
 }  // namespace mrhi

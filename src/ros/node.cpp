@@ -37,7 +37,7 @@ Standing standing() {
 }
 
 /// Logs a change. A node that has not registered anything yet is unknown too.
-void tell(Standing before, Standing now) {
+void log_change(Standing before, Standing now) {
   const char* const uri = ros::master::getURI().c_str();
   if (now == Standing::no_master)
     ROS_WARN("no ROS master at %s: existing connections stay, new ones are impossible", uri);
@@ -80,7 +80,7 @@ class MasterWatch {
       lock.lock();
       was_known = was_known || now == Standing::known;
       if (end_ || !was_known || !ros::ok()) continue;
-      if (now != before) tell(before, now);
+      if (now != before) log_change(before, now);
       before = now;
     }
   }

@@ -174,22 +174,22 @@ mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const
   mr_hand_interaction::ContactArray message;
   message.header = header;
   for (const Contact& contact : result.contacts) {
-    mr_hand_interaction::Contact touch;
-    touch.object = scene.bodies[contact.key.body].name;
-    touch.hand_id = hand_id(contact, state);
-    touch.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
-    touch.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
-    touch.phase = static_cast<std::uint8_t>(phase(contact));
-    touch.position = to_message(contact.point);
-    touch.normal = vector_message(contact.normal);
-    touch.depth = contact.depth;
-    touch.impulse = vector_message(contact.impulse);
-    touch.force = vector_message(contact.force);
+    mr_hand_interaction::Contact entry;
+    entry.object = scene.bodies[contact.key.body].name;
+    entry.hand_id = hand_id(contact, state);
+    entry.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
+    entry.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+    entry.phase = static_cast<std::uint8_t>(phase(contact));
+    entry.position = to_message(contact.point);
+    entry.normal = vector_message(contact.normal);
+    entry.depth = contact.depth;
+    entry.impulse = vector_message(contact.impulse);
+    entry.force = vector_message(contact.force);
     const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
-    touch.normal_force = use.normal;
-    touch.tangential_force = use.tangential;
-    touch.friction_limit = use.limit;
-    message.contacts.push_back(touch);
+    entry.normal_force = use.normal;
+    entry.tangential_force = use.tangential;
+    entry.friction_limit = use.limit;
+    message.contacts.push_back(entry);
   }
   return message;
 }
@@ -261,24 +261,24 @@ mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Co
   message.model = std::string(configuration.contact_model.name);
   message.gravity = vector_message(configuration.gravity.value_or(scene.gravity));
   for (const Body& body : scene.bodies) {
-    SceneBody told;
-    told.name = body.name;
-    told.fixed = body.fixed;
-    told.is_operator = body.is_operator;
-    if (body.is_operator) told.link = to_message(body.link_in_body.position);
-    told.pose = to_message(body.start);
-    told.static_friction = body.material.static_friction;
-    told.dynamic_friction = body.material.dynamic_friction;
+    SceneBody entry;
+    entry.name = body.name;
+    entry.fixed = body.fixed;
+    entry.is_operator = body.is_operator;
+    if (body.is_operator) entry.link = to_message(body.link_in_body.position);
+    entry.pose = to_message(body.start);
+    entry.static_friction = body.material.static_friction;
+    entry.dynamic_friction = body.material.dynamic_friction;
     for (const PlacedShape& placed : body.shapes)
-      told.shapes.push_back(shape_message(placed.shape, placed.pose));
+      entry.shapes.push_back(shape_message(placed.shape, placed.pose));
     for (const Visual& visual : body.visuals) {
-      told.visuals.push_back(shape_message(visual.shape, visual.pose));
+      entry.visuals.push_back(shape_message(visual.shape, visual.pose));
       const bool own = !visual.has_color && std::holds_alternative<Mesh>(visual.shape);
       const auto& c = visual.rgba;
-      told.visuals.back().color.r = c[0], told.visuals.back().color.g = c[1];
-      told.visuals.back().color.b = c[2], told.visuals.back().color.a = own ? 0.0f : c[3];
+      entry.visuals.back().color.r = c[0], entry.visuals.back().color.g = c[1];
+      entry.visuals.back().color.b = c[2], entry.visuals.back().color.a = own ? 0.0f : c[3];
     }
-    message.bodies.push_back(std::move(told));
+    message.bodies.push_back(std::move(entry));
   }
   return message;
 }

@@ -62,10 +62,10 @@ struct Outline {
     return farthest_out;
   }
 
-  void extend(Eigen::AlignedBox2d& box, double room) const {
+  void extend(Eigen::AlignedBox2d& box, double margin) const {
     constexpr std::size_t kQuarter = kDirections / 4;
-    box.extend(Point(reach[0] + room, reach[kQuarter] + room));
-    box.extend(-Point(reach[2 * kQuarter] + room, reach[3 * kQuarter] + room));
+    box.extend(Point(reach[0] + margin, reach[kQuarter] + margin));
+    box.extend(-Point(reach[2 * kQuarter] + margin, reach[3 * kQuarter] + margin));
   }
 
   std::array<double, kDirections> reach;  ///< from the origin along each direction [m]
@@ -147,8 +147,8 @@ class Shadow {
   double opacity(const Point& point) const {
     double distance = std::numeric_limits<double>::infinity();
     for (const Outline& outline : outlines_) distance = std::min(distance, outline.distance(point));
-    const double share = std::clamp(0.5 - distance / (2.0 * soft_), 0.0, 1.0);
-    return dark_ * share * share * (3.0 - 2.0 * share);
+    const double fraction = std::clamp(0.5 - distance / (2.0 * soft_), 0.0, 1.0);
+    return dark_ * fraction * fraction * (3.0 - 2.0 * fraction);
   }
 
   void add_cell(const Point& begin, int row, int column, const std::vector<double>& below,

@@ -97,20 +97,20 @@ void add_places(const Session& session, const Body& body, const MarkerLayer& pla
                 const MarkerLayer& path) {
   const Task& task = session.task();
   const bool begun = session.phase() != SessionPhase::ready;
-  std::vector<Vector3> way{session.object().start.position};
+  std::vector<Vector3> route{session.object().start.position};
   for (std::size_t i = 0; i < task.goals.size(); ++i) {
     const Goal& goal = task.goals[i];
     const std::size_t number = task.place_number(i);
     if (number == 0) continue;
-    way.push_back(goal.position);
+    route.push_back(goal.position);
     const int id = static_cast<int>(i) * kIdsPerPlace;
     const bool done = begun && session.trial().goal() > i, waits = !begun || session.trial().goal() < i;
     write(places, id, mark_place(goal, body), done ? "done" : std::to_string(number), kMark);
     if (waits) add_target({body, pose_at(goal, session), 0.0, false, true}, id + 1, places);
   }
-  if (way.size() < 2) return;
+  if (route.size() < 2) return;
   Marker& line = path.add(0, Marker::LINE_STRIP, Pose{}, {0.001, 0.0, 0.0}, color(0.9, 0.9, 0.9, 0.4));
-  for (const Vector3& point : way) line.points.push_back(to_message(point));
+  for (const Vector3& point : route) line.points.push_back(to_message(point));
 }
 
 std::string heading(const Status& status) {

@@ -60,10 +60,10 @@ TEST(Capsule, finger_along_its_side_touches_at_two_points_and_across_it_at_one) 
 }
 
 TEST(Capsule, the_way_out_ends_where_its_last_part_ends) {
-  EXPECT_NEAR(way_out(kPill, Vector3::Zero(), Vector3::UnitZ()).value(), 0.05, kRounding);
-  EXPECT_NEAR(way_out(kPill, Vector3::Zero(), Vector3::UnitX()).value(), 0.02, kRounding);
-  EXPECT_NEAR(way_out(kPill, Vector3(0.012, 0, 0), Vector3::UnitZ()).value(), 0.046, kRounding);
-  EXPECT_FALSE(way_out(kPill, Vector3(0.021, 0, 0), Vector3::UnitZ()));
+  EXPECT_NEAR(exit_distance(kPill, Vector3::Zero(), Vector3::UnitZ()).value(), 0.05, kRounding);
+  EXPECT_NEAR(exit_distance(kPill, Vector3::Zero(), Vector3::UnitX()).value(), 0.02, kRounding);
+  EXPECT_NEAR(exit_distance(kPill, Vector3(0.012, 0, 0), Vector3::UnitZ()).value(), 0.046, kRounding);
+  EXPECT_FALSE(exit_distance(kPill, Vector3(0.021, 0, 0), Vector3::UnitZ()));
 }
 
 TEST(Capsule, lies_on_a_plate_with_two_points_and_stands_on_one) {

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """leapc_bridge, with a stand-in for Ultraleap's bindings (stand_in/leap): no device and no service is at hand."""
+import contextlib
 import json
 import os
 import shutil
@@ -48,8 +49,15 @@ class LeapcBridgeTest(unittest.TestCase):
         with open(os.environ["LEAP_STAND_IN"], "w", encoding="utf-8") as file:
             json.dump(events, file)
 
+    @contextlib.contextmanager
     def launch(self, *arguments):
-        return Launch("leap.launch", "bridge:=true", "scene:=cube", "rviz:=false", *arguments)
+        """The stand-in begins once both nodes are there, however busy the machine is."""
+        go = os.environ["LEAP_STAND_IN"] + ".go"
+        with Launch("leap.launch", "bridge:=true", "scene:=cube", "rviz:=false", *arguments):
+            wait_until(lambda: all(subscriber.get_num_connections() for subscriber in self.subscribers), "both nodes")
+            with open(go, "w", encoding="utf-8"):
+                self.addCleanup(os.remove, go)
+            yield
 
     def seen(self, side):
         return [hand for frame in list(self.frames) for hand in frame.hands if hand.side == side]

@@ -109,7 +109,7 @@ TEST_P(KnownShape, the_way_out_ends_on_the_surface) {
   int met = 0;
   for (int i = 0; i < 1000; ++i) {
     const Vector3 from = random.gaussian_vector(0.02), along = direction(random);
-    const auto way = ask([&](const auto& shape) { return shape.way_out(from, along); });
+    const auto way = ask([&](const auto& shape) { return shape.exit_distance(from, along); });
     EXPECT_TRUE(way || !holds(from));
     if (!way) continue;
     ++met;

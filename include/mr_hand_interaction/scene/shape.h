@@ -41,7 +41,7 @@ struct TriangleMesh {
 //    bounding_radius  of the smallest sphere around the origin that contains it [m]
 //    moments          of a solid of its form
 //    farthest         support point along n
-//    way_out          distance from `point` along the unit vector `direction` to the surface
+//    exit_distance          distance from `point` along the unit vector `direction` to the surface
 //    core             the equal capsule, if it is a ball or a capsule
 //    prism            the equal prism, if it is one
 //    closest          closest features to a capsule of the hand; beyond a distance of `margin` any feature
@@ -55,7 +55,7 @@ struct Sphere {
   double bounding_radius() const { return radius; }
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
-  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -68,7 +68,7 @@ struct Box {
   double bounding_radius() const { return half_extents.norm(); }
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
-  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return PrismForm{half_extents, false}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -83,7 +83,7 @@ struct Cylinder {
   double bounding_radius() const;
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
-  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return PrismForm{{radius, radius, half_length}, true}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -98,7 +98,7 @@ struct Pill {
   double bounding_radius() const { return half_length + radius; }
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
-  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -113,7 +113,7 @@ struct Mesh {
   double bounding_radius() const;
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
-  std::optional<double> way_out(const Vector3& point, const Vector3& direction) const;
+  std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
 };

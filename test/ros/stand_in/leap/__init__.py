@@ -1,5 +1,6 @@
 """A stand-in for Ultraleap's Python bindings, with the classes and names that they document, as far as leapc_bridge uses
-them. Its devices show the recordings that $LEAP_STAND_IN names, a JSON list of events:
+them. Its devices show the recordings that $LEAP_STAND_IN names, a JSON list of events, in seconds since a file of that name
+with .go is there:
 
     {"at": s, "do": "device", "id": 1, "serial": "LP1"}      a device is plugged in, and plays "rows" from then on
     {"at": s, "do": "device lost", "id": 1}
@@ -15,7 +16,7 @@ import time
 
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 EPOCH = 5_000_000  # µs: the clock of the service counts from its own start
-START = time.monotonic()
+START, BEGUN = time.monotonic(), []
 
 
 class LeapError(Exception):
@@ -180,9 +181,11 @@ class Connection:
                     if number not in self._subscribed:
                         continue
                     self._send("on_tracking_event", metadata=Fields(device_id=number), tracking_frame_id=0, framerate=100.0,
-                               timestamp=EPOCH + int(1e6 * (since + float(row["time_s"]))),
+                               timestamp=EPOCH + int(1e6 * (BEGUN[0] - START + since + float(row["time_s"]))),
                                hands=[hand(row)] if row["palm_x"] else [])
 
 
 def now():
-    return time.monotonic() - START
+    if not BEGUN and os.path.exists(os.environ["LEAP_STAND_IN"] + ".go"):
+        BEGUN.append(time.monotonic())
+    return time.monotonic() - BEGUN[0] if BEGUN else -1.0
