@@ -122,8 +122,8 @@ bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place
   std::array<double, 4> distances{};
   std::transform(places.begin(), places.end(), distances.begin(),
                  [&](const Place& place) { return std::hypot(place[0] - middle[0], place[1] - middle[1]); });
-  const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
-  return *most - *least < kRimTolerance * *most;
+  const auto [nearest, farthest] = std::minmax_element(distances.begin(), distances.end());
+  return *farthest - *nearest < kRimTolerance * *farthest;
 }
 
 /// Draws the places of friction in towards the centre of the load, by spread_of(): sliding has the same force
@@ -139,10 +139,10 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   for (int i = 0; i < count; ++i) {
     const BodyContact& contact = *region[static_cast<std::size_t>(i)];
     const Vector3 offset = contact.point - region[0]->point;
-    const double push = std::max(0.0, -normal.dot(contact.force));
+    const double force = std::max(0.0, -normal.dot(contact.force));
     places[static_cast<std::size_t>(i)] = {u.dot(offset), v.dot(offset)};
-    centre += push * contact.point;
-    load += push;
+    centre += force * contact.point;
+    load += force;
     even += contact.point / count;
   }
   centre = load > 0.0 ? Vector3(centre / load) : even;

@@ -69,8 +69,8 @@ int name_of(double s) {
 ManifoldShape::ManifoldShape(const Shape& placed, const MeshCollider* collider)
     : shape(placed),
       mesh(collider),
-      core(std::visit([](const auto& asked) { return asked.core(); }, placed)),
-      prism(std::visit([](const auto& asked) { return asked.prism(); }, placed)),
+      core(std::visit([](const auto& typed) { return typed.core(); }, placed)),
+      prism(std::visit([](const auto& typed) { return typed.prism(); }, placed)),
       bounding_radius(mrhi::bounding_radius(placed)) {
   if (std::holds_alternative<Mesh>(placed) && collider == nullptr) {
     throw std::invalid_argument("a mesh needs its MeshCollider to be a ManifoldShape");

@@ -46,7 +46,7 @@ AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestF
 /// inside a convex shape for one interval in..out of t, x = point + t direction: this is the out.
 inline std::optional<double> exit_distance(const Shape& shape, const Vector3& point,
                                            const Vector3& direction) {
-  return std::visit([&](const auto& asked) { return asked.exit_distance(point, direction); }, shape);
+  return std::visit([&](const auto& typed) { return typed.exit_distance(point, direction); }, shape);
 }
 
 }  // namespace mrhi

@@ -89,15 +89,15 @@ void ContactRegion::reduce() {
               points.begin() + count);
   const std::uint8_t kept = first_deepest();
   while (count > 4) {
-    int least = -1;
-    double least_area = 0.0;
+    int smallest = -1;
+    double min_area = 0.0;
     for (int i = 0; i < count; ++i) {
       if ((*this)[i].feature == kept) continue;
       const double area = triangle(i);
-      if (least >= 0 && area > (1.0 - kSameArea) * least_area - kNoArea) continue;
-      least = i, least_area = area;
+      if (smallest >= 0 && area > (1.0 - kSameArea) * min_area - kNoArea) continue;
+      smallest = i, min_area = area;
     }
-    erase(least);
+    erase(smallest);
   }
 }
 

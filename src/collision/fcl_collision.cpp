@@ -67,7 +67,7 @@ struct BroadPhase::Impl {
   /// FCL hands over the two in either order, and goes on as long as false is returned.
   static bool add(FclObject* a, FclObject* b, void* data) {
     Impl& self = *static_cast<Impl*>(data);
-    self.found.push_back(self.index_of(a == &self.asked ? b : a));
+    self.found.push_back(self.index_of(a == &self.query ? b : a));
     return false;
   }
   static bool add_pair(FclObject* a, FclObject* b, void* data) {
@@ -84,7 +84,7 @@ struct BroadPhase::Impl {
   std::vector<int> found;
   std::vector<std::pair<int, int>> found_pairs;
   std::shared_ptr<FclBox> box = std::make_shared<FclBox>(0.0, 0.0, 0.0);
-  FclObject asked{box};
+  FclObject query{box};
 };
 
 BroadPhase::BroadPhase(std::size_t bodies) : impl_(std::make_unique<Impl>(bodies)) {}
@@ -109,9 +109,9 @@ void BroadPhase::update(int index, const Vector3& centre, double radius) {
 const std::vector<int>& BroadPhase::query(const Vector3& min, const Vector3& max) {
   impl_->place_moved();
   impl_->box->side = to_fcl(max - min);
-  place(impl_->asked, *impl_->box, 0.5 * (min + max));
+  place(impl_->query, *impl_->box, 0.5 * (min + max));
   impl_->found.clear();
-  impl_->manager.collide(&impl_->asked, impl_.get(), &Impl::add);
+  impl_->manager.collide(&impl_->query, impl_.get(), &Impl::add);
   std::sort(impl_->found.begin(), impl_->found.end());
   return impl_->found;
 }

@@ -73,15 +73,15 @@ class NearMemory {
     if (set.in_use.test_and_set(std::memory_order_acquire)) return search();
     const Use use(set.in_use);
     std::size_t closest = 0;
-    double least = 1e300;
+    double min_motion = 1e300;
     for (std::size_t i = 0; i < set.entries.size(); ++i) {
       const double moved = set.entries[i].moved(segment);
-      if (moved < least) least = moved, closest = i;
+      if (moved < min_motion) min_motion = moved, closest = i;
     }
     NearParts& entry = set.entries[closest];
-    if (least < entry.margin) return MeshNearest(shape.surface, segment, range, entry);
+    if (min_motion < entry.margin) return MeshNearest(shape.surface, segment, range, entry);
     MeshNearest found = search();
-    if (least < kMaxMotion) {
+    if (min_motion < kMaxMotion) {
       entry = found.found() ? found.near_parts(shape.tree) : NearParts{};
     } else {
       set.next = (set.next + 1) % set.entries.size();
@@ -186,8 +186,8 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
     if (part.surface.is_beyond(segment, kOnSurface)) continue;
     const MeshNearest search = nearest(part, segment, kUnlimited);
     if (!has_to_leave(part, search)) continue;
-    const ClosestFeatures way = leave(part, segment, search.nearest());
-    if (!best || way.distance < best->distance) best = way;
+    const ClosestFeatures exit = leave(part, segment, search.nearest());
+    if (!best || exit.distance < best->distance) best = exit;
   }
   if (best) best->face = -1;
   return best;

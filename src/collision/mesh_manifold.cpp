@@ -78,7 +78,7 @@ struct Probing {
   /// No part of a node is deeper in the other shape than this. Signed distance changes by no more than the
   /// way between two places: with the node's centre at the distance D and all its parts within r of it, none
   /// is deeper than r - D.
-  double most(const MeshTree::Node& node) const {
+  double max_depth(const MeshTree::Node& node) const {
     const Vector3 centre = pose * node.centre;
     const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
     if (apart > margin) return -1e300;
@@ -90,16 +90,16 @@ struct Probing {
 };
 
 /// The corners and edges of a shape, always in the same order; of a mesh those in nodes that are wanted.
-template <typename Wanted, typename See>
+template <typename Admits, typename See>
 struct Probes {
   const Probing& probing;
-  const Wanted& wanted;
+  const Admits& admits;
   const See& see;
 
   void each() const {
     if (probing.of.mesh != nullptr) {
       const MeshShape& mesh = probing.of.mesh->shape();
-      mesh.tree.visit(wanted, [&](int part) { of_mesh(mesh.surface, part); });
+      mesh.tree.visit(admits, [&](int part) { of_mesh(mesh.surface, part); });
     } else if (probing.of.prism) {
       const Prism prism(*probing.of.prism, probing.pose);
       prism.round ? of_round(prism) : of_straight(prism);
@@ -174,7 +174,7 @@ class Touches {
  public:
   Touches(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
     const auto touches = [this](const Probing& probing, const MeshTree::Node& node) {
-      return count_ <= kRemembered && probing.most(node) >= -probing.margin;
+      return count_ <= kRemembered && probing.max_depth(node) >= -probing.margin;
     };
     measure(touches, [this](const Touch& touch) {
       if (count_ < kRemembered) remembered_[count_] = touch;
@@ -183,25 +183,25 @@ class Touches {
   }
 
   /// Few are measured once, many each time.
-  template <typename Wanted, typename See>
-  void each(const Wanted& wanted, const See& see) const {
-    if (count_ > kRemembered) return measure(wanted, see);
+  template <typename Admits, typename See>
+  void each(const Admits& admits, const See& see) const {
+    if (count_ > kRemembered) return measure(admits, see);
     for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
   }
   /// Returns the first of the deepest of those that `fits` accepts and that are deeper than `least`.
   /// The bound grows with what is found: nodes that cannot exceed it are left out.
   template <typename Fits>
-  std::optional<Touch> deepest(double least, const Fits& fits) const {
-    double depth = least;
-    each([&](const Probing& probing, const MeshTree::Node& node) { return probing.most(node) > depth; },
+  std::optional<Touch> deepest(double min_depth, const Fits& fits) const {
+    double depth = min_depth;
+    each([&](const Probing& probing, const MeshTree::Node& node) { return probing.max_depth(node) > depth; },
          [&](const Touch& touch) {
            if (touch.depth > depth && fits(touch)) depth = touch.depth;
          });
-    if (depth <= least) return std::nullopt;
+    if (depth <= min_depth) return std::nullopt;
     depth -= kSameDepth;
     std::optional<Touch> found;
     each([&](const Probing& probing,
-             const MeshTree::Node& node) { return !found && probing.most(node) >= depth; },
+             const MeshTree::Node& node) { return !found && probing.max_depth(node) >= depth; },
          [&](const Touch& touch) {
            if (!found && touch.depth >= depth && fits(touch)) found = touch;
          });
@@ -211,12 +211,12 @@ class Touches {
  private:
   static constexpr std::size_t kRemembered = 320;
 
-  template <typename Wanted, typename See>
-  void measure(const Wanted& wanted, const See& see) const {
+  template <typename Admits, typename See>
+  void measure(const Admits& admits, const See& see) const {
     for (const Probing& probing : both_) {
       probing.deep_left = kMaxDeepSearches;
       const auto wanted_here = [&](const MeshTree::Node& node) {
-        return probing.deep_left > 0 && wanted(probing, node);
+        return probing.deep_left > 0 && admits(probing, node);
       };
       const auto try_out = [&](const Probe& probe) {
         if (probing.deep_left <= 0) return;
@@ -257,13 +257,13 @@ class Spread {
     bool farther = false;
     for (std::size_t k = 0; k < kDirections && !farther; ++k)
       farther = out_[k].dot(offset) + around > farthest_[k] + kSameDepth;
-    return farther && probing.most(node) >= -probing.margin;
+    return farther && probing.max_depth(node) >= -probing.margin;
   }
   void see(const Touch& touch) {
     if (touch.normal.dot(deepest_.normal) < kMinSameRegionCosine) return;
     for (std::size_t k = 0; k < kDirections; ++k) {
-      const double far = out_[k].dot(touch.point - deepest_.point);
-      if (far > farthest_[k] + kSameDepth) farthest_[k] = far, outermost_[k] = touch;
+      const double distance = out_[k].dot(touch.point - deepest_.point);
+      if (distance > farthest_[k] + kSameDepth) farthest_[k] = distance, outermost_[k] = touch;
     }
   }
 

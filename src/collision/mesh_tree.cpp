@@ -46,9 +46,9 @@ double MeshTree::Node::depth(const Segment& segment) const {
     const double up = normal.dot(offset);
     const double aside = std::sqrt(std::max(0.0, offset.squaredNorm() - up * up));
     // Of directions within the cone the least along the offset; beyond its opposite that is -|offset|.
-    const double least =
+    const double lowest =
         up * sin_spread < -aside * cos_spread ? -offset.norm() : up * cos_spread - aside * sin_spread;
-    depth = std::max(depth, least - bottom - radius * sin_spread);
+    depth = std::max(depth, lowest - bottom - radius * sin_spread);
   }
   return depth;
 }

@@ -39,8 +39,8 @@ class MeshTree {
   int part(int i) const { return parts_[static_cast<std::size_t>(i)]; }
 
   /// Visits nodes that `wanted(node)`, always in the same order; `see(part)` the parts of leaves.
-  template <typename Wanted, typename See>
-  void visit(const Wanted& wanted, const See& see) const;
+  template <typename Admits, typename See>
+  void visit(const Admits& admits, const See& see) const;
 
   /// Visits nodes with cost(node) <= limit(), the lesser first; `see(part)` the parts of leaves.
   template <typename Cost, typename Limit, typename See>
@@ -54,14 +54,14 @@ class MeshTree {
   std::vector<int> parts_;
 };
 
-template <typename Wanted, typename See>
-void MeshTree::visit(const Wanted& wanted, const See& see) const {
+template <typename Admits, typename See>
+void MeshTree::visit(const Admits& admits, const See& see) const {
   std::array<int, kMostLevels> open;
   std::size_t count = 0;
   open[count++] = 0;
   while (count > 0) {
     const Node& now = node(open[--count]);
-    if (!wanted(now)) continue;
+    if (!admits(now)) continue;
     for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
     if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
   }

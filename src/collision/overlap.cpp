@@ -68,10 +68,10 @@ double common_ball(const Solid& a, const Solid& b) {
       largest = std::max(largest, 2.0 * std::min(in_a.depth, in_b.depth));
       const Solid::Depth& lesser = in_a.depth < in_b.depth ? in_a : in_b;
       const double to_inside = kOverlap - lesser.depth;  // from outside
-      const double way =
+      const double advance =
           std::max(0.5 * std::abs(in_a.depth - in_b.depth), lesser.depth < 0.0 ? to_inside : 0.0);
-      if (way < 1e-5) break;
-      place += way * lesser.inward;
+      if (advance < 1e-5) break;
+      place += advance * lesser.inward;
     }
     if (largest > kOverlap) break;
   }

@@ -12,11 +12,11 @@ namespace {
 template <typename OfMesh, typename OfOther>
 auto ask(const Shape& shape, const OfMesh& of_mesh, const OfOther& of_other) {
   return std::visit(
-      [&](const auto& asked) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(asked)>, Mesh>) {
+      [&](const auto& typed) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(typed)>, Mesh>) {
           return of_mesh();
         } else {
-          return of_other(asked);
+          return of_other(typed);
         }
       },
       shape);
@@ -30,13 +30,13 @@ ClosestFeatures closest_on(const Shape& shape, const MeshCollider* mesh, const C
   const ClosestFeatures none{kNowhere, Vector3::UnitZ(), Vector3::Zero(), 0.0};
   return ask(
       shape, [&] { return mesh->closest(capsule, margin).value_or(none); },
-      [&](const auto& asked) { return asked.closest(capsule, margin); });
+      [&](const auto& typed) { return typed.closest(capsule, margin); });
 }
 
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features) {
   return ask(
       shape, [&] { return at_point(features); },
-      [&](const auto& asked) { return asked.span(capsule, features); });
+      [&](const auto& typed) { return typed.span(capsule, features); });
 }
 
 PlacedCollider::PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh)

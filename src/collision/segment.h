@@ -118,13 +118,13 @@ class ConvexMinimum {
 /// has the least of v: |e.v| <= |v| / sqrt(3), so that two thirds of e's square are left and nothing cancels.
 /// Of components alike the last counts.
 inline Vector3 any_normal(const Vector3& v) {
-  int least = 2;
+  int smallest = 2;
   for (int i = 1; i >= 0; --i) {
-    if (std::abs(v[i]) < std::abs(v[least])) least = i;
+    if (std::abs(v[i]) < std::abs(v[smallest])) smallest = i;
   }
   const double length_squared = v.squaredNorm();
   if (length_squared == 0.0) return Vector3::UnitZ();
-  return (Vector3::Unit(least) - v[least] / length_squared * v).normalized();
+  return (Vector3::Unit(smallest) - v[smallest] / length_squared * v).normalized();
 }
 
 inline double clamp_unit(double x) {

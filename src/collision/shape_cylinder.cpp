@@ -164,8 +164,8 @@ ClosestFeatures leave_by_rim(const Segment& axis, const Cylinder& cylinder) {
 /// than rounding.
 ClosestFeatures leave(const Segment& axis, const Cylinder& cylinder) {
   ClosestFeatures best = leave_by_cap(axis, cylinder);
-  const auto take = [&](const ClosestFeatures& way, double better) {
-    if (way.distance > best.distance + better) best = way;
+  const auto take = [&](const ClosestFeatures& exit, double better) {
+    if (exit.distance > best.distance + better) best = exit;
   };
   take(leave_by_side(axis, cylinder), 0.0);
   const bool slanted = axis.along.z() != 0.0 && axis.along.head<2>().norm() > 0.0;

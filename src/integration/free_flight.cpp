@@ -308,16 +308,16 @@ About about(double by_momentum, double squared_momentum) {
 /// the start, and
 ///
 ///     integral of f = t / 30 (16 f(t/2) + 7 f(t)) - t^2 / 60 f'(t)
-About about(const MomentumPath& way, const Triple& m, const Triple& n, const Triple& moments, double over,
+About about(const MomentumPath& path, const Triple& m, const Triple& n, const Triple& moments, double over,
             double t) {
   const double over4 = 0.25 * over;
   const Triple rate = each(moments, m);
   const double twice_energy = rate.dot(m), mean = twice_energy * over;
   const Triple k{mean - moments.x, mean - moments.y, mean - moments.z};
-  const Triple middle = way.nearly_after(0.5 * t);
+  const Triple middle = path.nearly_after(0.5 * t);
   const double at_middle =
       each(k, middle).dot(middle) * series(over4 * middle.dot(middle), 1.0, 1.0, 1.0, 1.0);
-  const Triple kn = each(k, n), slope = way.slope(m + n);
+  const Triple kn = each(k, n), slope = path.slope(m + n);
   const double grown = series(over4 * n.dot(n), 1.0, 1.0, 1.0, 1.0), at_end = kn.dot(n) * grown;
   const double half_slope = grown * (kn.dot(slope) + at_end * over4 * n.dot(slope));
   const double integral =
@@ -361,9 +361,9 @@ void turn_shortly(const Body& body, const Vector3& angular_momentum, double step
   const Triple m{axes[0].dot(local), axes[1].dot(local), axes[2].dot(local)};
   const Triple moments = triple(body.inverse_moments);
   const double over = 1.0 / m.dot(m);
-  const MomentumPath way(m, moments);
-  const Triple n = way.after(step);
-  const About turn = about(way, m, n, moments, over, step);
+  const MomentumPath path(m, moments);
+  const Triple n = path.after(step);
+  const About turn = about(path, m, n, moments, over, step);
 
   const double e = 0.25 * over * n.dot(n);
   const double root_over = series(e, 1.0, 1.0 / 2.0, 3.0 / 8.0, 5.0 / 16.0, 35.0 / 128.0);
@@ -404,15 +404,15 @@ Turn turn_of(double quickness, const Vector3& angular_momentum, double step) {
 }
 
 double quickness(const Body& body) {
-  const double most = std::max(spread(body) / kShortPath, body.inverse_moments.maxCoeff() / kShortAngle);
-  return most * most;
+  const double limit = std::max(spread(body) / kShortPath, body.inverse_moments.maxCoeff() / kShortAngle);
+  return limit * limit;
 }
 
 // Divides the step into parts in which the momentum rotates by at most kFreeTurn in the body: |dL/dt| <= |L|
 // (1/I_min - 1/I_max) |L|. A ball's momentum does not rotate, so one part suffices at any spin.
 void turn_far(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
-  const double way = spread(body) * angular_momentum.norm() * step;
-  const double enough = std::min(kMaxParts, way / kFreeTurn);  // in this order never NaN
+  const double travel = spread(body) * angular_momentum.norm() * step;
+  const double enough = std::min(kMaxParts, travel / kFreeTurn);  // in this order never NaN
   const int parts = 1 + static_cast<int>(enough);
   for (int i = 0; i < parts; ++i) {
     const Vector3 momentum = orientation.conjugate() * angular_momentum;

@@ -227,9 +227,10 @@ void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   start_root_ = root_;
   find_rate(now_, gravity, stages_[0].rate);
   const double before = energy(now_, gravity);
-  const double way = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
+  const double travel = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
   const double bodies = motion_.size(), work = kMaxWork / (bodies * bodies);
-  const int parts = 1 + static_cast<int>(std::min({way / kMaxPartAngle, kMaxParts, work / kTypicalPartWork}));
+  const int parts =
+      1 + static_cast<int>(std::min({travel / kMaxPartAngle, kMaxParts, work / kTypicalPartWork}));
   const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinIterations, kMaxIterations);
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);

@@ -38,11 +38,11 @@ inline void DurationHistogram::add(Nanoseconds duration) {
 }
 
 inline double DurationHistogram::quantile_us(double q) const {
-  const auto wanted = static_cast<std::uint64_t>(std::ceil(q * static_cast<double>(count_)));
+  const auto rank = static_cast<std::uint64_t>(std::ceil(q * static_cast<double>(count_)));
   std::uint64_t seen = 0;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     seen += bins_[bin];
-    if (seen == 0 || seen < wanted) continue;
+    if (seen == 0 || seen < rank) continue;
     const double middle = kShortest * std::pow(kBinRatio, static_cast<double>(bin) + 0.5);
     return std::min(1e-3 * middle, max_us());
   }

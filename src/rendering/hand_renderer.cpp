@@ -287,8 +287,8 @@ double HandRenderer::Impl::limit_displacement(const PalmLag& lag) {
   double held = 0.0;
   for (int f = 0; f < kFingers; ++f) {
     const FingerChain& finger = chain.finger(f);
-    const FingerOffset wanted = finger.pointing(before, finger_before(f));
-    held += finger.displacement(wanted - wanted.max(finger.lower()).min(finger.upper()));
+    const FingerOffset pointed = finger.pointing(before, finger_before(f));
+    held += finger.displacement(pointed - pointed.max(finger.lower()).min(finger.upper()));
   }
   return held;
 }

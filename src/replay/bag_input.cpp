@@ -106,7 +106,7 @@ std::string joined(const std::set<std::string>& names) {
 }
 
 std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& bag,
-                                    const std::optional<std::string>& wanted, const HandOptions& hands) {
+                                    const std::optional<std::string>& requested, const HandOptions& hands) {
   std::set<std::string> fitting;
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
     if (kTypes.count(connection->datatype) > 0) fitting.insert(connection->topic);
@@ -117,7 +117,7 @@ std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& 
     }
     throw BagError(file + ": no topic '" + name + "' with hands; allowed: " + joined(fitting));
   };
-  if (wanted) return {found(*wanted)};
+  if (requested) return {found(*requested)};
   if (!hands.topics.empty()) {
     std::set<std::string> named;
     for (const auto& [topic, stands_for] : hands.topics) named.insert(found(topic));
@@ -205,11 +205,11 @@ class DeviceFrames {
 /// Reads a few messages ahead.
 class BagInput : public FrameSource {
  public:
-  BagInput(const std::string& of_file, const std::optional<std::string>& wanted,
+  BagInput(const std::string& of_file, const std::optional<std::string>& requested,
            const std::optional<Pose>& device, const HandOptions& of_hands)
       : file_(of_file),
         bag_(readable(file_), rosbag::bagmode::Read),
-        topics_(chosen_topics(file_, bag_, wanted, of_hands)),
+        topics_(chosen_topics(file_, bag_, requested, of_hands)),
         view_(bag_, rosbag::TopicQuery(std::vector<std::string>(topics_.begin(), topics_.end()))),
         options_(of_hands),
         reader_({Side::right, options_.order, options_.scale}),

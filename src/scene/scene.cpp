@@ -112,14 +112,14 @@ std::optional<int> find_named(const std::vector<Named>& all, const std::string& 
 
 /// For each of the scene's bodies whether it is the one or hangs on it: joints come before those of what
 /// hangs on them.
-std::vector<char> those_that_go(std::size_t body, const Scene& scene) {
-  std::vector<char> goes(scene.bodies.size(), 0);
-  goes[body] = 1;
+std::vector<char> removed_with(std::size_t body, const Scene& scene) {
+  std::vector<char> removed(scene.bodies.size(), 0);
+  removed[body] = 1;
   for (const Joint& joint : scene.joints) {
-    if (joint.parent != Joint::kWorld && goes[static_cast<std::size_t>(joint.parent)] != 0)
-      goes[static_cast<std::size_t>(joint.child)] = 1;
+    if (joint.parent != Joint::kWorld && removed[static_cast<std::size_t>(joint.parent)] != 0)
+      removed[static_cast<std::size_t>(joint.child)] = 1;
   }
-  return goes;
+  return removed;
 }
 
 /// Keeps the items that `stays` says of, which puts their indices right.
@@ -229,22 +229,22 @@ void append(const Scene& part, Scene& scene) {
 }
 
 std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
-  const std::vector<char> goes = those_that_go(body, scene);
+  const std::vector<char> removed = removed_with(body, scene);
   std::vector<std::size_t> bodies;
-  for (std::size_t b = 0; b < goes.size(); ++b) {
-    if (goes[b] != 0) bodies.push_back(b);
+  for (std::size_t b = 0; b < removed.size(); ++b) {
+    if (removed[b] != 0) bodies.push_back(b);
   }
   return bodies;
 }
 
 void remove_body(std::size_t body, Scene& scene) {
-  const std::vector<char> goes = those_that_go(body, scene);
-  std::vector<int> place;  // of each body among those that stay; -1: it goes
-  place.reserve(goes.size());
+  const std::vector<char> removed = removed_with(body, scene);
+  std::vector<int> place;  // of each body among those that stay; -1: removed
+  place.reserve(removed.size());
   int staying = 0;
-  for (const char gone : goes) place.push_back(gone != 0 ? -1 : staying++);
+  for (const char gone : removed) place.push_back(gone != 0 ? -1 : staying++);
   std::size_t b = 0;
-  keep(scene.bodies, [&](const Body&) { return goes[b++] == 0; });
+  keep(scene.bodies, [&](const Body&) { return removed[b++] == 0; });
   const auto stays = [&](int& index) { return (index = place[static_cast<std::size_t>(index)]) >= 0; };
   keep(scene.joints, [&](Joint& joint) {
     if (joint.parent != Joint::kWorld) stays(joint.parent);

@@ -137,8 +137,8 @@ rlim_t size_of_this() {
 }
 
 template <class Resource>
-void limit(Resource resource, rlim_t most) {
-  const rlimit both{most, most};
+void limit(Resource resource, rlim_t value) {
+  const rlimit both{value, value};
   setrlimit(resource, &both);
 }
 
@@ -182,9 +182,9 @@ std::string read_all(int from, const ChildLimits& limits) {
   char part[1 << 16];
   while (text.size() <= limits.output) {
     pollfd ready{from, POLLIN, 0};
-    const int told = poll(&ready, 1, kPatience * kMilliseconds * limits.seconds);
-    if (told < 0 && errno == EINTR) continue;
-    if (told <= 0) return "";
+    const int count = poll(&ready, 1, kPatience * kMilliseconds * limits.seconds);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return "";
     const ssize_t got = read(from, part, sizeof part);
     if (got == 0) break;
     if (got > 0) text.append(part, static_cast<std::size_t>(got));

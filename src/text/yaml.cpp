@@ -64,9 +64,10 @@ std::string yaml_complaint(const std::string& source, const YAML::Exception& err
   return yaml_place(source, error.mark) + ": not YAML: " + text::one_line(error.msg);
 }
 
-YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most) {
-  if (yaml.size() > most)
-    throw YamlError(source + ": is longer than " + std::to_string(most) + " bytes; allowed: at most that");
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t max_bytes) {
+  if (yaml.size() > max_bytes)
+    throw YamlError(source + ": is longer than " + std::to_string(max_bytes) +
+                    " bytes; allowed: at most that");
   try {
     const std::string whole = ended(yaml);
     std::istringstream text(whole);

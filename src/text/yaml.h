@@ -23,7 +23,7 @@ class YamlError : public std::runtime_error {
 YAML::Node load_yaml_file(const std::string& file);
 
 /// The same from a text of at most `most` bytes; `source` is its name in messages.
-YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t most = 256 * 1024);
+YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t max_bytes = 256 * 1024);
 
 /// yaml-cpp's message as one line with the place.
 std::string yaml_complaint(const std::string& source, const YAML::Exception& error);
@@ -42,8 +42,8 @@ auto read_yaml(const std::string& source, const Read& read) {
 
 /// Range of a setting's number: both ends finite, max included.
 struct Range {
-  constexpr Range(double least, double most, bool least_allowed = true)
-      : min(least), max(most), min_allowed(least_allowed) {}
+  constexpr Range(double lowest, double highest, bool lowest_allowed = true)
+      : min(lowest), max(highest), min_allowed(lowest_allowed) {}
 
   double min, max;
   bool min_allowed;

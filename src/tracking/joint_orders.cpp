@@ -86,18 +86,19 @@ std::size_t known_joints(const HandJoints& hand) {
 std::optional<std::size_t> worst_joint(const HandJoints& hand) {
   const auto fit = proportions(hand);
   std::array<int, kHandJoints> faults{};
-  int most = 0;
+  int max_faults = 0;
   for (const Measured& bone : measured(hand)) {
     const double longest = fit ? kMaxBoneRatio * fit->size * bone.link->adult : kMaxBoneLength;
     if (!(bone.length > longest)) continue;
-    for (const std::size_t end : {bone.link->from, bone.link->to}) most = std::max(most, ++faults[end]);
+    for (const std::size_t end : {bone.link->from, bone.link->to})
+      max_faults = std::max(max_faults, ++faults[end]);
   }
-  if (most == 0) return std::nullopt;
+  if (max_faults == 0) return std::nullopt;
   const Vector3 centre = median_point(hand);
   std::optional<std::size_t> worst;
   double farthest = -1.0;
   for (std::size_t i = 0; i < kHandJoints; ++i) {
-    const double away = faults[i] == most ? (*joint(hand, i) - centre).norm() : -1.0;
+    const double away = faults[i] == max_faults ? (*joint(hand, i) - centre).norm() : -1.0;
     if (away > farthest) worst = i, farthest = away;
   }
   return worst;
@@ -227,9 +228,9 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {
 std::size_t drop_stray_joints(HandJoints& hand) {
   for (std::size_t i = 0; i < kHandJoints; ++i)
     if (joint(hand, i) && !joint(hand, i)->allFinite()) return 0;  // it will be refused
-  const std::size_t most = known_joints(hand) / 3;
+  const std::size_t max_dropped = known_joints(hand) / 3;
   HandJoints without = hand;
-  for (std::size_t dropped = 0; dropped <= most; ++dropped) {
+  for (std::size_t dropped = 0; dropped <= max_dropped; ++dropped) {
     const auto worst = worst_joint(without);
     if (!worst) {
       if (dropped > 0) hand = without;
