@@ -6,10 +6,12 @@ import math
 import os
 import re
 import shutil
+import subprocess
 import tempfile
 import unittest
 
-from pinching import HALF, MASS, MOVES, PEAK, RADIUS, RATE, STIFFNESS, Attempt, replay, replay_is_built, script
+from pinching import (HALF, LIMIT, MASS, MOVES, PEAK, RADIUS, RATE, REPLAY, STIFFNESS, Attempt, replay, replay_is_built,
+                      script)
 
 from runs import losses as finding
 from runs.explanation import as_json
@@ -224,6 +226,27 @@ class CommandsTest(Folders):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("runs the hands of %s through scene 'pinch'" % bag, done.stderr)
         self.assertNotIn('not known', done.stderr)
+
+    def test_stamps_in_another_unit_are_named(self):
+        recording = os.path.join(self.folder, 'recording.csv')
+        subprocess.run([os.path.join(os.path.dirname(REPLAY), 'synthetic_hand_node'), '--csv', recording, '--motion', 'grasp_cube',
+                        '--rate', '60'], check=True, timeout=LIMIT)
+        with open(recording, encoding='ascii') as file:
+            header, *rows = file.readlines()[:50]
+        self.assertTrue(header.startswith('time_s,'))
+        for factor, question in ((1000.0, 'are these milliseconds or microseconds?'), (0.001, 'are these 1000 times too small?'),
+                                 (1.0, '')):
+            with self.subTest(factor=factor):
+                csv = os.path.join(self.folder, '%g.csv' % factor)
+                with open(csv, 'w', encoding='ascii') as file:
+                    file.write(header)
+                    for row in rows:
+                        time, rest = row.split(',', 1)
+                        file.write('%r,%s' % (factor * float(time), rest))
+                told = replay('--scene', 'cube', '--input', csv, '--output', csv + '.out')
+                self.assertEqual(told.returncode, 0, told.stderr)
+                self.assertEqual('s apart on average' in told.stderr, bool(question), told.stderr)
+                self.assertIn(question, told.stderr)
 
     def test_a_recording_is_replayed_with_the_options_that_follow_it(self):
         output = Attempt(**OPENING).replay(self.folder)
