@@ -199,7 +199,9 @@ class Normaliser {
   void read_friction() {
     const auto read = [&](const XMLElement& element, const char* name, const char* link) {
       const XMLElement* found = find_within(element, name);
-      if (const auto value = text::to_number(attribute(found, "mu", value_of(found).c_str())))
+      const std::string mu = attribute(found, "mu");  // 0 in URDF's tutorial, where nothing reads it
+      if (const auto value = text::to_number(mu.empty() ? value_of(found) : mu);
+          value && (mu.empty() || *value > 0.0))
         result_.friction[links_.of(attribute(&element, link))] = *value;
     };
     each(robot_, "gazebo", [&](const XMLElement& gazebo) {

@@ -429,6 +429,8 @@ TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {
                                  </friction></surface></collision></gazebo>)"));
   EXPECT_EQ(0.6, friction("", R"(<gazebo reference="a"><mu1 value="0.6"/></gazebo>)"));
   EXPECT_EQ(0.6, friction("<contact><contact_coefficients mu=\"0.6\" kp=\"1000\"/></contact>", ""));
+  EXPECT_EQ(0.8, friction("<contact_coefficients mu=\"0\" kp=\"1000.0\" kd=\"1.0\"/>", ""))
+      << "a placeholder";
   EXPECT_EQ(
       0.6,
       friction("<collision><surface><friction><ode><mu>0.6</mu></ode></friction></surface></collision>", ""));
