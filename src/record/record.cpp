@@ -267,11 +267,19 @@ RecordedFiles contents_of(const std::vector<SceneFile>& files) {
 
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files) {
   std::map<std::string, std::string> paths;
+  fs::create_directories(folder);
   for (const RecordedFile& file : files) {
-    const fs::path path = fs::path(folder) /
-                          ("mesh_" + std::to_string(paths.size()) + fs::path(file.name).extension().string());
-    write(path, file.bytes);
-    paths[file.name] = path.string();
+    const auto numbered = [&](int i) {
+      const std::string name = "mesh_" + std::to_string(i) + fs::path(file.name).extension().string();
+      return (fs::path(folder) / name).string();
+    };
+    const auto is_other = [&](const std::string& path) {
+      return fs::exists(path) && file_text(path, file.bytes.size() + 1) != file.bytes;
+    };
+    int i = 0;  // files of changes before this one stay
+    while (is_other(numbered(i))) ++i;
+    write(numbered(i), file.bytes);
+    paths[file.name] = numbered(i);
   }
   return paths;
 }

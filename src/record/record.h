@@ -24,7 +24,7 @@ using RecordedFiles = std::vector<RecordedFile>;
 /// The mesh files that a scene was made of, and nothing else that a URDF may name.
 RecordedFiles contents_of(const std::vector<SceneFile>& files);
 
-/// Writes `files` into `folder`, for SceneOptions::mesh_files.
+/// Writes `files` into `folder`, for SceneOptions::mesh_files. Others that are there stay.
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files);
 
 /// The bodies that a spawn adds, with their meshes ready for collision, and the files that they were read

@@ -168,6 +168,10 @@ class LogRun {
  private:
   Simulation& simulation() { return simulation_->simulation(); }
   LiveRun& live() { return *run_.summary.live; }
+  /// markers.bag names the meshes' files, so they stay beside it.
+  std::string files_folder() const {
+    return run_.writes_markers() ? arguments_.output + "/files" : scratch_.path();
+  }
 
   void take(const LogEntry& entry) {
     if (entry.kind == LogEntry::Kind::begin) return begin(entry);
@@ -202,7 +206,7 @@ class LogRun {
     overrides_.apply(world);
     const Configuration configuration = configuration_of(world, run_.summary.not_known);
     simulation_ =
-        std::make_unique<LiveSimulation>(scene_of(world, configuration, scratch_.path()), configuration);
+        std::make_unique<LiveSimulation>(scene_of(world, configuration, files_folder()), configuration);
     if (!overrides_.other_scene()) take_state(entry);
     overrides_.place(simulation());
     note_begin(world);
@@ -247,7 +251,7 @@ class LogRun {
     try {
       if (auto* spawn = std::get_if<Spawn>(&change)) {
         SceneOptions options = scene_options(simulation().configuration());
-        options.mesh_files = written_to(scratch_.path(), entry.files);
+        options.mesh_files = written_to(files_folder(), entry.files);
         spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
       }
       make(change, *simulation_);

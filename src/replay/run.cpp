@@ -85,7 +85,8 @@ Json lost(const ReplaySummary& summary) {
 
 }  // namespace
 
-ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic) : output_(arguments.output) {
+ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
+    : output_(arguments.output), made_(first_missing(arguments.output)) {
   summary.input = arguments.input;
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
@@ -98,10 +99,7 @@ ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
 
 void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {
   const Configuration& configuration = simulation.configuration();
-  if (!writer_) {
-    made_ = first_missing(output_);
-    writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
-  }
+  if (!writer_) writer_ = std::make_unique<ResultWriter>(output_, simulation.scene());
   writer_->follow(simulation.scene());
   summary.scene = scene;
   summary.contact_model = configuration.contact_model.name;

@@ -99,6 +99,7 @@ class ReplayRun {
   /// removes the folders that it has made instead.
   void end(const Simulation& simulation, const std::string& error);
 
+  bool writes_markers() const { return markers_ != nullptr; }
   /// Since the first result [s].
   double seconds() const;
 

@@ -142,13 +142,16 @@ std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
 std::string plain_stl(const std::string& file) {
   std::string bytes = file_text(file, kMostBytes).value_or("");
   std::uint32_t count = 0;
-  if (bytes.size() < 84) return bytes;
-  std::memcpy(&count, &bytes[80], sizeof count);
+  if (bytes.size() >= 84) std::memcpy(&count, &bytes[80], sizeof count);
   const std::uint64_t whole = 84 + std::uint64_t(50) * count;
   if (whole <= bytes.size()) {
     bytes.resize(whole);
     return bytes;
   }
+  if (!bytes.empty() && bytes.find("solid") == std::string::npos && bytes.find("SOLID") == std::string::npos)
+    throw std::runtime_error("cannot be read: it has " + std::to_string(bytes.size()) +
+                             " bytes, its header stands for " + std::to_string(whole) +
+                             "; allowed: a whole STL");
   bytes.erase(0, bytes.find_first_not_of(" \t\r\n"));
   if (bytes.compare(0, 5, "SOLID") == 0) {
     for (char& c : bytes) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

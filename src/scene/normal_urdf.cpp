@@ -194,18 +194,22 @@ class Normaliser {
     }
   }
 
-  /// From <gazebo reference="LINK">, PyBullet's <contact> and Drake's proximity properties; the last one
-  /// wins.
+  /// From <gazebo reference="LINK">, <contact_coefficients mu="">, SDF's <surface>, PyBullet's <contact> and
+  /// Drake's proximity properties; the last one wins.
   void read_friction() {
     const auto read = [&](const XMLElement& element, const char* name, const char* link) {
-      if (const auto value = text::to_number(value_of(find_within(element, name))))
+      const XMLElement* found = find_within(element, name);
+      const std::string mu = attribute(found, "mu");  // 0 in URDF's tutorial, where nothing reads it
+      if (const auto value = text::to_number(mu.empty() ? value_of(found) : mu);
+          value && (mu.empty() || *value > 0.0))
         result_.friction[links_.of(attribute(&element, link))] = *value;
     };
     each(robot_, "gazebo", [&](const XMLElement& gazebo) {
       for (const char* name : {"mu", "mu1"}) read(gazebo, name, "reference");
     });
     each(robot_, "link", [&](const XMLElement& link) {
-      for (const char* name : {"drake:mu_static", "lateral_friction"}) read(link, name, "name");
+      for (const char* name : {"contact_coefficients", "mu", "drake:mu_static", "lateral_friction"})
+        read(link, name, "name");
     });
   }
 
@@ -231,9 +235,12 @@ class Normaliser {
     write_inertial(link, where + " inertial");
     for (const std::string kind : {"visual", "collision"})
       each(link, kind.c_str(), [&](const XMLElement& element) {
+        const XMLElement* geometry = element.FirstChildElement("geometry");
+        if (geometry == nullptr || geometry->FirstChildElement() == nullptr)
+          return warnings_.add("visuals and collisions without a shape are left out", where + " " + kind);
         open(kind.c_str(), {});
         write_origin(element, where + " " + kind);
-        write_geometry(element, where + " " + kind);
+        write_geometry(*geometry, where + " " + kind);
         if (const XMLElement* material = element.FirstChildElement("material"))
           if (kind == "visual") write_material(*material, where);
         out_.CloseElement();
@@ -293,14 +300,12 @@ class Normaliser {
   }
 
   /// Shapes that urdfdom does not know pass it as the file name of a mesh.
-  void write_geometry(const XMLElement& element, const std::string& where) {
-    const XMLElement* geometry = element.FirstChildElement("geometry");
-    const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-    if (shape == nullptr) return;
+  void write_geometry(const XMLElement& geometry, const std::string& where) {
+    const XMLElement* shape = geometry.FirstChildElement();
     const std::string kind = shape->Name();
     const ShapeKind* known = find_shape_kind(kind);
-    const bool hull = kind == "mesh" && is_followed_by_hull(*geometry, *shape);
-    for (const XMLNode* node = geometry->FirstChild(); node != nullptr && !hull; node = node->NextSibling())
+    const bool hull = kind == "mesh" && is_followed_by_hull(geometry, *shape);
+    for (const XMLNode* node = geometry.FirstChild(); node != nullptr && !hull; node = node->NextSibling())
       if (is_hull_comment(*node)) throw std::runtime_error("bad URDF: <!-- hull --> stands behind no mesh");
     open("geometry", {});
     if (kind == "mesh") {
@@ -482,7 +487,10 @@ class Normaliser {
 
 }  // namespace
 
-NormalUrdf normal_urdf(const std::string& xml, Warnings& warnings) {
+NormalUrdf normal_urdf(const std::string& given, Warnings& warnings) {
+  std::string xml = given;  // without its declaration, which people also write below a comment
+  if (const std::size_t at = xml.find("<?xml"), end = xml.find("?>"); at < end && end != std::string::npos)
+    xml.erase(at, end + 2 - at);
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
     throw std::runtime_error("bad URDF: no XML: " + text::one_line(document.ErrorStr(), 120) +

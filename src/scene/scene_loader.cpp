@@ -29,10 +29,16 @@ constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the 
 
 /// A rigid body's principal moments obey a + b >= c. Files round them: a thin plate just meets it.
 constexpr double kTriangleSlack = 0.01;
-/// A body whose moments are this many times what its mass can have within its shapes has another unit.
-constexpr double kImplausible = 3.0;
-/// Objects that hands meet are no longer than this [m].
-constexpr double kLargeObject = 10.0;
+/// Moments of inertia of a body, as fractions of its mass times its radius squared: others have another unit.
+constexpr Range kPlausibleMoment{0.003, 3.0};
+/// No solid is denser; osmium has 22 590 kg/m^3.
+constexpr double kMaxDensity = 25000.0;
+/// Objects that hands meet have lengths in this range [m].
+constexpr Range kPlausibleLength{1e-3, 10.0};
+/// A centre of mass is this fraction of a body's size within its surface, or more.
+constexpr double kCentreMargin = 0.05;
+/// A principal moment below this fraction of the largest is one that the file leaves out.
+constexpr double kNoMoment = 1e-12;
 
 /// Has the inertia of a link that has neither one nor a shape.
 const Sphere kUnseen{0.01};
@@ -155,7 +161,8 @@ class BodyReader {
     body.shapes = moved(std::move(body.shapes), body.link_in_body);
   }
 
-  static Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) {
+  /// PyBullet's files have inertias without a moment about an axis, which PyBullet does not read.
+  Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) const {
     const urdf::Inertial& given = *part.link->inertial;
     const Pose origin = part.pose * to_pose(given.origin);
     const Matrix3 to_link = origin.orientation.toRotationMatrix();
@@ -163,7 +170,13 @@ class BodyReader {
     inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
         given.izz;
     Weight weight{given.mass, origin.position, symmetric(to_link * inertia * to_link.transpose())};
-    if (weight.inertia.isZero(0.0))
+    const bool none = weight.inertia.isZero(0.0);
+    const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(weight.inertia).eigenvalues();
+    const bool part_only = !none && std::abs(moments[0]) <= kNoMoment * moments[2];
+    if (part_only)
+      document_.warnings.add("inertias that lack a moment are replaced by those of the shapes",
+                             "'" + part.link->name + "' " + text::vector(moments) + " kg m^2");
+    if (none || part_only)
       weight.inertia =
           shapes.empty() ? inertia_of({{kUnseen, Pose{}}}, given.mass)
                          : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}), given.mass);
@@ -219,18 +232,38 @@ class BodyReader {
           text::vector(moments) +
           " kg m^2; allowed: the largest at most the sum of the others, or no <inertia> for that "
           "of the shapes");
-    const double most = body.mass * body.bounding_radius * body.bounding_radius;
-    if (!body.shapes.empty() && moments[2] > kImplausible * most)
-      document_.warnings.add(
-          "inertias are too large for their masses and sizes; is the unit kg m^2? Without <inertia> that of "
-          "the shapes is taken",
-          "'" + body.name + "' " + text::number(moments[2]) + " kg m^2, at most " + text::number(most) +
-              " is possible");
-    if (2.0 * body.bounding_radius > kLargeObject)
-      document_.warnings.add(
-          "very large objects; are they in millimetres? <mesh scale=\"0.001 0.001 0.001\"> "
-          "makes metres of them",
-          "'" + body.name + "' reaches " + text::number(body.bounding_radius) + " m");
+    if (!body.shapes.empty()) warn_of_units(body, moments[2]);
+  }
+
+  /// Names what no object has, and the slip that is likely behind it.
+  void warn_of_units(const Body& body, double moment) const {
+    const auto warn = [&](const char* what, const std::string& value) {
+      document_.warnings.add(what, "'" + body.name + "' " + value);
+    };
+    Eigen::AlignedBox3d box;  // about the centre of mass
+    for (const PlacedShape& shape : body.shapes) box.extend(box_around(shape));
+    const double size = box.sizes().maxCoeff(), unit = body.mass * std::pow(body.bounding_radius, 2);
+    if (size > kPlausibleLength.max)
+      return warn(
+          "very large objects; are they in millimetres? <mesh scale=\"0.001 0.001 0.001\"> makes metres of "
+          "them",
+          "measures " + text::number(size) + " m");
+    if (size < kPlausibleLength.min)
+      return warn("very small objects; are they in metres, so that they need no scale?",
+                  "measures " + text::number(size) + " m");
+    const Vector3 within = kCentreMargin * box.sizes();
+    if ((box.min() + within).maxCoeff() > 0.0 || (box.max() - within).minCoeff() < 0.0)
+      warn("centres of mass are not inside of the shapes; <origin> in <inertial> places them, in metres",
+           text::vector(-body.link_in_body.position) + " m, the middle is " +
+               text::vector(box.center() - body.link_in_body.position) + " m");
+    if (body.mass > kMaxDensity * box.volume())
+      warn("masses are too large for their sizes; are they in grams?", text::number(body.mass) + " kg");
+    if (!kPlausibleMoment.contains(moment / unit))
+      warn(
+          "inertias do not fit their masses and sizes; is the unit kg m^2? Without <inertia> that of the "
+          "shapes is taken",
+          text::number(moment) + " kg m^2, from " + text::number(kPlausibleMoment.min * unit) + " to " +
+              text::number(unit) + " is possible");
   }
 
   [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {

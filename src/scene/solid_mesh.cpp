@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace mrhi {
 namespace {
@@ -115,6 +116,12 @@ Triangles without_doubled(const Triangles& triangles) {
   return kept;
 }
 
+std::set<int> vertices_of(const Triangles& triangles) {
+  std::set<int> vertices;
+  for (const Triangle& t : triangles) vertices.insert(t.begin(), t.end());
+  return vertices;
+}
+
 /// Triangles that hang together by edges of two, each part turned the way of its first one.
 std::vector<Triangles> parts_of(const Triangles& triangles) {
   const Edges edges = edges_of(triangles);
@@ -151,6 +158,24 @@ std::vector<Triangles> parts_of(const Triangles& triangles) {
     for (const int t : part) parts.back().push_back(turned[std::size_t(t)]);
   }
   return parts;
+}
+
+/// The first of all patches with the same vertices and border, since the sides of a face may be divided into
+/// different triangles; with `cancel`, none of two.
+Triangles without_doubled_patches(const std::vector<Triangles>& patches, bool cancel) {
+  std::map<std::pair<std::set<int>, std::set<std::pair<int, int>>>, std::vector<std::size_t>> same;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    std::set<std::pair<int, int>> border;
+    for (const auto& [ends, edge] : edges_of(patches[p]))
+      if (edge.triangles.size() == 1) border.insert(ends);
+    same[{vertices_of(patches[p]), border}].push_back(p);
+  }
+  std::set<std::size_t> kept;
+  for (const auto& [key, doubled] : same)
+    if (!cancel || doubled.size() != 2) kept.insert(doubled.front());
+  Triangles left;
+  for (const std::size_t p : kept) left.insert(left.end(), patches[p].begin(), patches[p].end());
+  return left;
 }
 
 /// Triangles divided where a vertex of the border is on an edge of it, as where CAD programs mesh one face
@@ -333,6 +358,8 @@ std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMes
     assumed.push_back("is not closed: its convex hull is taken");
   }
   put(solids, mesh);
+  const TriangleMesh used = cut_out(mesh, mesh.triangles);  // a shape is as large as its vertices reach
+  mesh.vertices = used.vertices, mesh.triangles = used.triangles;
   return assumed;
 }
 
@@ -379,7 +406,17 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
       return put(as_they_are, mesh), std::vector<std::string>{};
     }
     welded.triangles = without_doubled(welded.triangles);
-    const std::vector<Triangles> parts = parts_of(welded.triangles);
+    std::vector<Triangles> parts = parts_of(welded.triangles);
+    if (!are_solid(welded, parts)) {
+      const Triangles joined = without_doubled_patches(as_they_are, true);  // solids that share faces are one
+      const bool whole = vertices_of(joined) == vertices_of(welded.triangles);
+      if (whole && are_solid(welded, parts_of(joined))) {
+        parts = parts_of(joined);
+      } else {
+        welded.triangles = without_doubled_patches(parts, false);
+        parts = parts_of(welded.triangles);
+      }
+    }
     if (seam == kSeams[0]) best = welded;
     if (!are_solid(welded, parts)) continue;
     mesh = welded;

@@ -305,6 +305,37 @@ TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
   EXPECT_EQ(summary["materials"]["part"]["static_friction"].as<double>(), 0.7);
 }
 
+// What shows the markers reads the meshes' files after the replay has ended.
+TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
+  const auto mesh = [](const std::string& name, double x) {
+    Spawn spawn = box(name, {x, 0.0, 0.3});
+    spawn.request.shape.clear(), spawn.request.size.clear();
+    spawn.request.urdf = "<robot name='o'><link name='part'><collision><geometry><mesh filename='" + name +
+                         ".obj'/></geometry></collision></link></robot>";
+    return spawn;
+  };
+  const test::TemporaryFolder folder;
+  Live live("config/scenes/cube.urdf", Configuration());
+  live.begin_recording();
+  std::vector<std::string> shapes;
+  for (const std::string& size : {std::string("03"), std::string("04")}) {
+    shapes.push_back("v 0 0 0\nv ." + size + " 0 0\nv 0 ." + size + " 0\nv 0 0 ." + size +
+                     "\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    Spawn spawn = mesh("of_" + size, 0.1 * std::stod(size));
+    spawn.request.folder = folder / "";
+    std::ofstream(folder / ("of_" + size + ".obj")) << shapes.back();
+    live.change(spawn);
+  }
+  live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 0.1);
+  Replayed replayed;
+  replayed.arguments.marker_frames = {1};
+  replayed.run(live);
+  std::set<std::string> kept;
+  for (const auto& file : std::filesystem::directory_iterator(replayed.folder / "out/files"))
+    if (file.path().extension() == ".obj") kept.insert(file_text(file.path().string(), 1000).value());
+  EXPECT_EQ(kept, std::set<std::string>(shapes.begin(), shapes.end()));
+}
+
 // A bag goes to others: a URDF of a stranger must not put files of this machine into it.
 TEST(ReplayLog, a_recording_has_the_scenes_meshes_and_no_other_file_that_the_urdf_names) {
   const test::TemporaryFolder folder;

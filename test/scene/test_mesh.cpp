@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -27,6 +28,11 @@ class MeshScene : public testing::Test {
     return std::get<Mesh>(scene_.bodies.at(0).shapes.at(0).shape);
   }
   std::string error(const std::string& attributes) { return test::scene_error(urdf(attributes)); }
+  /// Of that beginning.
+  std::size_t warnings_of(const std::string& what) const {
+    return std::size_t(std::count_if(scene_.warnings.begin(), scene_.warnings.end(),
+                                     [&](const std::string& line) { return line.find(what) == 0; }));
+  }
 
   test::Folder folder_;
   Scene scene_;
@@ -140,6 +146,8 @@ TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
                      {"'thing' collision 1", "'none.stl'", "not found", folder_.path()});
   folder_.write("broken.stl", "this is not a mesh");
   test::expect_words(error("filename=\"broken.stl\""), {"'thing' collision 1", "'broken.stl'", "read"});
+  folder_.write("cut.stl", std::string(80, ' ') + std::string("\2\0\0\0", 4) + std::string(50, '\0'));
+  test::expect_words(error("filename=\"cut.stl\""), {"'cut.stl'", "134 bytes", "184", "a whole STL"});
   folder_.write("empty.obj", "v 0 0 0\n");
   test::expect_words(error("filename=\"empty.obj\""), {"'empty.obj'"});
   folder_.write("wedge.blend", "blend");
@@ -297,7 +305,8 @@ TEST_F(MeshScene, MayBeItsConvexHullAlsoIfItIsOpenOrHollow) {
                                      comment + "</geometry></collision>"));
   };
   const Scene scene = load_scene(with("<!-- hull -->"), {});
-  EXPECT_TRUE(scene.warnings.empty()) << "it was asked for";
+  scene_ = scene;
+  EXPECT_EQ(0u, warnings_of("a mesh")) << "it was asked for";
   const Mesh hull = std::get<Mesh>(scene.bodies.at(0).shapes.at(0).shape);
   EXPECT_EQ(8u, hull.triangles->vertices.size());
   EXPECT_NEAR(1e-3, test::volume(*hull.triangles), 1e-9);
@@ -352,7 +361,47 @@ TEST_F(MeshScene, IsClosedWhereAVertexIsOnTheEdgeOfAnotherTriangle) {
                                  "v 0.05 0.05 0\nv 0.025 0.075 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\n" +
                                  "f 2 5 4\nf 5 6 4\nf 6 3 4\n");
   EXPECT_NEAR(kVolume, test::volume(*load("filename=\"wedge.obj\"").triangles), 1e-6 * kVolume);
-  EXPECT_TRUE(scene_.warnings.empty());
+  EXPECT_EQ(0u, warnings_of("a mesh"));
+}
+
+// Two cubes of 0.1 beside each other. The faces that they share are divided along either diagonal.
+TEST_F(MeshScene, OfSolidsThatShareAFaceIsOneSolid) {
+  const std::string corners =
+      "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\n"
+      "v 0.2 0 0\nv 0.2 0.1 0\nv 0.2 0 0.1\nv 0.2 0.1 0.1\n";
+  const std::string left = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 4 1 5 8\n",
+                    right = "f 2 3 10 9\nf 6 11 12 7\nf 2 9 11 6\nf 10 3 7 12\nf 9 10 12 11\n";
+  for (const char* shared :
+       {"f 2 3 7\nf 2 7 6\nf 2 7 3\nf 2 6 7\n", "f 2 3 7\nf 2 7 6\nf 2 6 3\nf 3 6 7\n"}) {
+    folder_.write("cubes.obj", corners + left + right + shared);
+    EXPECT_NEAR(2e-3, test::volume(*load("filename=\"cubes.obj\"").triangles), 1e-8) << shared;
+    EXPECT_EQ(0u, warnings_of("a mesh"));
+  }
+}
+
+// A pit in a cube, so that its hull is larger; each side of its lid is divided along another diagonal.
+TEST_F(MeshScene, OfDoubledFacesIsOneOfEachPairHoweverTheSidesAreDivided) {
+  const std::string corners =
+      "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\n"
+      "v 0.05 0.05 0.05\n";
+  const std::string walls =
+                        "f 5 6 9\nf 6 7 9\nf 7 8 9\nf 8 5 9\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\n"
+                        "f 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\nf 1 3 2\nf 1 4 3\n",
+                    backs =
+                        "f 5 9 6\nf 6 9 7\nf 7 9 8\nf 8 9 5\nf 1 5 2\nf 2 5 6\nf 2 6 3\nf 3 6 7\n"
+                        "f 3 7 4\nf 4 7 8\nf 4 8 1\nf 1 8 5\nf 1 2 4\nf 2 3 4\n";
+  folder_.write("pit.obj", corners + walls + backs);
+  const double pit = 0.01 * 0.05 / 3.0;
+  EXPECT_NEAR(1e-3 - pit, test::volume(*load("filename=\"pit.obj\"").triangles), 1e-8);
+  EXPECT_EQ(0u, warnings_of("a mesh"));
+}
+
+TEST_F(MeshScene, IsAsLargeAsWhatIsLeftOfIt) {
+  folder_.write("fin.obj", std::string(kVertices) + "v 0.9 0 0\nv 0.9 0.1 0\n" + kOutward + "f 2 5 6\n");
+  const Mesh mesh = load("filename=\"fin.obj\"");
+  EXPECT_EQ(4u, mesh.triangles->vertices.size());
+  EXPECT_NEAR(0.1, scene_.bodies.at(0).bounding_radius, 1e-6);
+  EXPECT_EQ(1u, warnings_of("a mesh has flat sheets"));
 }
 
 TEST_F(MeshScene, MayBeOpenWhereItIsOnlySeen) {

@@ -161,6 +161,24 @@ TEST(UrdfScene, RefusesAnInertiaThatNoRigidBodyHas) {
   EXPECT_EQ("", error(thing(inertial("1", {1, 1, 2.01}) + kBox))) << "a thin plate, rounded";
 }
 
+// As 1000 URDFs that PyBullet comes with, and files that give some of the moments alone.
+TEST(UrdfScene, AnInertiaThatLacksAMomentIsThatOfTheShapes) {
+  for (const char* given : {R"(ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0")", R"(ixx="1e-4")"}) {
+    const Scene scene =
+        load(thing("<inertial><mass value=\"0.6\"/><inertia " + std::string(given) + "/></inertial>" + kBox));
+    const Matrix3 expected = 0.6 * 0.0025 / 6.0 * Matrix3::Identity();
+    EXPECT_TRUE(scene.bodies.at(0).inertia.isApprox(expected, 1e-12)) << given;
+    test::expect_words(scene.warnings.at(0), {"lack a moment", "'thing' [0, "});
+  }
+}
+
+TEST(UrdfScene, ElementsWithoutAShapeAreLeftOut) {
+  const Scene scene = load(thing(std::string(kInertial) + kBox +
+                                 "<collision/><visual><geometry/><origin xyz=\"0 0 1\"/></visual>"));
+  EXPECT_EQ(1u, scene.bodies.at(0).shapes.size());
+  test::expect_words(scene.warnings.at(0), {"without a shape", "'thing' visual", "'thing' collision"});
+}
+
 TEST(UrdfScene, VectorsOfMoreThanThreeNumbersAreReadByTheFirstThree) {
   const Scene scene = load(thing(std::string(kInertial) +
                                      R"(<collision><origin xyz="0.1 0.2 0.3 1"/>
@@ -368,6 +386,11 @@ TEST(UrdfScene, IsReadFromUtf16AsWindowsWritesIt) {
   }
 }
 
+TEST(UrdfScene, MayHaveACommentAboveItsDeclaration) {
+  EXPECT_EQ("",
+            error("<!-- who made it -->\n<?xml version=\"1.0\"?>\n" + thing(std::string(kInertial) + kBox)));
+}
+
 TEST(UrdfScene, ColoursOfOtherRangesAreBroughtIntoOurs) {
   const auto color = [](const std::string& rgba) {
     const Scene scene = load(thing(std::string(kInertial) + kBox +
@@ -405,6 +428,12 @@ TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {
   EXPECT_EQ(0.6, friction("", R"(<gazebo reference="a"><collision><surface><friction><ode><mu>0.6</mu></ode>
                                  </friction></surface></collision></gazebo>)"));
   EXPECT_EQ(0.6, friction("", R"(<gazebo reference="a"><mu1 value="0.6"/></gazebo>)"));
+  EXPECT_EQ(0.6, friction("<contact><contact_coefficients mu=\"0.6\" kp=\"1000\"/></contact>", ""));
+  EXPECT_EQ(0.8, friction("<contact_coefficients mu=\"0\" kp=\"1000.0\" kd=\"1.0\"/>", ""))
+      << "a placeholder";
+  EXPECT_EQ(
+      0.6,
+      friction("<collision><surface><friction><ode><mu>0.6</mu></ode></friction></surface></collision>", ""));
 }
 
 TEST(UrdfScene, WarnsOfUnitsThatCannotBeMeant) {
@@ -415,6 +444,27 @@ TEST(UrdfScene, WarnsOfUnitsThatCannotBeMeant) {
                      {"millimetres", "'thing'"});
   test::expect_words(load(thing(std::string(kInertial) + kBox, R"(rpy="0 90 0")")).warnings.at(0),
                      {"radians", "0 90 0"});
+  test::expect_words(warning(inertial("2", {1e-6, 1e-6, 1e-6}) + kBox), {"'thing'", "unit"});
+  test::expect_words(
+      warning("<inertial><mass value=\"0.01\"/></inertial><collision><geometry><box size=\"5e-5 "
+              "5e-5 5e-5\"/></geometry></collision>"),
+      {"very small", "'thing' measures 5e-05 m"});
+  test::expect_words(warning(std::string("<inertial><mass value=\"150\"/></inertial>") + kBox),
+                     {"grams", "'thing' 150 kg"});
+}
+
+// A mug whose file has a mass alone: its centre would be in its bottom.
+TEST(UrdfScene, WarnsOfACentreOfMassThatIsNotInsideTheShapes) {
+  const auto warnings = [](const std::string& origin) {
+    return load(thing("<inertial>" + origin +
+                      "<mass value=\"0.1\"/></inertial><collision><origin xyz=\"0 0 " +
+                      "0.025\"/><geometry><box size=\"0.05 0.05 0.05\"/></geometry></collision>"))
+        .warnings;
+  };
+  test::expect_words(warnings("").at(0),
+                     {"centres of mass", "'thing' [0, 0, 0] m, the middle is [0, 0, 0.025] m"});
+  test::expect_words(warnings(R"(<origin xyz="0 0 25"/>)").at(0), {"centres of mass", "in metres"});
+  EXPECT_TRUE(warnings(R"(<origin xyz="0 0 0.01"/>)").empty()) << "a heavy bottom";
 }
 
 TEST(UrdfScene, BoundsThatNoFileGivesHoldTheStarts) {
