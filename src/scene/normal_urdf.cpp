@@ -361,14 +361,19 @@ class Normaliser {
     out_.CloseElement();
   }
 
-  /// Divides whole numbers of 0 to 255 by 255, and cuts off what rounding has above 1. Other text stays as it
-  /// is, and is refused later.
+  /// Divides whole numbers of 0 to 255 by 255, and cuts off what rounding has above 1. A text that is no
+  /// numbers, like #ff0000, is grey. Other numbers stay as they are, and are refused later.
   std::string rgba(const std::string& given, const std::string& where) {
     constexpr double kRounding = 1e-3;
     std::vector<double> parts;
     std::string numbers;
     for (const std::string& word : words_of(given)) {
-      parts.push_back(text::to_number(word).value_or(-1.0));
+      const std::optional<double> number = text::to_number(word);
+      if (!number) {
+        warnings_.add("colors that are no numbers are drawn grey", in_quotes(given) + " of " + where);
+        return "0.7 0.7 0.7 1";
+      }
+      parts.push_back(*number);
       numbers += (numbers.empty() ? "" : " ") + word;
     }
     const auto is_byte = [](double part) { return part >= 0.0 && part <= 255.0 && part == std::floor(part); };

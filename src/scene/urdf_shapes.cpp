@@ -130,6 +130,31 @@ std::string find_above(const fs::path& folder, const std::string& in_package) {
   return "";
 }
 
+std::string in_lower_case(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+/// A file below a folder whose path differs from `path` in case only; empty if there is none.
+std::string find_ignoring_case(fs::path folder, const std::string& path) {
+  for (const fs::path& part : fs::path(path).relative_path()) {
+    std::error_code ignored;
+    if (fs::exists(folder / part, ignored)) {
+      folder /= part;
+      continue;
+    }
+    std::string found;  // the first by the alphabet
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (in_lower_case(name) == in_lower_case(part.string()) && (found.empty() || name < found))
+        found = name;
+    }
+    if (found.empty()) return "";
+    folder /= found;
+  }
+  return is_file(folder) ? folder.string() : "";
+}
+
 }  // namespace
 
 const std::vector<ShapeKind>& shape_kinds() {
@@ -187,14 +212,20 @@ ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
   return {uri, find_file(uri), {mesh.scale.x, mesh.scale.y, mesh.scale.z}, hull};
 }
 
-/// As it is written, or as others write it: with backslashes, or with blanks as %20.
+/// As it is written, or as others write it: with backslashes, with blanks as %20, or in upper and lower case
+/// that their machine does not tell apart.
 std::string ShapeReader::find_file(const std::string& uri) const {
   const auto given = options_.mesh_files.find(uri);
   if (given != options_.mesh_files.end()) return given->second;
   std::string path = uri;
   std::string file = find_path(path);
   if (file.empty()) std::replace(path.begin(), path.end(), '\\', '/'), file = find_path(path);
-  return file.empty() ? find_path(decoded(path)) : file;
+  if (file.empty()) path = decoded(path), file = find_path(path);
+  if (!file.empty()) return file;
+  file = find_ignoring_case(folder_, path);
+  if (!file.empty())
+    warnings_.add("files are found by names in another case", "'" + text::one_line(uri, 200) + "'");
+  return file;
 }
 
 std::string ShapeReader::find_path(const std::string& uri) const {

@@ -10,7 +10,6 @@
 #include "../scene/solid_mesh.h"
 #include "../text/files.h"
 #include "../text/text.h"
-#include "../text/untrusted_input.h"
 #include "../text/yaml.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/simulation.h"
@@ -132,7 +131,7 @@ ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals
   const std::string urdf = find_scene_file(object.file, scene_folders);
   const Scene scene = load_scene(urdf, options);
   ObjectModel model;
-  model.request.urdf = file_text(urdf, kMostXmlBytes).value_or("");
+  model.request.urdf = std::filesystem::absolute(urdf).string();  // whose folder meshes are relative to
   if (scene.joints.empty()) {
     make_body(object, urdf, scene, model);
   } else {

@@ -125,6 +125,7 @@ TEST_F(MeshScene, IsReadFromADaeWithItsUnitButNotItsUpAxis) {
 TEST_F(MeshScene, IsFoundByPathFileUriAndPackage) {
   const std::string file = folder_.write("wedge.obj", std::string(kVertices) + kOutward);
   EXPECT_EQ("file://" + file, load("filename=\"wedge.obj\"").uri);
+  EXPECT_EQ("file://" + file, load("filename=\"Wedge.OBJ\"").uri);
   EXPECT_EQ("file://" + file, load("filename=\"file://" + file + "\"").uri);
   folder_.write("my 50% wedge.obj", std::string(kVertices) + kOutward);
   for (const std::string name : {"my 50% wedge.obj", "my%2050%25%20wedge.obj", " my%2050%%20wedge.obj\n"})

@@ -405,6 +405,8 @@ TEST(UrdfScene, ColoursOfOtherRangesAreBroughtIntoOurs) {
             color("255 51 0 0.5"));
   EXPECT_EQ(std::make_pair((std::array<float, 4>{{1.0f, 0.2f, 0.0f, 1.0f}}), std::size_t(0)),
             color("1.00001 0.2 0 1"));
+  EXPECT_EQ(std::make_pair((std::array<float, 4>{{0.7f, 0.7f, 0.7f, 1.0f}}), std::size_t(1)),
+            color("#ff0000"));
 }
 
 TEST(UrdfScene, FrictionOfOtherSimulatorsTagsIsRead) {

@@ -2,8 +2,10 @@
 #include <fstream>
 
 #include "mr_hand_interaction/parameters.h"
+#include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/training/session.h"
 #include "scene/scene_files.h"
+#include "training/operator_trial.h"
 #include "training/trials.h"
 
 namespace mrhi {
@@ -19,6 +21,14 @@ SessionHeader header() {
   header.condition = "implicit";
   return header;
 }
+
+const std::string kStl =
+    "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0.1 0\nvertex 0.1 0 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0.1\nvertex 0 0.1 0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0.1 0 0\nvertex 0 0.1 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
+    "endsolid t\n";
 
 class SessionSetupTest : public testing::Test {
  protected:
@@ -164,14 +174,18 @@ TEST_F(SessionSetupTest, a_second_session_has_a_folder_of_its_own) {
   }
 }
 
+// Its file, not its text: the mesh is named relative to it.
+TEST_F(SessionSetupTest, an_object_of_the_user_s_own_mesh_can_be_spawned) {
+  folder_.write("part.stl", kStl);
+  const std::string urdf = folder_.write(
+      "thing.urdf",
+      test::thing(test::kInertial +
+                  std::string(R"(<collision><geometry><mesh filename="part.stl"/></geometry></collision>)")));
+  const ObjectModel model = load_object({"thing", urdf, {}, {}}, {}, {}, {});
+  EXPECT_EQ(1u, requested_body(model.request, {}).shapes.size());
+}
+
 TEST_F(SessionSetupTest, the_mesh_files_are_known_by_their_hashes) {
-  const std::string kStl =
-      "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0.1 0\nvertex 0.1 0 "
-      "0\nendloop\nendfacet\n"
-      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
-      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0.1\nvertex 0 0.1 0\nendloop\nendfacet\n"
-      "facet normal 0 0 0\nouter loop\nvertex 0.1 0 0\nvertex 0 0.1 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
-      "endsolid t\n";
   folder_.write("part.stl", kStl);
   folder_.write(
       "thing.urdf",
