@@ -1,5 +1,7 @@
 #include "mr_hand_interaction/replay/replay.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "../scene/limits.h"
@@ -62,8 +64,11 @@ std::set<std::size_t> frame_numbers(const Given& given) {
   return frames;
 }
 
+/// In upper or lower case; `end` is in lower case.
 bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+  return text.size() > end.size() &&
+         std::equal(end.rbegin(), end.rend(), text.rbegin(),
+                    [](char wanted, unsigned char letter) { return std::tolower(letter) == wanted; });
 }
 
 std::string film(const Given& given) {
@@ -111,6 +116,11 @@ void check(ReplayArguments& arguments) {
   require("--input", arguments.input);
   const bool bag = ends_with(arguments.input, ".bag");
   if (!bag && !ends_with(arguments.input, ".csv")) {
+    if (ends_with(arguments.input, ".bag.active"))
+      throw UsageError(
+          "--input " + arguments.input +
+          ": a recording that was not ended; allowed: FILE.bag, which rosbag reindex makes of it "
+          "once it is renamed");
     throw UsageError("--input " + arguments.input + ": unknown kind of file; allowed: FILE.bag or FILE.csv");
   }
   if (arguments.topic && !bag) throw UsageError("--topic: only a bag has topics");

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -336,8 +337,9 @@ struct RecordersClock {
   }
 };
 
+/// Of a file that ends in .bag or .csv.
 bool is_csv(const std::string& file) {
-  return file.compare(file.size() - 4, 4, ".csv") == 0;
+  return std::tolower(static_cast<unsigned char>(file.back())) == 'v';
 }
 
 ReplayInput open_input(const ReplayArguments& arguments) {

@@ -50,6 +50,13 @@ TEST(ReplayArguments, all_options_are_read) {
   EXPECT_EQ(parsed.hand_transform->position, Vector3(0.1, 0.2, 0.3));
 }
 
+TEST(ReplayArguments, a_recording_is_a_bag_or_a_csv_in_upper_or_lower_case) {
+  for (const std::string file : {"a.bag", "A.BAG", "a.csv", "a.Csv"})
+    EXPECT_EQ(refusal({"--scene", "cube", "--input", file, "--output", "out"}), "");
+  expect_refused({"--scene", "cube", "--input", "a.bag.active", "--output", "out"}, "rosbag reindex");
+  expect_refused({"--scene", "cube", "--input", "a.mcap", "--output", "out"}, "FILE.bag or FILE.csv");
+}
+
 TEST(ReplayArguments, quaternions_are_brought_to_unit_length) {
   const auto parsed = parse_replay_arguments(with({"--hand-transform", "0,0,0,3,0,0,4"}));
   EXPECT_DOUBLE_EQ(parsed.hand_transform->orientation.x(), 0.6);
