@@ -229,9 +229,45 @@ def operators_figures(folder):
             'table_1': _table_1(comparison, pairs, trials)}
 
 
+GLOVE = os.path.join(PACKAGE, 'config', 'hands', 'eva_glove.yaml')
+GLOVED_HANDS = (('bare', 1.0), ('unpressurised glove (60 % of the strength)', 0.6), ('pressurised glove (20 %)', 0.2))
+
+
+def gloves():
+    """Operators 1 to 30 of seed 1 at 0 g, bare and in the glove of the file, with pressure and without."""
+    import yaml
+    with open(GLOVE, encoding='utf-8') as file:
+        glove = yaml.safe_load(file)['hand']
+    folder, lines = tempfile.mkdtemp(), []
+    try:
+        for index, (label, strength) in enumerate(GLOVED_HANDS):
+            worn = dict(glove, **{key: glove[key] * strength / 0.2 for key in ('strength', 'palm_strength')})
+            chosen = [word for key, value in worn.items() for word in ('--set', 'hand/%s=%g' % (key, value))]
+            output = os.path.join(folder, str(index))
+            run('simulated_study', '--output', output, '--model', 'implicit', '--gravity', '0', *(chosen if index else ()))
+            lines.append([label] + _of_hand(output))
+    finally:
+        shutil.rmtree(folder)
+    return {'hands': table(['hand', 'completed; drops', 'time [s]', 'mean grip [N]', 'largest grip [N]',
+                            'drift after release [mm]'], lines)}, {}
+
+
+def _of_hand(folder):
+    """Means over operators, each with its 95 % interval."""
+    from study import session_folder, study_data
+    trials = study_data.gather([session_folder.read_session(path) for path in session_folder.find_sessions([folder])]).trials
+    cells = ['%d of %d; %d' % ((trials['result'] == 'completed').sum(), len(trials), trials['drops'].astype(float).sum())]
+    from study.analysis import summary
+    for name, scale in (('completion_time', 1), ('grip_force_mean', 1), ('grip_force_max', 1), ('release_drift', 1000)):
+        found = summary(scale * trials[name].astype(float).groupby(trials['participant']).mean())
+        cells.append('%.1f ± %.1f' % (found['mean'], found['ci95']))
+    return cells
+
+
 RECIPES = {
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
+    'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),

@@ -43,10 +43,8 @@ Body body_of(const TaskObject& object) {
   constexpr double kUsualFriction = 0.8;
   SceneOptions options;
   options.default_material.static_friction = kUsualFriction;
-  const Scene scene = load_scene(find_scene_file(object.file, scene_folders()), options);
-  Body body = scene.bodies.at(find_body(scene, object.name).value_or(0));
-  body.start = object.start;
-  return body;
+  const ObjectModel model = load_object(object, {}, scene_folders(), options);
+  return model.scene.bodies.at(model.body);
 }
 
 /// Parameters of the node on the parameter server.
