@@ -252,19 +252,49 @@ def gloves():
                             'drift after release [mm]'], lines)}, {}
 
 
-def _of_hand(folder):
-    """Means over operators, each with its 95 % interval."""
+def _trials_in(folder):
     from study import session_folder, study_data
-    trials = study_data.gather([session_folder.read_session(path) for path in session_folder.find_sessions([folder])]).trials
+    return study_data.gather([session_folder.read_session(path) for path in session_folder.find_sessions([folder])]).trials
+
+
+def _of_hand(folder):
+    trials = _trials_in(folder)
     cells = ['%d of %d; %d' % ((trials['result'] == 'completed').sum(), len(trials), trials['drops'].astype(float).sum())]
+    return cells + _means(trials, ('completion_time', 1, 1), ('grip_force_mean', 1, 1), ('grip_force_max', 1, 1),
+                          ('release_drift', 1000, 1))
+
+
+def _means(trials, *measures):
+    """Of each measure, times a scale, with some decimals: mean and 95 % interval over operators."""
     from study.analysis import summary
-    for name, scale in (('completion_time', 1), ('grip_force_mean', 1), ('grip_force_max', 1), ('release_drift', 1000)):
-        found = summary(scale * trials[name].astype(float).groupby(trials['participant']).mean())
-        cells.append('%.1f ± %.1f' % (found['mean'], found['ci95']))
+    cells = []
+    for name, scale, decimals in measures:
+        found = summary(scale * trials[name].dropna().astype(float).groupby(trials['participant']).mean())
+        cells.append('%.*f ± %.*f' % (decimals, found['mean'], decimals, found['ci95']) if found['n'] else '')
     return cells
 
 
+FLOATING_TASKS = ('rail', 'dock', 'throw', 'hatch_0g')
+
+
+def afloat():
+    """Ten beginners and ten veterans of seed 1 at the tasks for people who float."""
+    folder, lines = tempfile.mkdtemp(), []
+    try:
+        for task in FLOATING_TASKS:
+            run('simulated_study', '--output', os.path.join(folder, task), '--task', task, '--model', 'implicit', '--gravity', '0',
+                '--operators', '1-20', '--group-size', '10')
+            trials = _trials_in(os.path.join(folder, task))
+            done = trials[trials['result'] == 'completed']
+            lines.append('`%s` %s, in %s s' % (task, ' and '.join(
+                '%d' % (done['group'] == group).sum() for group in ('beginner', 'veteran')), *_means(done, ('completion_time', 1, 1))))
+    finally:
+        shutil.rmtree(folder)
+    return {'tasks': '; '.join(lines)}, {}
+
+
 RECIPES = {
+    'afloat': Recipe('3 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),

@@ -490,8 +490,8 @@ void FloatingPerson::work(double time, const FloatingGoal& goal) {
     }
   }
   if (!on_rail) drift(time);
-  // A fingertip follows its latch by sight; what the hand holds it does not (see Frame).
-  begin(time, kRight, goal.skill == Skilled::pull_hatch ? Frame::path : Frame::seen);
+  // Sight corrects a hand at a latch, or beside one on a rail. A free body would be pulled after its handle.
+  begin(time, kRight, on_rail || goal.skill != Skilled::pull_hatch ? Frame::seen : Frame::path);
   const Vector3 by = object_.start.position - kHatchScene + random_.gaussian_vector(skill_.placing_error);
   double ready = paced(kGoAside);
   for (Keyframe key : hatch_motion(goal.skill)) {

@@ -53,8 +53,8 @@ class FloatingPerson : public Person {
     Vector3 retreat;
   };
   /// Frame of a hand's path: the operator's; or world, with the body on its foreseen path, or where that is
-  /// corrected by what is seen. What is held is not followed by sight: with a reaction time's delay that
-  /// would swing.
+  /// corrected by what is seen. A free body does not follow by sight what its hand holds: with a reaction
+  /// time's delay it would swing.
   enum class Frame : std::uint8_t { body, path, seen };
   struct Arm {
     Frame frame = Frame::body;

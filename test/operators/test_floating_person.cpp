@@ -69,8 +69,8 @@ TEST(FloatingPerson, veterans_do_all_tasks) {
   }
 }
 
-/// Of these six veterans two complete the task with both hands free: latches and hatch push them away. A rail
-/// then serves to come back.
+/// Of these six veterans three complete the task with both hands free: latches and hatch push them away. A
+/// rail then serves to come back.
 TEST(FloatingPerson, opens_the_hatch_with_free_hands_later_and_not_always) {
   constexpr std::uint64_t kPersons = 6;
   int completed = 0;
