@@ -88,7 +88,9 @@ FloatingPerson::FloatingPerson(const OperatorSkill& skill, std::vector<FloatingG
       random_(seed),
       tremor_{Tremor(skill.tremor, random_), Tremor(skill.tremor, random_)} {
   if (surroundings.operators.empty())
-    throw std::invalid_argument("a simulated operator who floats needs an operator in the task's scene");
+    throw std::invalid_argument(
+        "a simulated operator does a goal 'rest' only afloat: the task's scene has no " +
+        std::string("operator; allowed: a scene with 'operator' in its YAML file"));
   const Body& person = surroundings.bodies.at(static_cast<std::size_t>(surroundings.operators.front().body));
   link_in_body_ = person.link_in_body;
   mass_ = person.mass;
@@ -101,8 +103,10 @@ FloatingPerson::FloatingPerson(const OperatorSkill& skill, std::vector<FloatingG
     rails_.push_back({pose.position, pose.orientation * Vector3::UnitZ(), bar->half_length, bar->radius});
   }
   if (rails_.empty())
-    throw std::invalid_argument("a simulated operator who floats needs a rail in the task's scene: " +
-                                std::string("a fixture that is a cylinder of at most 6 cm"));
+    throw std::invalid_argument(
+        "a simulated operator who floats needs a hold: the task's scene has no rail; " +
+        std::string("allowed: a scene with a fixture that is one cylinder, at most 6 ") +
+        "cm thick and at least 30 cm long");
   const auto brings = std::find_if(goals_.begin(), goals_.end(), [](const FloatingGoal& goal) {
     return goal.kind == FloatingGoal::Kind::bring;
   });
@@ -193,8 +197,12 @@ void FloatingPerson::drift(double time) {
 }
 
 HandPlace FloatingPerson::move(double time, const Sight& sight) {
-  if (past_.empty()) start_ = sight.body.position;
+  const bool begins = past_.empty();
   past_.push_back({time, sight});
+  if (begins) {
+    start_ = sight.body.position;
+    drift(time);
+  }
   while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
   correct(time - last_time_);
   last_time_ = time;

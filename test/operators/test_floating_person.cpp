@@ -109,9 +109,9 @@ TEST(FloatingPerson, is_refused_without_an_operator_or_a_rail) {
   Scene scene = operator_scene(task, task.objects.front(), stage);
   remove_body(static_cast<std::size_t>(*find_body(scene, "rail")), scene);
   remove_body(static_cast<std::size_t>(*find_body(scene, "upper_rail")), scene);
-  expect_refusal(scene, "a rail");
+  expect_refusal(scene, "no rail");
   scene.operators.clear();
-  expect_refusal(scene, "an operator");
+  expect_refusal(scene, "no operator");
 }
 
 /// Each finger but the thumb presses with at least two bones; none is deeper than a soft pad yields.
