@@ -294,7 +294,7 @@ def afloat():
 
 
 RECIPES = {
-    'afloat': Recipe('3 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
+    'afloat': Recipe('2 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
