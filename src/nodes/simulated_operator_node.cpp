@@ -30,21 +30,21 @@ simulated operator on /leap_motion/leap_device.
   ~seed    default 1
   ~noise   factor on the noise of a Leap; default 1
   ~rate    frames per second; default 115
+  ~holds_rail  whether the left hand holds a rail while the right one works afloat; default true
 )";
 
 using Status = mr_hand_interaction::TrainingStatus;
 
 /// Longest catch-up after a late timer tick [periods].
 constexpr double kMaxCatchUp = 2.0;
+constexpr std::uint32_t kHands = 2;  ///< of a person: each trial has ids of its own
 
 Body body_of(const TaskObject& object) {
   constexpr double kUsualFriction = 0.8;
   SceneOptions options;
   options.default_material.static_friction = kUsualFriction;
-  const Scene scene = load_scene(find_scene_file(object.file, scene_folders()), options);
-  Body body = scene.bodies.at(find_body(scene, object.name).value_or(0));
-  body.start = object.start;
-  return body;
+  const ObjectModel model = load_object(object, {}, scene_folders(), options);
+  return model.scene.bodies.at(model.body);
 }
 
 /// Parameters of the node on the parameter server.
@@ -52,17 +52,20 @@ struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
     NodeParameters known;
     known.text("group", group).number("noise", 0.0, 10.0, noise).number("rate", 1.0, 1000.0, rate);
-    known.whole("seed", 0, seed).text("task", task).read(node);
+    known.whole("seed", 0, seed).text("task", task).truth("holds_rail", holds_rail).read(node);
   }
 
   std::string group = "none", task = "pick_and_place";
+  bool holds_rail = true;
   double noise = 1.0, rate = 115.0;  ///< [Hz]
   std::uint64_t seed = 1;
 };
 
 Task checked_task(const std::string& name) {
   Task task = load_task(find_task_file(name, task_folders()));
-  for (const TaskObject& object : task.objects) make_person({}, task, body_of(object), 0);  // may throw
+  OperatorStage stage;
+  stage.scene_folders = scene_folders();
+  check_operator(task, stage);
   return task;
 }
 
@@ -84,6 +87,8 @@ class OperatorPublisher {
         rate_(parameters.rate),
         noise_(parameters.noise, seed_),
         publisher_(node, rate_) {
+    skill_.holds_rail = parameters.holds_rail;
+    surroundings_ = load_surroundings(task_, scene_folders(), SceneOptions());
     for (const TaskObject& object : task_.objects) {
       if (const Body body = body_of(object); body.fixed) fixed_[object.name] = body.start;
     }
@@ -102,6 +107,7 @@ class OperatorPublisher {
   void take(const mr_hand_interaction::ObjectStateArray& message) {
     for (const auto& object : message.objects) {
       if (object.name == status_.object) object_ = object;
+      if (object.is_operator) body_ = object;
     }
   }
 
@@ -142,7 +148,7 @@ class OperatorPublisher {
     if (object == task_.objects.end())
       throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
                                   "': training_node and the simulated operator must have the same task");
-    person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_);
+    person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_, surroundings_);
   }
 
   void move() {
@@ -150,10 +156,10 @@ class OperatorPublisher {
     Sight sight =
         sight_of(task_, goal, from_message(object_.pose), from_message(object_.twist), object_.held);
     sight.grip = grip();
-    const HandPlace hand = person_->move(time_, sight);
-    hands_ = {
-        hand_joints(human_hand(), Side::right, default_device_mount().inverse() * hand.wrist, hand.posture)};
-    hands_.front().id = trial_;
+    sight.body = from_message(body_.pose);
+    sight.body_twist = from_message(body_.twist);
+    hands_ = hands_of(*person_, time_, sight, default_device_mount());
+    for (HandJoints& hand : hands_) hand.id += kHands * trial_;
   }
 
   /// Grip force as observe() computes it.
@@ -173,7 +179,9 @@ class OperatorPublisher {
   TrackingNoise noise_;
   mr_hand_interaction::TrainingStatus status_;
   mr_hand_interaction::ObjectState object_;  ///< of the trial; without a name: not seen yet
-  std::map<std::string, Pose> fixed_;        ///< devices, which no message has, by name
+  mr_hand_interaction::ObjectState body_;    ///< of the operator who floats
+  Scene surroundings_;
+  std::map<std::string, Pose> fixed_;  ///< devices, which no message has, by name
   mr_hand_interaction::ContactArray contacts_;
   std::unique_ptr<Person> person_;
   std::uint32_t trial_ = 0;

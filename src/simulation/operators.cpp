@@ -39,7 +39,6 @@ Hand placed(const Pose& frame, const Hand& hand) {
 Operators::Operators(const Scene& scene, const ContactConfiguration& configuration)
     : scene_(scene),
       configuration_(configuration),
-      inverse_inertia_(scene.operators.size()),
       carriers_(scene.operators.size()),
       start_(scene.operators.size()),
       courses_(scene.operators.size()),
@@ -124,8 +123,8 @@ bool Operators::begin_step(double left, const SimulationState& state) {
     carrier.centre = now.pose.position;
     carrier.origin = carrier.centre + carrier.rotation * body.link_in_body.position;
     carrier.twist.linear = now.linear_momentum / body.mass;
-    inverse_inertia_[o] = carrier.rotation * body.inverse_inertia * carrier.rotation.transpose();
-    carrier.twist.angular = inverse_inertia_[o] * now.angular_momentum;
+    const Vector3 in_body = carrier.rotation.transpose() * now.angular_momentum;
+    carrier.twist.angular = carrier.rotation * (body.inverse_inertia * in_body);
     Course& course = courses_[o];
     const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
                         kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
@@ -146,9 +145,10 @@ void Operators::begin_contacts(SimulationState& state) {
     note_momenta(contact.key.body, state);
     if (contact.struck || contact.ignored) continue;
     const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
-    const Vector3 across = (contact.point - carriers_[o].centre).cross(contact.normal);
-    const double mass = scene_.bodies[static_cast<std::size_t>(scene_.operators[o].body)].mass;
-    contact.carrier_inverse_mass = 1.0 / mass + across.dot(inverse_inertia_[o] * across);
+    const Body& body = scene_.bodies[static_cast<std::size_t>(scene_.operators[o].body)];
+    const Vector3 across =
+        carriers_[o].rotation.transpose() * (contact.point - carriers_[o].centre).cross(contact.normal);
+    contact.carrier_inverse_mass = 1.0 / body.mass + across.dot(body.inverse_inertia * across);
   }
   for (const Grip& grip : state.grips)
     if (grip.active) note_momenta(grip.body, state);

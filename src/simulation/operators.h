@@ -69,9 +69,8 @@ class Operators {
     std::size_t body;
     Vector3 linear_momentum, angular_momentum;
   };
-  std::vector<Touched> touched_;          // free bodies, each once
-  std::vector<Matrix3> inverse_inertia_;  // by operator, world axes, at the step's start
-  bool touches_fixture_ = false;          // some contact is with a fixture
+  std::vector<Touched> touched_;  // free bodies, each once
+  bool touches_fixture_ = false;  // some contact is with a fixture
 
   /// Departure of an operator's motion in a frame from its prediction.
   struct Course {

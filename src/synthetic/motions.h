@@ -153,6 +153,18 @@ class GripPostures {
   std::vector<HandPosture> pressed_;  ///< evenly spaced from depth 0 to the deepest
 };
 
+/// A right hand round a bar, which lies across the palm, along y of the hand's frame. The fingers close until
+/// they press; between `near` and `closed` they touch.
+struct PowerGrip {
+  explicit PowerGrip(double radius);  ///< of the bar [m]
+
+  Vector3 bar;  ///< a point of its axis, in the hand's frame
+  HandPosture open, near, closed;
+};
+
+/// Left hand's frame for a right hand's, mirrored in x.
+Pose mirrored(const Pose& wrist);
+
 /// Rotations of a body of one box about its centre that preserve its shape, identity first; for others only
 /// the identity.
 std::vector<Quaternion> box_symmetries(const Body& body);

@@ -31,6 +31,7 @@ struct OperatorSkill {
   double grip_depth = 0.018;      ///< maximum depth of thumb and fingers together beyond the surface [m]
   double grip_spread = 0.0;       ///< deviation of each fingertip's fraction of the depth
   double opening = 0.018;         ///< gap between each fingertip and the object before closing [m]
+  bool holds_rail = true;         ///< afloat, works with the left hand on a rail
 };
 
 OperatorSkill beginner_skill();
@@ -66,6 +67,8 @@ struct Sight {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
   Vector3 swing = Vector3::Zero();    ///< amplitude of an oscillation about the target, at 1 Hz [m]
   std::size_t goal = 0;               ///< index of the task's next goal
+  Pose body = {};                     ///< of the operator who floats, centre of mass in world
+  Twist body_twist = {};              ///< of it, world axes
 };
 
 /// A program in the role of a participant, which moves a hand by what it sees.
@@ -75,12 +78,14 @@ class Person {
   Person(const Person&) = delete;
   Person& operator=(const Person&) = delete;
   virtual ~Person() = default;
-  /// Pose of the right hand in world at `time` [s], which increases from call to call.
+  /// Pose of the right hand in the tracker's frame at `time` [s], which increases from call to call.
   virtual HandPlace move(double time, const Sight& sight) = 0;
+  /// The left hand at the last move(), if it takes part: its wrist's frame is mirrored as in hand_joints().
+  virtual std::optional<HandPlace> left_hand() const { return std::nullopt; }
 };
 
 /// Practised motions besides taking, carrying and releasing. `open_hatch` opens the latches first;
-/// `pull_hatch` pulls the handle at once.
+/// `pull_hatch` pulls the handle at once, `top_latch` and `bottom_latch` turn one latch.
 enum class Skilled : std::uint8_t {
   tap,
   slap,
@@ -89,8 +94,13 @@ enum class Skilled : std::uint8_t {
   press_button,
   open_hatch,
   pull_hatch,
+  top_latch,
+  bottom_latch,
   close_hatch
 };
+
+/// Motion of a skill from `open_hatch` on, at the hatch's shipped scene.
+std::vector<Keyframe> hatch_motion(Skilled skill);
 
 /// A goal and its practised motion.
 struct PractisedGoal {

@@ -117,6 +117,23 @@ std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place
 
 }  // namespace
 
+std::vector<Keyframe> hatch_motion(Skilled skill) {
+  constexpr double kLatch = 5.0, kByTheHandle = 8.8;  // parts of open_hatch: each latch, the handle [s]
+  const std::vector<Keyframe> open = make_motion("open_hatch").keyframes;
+  switch (skill) {
+    case Skilled::pull_hatch:
+      return last(open, kByTheHandle);
+    case Skilled::close_hatch:
+      return until(backwards(open), kByTheHandle);
+    case Skilled::top_latch:
+      return until(open, kLatch);
+    case Skilled::bottom_latch:
+      return last(until(open, 2.0 * kLatch), kLatch);
+    default:
+      return open;
+  }
+}
+
 OperatorSkill beginner_skill() {
   return skill_of(&Figure::beginner);
 }
@@ -193,7 +210,7 @@ void PractisedPerson::look(double time, const Moment& seen) {
 
 std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const Moment& seen,
                                               double& begin) const {
-  constexpr double kCube = 0.025, kByTheHandle = 8.8;  // [m]; [s] end part of open_hatch
+  constexpr double kCube = 0.025;  // [m]
   const Vector3 object = seen.sight.object.position, off = object - scene_object();
   switch (goal.skill) {
     case Skilled::tap:
@@ -210,14 +227,9 @@ std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const M
     }
     case Skilled::press_button:
       return moved(make_motion("press_button").keyframes, Vector3(0.0, 0.0, 0.17 - 0.36));
-    case Skilled::open_hatch:
-      return make_motion("open_hatch").keyframes;
-    case Skilled::pull_hatch:
-      return last(make_motion("open_hatch").keyframes, kByTheHandle);
-    case Skilled::close_hatch:
-      break;
+    default:
+      return hatch_motion(goal.skill);
   }
-  return until(backwards(make_motion("open_hatch").keyframes), kByTheHandle);
 }
 
 }  // namespace mrhi

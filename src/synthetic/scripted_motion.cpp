@@ -90,15 +90,14 @@ Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
   return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
 }
 
-/// Left hand's frame for a right hand's, mirrored in world's x.
+}  // namespace
+
 Pose mirrored(const Pose& wrist) {
   const Quaternion& q = wrist.orientation;
   const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
   return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
           Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
 }
-
-}  // namespace
 
 const HandSkeleton& human_hand() {
   static const HandSkeleton hand = make_human_hand();

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "../scene/solid_mesh.h"
+#include "../synthetic/floating_person.h"
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/yaml.h"
@@ -106,8 +107,6 @@ std::optional<PractisedGoal> practised(const Goal& goal) {
       return PractisedGoal{goal.max_speed < kSlap ? Skilled::tap : Skilled::slap};
     case GoalKind::release:
       return std::nullopt;
-    case GoalKind::rest:
-      throw std::invalid_argument("a simulated operator does no goal 'rest'; allowed: the other goals");
     default:
       break;
   }
@@ -122,6 +121,32 @@ std::optional<PractisedGoal> practised(const Goal& goal) {
 
 bool is_carried(const Goal& goal) {
   return is_place(goal) || goal.kind == GoalKind::pick || goal.kind == GoalKind::release;
+}
+
+bool is_rest(const Goal& goal) {
+  return goal.kind == GoalKind::rest;
+}
+
+/// What a person who floats does for the task's goal: `pick` begins what brings the object to its rest.
+FloatingGoal floating(const Task& task, std::size_t index) {
+  const Goal& goal = task.goals[index];
+  if (goal.kind == GoalKind::joint) {
+    const Skilled all = practised(goal)->skill;
+    const bool latch = all == Skilled::open_hatch, top = goal.joint == "latch_top_axle";
+    return {FloatingGoal::Kind::work, {}, !latch ? all : top ? Skilled::top_latch : Skilled::bottom_latch};
+  }
+  if (goal.kind == GoalKind::rest && goal.of_operator)
+    return {FloatingGoal::Kind::rest,
+            std::isfinite(goal.tolerance) ? std::optional<Vector3>(goal.position) : std::nullopt};
+  const auto from = task.goals.begin() + static_cast<std::ptrdiff_t>(index);
+  const auto to = std::find_if(from, task.goals.end(), [](const Goal& next) {
+    return is_rest(next) && !next.of_operator && std::isfinite(next.tolerance);
+  });
+  if (to == task.goals.end() || (goal.kind != GoalKind::pick && !is_rest(goal)))
+    throw std::invalid_argument(
+        "task '" + task.name + "': beside a goal 'rest' a simulated operator does no '" +
+        to_string(goal.kind) + "' there; allowed: joint, and pick and rest at a position");
+  return {FloatingGoal::Kind::bring, to->position};
 }
 
 }  // namespace
@@ -169,7 +194,12 @@ Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_
 }
 
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
-                                    std::uint64_t seed) {
+                                    std::uint64_t seed, const Scene& surroundings) {
+  if (std::any_of(task.goals.begin(), task.goals.end(), is_rest)) {
+    std::vector<FloatingGoal> floats;
+    for (std::size_t goal = 0; goal < task.goals.size(); ++goal) floats.push_back(floating(task, goal));
+    return std::make_unique<FloatingPerson>(skill, std::move(floats), surroundings, object, seed);
+  }
   if (std::all_of(task.goals.begin(), task.goals.end(), is_carried))
     return std::make_unique<SimulatedOperator>(skill, object, seed);
   if (std::any_of(task.goals.begin(), task.goals.end(),
@@ -245,9 +275,25 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
   return sight;
 }
 
+std::vector<HandJoints> hands_of(Person& person, double time, const Sight& sight, const Pose& device) {
+  const HandPlace right = person.move(time, sight);
+  const Pose to_device = device.inverse();
+  const auto joints = [&](Side side, const HandPlace& hand) {
+    return hand_joints(human_hand(), side, to_device * hand.wrist, hand.posture);
+  };
+  std::vector<HandJoints> hands{joints(Side::right, right)};
+  if (const std::optional<HandPlace> left = person.left_hand()) {
+    hands.push_back(joints(Side::left, *left));
+    ++hands.back().id;
+  }
+  return hands;
+}
+
 void check_operator(const Task& task, const OperatorStage& stage) {
-  for (const TaskObject& object : task.objects)
-    make_person({}, task, operator_scene(task, object, stage).bodies.front(), 0);
+  for (const TaskObject& object : task.objects) {
+    const Scene scene = operator_scene(task, object, stage);
+    make_person({}, task, scene.bodies.front(), 0, scene);
+  }
 }
 
 Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64_t seed,
@@ -258,7 +304,7 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   configuration.gravity = task.gravity;
   Simulation simulation(scene, configuration);
   Random seeds(seed);
-  const std::unique_ptr<Person> person = make_person(skill, task, scene.bodies.front(), seeds.bits());
+  const std::unique_ptr<Person> person = make_person(skill, task, scene.bodies.front(), seeds.bits(), scene);
   TrackingNoise noise(stage.noise, seeds.bits());
   Nanoseconds stamp = begin;
   session.begin(begin);
@@ -267,11 +313,14 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
     const BodyState& state = simulation.state().bodies.front();
     Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
                            is_held(0, simulation.state()));
-    sight.grip = observe(simulation, 0).grip_force.value_or(0.0);
-    const HandPlace hand = person->move(to_seconds(stamp - begin), sight);
-    JointsFrame joints{stamp, {hand_joints(human_hand(), Side::right, hand.wrist, hand.posture)}};
+    const Observation seen = observe(simulation, 0);
+    sight.grip = seen.grip_force.value_or(0.0);
+    if (seen.person) sight.body = seen.person->pose, sight.body_twist = seen.person->twist;
+    JointsFrame joints{stamp, hands_of(*person, to_seconds(stamp - begin), sight, Pose{})};
     noise.apply(joints);
-    simulation.advance({stamp, {complete_hand(joints.hands.front(), Pose{})}});
+    HandFrame frame{stamp, {}};
+    for (const HandJoints& hand : joints.hands) frame.hands.push_back(complete_hand(hand, Pose{}));
+    simulation.advance(frame);
     session.update(observe(simulation, 0));
   }
   return stamp;

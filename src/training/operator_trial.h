@@ -55,10 +55,14 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
 /// the hole on its axis, then inside.
 Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held);
 
-/// Creates a SimulatedOperator or a PractisedPerson that can do the task with the object. Throws
+/// Creates a SimulatedOperator, a PractisedPerson, or for a task with a goal `rest` a FloatingPerson that can
+/// do the task with the object. `surroundings` has the task's operator and fixtures. Throws
 /// std::invalid_argument that names the goal or the object, and what is allowed.
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
-                                    std::uint64_t seed);
+                                    std::uint64_t seed, const Scene& surroundings = {});
+
+/// Moves the person's hands to `time` [s], and gives them as a device at that pose sees them.
+std::vector<HandJoints> hands_of(Person& person, double time, const Sight& sight, const Pose& device);
 
 /// Throws as make_person() does for the first object of the task that a simulated operator cannot do it with.
 void check_operator(const Task& task, const OperatorStage& stage);

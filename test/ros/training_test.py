@@ -181,6 +181,15 @@ class TrainingTest(unittest.TestCase):
             achieved = [row["detail"] for row in csv.DictReader(file) if row["event"] == "goal_achieved"]
         self.assertEqual(achieved, ["1", "2", "3", "4", "5"])
 
+    def test_an_operator_who_floats_pulls_along_a_rail_with_two_hands(self):
+        """One trial of 13 s undisturbed; hands that lost frames may miss the rail, and take it again."""
+        with self.training("hands:=operator", "group:=none", "task:=rail", "record:=false", "auto_next:=-1"):
+            wait_until(lambda: self.status and self.status.result, "the end of a trial", 200.0)
+        (row,) = trials(self.folder)
+        self.assertEqual(row["result"], "completed")
+        self.assertGreaterEqual(int(row["touches"]), 4, "each hand takes the rail twice")
+        self.assertLess(float(row["operator_speed"]), 0.03)
+
     def check_analysis(self):
         if not has_pandas():
             print("analyse_study is not tried: python3-pandas, -scipy or -matplotlib is absent")

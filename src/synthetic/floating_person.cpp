@@ -1,0 +1,514 @@
+#include "floating_person.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+#include "../math/minimum_jerk.h"
+#include "../math/rotation.h"
+
+namespace mrhi {
+namespace {
+
+constexpr double kMaxRailRadius = 0.03, kMinRailLength = 0.3;  // of a cylinder that is held as a rail [m]
+constexpr double kMaxBar = 0.03, kMinBar = 0.1;  // width and length of a bar by which an object is held [m]
+constexpr double kApart = 0.34;                  // of each hand on a rail from the body's middle [m]
+constexpr double kOff = 0.08;                    // from where a hand goes straight to what it takes [m]
+constexpr double kArm = 0.8;                     // [m] places farther away are out of reach
+constexpr double kNear = 0.004;                  // of the palm before the fingers close [m]
+constexpr double kHoldWidth = 0.02;              // for Fitts' law [m]
+constexpr double kCorrecting = 2.0;              // rate of correcting a seen error [1/s]
+constexpr double kApproach = 0.4, kClose = 0.4, kGrip = 0.5, kOpen = 0.25, kRetreat = 0.4,
+                 kGoAside = 0.7;  // times at pace 1 [s]
+
+constexpr double kGlide = 0.15;   // speed along a rail [m/s]; people go 0.1 to 0.3 m/s
+constexpr double kPull = 0.25;    // way of a pull from rest to that speed [m]
+constexpr double kBrake = 0.2;    // way of the hands from that speed to rest [m]
+constexpr double kStroke = 0.3;   // longest way of the body from rest to rest without letting go [m]
+constexpr double kStop = 2.5;     // duration of a stop without a place [s]
+constexpr int kMaxStops = 3;      // before hands take the rail again
+constexpr double kSettle = 0.5;   // before the next look at what hands hold [s]
+constexpr double kPlaced = 0.03;  // distance from a place that is left as it is [m]
+constexpr double kLost = 0.4;     // of the body from its foreseen path [m]
+constexpr double kStill = 0.01, kStillTurn = 0.03;  // of a body at rest [m/s], [rad/s]
+
+constexpr double kCarry = 0.05;                  // mean speed of a heavy object in two hands [m/s]
+constexpr double kExact = 0.012;                 // of a carried object from its place [m]
+constexpr double kPatience = 3.0;                // for what was put in its place [s]
+constexpr double kThrow = 0.8;                   // speed of a throw [m/s]
+constexpr double kSwing = 0.25, kRelease = 0.3;  // way before the hand opens [m]; duration of that [s]
+constexpr double kAstray = 0.25;                 // of the body from where it works [m]
+constexpr double kCatchable = 0.1;               // faster objects are not taken [m/s]
+const Vector3 kHatchScene(0.0, 0.15, 0.25);      // of the hatch's wall in its shipped scene
+
+Pose expected(const Pose& pose, const Twist& twist, double ahead) {
+  return {pose.position + ahead * twist.linear,
+          (rotation_by(ahead * twist.angular) * pose.orientation).normalized()};
+}
+
+double side(std::size_t hand) {
+  return hand == 0 ? -1.0 : 1.0;
+}
+
+/// Bars along the body's z by which two hands hold it, from left to right.
+std::vector<Vector3> bars_of(const Body& body) {
+  std::vector<Vector3> bars;
+  for (const PlacedShape& shape : body.shapes) {
+    const auto* box = std::get_if<Box>(&shape.shape);
+    if (box == nullptr || shape.pose.orientation.angularDistance(Quaternion::Identity()) > 1e-6) continue;
+    const Vector3 size = 2.0 * box->half_extents;
+    if (size.x() <= kMaxBar && size.y() <= kMaxBar && size.z() >= kMinBar)
+      bars.push_back(shape.pose.position);
+  }
+  std::sort(bars.begin(), bars.end(), [](const Vector3& a, const Vector3& b) { return a.x() < b.x(); });
+  return bars;
+}
+
+/// Grasp of an object that is to fly in a direction: of those that are equal by its symmetry, the one that
+/// closes and leaves across that direction with the least rotation.
+Grasp grasp_to_throw(const Body& object, const Vector3& direction) {
+  const Grasp usual = grasp_of(object);
+  const auto cost = [&](const Quaternion& turn) {
+    return std::abs(direction.dot(turn * usual.contacts.front().normal)) +
+           std::abs(direction.dot(turn * usual.retreat)) + 0.1 * turn.angularDistance(Quaternion::Identity());
+  };
+  const std::vector<Quaternion> turns = box_symmetries(object);
+  return usual.turned(*std::min_element(turns.begin(), turns.end(),
+                                        [&](const auto& a, const auto& b) { return cost(a) < cost(b); }));
+}
+
+}  // namespace
+
+FloatingPerson::FloatingPerson(const OperatorSkill& skill, std::vector<FloatingGoal> goals,
+                               const Scene& surroundings, const Body& object, std::uint64_t seed)
+    : skill_(skill),
+      goals_(std::move(goals)),
+      object_(object),
+      random_(seed),
+      tremor_{Tremor(skill.tremor, random_), Tremor(skill.tremor, random_)} {
+  if (surroundings.operators.empty())
+    throw std::invalid_argument(
+        "a simulated operator does a goal 'rest' only afloat: the task's scene has no " +
+        std::string("operator; allowed: a scene with 'operator' in its YAML file"));
+  const Body& person = surroundings.bodies.at(static_cast<std::size_t>(surroundings.operators.front().body));
+  link_in_body_ = person.link_in_body;
+  mass_ = person.mass;
+  inertia_ = person.inertia;
+  for (const Body& body : surroundings.bodies) {
+    if (!body.fixed || body.shapes.size() != 1) continue;
+    const auto* bar = std::get_if<Cylinder>(&body.shapes[0].shape);
+    if (bar == nullptr || bar->radius > kMaxRailRadius || 2.0 * bar->half_length < kMinRailLength) continue;
+    const Pose pose = body.start * body.shapes[0].pose;
+    rails_.push_back({pose.position, pose.orientation * Vector3::UnitZ(), bar->half_length, bar->radius});
+  }
+  if (rails_.empty())
+    throw std::invalid_argument(
+        "a simulated operator who floats needs a hold: the task's scene has no rail; " +
+        std::string("allowed: a scene with a fixture that is one cylinder, at most 6 ") +
+        "cm thick and at least 30 cm long");
+  const auto brings = std::find_if(goals_.begin(), goals_.end(), [](const FloatingGoal& goal) {
+    return goal.kind == FloatingGoal::Kind::bring;
+  });
+  const auto hold_of = [](const Grasp& grasp) {
+    const GraspPostures postures(grasp);
+    return Hold{grasp.wrist, postures.open, postures.near, postures.pressing, grasp.retreat};
+  };
+  if (const std::vector<Vector3> bars = bars_of(object); brings != goals_.end() && bars.size() == kHands) {
+    for (std::size_t hand = 0; hand < kHands; ++hand) {
+      Hold hold = hold_of(shipped_grasp("long_cuboid"));
+      if (hand == kLeft) hold.wrist = mirrored(hold.wrist), hold.retreat.x() *= -1.0;
+      hold.wrist.position += bars[hand];
+      holds_.emplace_back(hand, hold);
+    }
+  } else if (brings != goals_.end()) {
+    holds_.emplace_back(
+        kRight, hold_of(grasp_to_throw(object, (*brings->place - object.start.position).normalized())));
+  }
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    arms_[hand].now = shown_[hand] = {rest_pose(hand), relaxed_posture()};
+    begin(0.0, hand, Frame::body);
+  }
+}
+
+Pose FloatingPerson::rest_pose(std::size_t hand) const {
+  const Pose right = hand_pose({0.22, -0.12, 0.1}, Vector3::UnitY(), Vector3::UnitZ());
+  return hand == kLeft ? mirrored(right) : right;
+}
+
+Pose FloatingPerson::BodyPath::at(double time) const {
+  const double since = time - began, share = since / duration, beyond = std::max(0.0, since - duration);
+  const Vector3 still = Vector3::Zero();
+  const Vector3 moved = minimum_jerk(still, begins.linear, travel.linear, ends.linear, duration, share),
+                turned = minimum_jerk(still, begins.angular, travel.angular, ends.angular, duration, share);
+  return {from.position + moved + beyond * ends.linear,
+          (rotation_by(turned + beyond * ends.angular) * from.orientation).normalized()};
+}
+
+/// The frame in which hands are tracked.
+Pose FloatingPerson::frame(double time, Frame of) const {
+  if (of == Frame::body) return {};
+  Pose body = path_.at(time);
+  if (of == Frame::seen) {
+    body.position += off_.linear;
+    body.orientation = (rotation_by(off_.angular) * body.orientation).normalized();
+  }
+  return body * link_in_body_;
+}
+
+/// Critically damped, so that a drift leaves no error.
+void FloatingPerson::correct(double since) {
+  const Moment& then = past_.front();
+  if (then.time < path_.began) return;
+  const Pose foreseen = path_.at(then.time);
+  const Vector3 linear = then.sight.body.position - foreseen.position,
+                angular = rotation_vector(then.sight.body.orientation * foreseen.orientation.conjugate());
+  const Twist error{linear - off_.linear, angular - off_.angular};
+  if (error.linear.norm() > kLost) return lose(then.time + skill_.reaction_time);
+  off_.linear += since * (kCorrecting * error.linear + off_rate_.linear);
+  off_.angular += since * (kCorrecting * error.angular + off_rate_.angular);
+  off_rate_.linear += 0.25 * kCorrecting * kCorrecting * since * error.linear;
+  off_rate_.angular += 0.25 * kCorrecting * kCorrecting * since * error.angular;
+}
+
+/// The body is elsewhere than foreseen: lets go of everything.
+void FloatingPerson::lose(double time) {
+  for (Arm& arm : arms_) arm.on_rail = false;
+  in_hand_ = false;
+  rest_hands(time);
+  drift(time);
+  busy_until_ = time + paced(kGoAside);
+}
+
+/// From what is seen. Hands stay where they are.
+void FloatingPerson::set_path(double time, double duration, const Twist& travel, const Twist& ends) {
+  const Moment& then = past_.front();
+  const Twist& twist = then.sight.body_twist;
+  path_ = {time, duration, expected(then.sight.body, twist, time - then.time), twist, travel, ends};
+  off_ = off_rate_ = Twist();
+  for (std::size_t hand = 0; hand < kHands; ++hand)
+    if (arms_[hand].frame != Frame::body) begin(time, hand, arms_[hand].frame);
+}
+
+/// The path of a body that nothing holds.
+void FloatingPerson::drift(double time) {
+  const Twist& twist = past_.front().sight.body_twist;
+  set_path(time, 1.0, twist, twist);
+}
+
+HandPlace FloatingPerson::move(double time, const Sight& sight) {
+  const bool begins = past_.empty();
+  past_.push_back({time, sight});
+  if (begins) {
+    start_ = sight.body.position;
+    drift(time);
+  }
+  while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
+  correct(time - last_time_);
+  last_time_ = time;
+  if (time >= busy_until_ && past_.front().time <= time - skill_.reaction_time) decide(time);
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    Arm& arm = arms_[hand];
+    arm.now = hand_at(arm.way, time - arm.began);
+    if (arm.frame != Frame::body) arm.now.wrist = frame(time, arm.frame).inverse() * arm.now.wrist;
+    shown_[hand] = arm.now;
+    shown_[hand].wrist.position += tremor_[hand].at(time);
+  }
+  return shown_[kRight];
+}
+
+void FloatingPerson::decide(double time) {
+  const std::size_t index = past_.front().sight.goal;
+  if (index >= goals_.size()) return;
+  const FloatingGoal& goal = goals_[index];
+  switch (goal.kind) {
+    case FloatingGoal::Kind::bring:
+      return bring(time, goal);
+    case FloatingGoal::Kind::rest:
+      come_to_rest(time, goal.place, kPlaced);
+      return;
+    case FloatingGoal::Kind::work:
+      return work(time, goal);
+  }
+}
+
+// ---- The body along rails.
+
+/// Returns whether the body rests.
+bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place, double tolerance) {
+  const Moment& then = past_.front();
+  const Twist& twist = then.sight.body_twist;
+  const Vector3 at = expected(then.sight.body, twist, time - then.time).position;
+  const bool still = twist.linear.norm() < kStill && twist.angular.norm() < kStillTurn;
+  const Vector3 off = place ? Vector3(*place - at) : Vector3::Zero();
+  const Vector3 reached = at + then.sight.body.orientation * link_in_body_.position;
+  const Rail& rail = nearest_rail(reached);
+  const Vector3& axis = rail.axis;
+  const double along = axis.dot(off), speed = twist.linear.norm();
+  if (still && off.norm() < tolerance) return true;
+  if (distance(reached, rail) > kArm) {
+    rest_hands(time);
+    return false;
+  }
+  const Vector3 ahead =
+      std::abs(along) < kPlaced ? Vector3::Zero() : Vector3(std::copysign(1.0, along) * axis);
+  if (!arms_[kLeft].on_rail || !arms_[kRight].on_rail) {
+    const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
+    const double nearing = ahead.dot(twist.linear);
+    const double wait = nearing > kStill ? (std::abs(along) - kBrake) / nearing - takes : 0.0;
+    stops_ = 0;
+    if (wait > 0.0) {
+      busy_until_ = time + wait;
+      rest_hands(time);
+    } else {
+      take_rail(time, arms_[kLeft].on_rail ? kRight : kLeft, arms_[kRight].on_rail ? kLeft : kRight,
+                std::min(0.5 * std::abs(along), 0.5 * kPull) * ahead);
+    }
+  } else if (++stops_ > kMaxStops) {
+    let_go(0.0);  // a hand has missed its rail
+  } else if (std::abs(along) > kStroke) {
+    go_along(time, at, ahead);
+  } else if (place) {
+    follow(time, *place, Vector3::Zero(),
+           speed > kStill ? kStop : std::max(kStop, std::abs(along) / (0.5 * kGlide)));
+    busy_until_ += kSettle + skill_.reaction_time;
+  } else {
+    stop(time);
+  }
+  return false;
+}
+
+/// Pulls until the body glides, and lets go.
+void FloatingPerson::go_along(double time, const Vector3& at, const Vector3& ahead) {
+  const double duration = 2.0 * kPull / kGlide;
+  follow(time, at + kPull * ahead, kGlide * ahead, duration);
+  let_go(duration);
+}
+
+/// Hands that hold a rail take the body along a path from its present motion, upright in the end.
+void FloatingPerson::follow(double time, const Vector3& to, const Vector3& velocity, double duration) {
+  const Moment& then = past_.front();
+  const Pose from = expected(then.sight.body, then.sight.body_twist, time - then.time);
+  set_path(time, duration, {to - from.position, rotation_vector(from.orientation.conjugate())},
+           {velocity, Vector3::Zero()});
+  busy_until_ = time + duration;
+}
+
+/// The same to rest, as soon as that goes smoothly.
+void FloatingPerson::stop(double time) {
+  const Twist& twist = past_.front().sight.body_twist;
+  set_path(time, kStop, {0.5 * kStop * twist.linear, 0.5 * kStop * twist.angular}, Twist());
+  busy_until_ = time + kStop + kSettle + skill_.reaction_time;
+}
+
+double FloatingPerson::distance(const Vector3& from, const Rail& rail) {
+  const Vector3 off = from - rail.centre;
+  const double along = std::clamp(rail.axis.dot(off), -rail.half_length, rail.half_length);
+  return (off - along * rail.axis).norm();
+}
+
+const FloatingPerson::Rail& FloatingPerson::nearest_rail(const Vector3& to) const {
+  return *std::min_element(rails_.begin(), rails_.end(),
+                           [&](const Rail& a, const Rail& b) { return distance(to, a) < distance(to, b); });
+}
+
+/// The palm towards the rail, the thumb up or to the other hand.
+FloatingPerson::Hold FloatingPerson::on_rail(std::size_t hand, const Vector3& at, const Rail& rail,
+                                             const Quaternion& body) const {
+  const PowerGrip grip(rail.radius);
+  Vector3 dorsal = body * -Vector3::UnitY();
+  dorsal = (dorsal - rail.axis.dot(dorsal) * rail.axis).normalized();
+  const Vector3 inward = body * Vector3(-side(hand), 0.0, 1.0);
+  const Vector3 thumb = std::copysign(1.0, rail.axis.dot(inward)) * rail.axis;
+  Pose wrist = hand_pose(Vector3::Zero(), (side(hand) * thumb).cross(dorsal), dorsal);
+  const double along = std::clamp(rail.axis.dot(at - rail.centre), -rail.half_length, rail.half_length);
+  const Vector3 mirror(1.0, side(hand), 1.0);
+  wrist.position =
+      rail.centre + along * rail.axis - wrist.orientation * Vector3(mirror.cwiseProduct(grip.bar));
+  return {wrist, grip.open, grip.near, grip.closed, dorsal};
+}
+
+void FloatingPerson::take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead) {
+  const Moment& then = past_.front();
+  const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
+  if (first == kLeft && last == kRight) drift(time);
+  const Pose body = expected(then.sight.body, then.sight.body_twist, time + takes - then.time);
+  for (std::size_t hand = first; hand <= last; ++hand) {
+    const Vector3 at = body.position + ahead + body.orientation * Vector3(side(hand) * kApart, 0.0, 0.0);
+    const Pose tracked = body * link_in_body_;
+    const Rail& rail = nearest_rail(tracked.position + at - body.position);
+    take(time, hand, on_rail(hand, at, rail, body.orientation));
+    arms_[hand].on_rail = true;
+  }
+}
+
+// ---- Hands.
+
+void FloatingPerson::begin(double time, std::size_t hand, Frame of) {
+  Arm& arm = arms_[hand];
+  arm.frame = of;
+  arm.began = time;
+  arm.way = {{0.0, frame(time, of) * arm.now.wrist, arm.now.posture}};
+}
+
+/// Goes out of the way of what it takes, opens, comes straight from kOff away, and closes. `hold` is in
+/// world.
+void FloatingPerson::take(double time, std::size_t hand, Hold hold) {
+  hold.wrist.position += random_.gaussian_vector(skill_.placing_error);
+  begin(time, hand, Frame::path);
+  Arm& arm = arms_[hand];
+  arm.retreat = hold.retreat, arm.open = hold.open, arm.near = hold.near;
+  const Pose off = shifted(hold.wrist, kOff * hold.retreat), now = arm.way.back().wrist;
+  const double behind = hold.retreat.dot(off.position - now.position);
+  if (behind > 0.0) then(hand, paced(kGoAside), shifted(now, behind * hold.retreat), hold.open);
+  then(hand, movement_time((off.position - arm.way.back().wrist.position).norm()), off, hold.open);
+  const Pose near = shifted(hold.wrist, kNear * hold.retreat);
+  then(hand, paced(kApproach), near, hold.open);
+  then(hand, paced(kClose), near, hold.near);
+  then(hand, paced(kGrip), hold.wrist, hold.closed);
+  busy_until_ = std::max(busy_until_, time + arm.way.back().time);
+}
+
+/// Continues the hand's path.
+void FloatingPerson::then(std::size_t hand, double duration, const Pose& wrist, const HandPosture& posture,
+                          const Vector3& velocity) {
+  std::vector<Keyframe>& way = arms_[hand].way;
+  way.push_back({way.back().time + duration, wrist, posture, velocity});
+}
+
+/// Opens all hands that hold something, after `delay`.
+void FloatingPerson::let_go(double delay) {
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    Arm& arm = arms_[hand];
+    if (!arm.on_rail && !in_hand_) continue;
+    const Pose wrist = arm.way.back().wrist;
+    then(hand, delay, wrist, arm.way.back().posture);
+    then(hand, paced(kOpen), wrist, arm.near);
+    then(hand, paced(kOpen), wrist, arm.open);
+    then(hand, paced(kRetreat), shifted(wrist, kOff * arm.retreat), arm.open);
+    arm.on_rail = false;
+    busy_until_ = std::max(busy_until_, arm.began + arm.way.back().time);
+  }
+  in_hand_ = false;
+}
+
+void FloatingPerson::rest_hands(double time) {
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    if (arms_[hand].frame == Frame::body || arms_[hand].on_rail) continue;
+    begin(time, hand, Frame::body);
+    then(hand, paced(kGoAside), rest_pose(hand), relaxed_posture());
+  }
+}
+
+double FloatingPerson::movement_time(double distance) const {
+  return skill_.movement_start + skill_.movement_per_bit * std::log2(distance / kHoldWidth + 1.0);
+}
+
+// ---- Objects.
+
+void FloatingPerson::bring(double time, const FloatingGoal& goal) {
+  const Sight& sight = past_.front().sight;
+  const Vector3 off = *goal.place - sight.object.position;
+  if (in_hand_ && !sight.held) return let_go(0.0);
+  if (in_hand_ && off.norm() > kArm) return throw_to(time, off.normalized());
+  if (in_hand_ && off.norm() > kExact) return carry(time, *goal.place);
+  if (in_hand_ && (sight.twist.linear.norm() > kStill || sight.twist.angular.norm() > kStillTurn)) return;
+  if (in_hand_) {
+    let_go(0.0);
+    busy_until_ += kPatience;
+    return;
+  }
+  const Vector3 away = sight.object.position - (sight.body * link_in_body_).position;
+  if (away.norm() > kArm || sight.twist.linear.norm() > kCatchable) return rest_hands(time);
+  drift(time);
+  for (const auto& [hand, in_body] : holds_) {
+    Hold hold = in_body;
+    const double takes = movement_time(away.norm()) + paced(kApproach + kClose);
+    const Pose object = expected(sight.object, sight.twist, time + takes - past_.front().time);
+    hold.wrist = object * hold.wrist;
+    hold.retreat = object.orientation * hold.retreat;
+    take(time, hand, hold);
+  }
+  in_hand_ = true;
+  busy_until_ += kSettle + skill_.reaction_time;
+}
+
+/// What the body does as its hands move the object by `moved`, or at a velocity: their sum of momenta stays.
+Twist FloatingPerson::recoil(const Vector3& moved) const {
+  const Sight& sight = past_.front().sight;
+  const Vector3 arm = sight.object.position - sight.body.position;
+  const Quaternion& turned = sight.body.orientation;
+  const Vector3 momentum = turned.conjugate() * arm.cross(object_.mass * moved);
+  return {-object_.mass / mass_ * moved, -(turned * (inertia_.inverse() * momentum))};
+}
+
+/// Moves all hands on the object as one with it, while the body recoils.
+void FloatingPerson::carry(double time, const Vector3& place) {
+  const Pose object = past_.front().sight.object;
+  const double distance = (place - object.position).norm();
+  const double duration = std::max(1.0, distance / kCarry);
+  set_path(time, duration, recoil(place - object.position), Twist());
+  for (const auto& [hand, hold] : holds_) {
+    const Keyframe now = arms_[hand].way.back();
+    then(hand, duration, Pose{place, Quaternion::Identity()} * (object.inverse() * now.wrist), now.posture);
+  }
+  busy_until_ = time + duration + kSettle + skill_.reaction_time;
+}
+
+/// Brings the object to speed, and opens the hand while it goes along with it.
+void FloatingPerson::throw_to(double time, const Vector3& direction) {
+  constexpr double kAccelerates = 2.0 * kSwing / kThrow;  // [s]
+  const Vector3 velocity = kThrow * direction;
+  const Twist drift = past_.front().sight.body_twist, turned = recoil(kSwing * direction),
+              ends = recoil(velocity);
+  set_path(time, kAccelerates,
+           {turned.linear + kAccelerates * drift.linear, turned.angular + kAccelerates * drift.angular},
+           {ends.linear + drift.linear, ends.angular + drift.angular});
+  for (const auto& [hand, hold] : holds_) {
+    const Arm& arm = arms_[hand];
+    const Keyframe from = arm.way.back();
+    const Pose fast = shifted(from.wrist, kSwing * direction);
+    then(hand, kAccelerates, fast, from.posture, velocity);
+    then(hand, kRelease / 3.0, shifted(fast, kRelease / 3.0 * velocity), arm.near, velocity);
+    then(hand, kRelease, shifted(fast, 4.0 / 3.0 * kRelease * velocity), arm.open, velocity);
+    then(hand, kRetreat, shifted(arm.way.back().wrist, 0.2 * velocity + kOff * arm.retreat), arm.open);
+    busy_until_ = time + arm.way.back().time;
+  }
+  in_hand_ = false;
+}
+
+// ---- Devices.
+
+/// With the left hand on a rail. Or with both hands free: then a rail serves to come back.
+void FloatingPerson::work(double time, const FloatingGoal& goal) {
+  const Sight& sight = past_.front().sight;
+  const double speed = sight.body_twist.linear.norm();
+  const bool on_rail = arms_[kLeft].on_rail || arms_[kRight].on_rail;
+  if (skill_.holds_rail) {
+    if (!on_rail) {
+      drift(time);
+      return take_rail(time, kLeft, kLeft, Vector3::Zero());
+    }
+    if (speed > 2.0 * kStill) return stop(time);
+  } else {
+    const bool astray = (sight.body.position - start_).norm() > kAstray;
+    if (on_rail || astray || speed > 2.0 * kStill) {
+      if (!come_to_rest(time, astray ? std::optional<Vector3>(start_) : std::nullopt, kAstray)) return;
+      if (on_rail) return let_go(0.0);
+    }
+  }
+  if (!on_rail) drift(time);
+  // Sight corrects a hand at a latch, or beside one on a rail. A free body would be pulled after its handle.
+  begin(time, kRight, on_rail || goal.skill != Skilled::pull_hatch ? Frame::seen : Frame::path);
+  const Vector3 by = object_.start.position - kHatchScene + random_.gaussian_vector(skill_.placing_error);
+  double ready = paced(kGoAside);
+  for (Keyframe key : hatch_motion(goal.skill)) {
+    key.time += ready;
+    key.wrist.position += by;
+    if (key.centre) *key.centre += by;
+    arms_[kRight].way.push_back(key);
+  }
+  busy_until_ = time + arms_[kRight].way.back().time;
+}
+
+}  // namespace mrhi

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "motions.h"
+#include "mr_hand_interaction/scene/scene.h"
+#include "operator.h"
+
+namespace mrhi {
+
+/// What a person who floats does for a goal.
+struct FloatingGoal {
+  enum class Kind : std::uint8_t {
+    bring,  ///< the object to `place`: carries it, or throws it to a place out of reach
+    rest,   ///< stops, with the operator's centre of mass at `place` if it is set
+    work    ///< a practised motion on a device
+  };
+  Kind kind = Kind::rest;
+  std::optional<Vector3> place;  ///< [m, world]
+  Skilled skill = Skilled::open_hatch;
+};
+
+/// A program in the role of a person who floats, with two hands. It moves along rails: hands close round the
+/// rail, pull until the body glides, let go, and hold on again to stop. While hands hold a rail, they follow
+/// the path that the body is to take, so that the body takes it. Everything else is done by what was seen a
+/// reaction time ago. The same seed and sights give the same bits.
+class FloatingPerson : public Person {
+ public:
+  /// One goal for each of the task's. Holds the cylinders among the surroundings' fixtures that fit into a
+  /// hand, and an object by two upright bars, or with the right hand by grasp_of(). Throws
+  /// std::invalid_argument without an operator or rail, and as grasp_of() does.
+  FloatingPerson(const OperatorSkill& skill, std::vector<FloatingGoal> goals, const Scene& surroundings,
+                 const Body& object, std::uint64_t seed);
+
+  /// Pose of the right hand in the frame in which hands are tracked.
+  HandPlace move(double time, const Sight& sight) override;
+  std::optional<HandPlace> left_hand() const override { return shown_[kLeft]; }
+
+ private:
+  static constexpr std::size_t kLeft = 0, kRight = 1, kHands = 2;
+
+  struct Rail {
+    Vector3 centre, axis;  ///< axis: unit [world]
+    double half_length, radius;
+  };
+  /// A hand on something, in its frame.
+  struct Hold {
+    Pose wrist;
+    HandPosture open, near, closed;
+    Vector3 retreat;
+  };
+  /// Frame of a hand's path: the operator's; or world, with the body on its foreseen path, or where that is
+  /// corrected by what is seen. A free body does not follow by sight what its hand holds: with a reaction
+  /// time's delay it would swing.
+  enum class Frame : std::uint8_t { body, path, seen };
+  struct Arm {
+    Frame frame = Frame::body;
+    std::vector<Keyframe> way;
+    double began = 0.0;
+    HandPlace now;         ///< in the operator's frame
+    bool on_rail = false;  ///< closed round it
+    // Of what it holds or held last.
+    Vector3 retreat = Vector3::Zero();  ///< world
+    HandPosture near = HandPosture::Zero(), open = HandPosture::Zero();
+  };
+  /// Foreseen path of the body, from a pose and velocity to others.
+  struct BodyPath {
+    double began = 0.0, duration = 1.0;
+    Pose from;
+    Twist begins, travel, ends;  ///< travel: displacement and rotation [m], [rad]
+    Pose at(double time) const;
+  };
+  struct Moment {
+    double time;
+    Sight sight;
+  };
+
+  void decide(double time);
+  bool come_to_rest(double time, const std::optional<Vector3>& place, double tolerance);
+  void go_along(double time, const Vector3& at, const Vector3& ahead);
+  void bring(double time, const FloatingGoal& goal);
+  void carry(double time, const Vector3& place);
+  Twist recoil(const Vector3& moved) const;
+  void throw_to(double time, const Vector3& direction);
+  void work(double time, const FloatingGoal& goal);
+
+  void take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead);
+  void take(double time, std::size_t hand, Hold hold);
+  void let_go(double delay);
+  void rest_hands(double time);
+  void correct(double since);
+  void drift(double time);
+  void lose(double time);
+  void follow(double time, const Vector3& to, const Vector3& velocity, double duration);
+  void stop(double time);
+  void set_path(double time, double duration, const Twist& travel, const Twist& ends);
+  void begin(double time, std::size_t hand, Frame frame);
+  void then(std::size_t hand, double duration, const Pose& wrist, const HandPosture& posture,
+            const Vector3& velocity = Vector3::Zero());
+  Hold on_rail(std::size_t hand, const Vector3& at, const Rail& rail, const Quaternion& body) const;
+  static double distance(const Vector3& from, const Rail& rail);
+  const Rail& nearest_rail(const Vector3& to) const;
+  Pose frame(double time, Frame frame) const;
+  Pose rest_pose(std::size_t hand) const;
+  double movement_time(double distance) const;
+  double paced(double seconds) const { return skill_.pace * seconds; }
+
+  OperatorSkill skill_;
+  std::vector<FloatingGoal> goals_;
+  Pose link_in_body_;
+  double mass_;      ///< of the body [kg]
+  Matrix3 inertia_;  ///< of it, body axes
+  std::vector<Rail> rails_;
+  Body object_;
+  std::vector<std::pair<std::size_t, Hold>> holds_;  ///< of the object: hand and hold, in the body's frame
+  Random random_;
+  std::array<Tremor, kHands> tremor_;
+
+  std::deque<Moment> past_;  ///< sights within the reaction time
+  std::array<Arm, kHands> arms_;
+  std::array<HandPlace, kHands> shown_;
+  BodyPath path_;
+  Twist off_, off_rate_;  ///< of the body from its path, as far as it is corrected [m], [rad]; its rate
+  Vector3 start_ = Vector3::Zero();  ///< of the body at first
+  int stops_ = 0;                    ///< since hands took the rail
+  double last_time_ = 0.0;
+  double busy_until_ = 0.0;
+  bool in_hand_ = false;  ///< the object, as felt by closed hands
+};
+
+}  // namespace mrhi
