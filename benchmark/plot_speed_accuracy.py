@@ -180,6 +180,7 @@ def draw_scene(scene, rows, folder):
                     'runs, at the time that they took' % (scene.replace('_', ' '), 1e3 * steps[0], 1e3 * steps[-1]),
                     fontsize=10, x=0.05, ha='left')
     place_labels(both[1], labels)
+    figure.text(0.05, 0.01, footnote(rows), fontsize=7, color='#555555')
     figure.savefig(os.path.join(folder, scene + '.png'))
     plt.close(figure)
 
@@ -355,6 +356,7 @@ def draw_cost(rows, folder):
         axes.set_title('%s, step %.3g ms; crosses: failed' % (name.replace('_', ' '), 1e3 * shortest), fontsize=9,
                        loc='left')
         place_labels(axes, labels)
+        figure.text(0.09, 0.01, footnote(of_group), fontsize=6, color='#555555')
         figure.savefig(os.path.join(folder, name + '.png'))
         plt.close(figure)
 

@@ -1,7 +1,9 @@
-"""The tables of docs/speed_accuracy.md, made of what scripts/benchmark --full writes; scripts/figures --page engines."""
+"""The tables of docs/speed_accuracy.md, made of what scripts/benchmark writes; scripts/figures --page engines."""
 import collections
+import csv
 import math
 import os
+import re
 
 import plot_speed_accuracy as plot
 
@@ -21,7 +23,7 @@ LINES = [
     Line('plates missed by a fast hand, one step per frame', 'plate', FRAME, ' %'),
     Line('sliding to a stop', 'sliding', STEP, ' %'),
     Line('bouncing: energy', 'bouncing', STEP, ' %'),
-    Line('125 elastic balls: energy', 'elastic_energy', STEP, ' %'),
+    Line('27 elastic balls: energy', 'elastic_energy', STEP, ' %'),
     Line('stack of three at 1 g: displacement', 'stack', STEP, ' mm'),
     Line('ball caught: speed left', 'catch', STEP, ' m/s'),
     Line('recorded hand, a cube between the fingers', 'recording', STEP, ' mm'),
@@ -34,8 +36,22 @@ CROWDS = [('8 dice dropped in a heap', 'crowd_heap_8'), ('50 cubes dropped', 'cr
           ('a wall of 48 bricks falls', 'crowd_wall_48'), ('a hand pushes 50 blocks', 'crowd_push_50'),
           ('50 cubes at rest, gaps of 20 µm', 'crowd_block_50'), ('200 of them, gaps of 5 µm', 'crowd_close_200'),
           ('200 of them, no gaps', 'crowd_flush_200'), ('1000 of them, gaps of 20 µm', 'crowd_block_1000')]
-CROWD_ENGINES = (plot.OURS, 'jolt', 'box3d', 'physx', 'ode', 'bullet_f32')
+CROWD_ENGINES = (plot.OURS, 'jolt', 'box3d', 'ode', 'bullet_f32', 'mujoco')
 HANDS = ('implicit', 'implicit; shipped hand')
+UNMOVABLE = ('slap_speed', 'recording', 'scripted_hand')  # the reference is a hand that nothing moves: not the shipped one
+
+
+def merge(runs, folder):
+    """Puts results of several runs into `folder`, each scene from the last run that has it, and draws their charts."""
+    for name in ('speed_accuracy.csv', 'step_times.csv'):
+        of_scene = collections.OrderedDict()
+        for run in runs:
+            with open(os.path.join(run, name), newline='') as file:
+                head, *rows = list(csv.reader(file))
+            of_scene.update((scene, [row for row in rows if row[0] == scene]) for scene in dict.fromkeys(row[0] for row in rows))
+        with open(os.path.join(folder, name), 'w', newline='') as file:
+            csv.writer(file).writerows([head, *(row for rows in of_scene.values() for row in rows)])
+    plot.main(['', os.path.join(folder, 'speed_accuracy.csv')])
 
 
 def read(folder):
@@ -44,7 +60,8 @@ def read(folder):
 
 
 def number(value):
-    return '0' if value == 0 else '%.2g' % value if not 10 <= value < 1e4 else '%.0f' % value
+    text = '%.0f' % value if 10 <= value < 1e4 else '%.2g' % value
+    return re.sub('e-0?', 'e-', text)
 
 
 def cell(row, unit):
@@ -62,8 +79,10 @@ def results(rows):
             continue
         best = [min(peers, key=key, default=None) for key in (
             lambda r: r.time, lambda r: (max(r.error, ROUNDING), r.time))]
-        lines.append([line.label, *('failed' if ours[hand].failed else cell(ours[hand], line.unit) for hand in HANDS), *(
-            'none' if peer is None else '%s %s' % (plot.label_of(peer.engine), cell(peer, line.unit)) for peer in best)])
+        hands = HANDS if line.scene not in UNMOVABLE else HANDS[:1]
+        cells = ['failed' if ours[hand].failed else cell(ours[hand], line.unit) for hand in hands]
+        lines.append([line.label, *cells, *['no reference'] * (2 - len(hands)), *(
+            'failed' if peer is None else '%s %s' % (plot.label_of(peer.engine), cell(peer, line.unit)) for peer in best)])
     return ['', "ours, paper's hand", 'ours, shipped hand', 'fastest peer that did not fail', 'most accurate peer'], lines
 
 
@@ -75,7 +94,8 @@ def crowds(rows, times):
         cells = []
         for engine in engines:
             best = plot.best_setting(times, rows, scene, engine)
-            cells.append('too slow' if best is None else '%s, %s; %s mm' % (
+            ran = any(r.engine == engine and plot.of_crowd(r, scene) for r in rows)
+            cells.append(('failed' if ran else 'not run') if best is None else '%s, %s; %s mm' % (
                 *(duration(time) for time in times[(scene, engine, best)]),
                 number(plot.crowd_error(rows, scene, engine, best))))
         lines.append([label, *cells])

@@ -231,7 +231,7 @@ def operators_figures(folder):
             'table_1': _table_1(comparison, pairs, trials)}
 
 
-RACE_CHARTS = {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'cost_near': 'cost_near', 'pinch_swing': 'pinch_swing'}
+RACE_CHARTS = {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'pinch_swing': 'pinch_swing'}
 
 
 def engines():
@@ -241,16 +241,19 @@ def engines():
         raise MeasurementError('ENGINE_SOURCES is empty; allowed: options of scripts/benchmark, such as --jolt DIR --box3d DIR')
     folder = tempfile.mkdtemp()
     try:
-        run('benchmark', '--full', '--output', folder, *sources)
-        return engines_figures(folder)
+        quick, crowds = os.path.join(folder, 'quick'), os.path.join(folder, 'crowds')
+        run('benchmark', '--quick', '--output', quick, *sources)
+        run('benchmark', '--full', '--scene', 'crowd', '--output', crowds, *sources)  # --quick has but one crowd
+        return engines_figures([quick, crowds], folder)
     finally:
         shutil.rmtree(folder)
 
 
-def engines_figures(folder):
-    """Of a folder that scripts/benchmark --full wrote; its charts become the page's."""
+def engines_figures(runs, folder):
+    """Of folders that scripts/benchmark wrote. Their charts, drawn in `folder`, become the page's."""
     sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))
     import race_tables
+    race_tables.merge(runs, folder)
     rows, times = race_tables.read(folder)
     versions = race_tables.versions(rows)
     for chart, name in RACE_CHARTS.items():
@@ -261,7 +264,7 @@ def engines_figures(folder):
 
 RECIPES = {
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
-    'engines': Recipe('an hour', LAWS + ['benchmark/speed_accuracy'], engines),
+    'engines': Recipe('25 minutes', LAWS + ['benchmark/speed_accuracy'], engines),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
