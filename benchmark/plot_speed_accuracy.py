@@ -21,7 +21,7 @@ except ImportError:
 # Okabe and Ito's palette, told apart by the colour-blind; markers differ too.
 STYLES = {
     'mr_hand_interaction': ('#D55E00', 'o'),
-    'mr_hand_interaction, shipped': ('#F0A000', 'o'),
+    'mr_hand_interaction, shipped': ('#8B4513', 'o'),
     'bullet_f32': ('#56B4E9', 's'),
     'bullet_f64': ('#0072B2', 'D'),
     'ode': ('#009E73', '^'),
@@ -42,6 +42,7 @@ COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
 PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same, noisy hand of 120 Hz'),
           ('pinch_noisy_1khz', 'the same, noisy hand of 1 kHz'), ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
           ('recording', "a person's recorded hand: displacement"), ('scripted_hand', 'a scripted, noisy hand: displacement')]
+UNMOVABLE = ('slap_speed', 'recording', 'scripted_hand')  # the reference is a hand that nothing moves: not the shipped one
 SMALLEST_CROWD = 1e-6  # [mm]
 SMALLEST = 1e-12  # errors below are rounding; a logarithmic axis has no zero
 
@@ -288,7 +289,8 @@ def draw_crowds(axes, times, rows, value_of, unit):
 def draw_summary(scenes, times, folder):
     """The panels of PANELS that were run, and the crowds' cost and error."""
     rows = [r for of_scene in scenes.values() for r in of_scene]
-    panels = [(title, lambda axes, scene=scene: draw_front(axes, scenes[scene], label_at_right))
+    panels = [(title, lambda axes, scene=scene: draw_front(axes, [
+        r for r in scenes[scene] if scene not in UNMOVABLE or 'shipped hand' not in r.setting], label_at_right))
               for scene, title in PANELS if scene in scenes]
     if times:
         panels += [('crowds: cost', lambda axes: draw_crowds(

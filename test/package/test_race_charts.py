@@ -44,16 +44,15 @@ class Tables(unittest.TestCase):
         peers = [row("ode", "", 2.0, 9.0, True), row("jolt", "", 3.0, 8.0), row("mujoco", "", 20.0, 0.0)]
         head, (line,) = race_tables.results(ours + peers)
         self.assertEqual(len(head), len(line))
-        self.assertEqual(line[3:], ["Jolt 8 %, 3 µs", "MuJoCo 0 %, 20 µs"])
+        self.assertEqual(line[3:], ["Jolt 8, 3", "MuJoCo 0, 20"])
 
     def test_a_crowd_shows_an_engine_s_fastest_setting_that_did_not_fail(self):
         def row(setting, error, failed):
             return plot.Row("crowd_heap_8_sunk", "jolt", setting, 0.001, 1.0, 1.0, error, "mm", failed, "1", "2026-11-25")
         times = {("crowd_heap_8", "jolt", "a"): (1.0, 2.0), ("crowd_heap_8", "jolt", "b"): (5.0, 12345.0)}
         head, lines = race_tables.crowds([row("a", 9.0, True), row("b", 0.5, False)], times)
-        self.assertEqual(head, ["", "Jolt"])
-        self.assertEqual(lines[0], ["8 dice dropped in a heap", "5 µs, 12 ms; 0.5 mm"])
-        self.assertEqual(lines[1][1:], ["not run"])
+        self.assertEqual(head[1:], ["Jolt"])
+        self.assertEqual(lines, [["8 dice dropped", "5, 12345; 0.5"]])
 
 
 if __name__ == "__main__":
