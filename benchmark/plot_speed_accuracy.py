@@ -82,10 +82,9 @@ def label_of_engine(engine):
 
 
 def label_of(engine, setting=None):
-    name = LABELS.get(engine, engine)
     if setting is None:
-        return name
-    return name + ': ' + setting.replace('; default', '')
+        return LABELS.get(engine, engine)
+    return label_of_engine(engine) + ': ' + setting.replace('; default', '')
 
 
 def floor_of(rows):
